@@ -1,0 +1,108 @@
+"""End coils: how a spring begins and ends, and what that makes of its pitch."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from coilset.meshes import functions
+from coilset.meshes.shapes import Entry
+from pydantic import Field, model_validator
+
+CLOSED_TURNS, CLOSED_TRANSITION, GROUND_TIP = 1.0, 0.5, 0.25
+
+_Turns = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
+
+
+class EndCoils(Entry):
+    """One end of a spring, or both.
+
+    Open: the wire is cut off. Closed: the end turns lie on each other and bear no load of their own; a transition
+    leads from their pitch to that of the body. Closed and ground: the closed end is ground flat, so that the wire's tip
+    keeps only a part of its thickness. A quarter of the diameter is the usual tip: with end turns that lie on each
+    other it means a flat over three quarters of a turn.
+    """
+
+    form: Annotated[Literal["open", "closed", "closed and ground"], Field(description="how the end is made")] = "open"
+    turns: Annotated[_Turns | None, Field(description=f"end turns, {CLOSED_TURNS:g} if not given")] = None
+    transition: Annotated[
+        _Turns | None,
+        Field(description=f"turns from the pitch of the end coil to the body's, {CLOSED_TRANSITION:g} if not given"),
+    ] = None
+    tip: Annotated[
+        float | None,
+        Field(gt=0, lt=1, strict=True, description=f"thickness of the ground tip over d, {GROUND_TIP:g} if not given"),
+    ] = None
+
+    @model_validator(mode="after")
+    def _belongs(self):
+        if self.form == "open" and (self.turns is not None or self.transition is not None):
+            raise ValueError("open ends have no end turns and no transition; leave these out or make the form closed")
+        if self.form != "closed and ground" and self.tip is not None:
+            raise ValueError(f"tip is for ends that are closed and ground, not for {self.form} ends")
+        return self
+
+    @property
+    def is_closed(self):
+        """Whether the end turns lie on each other."""
+        return self.form != "open"
+
+    @property
+    def end_turns(self):
+        """Number of end turns, 0 for open ends."""
+        return (self.turns or CLOSED_TURNS) if self.is_closed else 0.0
+
+    @property
+    def transition_turns(self):
+        """Number of turns over which the pitch goes from the end coil's to the body's, 0 for open ends."""
+        return (self.transition or CLOSED_TRANSITION) if self.is_closed else 0.0
+
+    @property
+    def tip_thickness(self):
+        """What is left of the wire at its end, in wire diameters; 1 where it is not ground."""
+        return (self.tip or GROUND_TIP) if self.form == "closed and ground" else 1.0
+
+
+OPEN = EndCoils()
+
+
+class BothEnds(Entry):
+    """Two different ends."""
+
+    bottom: EndCoils = OPEN
+    top: EndCoils = OPEN
+
+
+def touching_pitch(diameter, slope):
+    """Pitch at which a coil lies on its neighbour: the centres are a wire's diameter apart, d² = p² + r′².
+
+    Coils whose radius changes by more than a wire's diameter in a turn pass each other: 0.
+
+    Args:
+        diameter: wire diameter, mm.
+        slope: change of the mean radius, mm per turn.
+    """
+    return np.sqrt(np.maximum(diameter**2 - slope**2, 0.0))
+
+
+def pitch_with_ends(body, bottom, top, touching):
+    """The pitch over the turns: end turns, transitions (cubic, with continuous slope) and body.
+
+    Args:
+        body: pitch of a spring without end turns, a function of the turn, mm.
+        bottom: `EndCoils` at turn 0.
+        top: `EndCoils` at the last turn.
+        touching: function that gives the mean touching pitch between two turns, mm.
+
+    Returns:
+        The pitch as a function of the turn, mm per turn.
+    """
+    last = body.x[-1]
+    marks = np.array([0.0, bottom.end_turns, bottom.end_turns + bottom.transition_turns,
+                      last - top.end_turns - top.transition_turns, last - top.end_turns, last])
+    parts = [functions.restricted(body, marks[2], marks[3])]
+    if bottom.is_closed:
+        coil = functions.polynomial([touching(*marks[:2])], *marks[:2])
+        parts = [coil, functions.blended(coil, body, *marks[1:3]), *parts]
+    if top.is_closed:
+        coil = functions.polynomial([touching(*marks[4:])], *marks[4:])
+        parts = [*parts, functions.blended(body, coil, *marks[3:5]), coil]
+    return functions.joined(parts)

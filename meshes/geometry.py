@@ -1,0 +1,183 @@
+"""The geometry of a spring as functions of the turn."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from coilset.meshes import functions
+from coilset.meshes.ends import OPEN, EndCoils, touching_pitch
+from coilset.meshes.stations import stations
+from scipy.interpolate import PPoly
+
+INTERVALS_PER_TURN = 64
+
+
+@dataclass(frozen=True, eq=False)
+class Spring:
+    """A wire wound round the z axis: mean radius, height and wire diameter as functions of the turn.
+
+    The turn t counts from the bottom end, and the seats are the planes z = 0 and z = free length. The centre line is
+    `c(t) = (r cos θ, r sin θ, z)` with `θ = phase + hand 2π t`. All lengths are in mm.
+
+    Args:
+        radius: mean radius over the turn, a `scipy.interpolate.PPoly` from 0 to the number of turns.
+        height: rise of the centre line over the turn, from any level.
+        wire: wire diameter over the turn.
+        hand: +1 right, −1 left.
+        bottom: `EndCoils` at turn 0.
+        top: `EndCoils` at the last turn.
+        phase: polar angle of the first point, rad.
+    """
+
+    radius: PPoly
+    height: PPoly
+    wire: PPoly
+    hand: int = 1
+    bottom: EndCoils = OPEN
+    top: EndCoils = OPEN
+    phase: float = 0.0
+
+    @property
+    def turns(self):
+        """Number of turns, end turns included."""
+        return float(self.height.x[-1])
+
+    @cached_property
+    def _slope(self):
+        return self.radius.derivative()
+
+    @cached_property
+    def _pitch(self):
+        return self.height.derivative()
+
+    @cached_property
+    def _planes(self):
+        """Levels of the seats in the coordinate of `height`: against the outermost wire, or where the end is ground."""
+        t = self.breaks
+        z, d = self.height(t), self.wire(t)
+        bottom, top = self.bottom.tip_thickness, self.top.tip_thickness
+        return (z[0] - (bottom - 0.5) * d[0] if bottom < 1 else np.min(z - 0.5 * d),
+                z[-1] + (top - 0.5) * d[-1] if top < 1 else np.max(z + 0.5 * d))
+
+    @cached_property
+    def breaks(self):
+        """Turns between which every function is one polynomial, `INTERVALS_PER_TURN` or more in a turn."""
+        even = np.linspace(0.0, self.turns, int(np.ceil(INTERVALS_PER_TURN * self.turns)) + 1)
+        t = np.unique(np.concatenate([even, self.radius.x, self.height.x, self.wire.x]))
+        return t[np.concatenate([[True], np.diff(t) > 1e-9])]
+
+    def mean_radius(self, turn):
+        """Mean coil radius at the turns, mm, in their shape."""
+        return self.radius(turn)
+
+    def wire_diameter(self, turn):
+        """Wire diameter at the turns, mm, in their shape."""
+        return self.wire(turn)
+
+    def pitch(self, turn):
+        """Rise of the centre line at the turns, mm per turn, in their shape."""
+        return self._pitch(turn)
+
+    def centre_line(self, turn):
+        """Points of the wire's centre line, mm, shape (..., 3); the bottom seat is z = 0."""
+        θ = self.angle(turn)
+        r, z = self.radius(turn), self.height(turn) - self._planes[0]
+        return np.stack([r * np.cos(θ), r * np.sin(θ), z], axis=-1)
+
+    def angle(self, turn):
+        """Polar angle of the centre line at the turns, rad, in their shape."""
+        return self.phase + self.hand * 2 * np.pi * np.asarray(turn, dtype=float)
+
+    def velocity(self, turn):
+        """First derivative of the centre line by the turn, mm, shape (..., 3)."""
+        θ = self.angle(turn)
+        r, dr, dθ = self.radius(turn), self._slope(turn), self.hand * 2 * np.pi
+        return _in_plane(θ, dr, r * dθ, self._pitch(turn))
+
+    def acceleration(self, turn):
+        """Second derivative of the centre line by the turn, mm, shape (..., 3)."""
+        θ = self.angle(turn)
+        r, dr, ddr, dθ = self.radius(turn), self._slope(turn), self._slope.derivative()(turn), self.hand * 2 * np.pi
+        return _in_plane(θ, ddr - r * dθ**2, 2 * dr * dθ, self._pitch.derivative()(turn))
+
+    def speed(self, turn):
+        """Length of wire per turn at the turns, ds/dt, mm, in their shape."""
+        return np.sqrt(self._slope(turn) ** 2 + (2 * np.pi * self.radius(turn)) ** 2 + self._pitch(turn) ** 2)
+
+    def tangent(self, turn):
+        """Unit tangents of the centre line, shape (..., 3)."""
+        return self.velocity(turn) / self.speed(turn)[..., None]
+
+    def curvature(self, turn):
+        """Curvature of the centre line at the turns, κ = |c′ × c″| / |c′|³, 1/mm, in their shape."""
+        return np.linalg.norm(np.cross(self.velocity(turn), self.acceleration(turn)), axis=-1) / self.speed(turn) ** 3
+
+    @cached_property
+    def _lengths(self):
+        """Arc length at the breaks, mm."""
+        return np.concatenate([[0.0], np.cumsum(functions.integral(self.speed, self.breaks))])
+
+    def arc_length(self, turn):
+        """Length of the centre line from the bottom end to the turns, mm, in their shape."""
+        t = np.asarray(turn, dtype=float)
+        i = np.clip(np.searchsorted(self.breaks, t, side="right") - 1, 0, len(self.breaks) - 2)
+        ξ, w = np.polynomial.legendre.leggauss(6)
+        half = 0.5 * (t - self.breaks[i])
+        inside = self.speed((self.breaks[i] + half)[..., None] + half[..., None] * ξ) @ w
+        return self._lengths[i] + half * inside
+
+    @property
+    def wire_length(self):
+        """Length of the wire's centre line, mm."""
+        return float(self._lengths[-1])
+
+    @property
+    def volume(self):
+        """Volume of the wire before grinding, mm³."""
+        parts = functions.integral(lambda t: 0.25 * np.pi * self.wire(t) ** 2 * self.speed(t), self.breaks)
+        return float(parts.sum())
+
+    @property
+    def free_length(self):
+        """Distance of the seats that touch the unloaded spring, mm."""
+        return float(self._planes[1] - self._planes[0])
+
+    @property
+    def block_height(self):
+        """Distance of the seats when every coil lies on the next, mm.
+
+        Coils of one radius rise by a wire's diameter in a turn, coils of a cone by less: `touching_pitch`. At the ends
+        there remains what the wire and its grinding make of the free length.
+        """
+        ends = self.free_length - (self.height(self.turns) - self.height(0.0))
+        rise = functions.integral(lambda t: touching_pitch(self.wire(t), self._slope(t)), self.breaks)
+        return float(rise.sum() + ends)
+
+    @property
+    def active_turns(self):
+        """Turns that bear load: all but the end turns of closed ends."""
+        return self.turns - self.bottom.end_turns - self.top.end_turns
+
+    def seat_distance(self, turn, end):
+        """Distance from the centre line to the wire's surface that meets a seat, mm, in the shape of `turn`.
+
+        Half of the wire's diameter, and less where the end is ground.
+
+        Args:
+            turn: turns, any shape.
+            end: ``bottom`` or ``top``.
+        """
+        half = 0.5 * self.wire(turn)
+        if end == "bottom":
+            return np.minimum(half, self.height(turn) - self._planes[0])
+        return np.minimum(half, self._planes[1] - self.height(turn))
+
+    def stations(self, elements_per_turn=16, **grading):
+        """Increasing turns of the nodes of a line mesh, see `coilset.meshes.stations.stations`."""
+        return stations(self, elements_per_turn, **grading)
+
+
+def _in_plane(angle, radial, circumferential, axial):
+    """A vector given in polar components, in Cartesian ones."""
+    cos, sin = np.cos(angle), np.sin(angle)
+    return np.stack([radial * cos - circumferential * sin, radial * sin + circumferential * cos, axial], axis=-1)

@@ -1,0 +1,94 @@
+"""The `spring:` section of the case file, and what is built from it."""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from coilset.meshes import functions
+from coilset.meshes.ends import OPEN, BothEnds, EndCoils, pitch_with_ends, touching_pitch
+from coilset.meshes.geometry import Spring
+from coilset.meshes.shapes import DiameterProfile, Entry, Length, Profile, profile_function
+from coilset.model.errors import InputError
+from pydantic import Field, model_validator
+
+__all__ = ["Spring", "SpringSpec"]
+
+
+class SpringSpec(Entry):
+    """A spring as on a drawing: three lengths over the turns, hand and ends. Lengths in mm."""
+
+    wire_diameter: Annotated[Profile, Field(description="wire diameter, mm; a number or a table over the turns")]
+    mean_diameter: Annotated[DiameterProfile, Field(description="mean coil diameter, mm; a number, a table or a shape")]
+    turns: Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True, description="all turns, end turns included")]
+    pitch: Annotated[
+        Profile | None, Field(description="rise in a turn of the body, mm; a number or a table; or give free_length")
+    ] = None
+    free_length: Annotated[
+        Length | None, Field(description="outer length of the unloaded spring, mm; or give pitch")
+    ] = None
+    hand: Annotated[Literal["right", "left"], Field(description="the way the coils turn")] = "right"
+    end_coils: Annotated[EndCoils | BothEnds, Field(description="both ends, or bottom and top")] = OPEN
+
+    @model_validator(mode="after")
+    def _has_length(self):
+        if self.pitch is None and self.free_length is None:
+            raise ValueError("pitch and free_length are both missing; give one of them")
+        return self
+
+    @property
+    def ends(self):
+        """Bottom and top end."""
+        both = self.end_coils
+        return (both, both) if isinstance(both, EndCoils) else (both.bottom, both.top)
+
+    def build(self):
+        """The geometry.
+
+        Returns:
+            `Spring`.
+
+        Raises:
+            InputError: entries that contradict each other, with their place.
+        """
+        wire, diameter = self._function("wire_diameter"), self._function("mean_diameter")
+        radius = functions.PPoly(0.5 * diameter.c, diameter.x)
+        ends_and_transitions = sum(end.end_turns + end.transition_turns for end in self.ends)
+        if ends_and_transitions >= self.turns:
+            raise InputError(f"{self.turns:g} turns are too few: end turns and transitions alone are "
+                             f"{ends_and_transitions:g}", "spring.turns")
+
+        def spring(pitch):
+            height = self._pitch_with_ends(pitch, wire, radius).antiderivative()
+            return Spring(radius, height, wire, 1 if self.hand == "right" else -1, *self.ends)
+
+        if self.pitch is None:
+            return spring(functions.constant(self._pitch_of_free_length(spring), self.turns))
+        built = spring(self._function("pitch"))
+        if self.free_length is not None and abs(built.free_length - self.free_length) > 1e-6 * self.free_length:
+            raise InputError(f"{self.free_length:g} mm contradicts the pitch, which makes {built.free_length:.6g} mm; "
+                             "leave one of the two out", "spring.free_length")
+        return built
+
+    def _function(self, entry):
+        try:
+            return profile_function(getattr(self, entry), self.turns)
+        except ValueError as error:
+            raise InputError(str(error), f"spring.{entry}") from error
+
+    def _pitch_with_ends(self, pitch, wire, radius):
+        slope = radius.derivative()
+
+        def touching(start, end):
+            breaks = np.linspace(start, end, 65)
+            return functions.integral(lambda t: touching_pitch(wire(t), slope(t)), breaks).sum() / (end - start)
+
+        return pitch_with_ends(pitch, *self.ends, touching)
+
+    def _pitch_of_free_length(self, spring):
+        """The body's pitch, on which the free length depends linearly."""
+        touching = spring(functions.constant(0.0, self.turns)).free_length
+        slope = spring(functions.constant(1.0, self.turns)).free_length - touching
+        pitch = (self.free_length - touching) / slope
+        if pitch <= 0:
+            raise InputError(f"{self.free_length:g} mm leave no pitch: end coils and wire alone need {touching:.4g} mm",
+                             "spring.free_length")
+        return pitch
