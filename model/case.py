@@ -1,0 +1,163 @@
+"""The case file: one YAML file that names a spring, its material, its ends, its mesh and its load program."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import yaml
+from pydantic import Field, ValidationError
+
+from coilset.meshes.spring import SpringSpec
+from coilset.model.errors import InputError
+from coilset.model.loading.program import Phase, Strict
+from coilset.model.section import rules
+
+
+class SectionSpec(Strict):
+    """Quadrature of the wire's cross-section."""
+
+    rule: Annotated[Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")] = "polar"
+    radial: Annotated[int, Field(ge=1, le=64, description="rings of the polar rule")] = 4
+    angular: Annotated[int, Field(ge=3, le=256, description="angles of the polar rule")] = 12
+
+    def build(self):
+        """The DiskRule."""
+        return rules.abramowitz9() if self.rule == "abramowitz9" else rules.polar(self.radial, self.angular)
+
+
+class MeshSpec(Strict):
+    """Elements along the wire."""
+
+    elements_per_turn: Annotated[int, Field(ge=3, le=1_000_000, description="straight rods per turn")] = 16
+    section: SectionSpec = SectionSpec()
+
+
+class ContactSpec(Strict):
+    """Stiffness of seats and coils against penetration."""
+
+    bedding: Annotated[
+        float | None, Field(gt=0, description="force per length and penetration, N/mm per mm; default E/40")
+    ] = None
+
+
+class SolverSpec(Strict):
+    """How equilibrium is found."""
+
+    tolerance: Annotated[float, Field(gt=0, lt=1, description="ε of (6.3.1)")] = 1e-7
+
+
+class Case(Strict):
+    """A whole case; units mm, N, MPa, K."""
+
+    spring: SpringSpec
+    material: Annotated[str, Field(description="name in the library, or path of a material file")] = "ck15"
+    ends: Annotated[Literal["seats", "clamped"], Field(description="seats or clamped")] = "seats"
+    mesh: MeshSpec = MeshSpec()
+    contact: ContactSpec = ContactSpec()
+    solver: SolverSpec = SolverSpec()
+    loading: Annotated[list[Phase], Field(min_length=1, description="targets, one after the other")]
+
+
+class _Loader(yaml.SafeLoader):
+    """Safe YAML that refuses an entry given twice."""
+
+    def construct_mapping(self, node, deep=False):
+        seen = set()
+        for key, _ in node.value:
+            if key.value in seen:
+                raise yaml.MarkedYAMLError(problem=f"the entry '{key.value}' is given twice", problem_mark=key.start_mark)
+            seen.add(key.value)
+        return super().construct_mapping(node, deep)
+
+
+def load_yaml(text, file):
+    """Parse YAML safely; InputError with line and column if that fails."""
+    try:
+        return yaml.load(text, Loader=_Loader)  # noqa: S506 (a SafeLoader)
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark
+        place = f"line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+        raise InputError(f"not readable as YAML: {error.problem}", place, file) from None
+    except yaml.YAMLError as error:
+        raise InputError("not readable as YAML: " + " ".join(str(error).split()), "", file) from None
+
+
+def assign(data, setting):
+    """Carry out one `--set key=value` on nested data; the value is read as YAML.
+
+    Raises:
+        InputError: if the setting has no `=`, or its path leads through something that has no entries.
+    """
+    path, equals, text = setting.partition("=")
+    place = f"--set {setting}"
+    if not equals or not path:
+        raise InputError("give it as key=value, as in mesh.elements_per_turn=32", place)
+    *parents, last = path.split(".")
+    for part in parents:
+        data = _entry(data, part, place)
+    value = load_yaml(text, place)
+    if isinstance(data, list):
+        data[_index(data, last, place)] = value
+    else:
+        data[last] = value
+
+
+def _entry(data, part, place):
+    if isinstance(data, list):
+        return data[_index(data, part, place)]
+    child = data.setdefault(part, {})
+    if child is None:
+        child = data[part] = {}
+    if not isinstance(child, (dict, list)):
+        raise InputError(f"'{part}' is {child!r} and has no entries of its own", place)
+    return child
+
+
+def _index(data, part, place):
+    if not part.isdigit() or int(part) >= len(data):
+        raise InputError(f"'{part}' is not an entry of this list; give a number from 0 to {len(data) - 1}", place)
+    return int(part)
+
+
+def explain(error):
+    """Place and problem of a pydantic error, in one line: the value that was given, and what would be right."""
+    first = error.errors()[0]
+    place = ".".join(str(part) for part in first["loc"] if str(part) not in ("Target", "literal['block']"))
+    given = "" if first["type"] in ("missing", "value_error") else f"{first['input']!r}: "
+    message = first["msg"].removeprefix("Value error, ")
+    if first["type"] == "extra_forbidden":
+        message, given = "unknown entry; is it misspelt?", ""
+    elif first["type"] == "missing":
+        message = "this entry is required"
+    more = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
+    return place, f"{given}{message}{more}"
+
+
+def read_case(path, settings=()):
+    """Read and check a case file.
+
+    Args:
+        path: the YAML file.
+        settings: texts `key=value` that replace entries of the file.
+
+    Returns:
+        Case.
+
+    Raises:
+        InputError: one line with file, place, value and what would be right.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "it is not a text file"
+        raise InputError(f"the case file cannot be read: {reason}", "", path) from None
+    data = load_yaml(text, path)
+    if not isinstance(data, dict):
+        raise InputError("a case file holds entries such as spring:, material: and loading:", "", path)
+    for setting in settings:
+        assign(data, setting)
+    try:
+        return Case.model_validate(data)
+    except ValidationError as error:
+        place, problem = explain(error)
+        raise InputError(problem, place, path) from None

@@ -1,0 +1,61 @@
+"""What every kind of contact gives to the problem: forces and stiffness on named degrees of freedom.
+
+Degrees of freedom are numbered independently of the partition: 3 i + k is the displacement k of station i; after
+those of the n stations come the axial positions of the seats, 3 n + j. Positions of all stations are known on every
+rank (they are small), every rank evaluates all contacts, and each row of the system is added where it lives.
+"""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+
+@dataclass
+class Contribution:
+    """Forces and stiffness of m contact elements on k degrees of freedom each.
+
+    Attributes:
+        dofs: shape (m, k).
+        forces: internal forces, the gradient of the contact's potential, shape (m, k), N.
+        stiffness: shape (m, k, k), N/mm.
+        pressure: compressive force of each element, positive when closed, shape (m,), N.
+    """
+
+    dofs: np.ndarray
+    forces: np.ndarray
+    stiffness: np.ndarray
+    pressure: np.ndarray
+
+    @property
+    def closed(self):
+        """Number of closed elements."""
+        return int(np.count_nonzero(self.pressure > 0.0))
+
+
+def one_sided(g, c, onset):
+    """Compressive force and stiffness of one-sided springs whose contact sets in over a short way.
+
+    Touching surfaces come to bear gradually: within |g| < w the force is c (w − g)²/(4w), beyond it c times the
+    penetration −g. Without such an onset the tangent jumps, and a line search can be caught on the kink.
+
+    Args:
+        g: gaps, negative where the bodies overlap, mm.
+        c: stiffness, N/mm.
+        onset: w, mm.
+
+    Returns:
+        Force, positive where the bodies touch, N, and its derivative by −g, N/mm.
+    """
+    within = np.clip(onset - g, 0.0, 2.0 * onset)
+    return c * (within**2 / (4.0 * onset) + np.maximum(-g - onset, 0.0)), c * within / (2.0 * onset)
+
+
+class Contact(Protocol):
+    """A kind of contact."""
+
+    name: str
+
+    def evaluate(self, x: np.ndarray, seats: np.ndarray) -> Contribution:
+        """Forces and stiffness at station positions `x`, shape (n, 3), and seat positions, shape (2,), mm."""
+        ...

@@ -1,0 +1,41 @@
+"""Wire against two flat seats across the axis z, bedded at the stations (7.1.1)."""
+
+import numpy as np
+
+from coilset.model.contact.base import Contribution, one_sided
+
+CORD = 1e-3  # stiffness of the tips' cords as a share of the bedding's
+
+
+class Seats:
+    """Bottom and top seat: a station's underside that sinks into the seat is pushed out with c times the penetration.
+
+    The two tips hang on cords: when a tip lifts off, it is pulled back with a thousandth of the bedding stiffness, so
+    that "zero force" is the one position in which both tips just touch, and the spring cannot float between the seats.
+
+    Args:
+        radius: wire radius at the stations, shape (n,), mm.
+        stiffness: c of each station, shape (n,), N/mm.
+        onset: way over which contact sets in, mm.
+    """
+
+    name = "seat"
+
+    def __init__(self, radius, stiffness, onset):
+        n, self.onset = len(radius), onset
+        self.radius, self.stiffness = np.asarray(radius), np.asarray(stiffness)
+        self.cord = np.zeros((2, n))
+        self.cord[0, 0], self.cord[1, -1] = CORD * self.stiffness[[0, -1]]
+        z = 3 * np.arange(n) + 2
+        self.dofs = np.concatenate([np.stack([z, np.full(n, 3 * n + seat)], axis=1) for seat in range(2)])
+
+    def evaluate(self, x, seats):
+        """Gap g of the underside, g < 0 where it sinks in; the force acts along the axis."""
+        side = np.array([1.0, -1.0])[:, None]  # the wire lies above the bottom seat, below the top seat
+        g = side * (x[:, 2] - seats[:, None]) - self.radius
+        pressure, c = one_sided(g, self.stiffness, self.onset)
+        lifted = self.cord * np.maximum(g, 0.0)
+        force = (side * (lifted - pressure)).ravel()
+        c = (c + np.where(g > 0.0, self.cord, 0.0)).ravel()
+        k = np.array([[1.0, -1.0], [-1.0, 1.0]])
+        return Contribution(self.dofs, np.stack([force, -force], axis=1), c[:, None, None] * k, pressure.ravel())

@@ -1,0 +1,57 @@
+"""How an axial force or height is put on a spring: by its top seat, or by its clamped top end."""
+
+import numpy as np
+
+from coilset.model.contact.seat import Seats
+
+
+class Drive:
+    """The spring between its heads: which dofs are held, which one is driven, and what force and height mean.
+
+    Args:
+        system: System.
+        ends: `clamped`: the end nodes belong to rigid heads that move along the axis only; `seats`: the wire's tips
+            are held sideways and against turning, as by the pockets of a seat, and rest on it one-sidedly.
+        free_length: height of the unloaded spring, mm.
+    """
+
+    def __init__(self, system, ends, free_length):
+        self.system, self.ends, self.free_length = system, ends, free_length
+        bottom, top = system.station_dofs[0], system.station_dofs[-1]
+        if ends == "clamped":
+            self.axial = int(top[2])
+            held = [*bottom, *np.delete(top, 2), *system.seat_dofs]
+        else:
+            self.axial = int(system.seat_dofs[1])
+            held = [*np.delete(bottom, 2), *np.delete(top, 2), system.seat_dofs[0]]
+        self.held = {int(dof): 0.0 for dof in held}
+        self.height = free_length
+        self.force = 0.0
+
+    def by_height(self, height):
+        """Prescribe the height at the end of the step, mm."""
+        self.system.fixed = {**self.held, self.axial: height - self.height}
+        self.system.forces = {}
+
+    def by_force(self, force):
+        """Prescribe the axial force at the end of the step, compression positive, N."""
+        self.system.fixed = dict(self.held)
+        self.system.forces = {self.axial: -force}
+
+    def read(self, X):
+        """Height (mm) and force (N) at the trial state with increments `X`."""
+        return self.height + self.system.value(X, self.axial), -self.system.value(self.system.internal, self.axial)
+
+    def accept(self, height, force):
+        """The trial state has become the equilibrium."""
+        self.height, self.force = height, force
+
+    @property
+    def contacts(self):
+        """Closed contact elements; the seats' tips count as such."""
+        return sum(part.closed for part in self.system.contributions)
+
+    @property
+    def has_seats(self):
+        """Does the spring stand between one-sided seats?"""
+        return any(isinstance(contact, Seats) for contact in self.system.contacts)

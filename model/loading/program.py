@@ -1,0 +1,40 @@
+"""The `loading` section of a case: a list of targets, each reached in a number of steps."""
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+
+class Strict(BaseModel):
+    """Unknown entries are refused, numbers must be finite."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+class Target(Strict):
+    """One of travel, height or force; compression is positive."""
+
+    travel: Annotated[float | None, Field(description="shortening of the spring since the start, mm")] = None
+    height: Annotated[float | None, Field(gt=0, description="distance of the seats, mm")] = None
+    force: Annotated[float | None, Field(description="axial force, compression positive, N")] = None
+
+    @model_validator(mode="after")
+    def _one(self):
+        if sum(value is not None for value in (self.travel, self.height, self.force)) != 1:
+            raise ValueError("give exactly one of travel (mm), height (mm) or force (N), as in {force: 0}")
+        return self
+
+
+class Phase(Strict):
+    """Go to a target in equal steps."""
+
+    to: Literal["block"] | Target
+    steps: Annotated[int, Field(gt=0, le=100_000, description="number of load steps")] = 12
+
+    @property
+    def label(self):
+        """The target in words, for progress and logs."""
+        if self.to == "block":
+            return "block"
+        name, value = next((name, value) for name, value in self.to.model_dump().items() if value is not None)
+        return f"{name} {value:g} {'N' if name == 'force' else 'mm'}"

@@ -1,0 +1,210 @@
+"""One vector for PETSc: the rod's increments and the axial positions of the seats, with constraints and loads.
+
+The rod's unknowns keep DOLFINx's numbering; the seats' positions follow as the last entries of the last rank, so that
+DOLFINx assembles into the enlarged matrix as it stands.
+"""
+
+import numpy as np
+from dolfinx import la
+from dolfinx.fem import petsc as _  # noqa: F401  (registers the PETSc assembly)
+from mpi4py import MPI
+from petsc4py import PETSc
+
+SEATS = 2
+
+
+class System:
+    """Residual and tangent of rod, contacts, prescribed values and forces.
+
+    Args:
+        rod: Rod.
+        contacts: kinds of contact, see coilset.model.contact.base.
+        seats: start positions of bottom and top seat, mm.
+
+    Attributes:
+        fixed: system dof → increment prescribed in this step; set by the load program before each solve.
+        forces: system dof → external force, N or N mm.
+        failed: True if the last evaluation found no stress at some point.
+        reaction_start: internal forces at the last equilibrium, to measure the change of the reactions by.
+    """
+
+    def __init__(self, rod, contacts=(), seats=(0.0, 0.0)):
+        self.rod, self.contacts, self.comm = rod, list(contacts), rod.mesh.comm
+        self.seats_start = np.array(seats, dtype=float)
+        self.seats = self.seats_start.copy()
+        self.fixed, self.forces, self.failed = {}, {}, False
+        self._number()
+        self.contributions = []
+        self._local = la.vector(rod.V.dofmap.index_map, rod.V.dofmap.index_map_bs)
+        self.internal = self.vector()  # internal forces without constraints and loads
+        self.reaction_start = self.internal.duplicate()
+        self._evaluated = None
+        rod = self.rod
+        # rows of prescribed values are weighted by an axial stiffness, so that norms of the residual are of one kind
+        stiffness = rod.law.E * np.pi * rod.radius**2 / rod.l0
+        self.weight = self.comm.allreduce(float(stiffness.max(initial=0.0)), op=MPI.MAX)
+        self.rounding = 1e-15 * self.weight  # what rounding leaves of an out-of-balance force, N
+
+    # ---- numbering -------------------------------------------------------------------------------------------------
+
+    def _number(self):
+        """Global dofs of all stations, and sizes of the enlarged vector."""
+        index_map, comm = self.rod.V.dofmap.index_map, self.comm
+        self.owned, self.last = index_map.size_local, comm.rank == comm.size - 1
+        self.size_rod = index_map.size_global
+        self.size_local = self.owned + (SEATS if self.last else 0)
+        line, n = self.rod.line, len(self.rod.line.stations)
+        nodes = line.mesh.geometry.index_map().size_local
+        mine = np.concatenate([self.rod.u_dofs[:nodes], self.rod.turn_dofs[:nodes]], axis=1)
+        mine = index_map.local_to_global(mine.ravel().astype(np.int32)).reshape(-1, 6)
+        self.station_dofs = np.empty((n, 6), dtype=PETSc.IntType)
+        self._order = np.concatenate(comm.allgather(line.node[:nodes]))
+        self.station_dofs[self._order] = np.concatenate(comm.allgather(mine))
+        self.seat_dofs = self.size_rod + np.arange(SEATS, dtype=PETSc.IntType)
+        self.contact_dofs = np.concatenate([self.station_dofs[:, :3].ravel(), self.seat_dofs])
+        self._nodes = nodes
+
+    def vector(self):
+        """A new PETSc vector of the system, zero."""
+        return PETSc.Vec().createMPI((self.size_local, None), comm=self.comm)
+
+    def matrix(self):
+        """A new PETSc matrix of the system."""
+        index_map = self.rod.V.dofmap.index_map
+        A = PETSc.Mat().create(self.comm)
+        A.setSizes(((self.size_local, None), (self.size_local, None)))
+        A.setType(PETSc.Mat.Type.AIJ)
+        ghosts = np.concatenate([np.arange(*index_map.local_range), index_map.ghosts]).astype(PETSc.IntType)
+        A.setLGMap(PETSc.LGMap().create(ghosts, comm=self.comm), PETSc.LGMap().create(ghosts, comm=self.comm))
+        # a node couples with two neighbours and two pairs of shear angles (22 entries), and with touching stations
+        A.setPreallocationNNZ((40, 40) if self.comm.size > 1 else 40)
+        A.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
+        A.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
+        return A
+
+    # ---- state -----------------------------------------------------------------------------------------------------
+
+    def gather(self, values):
+        """Values of the local nodes, in the order of the stations on every rank; shape (nodes, …) → (stations, …)."""
+        if self.comm.size == 1:
+            gathered = values[: self._nodes]
+        else:
+            gathered = np.concatenate(self.comm.allgather(values[: self._nodes]))
+        out = np.empty_like(gathered)
+        out[self._order] = gathered
+        return out
+
+    def set_increments(self, X):
+        """Bring the rod and the contacts to the increments in the PETSc vector `X`; False if no stress was found."""
+        values = X.getArray(readonly=True)
+        self._evaluated = values.copy()
+        self.rod.increment.x.array[: self.owned] = values[: self.owned]
+        self.rod.increment.x.scatter_forward()
+        moved = values[self.owned :].copy() if self.last else None
+        if self.comm.size > 1:
+            moved = self.comm.bcast(moved, root=self.comm.size - 1)
+        self.seats = self.seats_start + moved
+        good = self.rod.update()
+        if self.comm.size > 1:
+            good = self.comm.allreduce(int(good)) == self.comm.size
+        if self.contacts:
+            x = self.gather(self.rod.x)
+            self.contributions = [contact.evaluate(x, self.seats) for contact in self.contacts]
+        self.failed = not good
+        return good
+
+    def commit(self):
+        """Make the trial state the equilibrium."""
+        self.internal.copy(self.reaction_start)
+        self.rod.commit()
+        self.seats_start = self.seats.copy()
+
+    def restore(self):
+        """Go back to the last equilibrium."""
+        self.seats = self.seats_start.copy()
+        self.rod.restore()
+
+    # ---- residual and tangent --------------------------------------------------------------------------------------
+
+    def assemble_internal(self):
+        """Internal forces of rod and contacts at the trial state, into `self.internal`."""
+        local = self._local
+        local.array[:] = 0.0
+        self.rod.assemble_forces(local.array)
+        local.scatter_reverse(la.InsertMode.add)
+        with self.internal as values:
+            values[: self.owned] = local.array[: self.owned]
+            values[self.owned :] = 0.0
+        start, stop = self.internal.getOwnershipRange()
+        if self.contributions:
+            rows = np.concatenate([self.contact_dofs[part.dofs].ravel() for part in self.contributions])
+            forces = np.concatenate([part.forces.ravel() for part in self.contributions])
+            mine = (rows >= start) & (rows < stop)
+            with self.internal as values:
+                np.add.at(values, rows[mine] - start, forces[mine])
+
+    def residual(self, snes, X, F):
+        """SNES callback: internal minus external forces; increment minus prescribed increment where it is fixed."""
+        self.set_increments(X)
+        self.assemble_internal()
+        self.internal.copy(F)
+        start, stop = F.getOwnershipRange()
+        values, x = F.getArray(), X.getArray(readonly=True)
+        for dof, force in self.forces.items():
+            if start <= dof < stop:
+                values[dof - start] -= force
+        for dof, target in self.fixed.items():
+            if start <= dof < stop:
+                values[dof - start] = self.weight * (x[dof - start] - target)
+        if self.failed:
+            F.set(np.inf)  # SNES sees a domain error; the step is cut
+
+    def _is_evaluated(self, X):
+        same = self._evaluated is not None and np.array_equal(self._evaluated, X.getArray(readonly=True))
+        return self.comm.allreduce(int(same)) == self.comm.size if self.comm.size > 1 else same
+
+    def value(self, vector, dof):
+        """One entry of a vector of the system, on every rank."""
+        start, stop = vector.getOwnershipRange()
+        mine = vector.getArray(readonly=True)[dof - start] if start <= dof < stop else 0.0
+        return self.comm.allreduce(mine) if self.comm.size > 1 else float(mine)
+
+    def imbalance(self, F):
+        """Norm of the out-of-balance forces, and norm of the change of loads and reactions since the step's start."""
+        start, stop = F.getOwnershipRange()
+        fixed = np.array([dof for dof in self.fixed if start <= dof < stop], dtype=np.int64) - start
+        loaded = np.array([dof for dof in self.forces if start <= dof < stop], dtype=np.int64) - start
+        rest = F.getArray(readonly=True).copy()
+        rest[fixed] = 0.0
+        held = np.unique(np.concatenate([fixed, loaded]))
+        change = self.internal.getArray(readonly=True)[held] - self.reaction_start.getArray(readonly=True)[held]
+        squares = np.array([rest @ rest, change @ change])
+        if self.comm.size > 1:
+            squares = self.comm.allreduce(squares)
+        return tuple(np.sqrt(squares))
+
+    def tangent(self, snes, X, J, P):
+        """SNES callback: derivative of the residual at the state of the last evaluation."""
+        if not self._is_evaluated(X):
+            self.set_increments(X)
+        P.zeroEntries()
+        self.rod.assemble_tangent(P)
+        start, stop = P.getOwnershipRange()
+        for part in self.contributions:
+            dofs = self.contact_dofs[part.dofs]
+            mine = ((dofs >= start) & (dofs < stop)).any(axis=1)
+            add_blocks(P, dofs[mine], part.stiffness[mine], start, stop)
+        if self.last:
+            for dof in self.seat_dofs:  # the diagonal must exist for a fixed or untouched seat
+                P.setValue(dof, dof, 0.0, addv=PETSc.InsertMode.ADD_VALUES)
+        P.assemble()
+        P.zeroRows([dof for dof in self.fixed if start <= dof < stop], diag=self.weight)
+        return True
+
+
+def add_blocks(A, dofs, blocks, start, stop):
+    """Add element matrices, shape (m, k, k), to the rows start ≤ row < stop of a PETSc matrix."""
+    if not len(dofs):
+        return
+    rows = np.where((dofs >= start) & (dofs < stop), dofs, -1).astype(PETSc.IntType)  # PETSc skips negative rows
+    A.setValuesRCV(rows, np.ascontiguousarray(dofs, dtype=PETSc.IntType), blocks, addv=PETSc.InsertMode.ADD_VALUES)

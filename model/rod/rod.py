@@ -1,0 +1,141 @@
+"""A rod structure: state of its nodes and section points, and the forms assembled from them.
+
+The unknowns are the increments since the last equilibrium configuration; `update` brings the trial state to them
+without touching the equilibrium, `commit` makes the trial state the equilibrium, so that a failed step leaves no trace.
+"""
+
+import numpy as np
+from dolfinx import fem
+
+from coilset.model.frames.rotations import triads, turn_nodes
+from coilset.model.rod import forms
+from coilset.model.rod.kinematics import GAUSS, section_strains
+from coilset.model.section.update import update_sections
+
+STRAIGHT = np.eye(6)[None, None].repeat(2, axis=1)  # section placement of a straight rod
+STRAIGHT_STRETCH = np.ones((1, 2))
+
+
+class CellField:
+    """A coefficient of the forms, its values reached as an array in the order of the cells."""
+
+    def __init__(self, mesh, element, shape, cells):
+        self.function = fem.Function(fem.functionspace(mesh, element))
+        dofs = self.function.function_space.dofmap.list[:cells]
+        if not np.array_equal(dofs.ravel(), np.arange(dofs.size)):
+            raise RuntimeError("DOLFINx numbers the values of cells out of their order; CellField expects them in order")
+        size = int(np.prod(shape))
+        self.values = self.function.x.array[: cells * size].reshape(cells, *shape)
+
+
+class Rod:
+    """Straight elasto-plastic rods along a line mesh.
+
+    Args:
+        line: LineMesh.
+        radius: wire radius of every element in the order of the elements, shape (elements,), mm.
+        law: material law (`coilset.model.material.library.load`).
+        rule: quadrature of the wire's disk, DiskRule.
+        placement: where the true sections lie in relation to the chords, `(matrices, stretch)` with shapes
+            (elements, 2, 6, 6) and (elements, 2); None for straight rods.
+
+    Attributes:
+        x, R, shear, strain, history: trial state of the local nodes and owned cells; x in mm, strain shape
+            (cells, 2, 6), history shape (cells, 2, points, n_state).
+        equilibrium: the same at the last equilibrium, a dict.
+    """
+
+    def __init__(self, line, radius, law, rule, placement=None):
+        self.line, self.law, self.rule = line, law, rule
+        mesh, n = line.mesh, line.owned_cells
+        self.mesh, self.parameters = mesh, law.parameters()
+        element = line.element[:n]
+        self.radius = np.ascontiguousarray(np.asarray(radius, float)[element])
+        self.placement, self.stretch = STRAIGHT, STRAIGHT_STRETCH
+        if placement is not None:
+            self.placement, self.stretch = (np.ascontiguousarray(part[element]) for part in placement)
+
+        self.V = fem.functionspace(mesh, forms.rod_element())
+        self.increment = fem.Function(self.V)
+        self._number_dofs()
+        self.cells = np.ascontiguousarray(mesh.geometry.dofmap[:n])
+        x = mesh.geometry.x
+        chords = x[self.cells[:, 1]] - x[self.cells[:, 0]]
+        self.l0, self.E0 = np.linalg.norm(chords, axis=1), triads(chords)
+
+        self.xi = CellField(mesh, forms.section_element(()), (2,), n)
+        self.xi.values[:] = GAUSS
+        self.E = CellField(mesh, forms.cell_element((3, 3)), (3, 3), n)
+        self.T = CellField(mesh, forms.cell_element((2, 3, 3)), (2, 3, 3), n)
+        self.P = CellField(mesh, forms.cell_element((2, 3, 3)), (2, 3, 3), n)
+        self.s = CellField(mesh, forms.section_element((6,)), (2, 6), n)
+        self.D = CellField(mesh, forms.section_element((6, 6)), (2, 6, 6), n)
+        self.forms = forms.RodForms(
+            mesh, self.V, *(field.function for field in (self.xi, self.E, self.T, self.P, self.s, self.D))
+        )
+        self._residual = fem.form(self.forms.residual)
+        self._tangent = fem.form(self.forms.material_stiffness + self.forms.frame_stiffness)
+        self._start(x)
+
+    def _number_dofs(self):
+        """Local dofs of the nodes' displacements and turns, shape (nodes, 3), and of the cells' shear angles."""
+        geometry = self.mesh.geometry
+        self.u_dofs, self.turn_dofs = np.empty((2, len(geometry.x), 3), dtype=np.int32)
+        nodal, shear = self.V.sub(0), self.V.sub(1)
+        for i in range(3):
+            self.u_dofs[geometry.dofmap, i] = nodal.sub(i).dofmap.list
+            self.turn_dofs[geometry.dofmap, i] = nodal.sub(i + 3).dofmap.list
+        self.shear_dofs = np.stack([shear.sub(i).dofmap.list[: self.line.owned_cells, 0] for i in range(2)], axis=1)
+
+    def _start(self, x):
+        """The stress-free state."""
+        n, points = len(self.cells), len(self.rule)
+        self.x = x  # the mesh's own coordinates: the forms are integrated on the current configuration
+        self.R = np.tile(np.eye(3), (len(x), 1, 1))
+        self.chart = np.tile(np.eye(3), (len(x), 1, 1))
+        self.shear = np.zeros((n, 2))
+        self.strain = np.zeros((n, 2, 6))
+        self.history = np.zeros((n, 2, points, self.law.n_state))
+        self.equilibrium = {}
+        self.commit()
+        self.update()
+
+    def update(self):
+        """Bring the trial state to the increments in `self.increment` (ghosts up to date).
+
+        Returns:
+            True, or False if the law found no solution at some section point of this rank.
+        """
+        increment, start = self.increment.x.array, self.equilibrium
+        np.add(start["x"], increment[self.u_dofs], out=self.x)
+        turn_nodes(increment[self.turn_dofs], start["R"], self.R, self.chart)
+        self.shear = start["shear"] + increment[self.shear_dofs]
+        section_strains(
+            self.cells, self.x, self.R, self.E0, self.l0, self.shear, GAUSS,
+            self.E.values, self.P.values, self.strain,
+        )  # fmt: skip
+        self.T.values[:] = self.chart[self.cells]
+        y, z = np.ascontiguousarray(self.rule.points.T)
+        return 0 == update_sections(
+            self.parameters, y, z, self.rule.weights, self.radius, self.strain - start["strain"],
+            self.placement, self.stretch, start["history"], self.history, self.s.values, self.D.values,
+        )  # fmt: skip
+
+    def commit(self):
+        """Make the trial state the equilibrium and set the increments to zero."""
+        for name in ("x", "R", "shear", "strain", "history"):
+            self.equilibrium[name] = getattr(self, name).copy()
+        self.increment.x.array[:] = 0.0
+
+    def restore(self):
+        """Go back to the last equilibrium."""
+        self.increment.x.array[:] = 0.0
+        return self.update()
+
+    def assemble_forces(self, vector):
+        """Add the internal nodal forces ∫ ¹σ : δΔE_l of the owned cells to a local array (owned and ghost dofs)."""
+        fem.assemble_vector(vector, self._residual)
+
+    def assemble_tangent(self, matrix):
+        """Add K_l and the stiffness of the turning frame to a PETSc matrix; values stay unassembled."""
+        fem.petsc.assemble_matrix(matrix, self._tangent)

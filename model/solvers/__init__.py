@@ -1,0 +1,1 @@
+"""Iteration methods as PETSc SNES option sets, and the solve of one step."""
