@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 from coilset.meshes import functions
+from coilset.meshes.checks import objections
 from coilset.meshes.ends import OPEN, EndCoils, touching_pitch
 from coilset.meshes.stations import stations
 from scipy.interpolate import PPoly
@@ -43,7 +44,8 @@ class Spring:
         return float(self.height.x[-1])
 
     @cached_property
-    def _slope(self):
+    def slope(self):
+        """Change of the mean radius over the turn, mm per turn, a `scipy.interpolate.PPoly`."""
         return self.radius.derivative()
 
     @cached_property
@@ -91,18 +93,18 @@ class Spring:
     def velocity(self, turn):
         """First derivative of the centre line by the turn, mm, shape (..., 3)."""
         θ = self.angle(turn)
-        r, dr, dθ = self.radius(turn), self._slope(turn), self.hand * 2 * np.pi
+        r, dr, dθ = self.radius(turn), self.slope(turn), self.hand * 2 * np.pi
         return _in_plane(θ, dr, r * dθ, self._pitch(turn))
 
     def acceleration(self, turn):
         """Second derivative of the centre line by the turn, mm, shape (..., 3)."""
         θ = self.angle(turn)
-        r, dr, ddr, dθ = self.radius(turn), self._slope(turn), self._slope.derivative()(turn), self.hand * 2 * np.pi
+        r, dr, ddr, dθ = self.radius(turn), self.slope(turn), self.slope.derivative()(turn), self.hand * 2 * np.pi
         return _in_plane(θ, ddr - r * dθ**2, 2 * dr * dθ, self._pitch.derivative()(turn))
 
     def speed(self, turn):
         """Length of wire per turn at the turns, ds/dt, mm, in their shape."""
-        return np.sqrt(self._slope(turn) ** 2 + (2 * np.pi * self.radius(turn)) ** 2 + self._pitch(turn) ** 2)
+        return np.sqrt(self.slope(turn) ** 2 + (2 * np.pi * self.radius(turn)) ** 2 + self._pitch(turn) ** 2)
 
     def tangent(self, turn):
         """Unit tangents of the centre line, shape (..., 3)."""
@@ -150,7 +152,7 @@ class Spring:
         there remains what the wire and its grinding make of the free length.
         """
         ends = self.free_length - (self.height(self.turns) - self.height(0.0))
-        rise = functions.integral(lambda t: touching_pitch(self.wire(t), self._slope(t)), self.breaks)
+        rise = functions.integral(lambda t: touching_pitch(self.wire(t), self.slope(t)), self.breaks)
         return float(rise.sum() + ends)
 
     @property
@@ -171,6 +173,23 @@ class Spring:
         if end == "bottom":
             return np.minimum(half, self.height(turn) - self._planes[0])
         return np.minimum(half, self._planes[1] - self.height(turn))
+
+    def flat_turns(self, end):
+        """Number of turns from the `bottom` or `top` tip over which the wire is ground; 0 where it is not ground."""
+        along = self.breaks if end == "bottom" else self.breaks[::-1]
+        cut = 0.5 * self.wire(along) - self.seat_distance(along, end)
+        i = int(np.argmax(cut < 1e-9))
+        if i == 0:
+            return 0.0
+        level = self._planes[0] if end == "bottom" else self._planes[1]
+        rest = np.abs(self.height(along[i - 1:i + 1]) - level) - 0.5 * self.wire(along[i - 1:i + 1])
+        last = along[i - 1] - rest[0] * (along[i] - along[i - 1]) / (rest[1] - rest[0])
+        return float(abs(last - along[0]))
+
+    @cached_property
+    def warnings(self):
+        """What a spring maker would warn of: a list of lines with numbers."""
+        return [f"{finding.place}: {finding.text}" for finding in objections(self) if not finding.fatal]
 
     def stations(self, elements_per_turn=16, **grading):
         """Increasing turns of the nodes of a line mesh, see `coilset.meshes.stations.stations`."""

@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 from coilset.meshes import functions
+from coilset.meshes.checks import refuse
 from coilset.meshes.ends import OPEN, BothEnds, EndCoils, pitch_with_ends, touching_pitch
 from coilset.meshes.geometry import Spring
 from coilset.meshes.shapes import DiameterProfile, Entry, Length, Profile, profile_function
@@ -61,12 +62,12 @@ class SpringSpec(Entry):
             return Spring(radius, height, wire, 1 if self.hand == "right" else -1, *self.ends)
 
         if self.pitch is None:
-            return spring(functions.constant(self._pitch_of_free_length(spring), self.turns))
+            return refuse(spring(functions.constant(self._pitch_of_free_length(spring), self.turns)))
         built = spring(self._function("pitch"))
         if self.free_length is not None and abs(built.free_length - self.free_length) > 1e-6 * self.free_length:
             raise InputError(f"{self.free_length:g} mm contradicts the pitch, which makes {built.free_length:.6g} mm; "
                              "leave one of the two out", "spring.free_length")
-        return built
+        return refuse(built)
 
     def _function(self, entry):
         try:
