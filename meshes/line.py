@@ -4,9 +4,8 @@ from dataclasses import dataclass
 
 import gmsh
 import numpy as np
-from dolfinx import mesh as dmesh
-
 from coilset.model.compat import mesh_from_gmsh
+from dolfinx import mesh as dmesh
 
 
 @dataclass

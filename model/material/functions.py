@@ -1,0 +1,95 @@
+"""The material functions k²(b*, T), ζ(b*, T) and κ(b*, T) of chapter 3, compiled, and the array that holds their constants.
+
+The kernels take one 1-D array `p`: a head of `ROWS_START` entries, then one row of `ROW_LENGTH` constants for every temperature
+of the material's table. Between two temperatures the values of the functions are interpolated linearly.
+"""
+
+import math
+
+from numba import njit
+
+# Head of the parameter array.
+SPIN = 0  # 1: with the spin terms (5.2.33), 0: without
+TEMPERATURE = 1  # K, of points whose history row holds none
+HEATING = 2  # K mm²/N: rise of temperature per plastic work b*; 0: isothermal
+TOLERANCE = 3  # relative error of stress that the Heun integrator allows in a sub-step; inf: one step
+N_ROWS = 4  # number of temperatures
+ROWS_START = 5
+
+# A row: temperature, elastic constants, then the constants of 6.2.2 by their names there; KAPPA is a/(2G).
+ROW_T, YOUNG, SHEAR, ALPHA, K0, A1, A2, A3, B1, K1, KINF, A4, A5, A6, A7, KAPPA = range(16)
+ROW_LENGTH = 16
+
+
+@njit(cache=True)
+def row_functions(p, o, b):
+    """k², ∂k²/∂b*, ζ, ∂ζ/∂b*, κ, ∂κ/∂b* of the temperature whose row starts at `o` of `p`, (6.2.2)."""
+    if b < p[o + B1]:
+        e = math.exp(-p[o + A3] * b)
+        k2 = p[o + K0] + p[o + A1] * (1.0 + p[o + A2] * b - e)
+        dk2 = p[o + A1] * (p[o + A2] + p[o + A3] * e)
+    else:
+        e = (p[o + KINF] - p[o + K1]) * math.exp(-p[o + A4] * (b - p[o + B1]))
+        k2 = p[o + KINF] - e
+        dk2 = p[o + A4] * e
+    zeta = 0.0
+    dzeta = 0.0
+    if p[o + A5] != 0.0:
+        e = p[o + A7] * math.exp(-p[o + A7] * b)
+        root = math.sqrt(6.0 * k2)
+        zeta = p[o + A5] * (p[o + A6] + e) * root
+        dzeta = p[o + A5] * (3.0 * (p[o + A6] + e) * dk2 / root - p[o + A7] * e * root)
+    kappa = p[o + KAPPA] * b * b * b
+    return k2, dk2, zeta, dzeta, kappa, 3.0 * p[o + KAPPA] * b * b
+
+
+@njit(cache=True)
+def table_place(p, temperature):
+    """Row below `temperature` (its offset in `p`) and the weight of the row above; the end intervals go on outside."""
+    last = int(p[N_ROWS]) - 2
+    row = 0
+    while row < last and temperature > p[ROWS_START + (row + 1) * ROW_LENGTH]:
+        row += 1
+    o = ROWS_START + row * ROW_LENGTH
+    return o, (temperature - p[o]) / (p[o + ROW_LENGTH] - p[o])
+
+
+@njit(cache=True)
+def functions(p, b, temperature):
+    """k², ζ, κ and their slopes at plastic work `b` and `temperature`.
+
+    With adiabatic heating the slopes are total ones along b*, d/db* = ∂/∂b* + HEATING ∂/∂T, because there the
+    temperature is a function of b*.
+
+    Returns:
+        k² (N²/mm⁴), dk²/db* (N/mm²), ζ (N/mm²), dζ/db* (1), κ (mm²/N), dκ/db* (mm⁴/N²).
+    """
+    if p[N_ROWS] == 1.0:
+        return row_functions(p, ROWS_START, b)
+    o, w = table_place(p, temperature)
+    k2, dk2, zeta, dzeta, kappa, dkappa = row_functions(p, o, b)
+    k2_up, dk2_up, zeta_up, dzeta_up, kappa_up, dkappa_up = row_functions(p, o + ROW_LENGTH, b)
+    slope = p[HEATING] / (p[o + ROW_LENGTH] - p[o])
+    return (
+        k2 + w * (k2_up - k2),
+        dk2 + w * (dk2_up - dk2) + slope * (k2_up - k2),
+        zeta + w * (zeta_up - zeta),
+        dzeta + w * (dzeta_up - dzeta) + slope * (zeta_up - zeta),
+        kappa + w * (kappa_up - kappa),
+        dkappa + w * (dkappa_up - dkappa) + slope * (kappa_up - kappa),
+    )
+
+
+@njit(cache=True)
+def elasticity(p, temperature):
+    """E, G in N/mm² and the coefficient of thermal expansion in 1/K at `temperature`."""
+    o = ROWS_START
+    if p[N_ROWS] == 1.0:
+        return p[o + YOUNG], p[o + SHEAR], p[o + ALPHA]
+    o, w = table_place(p, temperature)
+    u = o + ROW_LENGTH
+    return (
+        p[o + YOUNG] + w * (p[u + YOUNG] - p[o + YOUNG]),
+        p[o + SHEAR] + w * (p[u + SHEAR] - p[o + SHEAR]),
+        p[o + ALPHA] + w * (p[u + ALPHA] - p[o + ALPHA]),
+    )

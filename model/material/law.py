@@ -1,0 +1,273 @@
+"""The material file: its schema, its checks, and the law that comes out of it.
+
+A material file gives, for one or more temperatures, the elastic constants and the constants of k², ζ and κ (6.2.2).
+"""
+
+import math
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from coilset.model.errors import InputError
+from coilset.model.material import functions as fn
+
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+
+
+class _Section(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Elasticity(_Section):
+    """Elastic constants (3.1.2)."""
+
+    G: Positive  # N/mm²
+    nu: Annotated[float, Field(gt=-1, lt=0.5)]
+    alpha: NotNegative = 0.0  # 1/K
+
+
+class Saturation(_Section):
+    """Second branch of k², b* ≥ b1."""
+
+    b1: NotNegative  # N/mm²
+    k1_squared: Positive  # N²/mm⁴
+    k_inf_squared: Positive  # N²/mm⁴
+    a4: NotNegative  # mm²/N
+
+
+class IsotropicHardening(_Section):
+    """k²(b*): k0² + a1 (1 + a2 b* − exp(−a3 b*)) and, if there is one, the second branch."""
+
+    k0_squared: Positive  # N²/mm⁴
+    a1: NotNegative = 0.0  # N²/mm⁴
+    a2: Finite = 0.0  # mm²/N
+    a3: NotNegative = 0.0  # mm²/N
+    saturation: Saturation | None = None
+
+    def first_branch(self, b):
+        """k² of the first branch at plastic work `b`."""
+        return self.k0_squared + self.a1 * (1 + self.a2 * b - math.exp(-self.a3 * b))
+
+
+class KinematicHardening(_Section):
+    """ζ(b*) = a5 (a6 + a7 exp(−a7 b*)) sqrt(6 k²)."""
+
+    a5: NotNegative  # N/mm²
+    a6: NotNegative  # mm²/N
+    a7: NotNegative  # mm²/N
+
+
+class NonNormality(_Section):
+    """2Gκ(b*) = a b*³."""
+
+    a: NotNegative  # mm⁶/N³
+
+
+class Constants(_Section):
+    """All constants at one temperature; a function that the material has not is said to be `none`."""
+
+    temperature: Positive  # K
+    elasticity: Elasticity
+    isotropic: IsotropicHardening | Literal["none"]
+    kinematic: KinematicHardening | Literal["none"]
+    non_normality: NonNormality | Literal["none"]
+
+
+class Heating(_Section):
+    """Adiabatic heating: of the plastic work b* the fraction `dissipated` warms the material."""
+
+    dissipated: Annotated[float, Field(gt=0, le=1)]
+    density: Positive  # t/mm³
+    specific_heat: Positive  # N mm/(t K) = mm²/(s² K)
+
+
+class Validity(_Section):
+    """Where the constants may be trusted."""
+
+    plastic_work: Positive  # largest b*, N/mm²; the checks of the functions go up to it
+    remark: str
+
+
+class MaterialFile(_Section):
+    """A whole material file."""
+
+    name: str
+    description: str
+    source: str
+    units: Literal["N, mm, K"]
+    validity: Validity
+    temperatures: Annotated[tuple[Constants, ...], Field(min_length=1)]
+    heating: Heating | None = None
+
+
+class Law:
+    """A material: its data and the parameter array for the compiled kernels.
+
+    Args:
+        data: the validated material file.
+        spin: whether the rod's law contains the spin terms (5.2.33).
+        heun_tolerance: relative error of stress that the Heun integrator allows in a sub-step.
+        file: where the data came from, for messages.
+
+    Raises:
+        InputError: if the functions break a condition of the theory.
+    """
+
+    def __init__(self, data, spin=True, heun_tolerance=1e-4, file=""):
+        self.data, self.spin, self.heun_tolerance, self.file = data, spin, heun_tolerance, str(file)
+        self._temperatures = np.array([at.temperature for at in data.temperatures])
+        self._rows = np.array([self._row(i, at) for i, at in enumerate(data.temperatures)])
+        if np.any(np.diff(self._temperatures) <= 0):
+            self._fail("temperatures", f"{self._temperatures.tolist()} K do not ascend; sort the entries, none twice")
+        self._check_functions()
+
+    name = property(lambda self: self.data.name)
+    description = property(lambda self: self.data.description)
+    source = property(lambda self: self.data.source)
+    validity = property(lambda self: self.data.validity)
+    reference_temperature = property(lambda self: float(self._temperatures[0]), doc="The first temperature given, K.")
+    temperature_range = property(lambda self: (float(self._temperatures[0]), float(self._temperatures[-1])), doc="K.")
+    G = property(lambda self: self.data.temperatures[0].elasticity.G, doc="At the reference temperature, N/mm².")
+    nu = property(lambda self: self.data.temperatures[0].elasticity.nu, doc="At the reference temperature.")
+    E = property(lambda self: 2 * self.G * (1 + self.nu), doc="At the reference temperature, N/mm².")
+    n_state = property(lambda self: 8 if self.data.heating else 7, doc="Length of a rod point's history row.")
+
+    @property
+    def yield_stress(self):
+        """First uniaxial yield stress sqrt(1.5 k0²) at the reference temperature, N/mm² (3.1.4); inf if elastic."""
+        return math.sqrt(1.5 * self._rows[0, fn.K0])
+
+    @property
+    def heating(self):
+        """Rise of temperature per plastic work b*, K mm²/N."""
+        h = self.data.heating
+        return h.dissipated / (h.density * h.specific_heat) if h else 0.0
+
+    def parameters(self, temperature=None):
+        """Parameter array of the kernels.
+
+        Args:
+            temperature: K; default is the reference temperature.
+
+        Returns:
+            1-D array, laid out as in `functions`.
+
+        Raises:
+            InputError: if the temperature lies outside the material's table.
+        """
+        temperature = self.reference_temperature if temperature is None else float(temperature)
+        low, high = self.temperature_range
+        if not low <= temperature <= high:
+            known = f"only for {low:g} K" if low == high else f"for {low:g} to {high:g} K"
+            self._fail("temperature", f"{temperature:g} K is outside the table of '{self.name}', which is known {known}")
+        head = np.zeros(fn.ROWS_START)
+        head[fn.SPIN] = self.spin
+        head[fn.TEMPERATURE] = temperature
+        head[fn.HEATING] = self.heating
+        head[fn.TOLERANCE] = self.heun_tolerance
+        head[fn.N_ROWS] = len(self._rows)
+        return np.concatenate([head, self._rows.ravel()])
+
+    def initial_state(self, points):
+        """History rows of unstressed points, shape (points, n_state)."""
+        state = np.zeros((points, self.n_state))
+        state[:, 7:] = self.reference_temperature
+        return state
+
+    def _fail(self, place, problem):
+        raise InputError(problem, place, self.file)
+
+    def _row(self, i, at):
+        row = np.zeros(fn.ROW_LENGTH)
+        G, nu = at.elasticity.G, at.elasticity.nu
+        row[[fn.ROW_T, fn.YOUNG, fn.SHEAR, fn.ALPHA]] = at.temperature, 2 * G * (1 + nu), G, at.elasticity.alpha
+        row[[fn.K0, fn.B1]] = np.inf
+        if at.isotropic != "none":
+            k = at.isotropic
+            row[[fn.K0, fn.A1, fn.A2, fn.A3]] = k.k0_squared, k.a1, k.a2, k.a3
+            if k.saturation:
+                second = k.saturation
+                k1 = k.first_branch(second.b1)
+                if abs(k1 - second.k1_squared) > 1e-4 * k1:
+                    self._fail(
+                        f"temperatures.{i}.isotropic.saturation.k1_squared",
+                        f"{second.k1_squared:g} N²/mm⁴, but the first branch of k² ends at {k1:.6g}; k² must not jump at b1",
+                    )
+                # The first branch's own end, so that k² is continuous to the last digit.
+                row[[fn.B1, fn.K1, fn.KINF, fn.A4]] = second.b1, k1, second.k_inf_squared, second.a4
+        if at.kinematic != "none":
+            row[[fn.A5, fn.A6, fn.A7]] = at.kinematic.a5, at.kinematic.a6, at.kinematic.a7
+        if at.non_normality != "none":
+            row[fn.KAPPA] = at.non_normality.a / (2 * G)
+        return row
+
+    def _check_functions(self):
+        """k² > 0, 2ζ + k²′ ≥ 0 and κ k²′ < 2 over the range of validity: else (3.1.9) is not positive."""
+        p = self.parameters()
+        for i, row in enumerate(self._rows):
+            if math.isinf(row[fn.K0]):
+                continue
+            places = np.linspace(0, self.validity.plastic_work, 2001)
+            for b in places:
+                k2, dk2, zeta, _, kappa, _ = fn.row_functions(p, fn.ROWS_START + i * fn.ROW_LENGTH, b)
+                where = f"at b* = {b:g} N/mm² (b* is checked up to validity.plastic_work)"
+                if not k2 > 0:
+                    self._fail(f"temperatures.{i}.isotropic", f"k² = {k2:.4g} N²/mm⁴ {where}; it must be positive")
+                if 2 * zeta + dk2 < 0:
+                    self._fail(
+                        f"temperatures.{i}.isotropic",
+                        f"2ζ + k²′ = {2 * zeta + dk2:.4g} N/mm² {where}; it must not be negative, or the material softens",
+                    )
+                if kappa * dk2 >= 2:
+                    self._fail(
+                        f"temperatures.{i}.non_normality.a",
+                        f"κ k²′ = {kappa * dk2:.4g} {where}; it must stay below 2, or the law (3.1.9) is not positive definite",
+                    )
+
+
+def read(path, **options):
+    """Read a material file.
+
+    Args:
+        path: YAML file.
+        options: passed to `Law`.
+
+    Raises:
+        InputError: if the file cannot be read or says something wrong.
+    """
+    path = Path(path)
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", file=str(path)) from error
+    except yaml.YAMLError as error:
+        problem = " ".join(str(error).split())
+        raise InputError(f"is not YAML: {problem}", file=str(path)) from error
+    if not isinstance(content, dict):
+        raise InputError("is no material file; it must hold name, source, units, validity, temperatures", file=str(path))
+    try:
+        data = MaterialFile.model_validate(content)
+    except ValidationError as error:
+        raise _first_problem(error, path) from error
+    return Law(data, file=path, **options)
+
+
+def _first_problem(error, path):
+    """The `InputError` of pydantic's first complaint, in place terms of the file."""
+    first = error.errors()[0]
+    inside = {"IsotropicHardening", "KinematicHardening", "NonNormality"}
+    place = ".".join(str(part) for part in first["loc"] if part not in inside and not str(part).startswith("literal["))
+    if first["type"] == "missing":
+        problem = "is missing"
+        if first["loc"][-1] in ("isotropic", "kinematic", "non_normality"):
+            problem += "; give its constants, or 'none' if the material has no such function"
+    elif first["type"] == "extra_forbidden":
+        problem = "is not an entry of a material file"
+    else:
+        problem = f"{first['input']!r}: {first['msg'].lower()}"
+    return InputError(problem, place, str(path))

@@ -1,0 +1,35 @@
+"""The material library: one YAML file a material, beside this module; users name their own file instead."""
+
+from pathlib import Path
+
+from coilset.model.errors import InputError
+from coilset.model.material.law import read
+
+FOLDER = Path(__file__).parent
+
+
+def names():
+    """Names of the materials that come with coilset."""
+    return sorted(path.stem for path in FOLDER.glob("*.yaml"))
+
+
+def load(name, **options):
+    """Load a material.
+
+    Args:
+        name: name of a library material, as in `names()`, or path of a material file (.yaml or .yml).
+        options: `spin` and `heun_tolerance`, see `Law`.
+
+    Returns:
+        A `Law`.
+
+    Raises:
+        InputError: if there is no such material, or its file is wrong.
+    """
+    name = str(name)
+    if name.endswith((".yaml", ".yml")):
+        return read(name, **options)
+    if name not in names():
+        known = ", ".join(names())
+        raise InputError(f"'{name}' is no material of the library ({known}) and no .yaml file", "material")
+    return read(FOLDER / f"{name}.yaml", **options)

@@ -1,0 +1,93 @@
+"""The moving mesh: current positions as coefficients of the displacement space, and the rigid modes in it."""
+
+import basix.ufl
+import numpy as np
+import scipy.sparse
+from dolfinx import fem
+from petsc4py import PETSc
+
+# The elements: 20-node hexahedra with 2 x 2 x 2 points, which neither lock in plastic flow nor have zero-energy modes
+# in any patch of 2 x 2 x 2 elements or more; 10-node tetrahedra with 4 points.
+FAMILY = {"hexahedron": "S", "tetrahedron": "P"}
+QUADRATURE_DEGREE = {"hexahedron": 3, "tetrahedron": 2}
+
+
+class Configuration:
+    """Position of the body, a function of the displacement space, and the DOLFINx mesh that follows it.
+
+    Positions lie in the displacement space itself (the element is isoparametric), so that every rigid motion is in
+    the space. A hexahedron's face and interior nodes follow from its edges, and its mesh is made so at the start.
+
+    Attributes:
+        mesh: the mesh that moves.
+        V: vector displacement space of second order.
+        x: coefficients of the position at the last equilibrium, shape (blocks with ghosts, 3), mm.
+        quadrature_degree: of the points that carry the state.
+    """
+
+    def __init__(self, mesh):
+        self.mesh = mesh
+        cell = mesh.basix_cell().name
+        self.quadrature_degree = QUADRATURE_DEGREE[cell]
+        element = basix.ufl.element(FAMILY[cell], cell, 2, shape=(3,))
+        self.V = fem.functionspace(mesh, element)
+        self._nodes = _node_matrix(mesh, self.V)
+        position = fem.Function(self.V)
+        position.interpolate(lambda x: x)
+        self.x = position.x.array.reshape(-1, 3).copy()
+        self.move(self.x)
+
+    @property
+    def owned(self):
+        """Number of blocks of three degrees of freedom that this rank owns; they come first."""
+        return self.V.dofmap.index_map.size_local
+
+    def move(self, x):
+        """Put the mesh where the position coefficients say, shape (blocks with ghosts, 3), mm."""
+        self.mesh.geometry.x[:] = self._nodes @ x
+
+    def rigid_modes(self, x):
+        """Coefficients of the unit translations along, and the rotations about, the axes through the origin.
+
+        Degrees of freedom are linear in the function, so those of e × x are e × those of x.
+
+        Args:
+            x: position coefficients, shape (blocks, 3), mm.
+
+        Returns:
+            Shape (6, blocks, 3); the rotations are in mm.
+        """
+        modes = np.zeros((6, *x.shape))
+        for i, e in enumerate(np.eye(3)):
+            modes[i] = e
+            modes[3 + i] = np.cross(e, x)
+        return modes
+
+    def near_nullspace(self, x):
+        """Orthonormal PETSc near-nullspace of the six rigid modes at the position x, for multigrid."""
+        modes = self.rigid_modes(x - self._centre(x))[:, : self.owned].reshape(6, -1)
+        comm = self.mesh.comm
+        gram = comm.allreduce(modes @ modes.T)
+        basis = np.linalg.solve(np.linalg.cholesky(gram), modes)
+        vectors = [PETSc.Vec().createWithArray(b.copy(), bsize=3, comm=comm) for b in basis]
+        return PETSc.NullSpace().create(vectors=vectors, comm=comm)
+
+    def _centre(self, x):
+        comm = self.mesh.comm
+        return comm.allreduce(x[: self.owned].sum(axis=0)) / self.V.dofmap.index_map.size_global
+
+
+def _node_matrix(mesh, V):
+    """Matrix from position coefficients to geometry nodes, shape (nodes, blocks): row i evaluates the space at node i."""
+    geometry, dofs = mesh.geometry, V.dofmap.list
+    points = mesh.ufl_domain().ufl_coordinate_element().basix_element.points
+    shape = V.element.basix_element.tabulate(0, points)[0, :, :, 0]  # (nodes of a cell, blocks of a cell)
+    shape[np.abs(shape) < 1e-14] = 0.0
+    node, first = np.unique(geometry.dofmap, return_index=True)
+    cell, local = np.unravel_index(first, geometry.dofmap.shape)
+    columns = dofs[cell]
+    rows = np.repeat(node, columns.shape[1])
+    n_blocks = V.dofmap.index_map.size_local + V.dofmap.index_map.num_ghosts
+    matrix = scipy.sparse.csr_matrix((shape[local].ravel(), (rows, columns.ravel())), shape=(len(geometry.x), n_blocks))
+    matrix.eliminate_zeros()
+    return matrix

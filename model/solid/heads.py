@@ -1,0 +1,80 @@
+"""The wire's end faces as rigid heads: prescribed motion, and reactions by virtual work."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from dolfinx import fem
+from scipy.spatial.transform import Rotation
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Where a head is, measured from its start: turned about its start centre, then moved.
+
+    Attributes:
+        translation: mm, shape (3,).
+        rotation: rotation vector, rad, shape (3,).
+    """
+
+    translation: tuple = (0.0, 0.0, 0.0)
+    rotation: tuple = (0.0, 0.0, 0.0)
+
+    def between(self, other, part):
+        """The motion a `part` of the way from this one to the other; both turn about one axis."""
+        mix = lambda a, b: tuple((1 - part) * np.asarray(a, float) + part * np.asarray(b, float))  # noqa: E731
+        return Motion(mix(self.translation, other.translation), mix(self.rotation, other.rotation))
+
+
+@dataclass(frozen=True)
+class Reaction:
+    """What a head does to the wire.
+
+    Attributes:
+        force: N, shape (3,).
+        moment: about the point that was asked for, N mm, shape (3,).
+    """
+
+    force: np.ndarray
+    moment: np.ndarray
+
+
+class Head:
+    """A rigid end face.
+
+    Args:
+        solid: Solid.
+        group: ``bottom`` or ``top``.
+
+    Attributes:
+        blocks: blocks of degrees of freedom on the face, ghosts included.
+        centre: of the face at the start, mm, shape (3,).
+        motion: Motion now prescribed.
+    """
+
+    def __init__(self, solid, group):
+        self.solid, self.group = solid, group
+        mesh = solid.wire.mesh
+        mesh.topology.create_connectivity(2, 3)
+        self.blocks = fem.locate_dofs_topological(solid.V, 2, solid.wire.facets(group))
+        self._start = solid.configuration.x[self.blocks].copy()
+        end = 0.0 if group == "bottom" else solid.wire.length
+        self.centre = solid.wire.place(np.array([[0.0, 0.0, end]]))[0]
+        self.motion = Motion()
+
+    def positions(self, motion):
+        """Position coefficients of the face's blocks after a motion, shape (blocks, 3); they are linear in the position."""
+        R = Rotation.from_rotvec(motion.rotation).as_matrix()
+        return (self._start - self.centre) @ R.T + self.centre + np.asarray(motion.translation)
+
+    def reaction(self, forces, point):
+        """Force and moment of the head on the wire: the virtual work of the rigid modes, exact for the discrete body.
+
+        Args:
+            forces: internal forces, shape (owned blocks, 3), N.
+            point: reference point of the moment, mm.
+        """
+        solid = self.solid
+        mine = self.blocks[self.blocks < solid.configuration.owned]
+        modes = solid.configuration.rigid_modes(solid.x[mine] - np.asarray(point, dtype=float))
+        work = solid.comm.allreduce(np.einsum("kni,ni->k", modes, forces[mine]))
+        return Reaction(work[:3], work[3:])

@@ -1,0 +1,47 @@
+"""The material law at the integration points of the solid."""
+
+import numpy as np
+from numba import njit
+
+from coilset.model.material.solid import return_map
+
+
+@njit(cache=True)
+def update_points(p, old, strain, new, C):
+    """Integrate the law over the increment at every point.
+
+    Args:
+        p: parameters of the law.
+        old, new: history rows, shape (points, n_state); `new` is written.
+        strain: increment ln U, tensor components 11, 22, 33, 12, 13, 23, shape (points, 6).
+        C: written, dσ/dε for strain components with doubled shear, shape (points, 6, 6), MPa.
+
+    Returns:
+        0, or -1 if the law found no solution at some point.
+    """
+    for i in range(len(strain)):
+        if return_map(p, old[i], strain[i], new[i], C[i]) < 0:
+            return -1
+    return 0
+
+
+class MaterialPoints:
+    """A law of the material library at the points of a solid.
+
+    Args:
+        law: `coilset.model.material.law.Law`.
+        temperature: K; default is the law's reference temperature.
+    """
+
+    def __init__(self, law, temperature=None):
+        self.law = law
+        self._parameters = law.parameters(temperature)
+
+    def initial_state(self, points):
+        """History rows of unstressed points, shape (points, n_state); first stress and back stress, 6 entries each."""
+        rod = self.law.initial_state(points)
+        return np.concatenate([np.zeros((points, 12)), rod[:, 6:]], axis=1)
+
+    def update(self, old, strain, new, C):
+        """Write new history rows and moduli, see `update_points`; False if the law found no solution."""
+        return update_points(self._parameters, old, strain, new, C) == 0
