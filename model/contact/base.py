@@ -36,8 +36,8 @@ class Contribution:
 def one_sided(g, c, onset):
     """Compressive force and stiffness of one-sided springs whose contact sets in over a short way.
 
-    Touching surfaces come to bear gradually: within |g| < w the force is c (w − g)²/(4w), beyond it c times the
-    penetration −g. Without such an onset the tangent jumps, and a line search can be caught on the kink.
+    Touching surfaces come to bear gradually: with the penetration p = −g the force is c p²/(4w) up to p = 2w and
+    c (p − w) beyond. Without such an onset the tangent jumps, and a line search can be caught on the kink.
 
     Args:
         g: gaps, negative where the bodies overlap, mm.
@@ -45,10 +45,10 @@ def one_sided(g, c, onset):
         onset: w, mm.
 
     Returns:
-        Force, positive where the bodies touch, N, and its derivative by −g, N/mm.
+        Force, positive where the bodies touch, N, and its derivative by p, N/mm.
     """
-    within = np.clip(onset - g, 0.0, 2.0 * onset)
-    return c * (within**2 / (4.0 * onset) + np.maximum(-g - onset, 0.0)), c * within / (2.0 * onset)
+    within = np.clip(-g, 0.0, 2.0 * onset)
+    return c * (within**2 / (4.0 * onset) + np.maximum(-g - 2.0 * onset, 0.0)), c * within / (2.0 * onset)
 
 
 class Contact(Protocol):

@@ -34,8 +34,11 @@ class Seats:
         side = np.array([1.0, -1.0])[:, None]  # the wire lies above the bottom seat, below the top seat
         g = side * (x[:, 2] - seats[:, None]) - self.radius
         pressure, c = one_sided(g, self.stiffness, self.onset)
-        lifted = self.cord * np.maximum(g, 0.0)
-        force = (side * (lifted - pressure)).ravel()
-        c = (c + np.where(g > 0.0, self.cord, 0.0)).ravel()
+        # the tips bear from the first touch, so that there is a stiffness to begin with, and hang on cords beyond
+        tip, closed = self.cord > 0.0, g <= 0.0
+        pressure = np.where(tip, np.where(closed, -self.stiffness * g, 0.0), pressure)
+        c = np.where(tip, np.where(closed, self.stiffness, self.cord), c)
+        force = (side * (self.cord * np.maximum(g, 0.0) - pressure)).ravel()
+        c = c.ravel()
         k = np.array([[1.0, -1.0], [-1.0, 1.0]])
         return Contribution(self.dofs, np.stack([force, -force], axis=1), c[:, None, None] * k, pressure.ravel())

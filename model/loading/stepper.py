@@ -35,15 +35,6 @@ class Stepper:
         self.drive, self.solver, self.system, self.block_height = drive, solver, drive.system, block_height
         self.number = 0
 
-    def run(self, phases, report=lambda step: None):
-        """Go through all phases; `report` is called with every converged Step.
-
-        Raises:
-            SolveError: if a step failed down to the smallest size; the state is that of the last converged step.
-        """
-        for index, phase in enumerate(phases):
-            self._run_phase(index, phase, report)
-
     def _prescribe(self, phase, start, t):
         """Set the step's end at share `t` of the phase; heights and forces go linearly from where the phase began."""
         to, drive = phase.to, self.drive
@@ -56,7 +47,12 @@ class Stepper:
             target = to.height if to.height is not None else drive.free_length - to.travel
         drive.by_height(start[0] + t * (target - start[0]))
 
-    def _run_phase(self, index, phase, report):
+    def run_phase(self, index, phase, report=lambda step: None):
+        """Go to the phase's target; `report` is called with every converged Step.
+
+        Raises:
+            SolveError: if a step failed down to the smallest size; the state is that of the last converged step.
+        """
         start = (self.drive.height, self.drive.force)
         done, size, cuts, last = 0.0, 1.0, 0, None  # in regular steps; last: increments of the last step and its size
         while done < phase.steps:

@@ -1,28 +1,33 @@
-"""The solid between its two rigid heads as a SNES problem: steps, with cuts where one does not converge."""
+"""The solid between its two rigid heads as a SNES problem: steps, cut where one does not converge."""
 
 import itertools
 from dataclasses import dataclass
 
 import numpy as np
 from dolfinx import fem
-from dolfinx.fem.petsc import apply_lifting, set_bc
+from dolfinx.fem.petsc import apply_lifting, create_vector, set_bc
 from petsc4py import PETSc
 
 from coilset.model.errors import SolveError
-from coilset.model.solid.heads import Head, Motion
+from coilset.model.solid.heads import Head
 from coilset.model.solid.solid import Solid
 from coilset.model.solid.solvers import choose
 
-_prefix = itertools.count()
+MAX_CUTS = 6
+_numbers = itertools.count()
 
 
 @dataclass(frozen=True)
 class Step:
-    """What it took to reach an equilibrium: Newton iterations (predictor included), linear iterations, and cuts."""
+    """What it took to reach an equilibrium: linear solves, iterations inside them, and cuts of the step."""
 
     iterations: int
     linear_iterations: int
-    cuts: int
+    cuts: int = 0
+
+    def __add__(self, other):
+        """The effort of both."""
+        return Step(*(getattr(self, name) + getattr(other, name) for name in ("iterations", "linear_iterations", "cuts")))
 
 
 class SolidProblem:
@@ -38,21 +43,138 @@ class SolidProblem:
     Attributes:
         solid: Solid.
         bottom, top: Head.
+        unknowns: number of degrees of freedom, those of the heads included.
+        forces: internal forces at the last evaluation, shape (owned blocks, 3), N.
     """
 
     def __init__(self, wire, points, solver="auto", precision=1e-7, options=None):
-        blocks = wire.mesh.topology.index_map(0).size_global + wire.mesh.topology.index_map(0).size_global
-        self.solver, chosen = choose(solver, 3 * blocks) if solver != "auto" else (solver, None)
-        self.solid = Solid(wire, points)
-        unknowns = 3 * self.solid.V.dofmap.index_map.size_global
-        self.solver, chosen = choose(solver, unknowns)
-        self.solid.symmetric = self.solver == "multigrid"
-        self.unknowns, self.precision, self.comm = unknowns, precision, self.solid.comm
-        self.bottom, self.top = Head(self.solid, "bottom"), Head(self.solid, "top")
-        self._increment = fem.Function(self.solid.V)
+        self.solid = solid = Solid(wire, points)
+        self.comm, self.precision = solid.comm, precision
+        self.unknowns = 3 * solid.V.dofmap.index_map.size_global
+        self.solver, chosen = choose(solver, self.unknowns)
+        solid.symmetric = self.solver == "multigrid"
+        self.bottom, self.top = Head(solid, "bottom"), Head(solid, "top")
         held = np.unique(np.concatenate([self.bottom.blocks, self.top.blocks]))
-        self._held = held[held < self.solid.configuration.owned]
-        self._conditions = [fem.dirichletbc(self._increment, held)]
+        self._held = held[held < solid.configuration.owned]
+        self._prescribed = fem.Function(solid.V)  # increment of the heads in the step
+        self._conditions = [fem.dirichletbc(self._prescribed, held)]
         self._create_snes({**chosen, **(options or {})})
-        self.forces = self.solid.internal_forces()
+        self.forces = solid.internal_forces()
         self._start = self.forces.copy()
+
+    def _create_snes(self, options):
+        comm, owned = self.comm, 3 * self.solid.configuration.owned
+        self._A = self.solid.create_matrix()
+        self._x, self._f = (PETSc.Vec().createMPI((owned, None), bsize=3, comm=comm) for _ in range(2))
+        self.snes = PETSc.SNES().create(comm)
+        prefix = f"solid{next(_numbers)}_"
+        self.snes.setOptionsPrefix(prefix)
+        database = PETSc.Options(prefix)
+        for key, value in options.items():
+            database[key] = value
+        self.snes.setFunction(self._residual, self._f)
+        self.snes.setJacobian(self._tangent, self._A)
+        self.snes.setConvergenceTest(self._converged)
+        self.snes.setFromOptions()
+        for key in options:
+            database.delValue(key)
+
+    # ---- callbacks of SNES -----------------------------------------------------------------------------------------
+
+    def _set(self, X):
+        """Bring the solid to the increment X; False if some point has no stress."""
+        u = self.solid.forms.u
+        u.x.array[: 3 * self.solid.configuration.owned] = X.getArray(readonly=True)
+        u.x.scatter_forward()
+        good = self.solid.update()
+        if good:
+            self.forces = self.solid.internal_forces()
+        return good
+
+    def _residual(self, snes, X, F):
+        if self._set(X):
+            rest = self.forces.copy()
+            rest[self._held] = 0.0
+            F.setArray(rest.ravel())
+        else:
+            F.set(np.inf)
+
+    def _tangent(self, snes, X, J, P):
+        mine = np.array_equal(X.getArray(readonly=True), self.solid.u[: self.solid.configuration.owned].ravel())
+        if not self.comm.allreduce(int(mine)) == self.comm.size:  # a line search may have looked elsewhere last
+            self._set(X)
+        self.solid.assemble_tangent(P, self._conditions)
+
+    def _converged(self, snes, iteration, norms):
+        """(6.3.1), with the change of the heads' forces since the step's start for the change of the outer forces."""
+        norm = norms[2]
+        if not np.isfinite(norm):
+            return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
+        change = (self.forces - self._start)[self._held]
+        scale = np.sqrt(self.comm.allreduce(float(np.sum(change**2))))
+        return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE if norm <= self.precision * scale else 0
+
+    # ---- steps -----------------------------------------------------------------------------------------------------
+
+    def step(self, top, bottom=None):
+        """Move the heads to where the motions say and find the equilibrium there.
+
+        A step that does not converge is cut in halves.
+
+        Args:
+            top, bottom: Motion from the start; default for the bottom is to stay.
+
+        Returns:
+            Step.
+
+        Raises:
+            SolveError: if there is no equilibrium even after `MAX_CUTS` cuts; the last equilibrium is kept.
+        """
+        targets = (self.bottom.motion if bottom is None else bottom, top)
+        origin = (self.bottom.motion, self.top.motion)
+        done, part, effort, cuts = 0.0, 1.0, Step(0, 0), 0
+        while done < 1.0:
+            motions = [a.between(b, min(done + part, 1.0)) for a, b in zip(origin, targets, strict=True)]
+            effort += self._attempt(*motions)
+            if self.snes.getConvergedReason() > 0:
+                self.solid.commit()
+                self._start = self.forces.copy()
+                self.bottom.motion, self.top.motion = motions
+                done += part
+                continue
+            self.solid.restore()
+            self.forces = self.solid.internal_forces()
+            part, cuts = 0.5 * part, cuts + 1
+            if cuts > MAX_CUTS:
+                raise SolveError(f"no equilibrium of the solid within {part:g} of the step towards {top}")
+        return effort + Step(0, 0, cuts)
+
+    def _attempt(self, bottom, top):
+        increment = self._prescribed.x.array.reshape(-1, 3)
+        for head, motion in ((self.bottom, bottom), (self.top, top)):
+            increment[head.blocks] = head.positions(motion) - self.solid.configuration.x[head.blocks]
+        if self.solver == "multigrid":
+            self._A.setNearNullSpace(self.solid.configuration.near_nullspace(self.solid.x))
+        predictor = self._predict()
+        self.snes.solve(None, self._x)
+        return Step(1 + self.snes.getIterationNumber(), predictor + self.snes.getLinearSolveIterations())
+
+    def _predict(self):
+        """Start from the linear answer to the heads' motion, so that the end elements are not torn; K_ff u = −K_fh g − r."""
+        ksp = self.snes.getKSP()
+        self.solid.assemble_tangent(self._A, self._conditions)
+        b = create_vector(self.solid.forms.residual)
+        apply_lifting(b, [self.solid.forms.tangent], bcs=[self._conditions])
+        b.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
+        b.array[:] -= self.forces.ravel()
+        set_bc(b, self._conditions)
+        ksp.setOperators(self._A)
+        ksp.solve(b, self._x)
+        # the heads exactly, also if the linear solve is iterative
+        self._x.array.reshape(-1, 3)[self._held] = self._prescribed.x.array.reshape(-1, 3)[self._held]
+        b.destroy()
+        return ksp.getIterationNumber()
+
+    def reactions(self, point):
+        """Reactions of bottom and top head at the last equilibrium, with moments about a point, mm."""
+        return self.bottom.reaction(self.forces, point), self.top.reaction(self.forces, point)

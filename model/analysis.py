@@ -1,0 +1,158 @@
+"""From a case to its history: geometry → mesh → rod, contacts and drive → load program → results."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from mpi4py import MPI
+
+from coilset.meshes.line import line_mesh
+from coilset.model.contact.gap import Gaps
+from coilset.model.contact.seat import Seats
+from coilset.model.errors import SolveError
+from coilset.model.loading.driver import Drive
+from coilset.model.loading.stepper import Step, Stepper
+from coilset.model.material import library
+from coilset.model.problem.system import System
+from coilset.model.rod.rod import Rod
+from coilset.model.solvers.solver import Solver
+
+ONSET = 1e-3  # way over which contact sets in, in wire diameters
+PROBE = 1e-3  # travel by which the initial rate is measured, in free lengths
+
+
+@dataclass
+class Snapshot:
+    """The spring at one moment, in the order of its stations and elements; complete on rank 0.
+
+    Attributes:
+        name: what moment it is, such as `start`, `block`, `force 0 N`.
+        height, force: of the seats, mm and N.
+        x: station positions, shape (n + 1, 3), mm.
+        triads: element triads (columns), shape (n, 3, 3).
+        resultants: N, Q2, Q3, Mt, M2, M3 at the Gauss sections, shape (n, 2, 6), N and N mm.
+        history: σ11, τ12, τ13, B11, B12, B13, b* at the section points, shape (n, 2, points, n_state), MPa.
+    """
+
+    name: str
+    height: float
+    force: float
+    x: np.ndarray
+    triads: np.ndarray
+    resultants: np.ndarray
+    history: np.ndarray
+
+    @property
+    def shear(self):
+        """Magnitude of the shear stress at the section points, shape (n, 2, points), MPa."""
+        return np.hypot(self.history[..., 1], self.history[..., 2])
+
+
+@dataclass
+class Result:
+    """What a run has found; `complete` is False if it ended before its program did."""
+
+    steps: list[Step] = field(default_factory=list)
+    snapshots: list[Snapshot] = field(default_factory=list)
+    rate: float = float("nan")
+    complete: bool = False
+
+
+class Analysis:
+    """A spring with its load program, ready to run.
+
+    Args:
+        case: Case (`coilset.model.case.read_case`, or built in Python).
+        comm: MPI communicator.
+
+    Raises:
+        InputError: if the spring or the material cannot be built.
+    """
+
+    def __init__(self, case, comm=MPI.COMM_WORLD):
+        self.case, self.comm = case, comm
+        self.spring = case.spring.build()
+        self.turns = self.spring.stations(case.mesh.elements_per_turn)
+        self.law = library.load(case.material)
+        line = line_mesh(self.spring.centre_line(self.turns), comm)
+        self.wire_radius = 0.5 * self.spring.wire_diameter(0.5 * (self.turns[1:] + self.turns[:-1]))
+        self.rod = Rod(line, self.wire_radius, self.law, case.mesh.section.build())
+        top = self.spring.free_length
+        self.system = System(self.rod, self._contacts(line.stations), seats=(0.0, top))
+        self.solver = Solver(self.system, tolerance=case.solver.tolerance)
+        self.drive = Drive(self.system, case.ends, top)
+        self.stepper = Stepper(self.drive, self.solver, self.spring.block_height)
+
+    def _contacts(self, stations):
+        """Gap elements between stations one turn apart, and the seats."""
+        spring, turns = self.spring, self.turns
+        lengths = np.linalg.norm(np.diff(stations, axis=0), axis=1)
+        share = 0.5 * (np.append(lengths, 0.0) + np.append(0.0, lengths))  # length of wire of each station
+        bedding = self.case.contact.bedding or self.law.E / 40.0
+        radius = 0.5 * spring.wire_diameter(turns)
+        onset = ONSET * 2.0 * float(radius.min())
+        lower = np.flatnonzero(turns <= turns[-1] - 1.0 + 1e-9)
+        upper = np.abs(turns[None, :] - turns[lower, None] - 1.0).argmin(axis=1) if len(lower) else lower
+        pairs = np.stack([lower, upper], axis=1)
+        contacts = [Gaps(pairs, radius[lower] + radius[upper], bedding * share[lower], onset)]
+        if self.case.ends == "seats":
+            contacts.append(Seats(radius, bedding * share, onset))
+        return contacts
+
+    def run(self, report=lambda step: None):
+        """Measure the initial rate, then walk through the load program.
+
+        Args:
+            report: called with each converged Step.
+
+        Returns:
+            Result. A solve that fails raises SolveError with the result up to there in its attribute `result`.
+        """
+        self.result = result = Result()
+        result.rate = self.initial_rate()
+        result.snapshots.append(self.snapshot("start"))
+
+        def record(step):
+            result.steps.append(step)
+            report(step)
+
+        try:
+            for index, phase in enumerate(self.case.loading):
+                self.stepper.run_phase(index, phase, record)
+                result.snapshots.append(self.snapshot(phase.label))
+        except SolveError as error:
+            result.snapshots.append(self.snapshot("last equilibrium"))
+            error.result = result
+            raise
+        result.complete = True
+        return result
+
+    def initial_rate(self):
+        """Force over the shortening of the wire from tip to tip, at a thousandth of the free length, N/mm."""
+        self.drive.by_height(self.drive.height - PROBE * self.spring.free_length)
+        before = np.ptp(self.system.gather(self.rod.x)[[0, -1], 2])
+        outcome = self.solver.solve()
+        if not outcome.converged:
+            raise SolveError(f"no equilibrium at the first touch: {outcome.reason}")
+        after = np.ptp(self.system.gather(self.rod.x)[[0, -1], 2])
+        force = self.drive.read(self.solver.X)[1]
+        self.system.restore()
+        return force / (before - after)
+
+    def snapshot(self, name):
+        """The spring as it stands, gathered on rank 0."""
+        rod, line = self.rod, self.rod.line
+        cells = line.element[: line.owned_cells]
+        parts = self.comm.gather((cells, rod.E.values, rod.s.values, rod.history), root=0)
+        x = self.system.gather(rod.x)
+        if self.comm.rank:
+            return Snapshot(name, self.drive.height, self.drive.force, x, *(np.empty(0),) * 3)
+        order = np.argsort(np.concatenate([part[0] for part in parts]))
+        fields = [np.concatenate([part[k] for part in parts])[order] for k in (1, 2, 3)]
+        return Snapshot(name, self.drive.height, self.drive.force, x, *fields)
+
+    def outer_length(self, x):
+        """Height of the wire between two planes across the axis that just touch it, mm."""
+        z, spring = x[:, 2], self.spring
+        top = z + spring.seat_distance(self.turns, "top")
+        bottom = z - spring.seat_distance(self.turns, "bottom")
+        return float(top.max() - bottom.min())

@@ -1,0 +1,69 @@
+"""Fields of the snapshots: a labelled data set of the section points, and line meshes for ParaView."""
+
+from pathlib import Path
+
+import meshio
+import numpy as np
+import xarray as xr
+
+from coilset.model.results.folder import whole
+
+COMPONENTS = ["s11", "t12", "t13", "B11", "B12", "B13", "b"]
+RESULTANTS = ["N", "Q2", "Q3", "Mt", "M2", "M3"]
+
+
+def point_state(analysis, snapshots):
+    """All section points at all snapshots as an xarray data set with units and coordinates."""
+    rule, radius = analysis.rod.rule, analysis.wire_radius
+    names = COMPONENTS + ["temperature"] * (analysis.law.n_state - len(COMPONENTS))
+    history = ("snapshot", "element", "gauss", "point", "component")
+    data = xr.Dataset(
+        {
+            "history": (history, np.stack([shot.history for shot in snapshots]), {"units": "MPa"}),
+            "resultants": (
+                ("snapshot", "element", "gauss", "resultant"),
+                np.stack([shot.resultants for shot in snapshots]),
+                {"units": "N, N mm", "about": "chord axis and triad of each element"},
+            ),
+            "position": (
+                ("snapshot", "station", "axis"), np.stack([shot.x for shot in snapshots]), {"units": "mm"},
+            ),
+            "height": ("snapshot", [shot.height for shot in snapshots], {"units": "mm"}),
+            "force": ("snapshot", [shot.force for shot in snapshots], {"units": "N"}),
+            "y": (("element", "point"), np.outer(radius, rule.points[:, 0]), {"units": "mm"}),
+            "z": (("element", "point"), np.outer(radius, rule.points[:, 1]), {"units": "mm"}),
+            "weight": ("point", rule.weights),
+        },
+        coords={
+            "snapshot": [shot.name for shot in snapshots],
+            "turn": ("station", analysis.turns, {"units": "1"}),
+            "component": names,
+            "resultant": RESULTANTS,
+            "axis": ["x", "y", "z"],
+        },
+        attrs={"title": "section points of the rod", "material": analysis.law.name, "section_rule": rule.name},
+    )  # fmt: skip
+    return data
+
+
+def write_points(folder, data):
+    """points.nc (NetCDF 4)."""
+    with whole(Path(folder) / "points.nc") as path:
+        data.to_netcdf(path, engine="h5netcdf")
+
+
+def write_fields(folder, analysis, snapshots):
+    """fields/NN.vtu: the line mesh at each snapshot with resultants and the greatest stresses, for ParaView."""
+    folder = Path(folder) / "fields"
+    folder.mkdir(exist_ok=True)
+    n = len(analysis.turns) - 1
+    cells = [("line", np.stack([np.arange(n), np.arange(1, n + 1)], axis=1))]
+    for number, shot in enumerate(snapshots):
+        mean = shot.resultants.mean(axis=1)
+        data = {name: [mean[:, k]] for k, name in enumerate(RESULTANTS)}
+        data["shear_max_MPa"] = [shot.shear.max(axis=(1, 2))]
+        data["normal_max_MPa"] = [np.abs(shot.history[..., 0]).max(axis=(1, 2))]
+        data["work_max_MPa"] = [shot.history[..., 6].max(axis=(1, 2))]
+        data["wire_radius_mm"] = [analysis.wire_radius]
+        with whole(folder / f"{number:02d}.vtu") as path:
+            meshio.write(path, meshio.Mesh(shot.x, cells, cell_data=data))

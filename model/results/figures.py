@@ -1,0 +1,71 @@
+"""Figures of a run: the characteristic, and the residual stress over the wire's cross-section."""
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+
+from coilset.model.results.folder import whole
+
+STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False}
+DPI = 160
+
+
+def save(figure, path):
+    """Write a figure as PNG."""
+    with whole(path) as partial:
+        figure.savefig(partial, dpi=DPI)
+
+
+def characteristic(path, analysis, result, summary):
+    """Force over travel, one line a phase."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(6.4, 4.2), layout="constrained")
+        axes = figure.add_subplot()
+        travel, force = [0.0], [0.0]
+        for index, phase in enumerate(analysis.case.loading):
+            steps = [step for step in result.steps if step.phase == index]
+            if not steps:
+                continue
+            travel = [travel[-1]] + [step.travel_mm for step in steps]
+            force = [force[-1]] + [step.force_N for step in steps]
+            axes.plot(travel, force, "o-", ms=3, lw=1.3, label=f"to {phase.label}")
+        greatest = max(abs(summary["force_max_N"]), 1e-300)
+        reach = greatest / summary["rate_N_per_mm"]
+        axes.plot([0, reach], [0, greatest], "k:", lw=0.9, label=f"initial rate {summary['rate_N_per_mm']:.4g} N/mm")
+        block = summary["free_length_before_mm"] - summary["block_height_mm"]
+        axes.axvline(block, color="0.6", lw=0.8, ls="--", label=f"block, {summary['block_height_mm']:.4g} mm high")
+        if summary["set_mm"] is not None:
+            set_mm = summary["set_mm"]
+            axes.annotate(
+                f"set {set_mm:.3f} mm", (set_mm, 0), (0.5 * set_mm, 0.14 * greatest),
+                ha="center", arrowprops={"arrowstyle": "->", "lw": 0.8},
+            )  # fmt: skip
+        axes.set(xlabel="travel in mm", ylabel="axial force in N", title=f"Characteristic, {analysis.law.name}")
+        axes.legend(fontsize=8)
+        axes.grid(lw=0.3)
+        save(figure, path)
+
+
+def cross_section(path, analysis, snapshot):
+    """Stress over the cross-section at mid height: circumferential shear and normal stress."""
+    rod, n = analysis.rod, len(analysis.turns) - 1
+    state = snapshot.history[n // 2].mean(axis=0)
+    points = rod.rule.points
+    radius = analysis.wire_radius[n // 2]
+    y, z = radius * points.T
+    distance = np.hypot(points[:, 0], points[:, 1])
+    around = (state[:, 2] * points[:, 0] - state[:, 1] * points[:, 1]) / np.where(distance > 0, distance, 1.0)
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(8.2, 3.9), layout="constrained")
+        for place, (values, name) in enumerate(((around, "shear about the wire's axis"), (state[:, 0], "normal stress"))):
+            axes = figure.add_subplot(1, 2, place + 1)
+            limit = max(float(np.abs(values).max()), 1e-9)
+            levels = np.linspace(-limit, limit, 25)
+            shown = axes.tricontourf(y, z, values, levels=levels, cmap="RdBu_r")
+            axes.plot(y, z, "k.", ms=2, alpha=0.5)
+            angle = np.linspace(0, 2 * np.pi, 181)
+            axes.plot(radius * np.cos(angle), radius * np.sin(angle), "k-", lw=0.8)
+            axes.set(aspect="equal", xlabel="towards the coil's axis, mm", ylabel="along the spring, mm", title=name)
+            figure.colorbar(shown, ax=axes, label="MPa", shrink=0.85)
+        figure.suptitle(f"Cross-section at mid height, {snapshot.name} (F = {snapshot.force:.4g} N); dots: section points")
+        save(figure, path)

@@ -1,0 +1,5 @@
+"""`python -m coilset.scripts`."""
+
+from coilset.scripts.main import run
+
+run()

@@ -1,0 +1,71 @@
+"""The command `coilset`: its sub-commands, and how errors leave it."""
+
+import os
+import signal
+import sys
+
+import typer
+
+from coilset.model.errors import CoilsetError
+
+app = typer.Typer(
+    name="coilset",
+    help="How far does a coil spring set, and what stress stays in it?",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+@app.command()
+def solve(
+    case: str = typer.Argument(help="case file (YAML)"),
+    out: str = typer.Option(None, help="results folder; default results/NAME-OF-CASE"),
+    force: bool = typer.Option(False, "--force", help="replace results that are there"),
+    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
+    pictures: bool = typer.Option(True, help="draw the figures"),
+):
+    """Run a spring through its load program and write what it found."""
+    from coilset.scripts.solve import solve as run_case
+
+    run_case(case, out, force, settings, pictures)
+
+
+@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+def test(context: typer.Context):
+    """Run the tests, in serial and under MPI; further arguments go to pytest."""
+    from coilset.scripts.test import test as run_tests
+
+    raise typer.Exit(run_tests(context.args))
+
+
+def run():
+    """Entry of the command: one line and an exit code for every error that can be foreseen."""
+    status = 1
+    try:
+        status = app(standalone_mode=False) or 0
+    except CoilsetError as error:
+        status = error.exit_code
+        _complain(str(error))
+    except typer.Exit as error:
+        status = error.exit_code
+    except typer.Abort:
+        status = 130
+    except KeyboardInterrupt:
+        status = 128 + signal.SIGINT
+        _complain("interrupted")
+    except Exception as error:
+        from click import ClickException
+
+        if not isinstance(error, ClickException):
+            raise
+        status = error.exit_code
+        _complain(error.format_message())
+    sys.stdout.flush()
+    sys.exit(status)
+
+
+def _complain(line):
+    if int(os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK", "0"))) == 0:
+        print(f"coilset: {line}", file=sys.stderr)

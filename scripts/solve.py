@@ -1,0 +1,112 @@
+"""`coilset solve`: read, run, write, draw, and say what was found."""
+
+import os
+import time
+from pathlib import Path
+
+from mpi4py import MPI
+from rich.console import Console
+from rich.table import Table
+
+from coilset.model.analysis import Analysis
+from coilset.model.case import read_case
+from coilset.model.errors import InputError, SolveError
+from coilset.model.results.folder import prepare, write_history, write_summary
+from coilset.model.results.summary import summarise
+
+STARTED = float(os.environ.get("COILSET_STARTED", time.time()))
+
+
+def solve(case_file, out, force, settings, pictures, comm=MPI.COMM_WORLD):
+    """Run one case; see `coilset solve --help`.
+
+    Raises:
+        InputError, SolveError: after the results up to there are written.
+    """
+    console = Console(quiet=comm.rank != 0, highlight=False)
+    case = read_case(case_file, settings)
+    out = Path(out or Path("results") / Path(case_file).stem)
+    try:
+        analysis = Analysis(case, comm)
+    except InputError as error:
+        raise InputError(error.problem, error.place, error.file or case_file) from None
+    _prepare(out, force, comm)
+    for warning in analysis.spring.warnings:
+        console.print(f"[yellow]warning:[/] {warning}")
+    began = time.perf_counter()
+    steps = sum(phase.steps for phase in case.loading)
+    console.print(f"{Path(case_file).name}: {len(analysis.turns) - 1} elements, {steps} steps, {comm.size} rank(s)")
+    console.print("   step   seat height/mm      force/N   iterations   contacts")
+    failure = None
+    try:
+        result = analysis.run(lambda step: console.print(_row(step)))
+    except (SolveError, KeyboardInterrupt) as error:
+        failure, result = error, analysis.result
+        if isinstance(error, KeyboardInterrupt):
+            analysis.system.restore()
+            result.snapshots.append(analysis.snapshot("interrupted"))
+    analysed = time.perf_counter() - began
+    summary = summarise(analysis, result)
+    if comm.rank == 0:
+        _write(out, analysis, result, summary)
+        if pictures:
+            _draw(out, analysis, result, summary, console)
+    _conclude(console, summary, out, analysed)
+    if failure is not None:
+        raise failure
+
+
+def _prepare(out, force, comm):
+    problem = None
+    if comm.rank == 0:
+        try:
+            prepare(out, force)
+        except InputError as error:
+            problem = error
+    problem = comm.bcast(problem and (problem.problem, problem.place, str(problem.file)))
+    if problem:
+        raise InputError(*problem)
+
+
+def _row(step):
+    cuts = f"   cut {step.cuts} times" if step.cuts else ""
+    return f"{step.number:7d}{step.seat_height_mm:17.4f}{step.force_N:13.3f}{step.iterations:13d}{step.contacts:11d}{cuts}"
+
+
+def _write(out, analysis, result, summary):
+    from coilset.model.results import dataset
+
+    write_history(out, result.steps)
+    dataset.write_points(out, dataset.point_state(analysis, result.snapshots))
+    dataset.write_fields(out, analysis, result.snapshots)
+    write_summary(out, summary)
+
+
+def _draw(out, analysis, result, summary, console):
+    from coilset.model.results import display, figures, scene
+
+    last = result.snapshots[-1]
+    figures.characteristic(out / "characteristic.png", analysis, result, summary)
+    figures.cross_section(out / "cross_section.png", analysis, last)
+    if display.ensure():
+        shots = result.snapshots if len(result.snapshots) <= 4 else [result.snapshots[0], *result.snapshots[-3:]]
+        scene.springs(out / "springs.png", shots, analysis.wire_radius)
+    else:
+        console.print("[yellow]warning:[/] springs.png is not drawn: there is no display and no Xvfb")
+
+
+def _conclude(console, summary, out, analysed):
+    def number(value, unit, digits=4):
+        return "not reached" if value is None else f"{value:.{digits}f} {unit}"
+
+    table = Table(show_header=False, box=None, padding=(0, 2))
+    table.add_row("free length before", number(summary["free_length_before_mm"], "mm"))
+    table.add_row("free length after", number(summary["free_length_after_mm"], "mm"))
+    table.add_row("[bold]set[/]", f"[bold]{number(summary['set_mm'], 'mm')}[/]")
+    table.add_row("initial rate", number(summary["rate_N_per_mm"], "N/mm"))
+    table.add_row("greatest force", number(summary["force_max_N"], "N", 2))
+    table.add_row("block height", number(summary["block_height_mm"], "mm"))
+    table.add_row("greatest residual shear stress", number(summary["residual_shear_max_MPa"], "MPa", 2))
+    table.add_row("results in", f"{out}{os.sep}")
+    console.print(table)
+    console.print(f"analysis {analysed:.2f} s, all {time.time() - STARTED:.2f} s")
