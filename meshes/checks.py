@@ -30,11 +30,17 @@ def objections(spring):
     return sorted(found, key=lambda finding: not finding.fatal)
 
 
-def refuse(spring):
-    """Raise `InputError` for the first fatal finding; return the spring if there is none."""
+def refuse(spring, place=None, file=""):
+    """Raise `InputError` for the first fatal finding; return the spring if there is none.
+
+    Args:
+        spring: `Spring`.
+        place: said in the place of the finding's own, for a spring that was not drawn.
+        file: the file that the spring came from.
+    """
     for finding in objections(spring):
         if finding.fatal:
-            raise InputError(finding.text, finding.place)
+            raise InputError(finding.text, finding.place if place is None else place, file)
     return spring
 
 

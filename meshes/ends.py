@@ -1,11 +1,11 @@
 """End coils: how a spring begins and ends, and what that makes of its pitch."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from coilset.meshes import functions
 from coilset.meshes.shapes import Entry
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 CLOSED_TURNS, CLOSED_TRANSITION, GROUND_TIP = 1.0, 0.5, 0.25
 
@@ -71,6 +71,24 @@ class BothEnds(Entry):
     top: EndCoils = OPEN
 
 
+def _number_of_forms(value: Any) -> str:
+    two = isinstance(value, BothEnds) or (isinstance(value, dict) and ("bottom" in value or "top" in value))
+    return "(two)" if two else "(one)"
+
+
+Ends = Annotated[
+    Annotated[EndCoils, Tag("(one)")] | Annotated[BothEnds, Tag("(two)")],
+    Discriminator(_number_of_forms),
+    Field(description="form of both ends, or bottom and top with their own"),
+]
+"""The ends of a spring as the case file gives them."""
+
+
+def bottom_and_top(ends):
+    """Bottom and top `EndCoils` of an entry `Ends`."""
+    return (ends.bottom, ends.top) if isinstance(ends, BothEnds) else (ends, ends)
+
+
 def touching_pitch(diameter, slope):
     """Pitch at which a coil lies on its neighbour: the centres are a wire's diameter apart, d² = p² + r′².
 
@@ -90,7 +108,7 @@ def pitch_with_ends(body, bottom, top, touching):
         body: pitch of a spring without end turns, a function of the turn, mm.
         bottom: `EndCoils` at turn 0.
         top: `EndCoils` at the last turn.
-        touching: function that gives the mean touching pitch between two turns, mm.
+        touching: function that gives the greatest touching pitch between two turns, mm.
 
     Returns:
         The pitch as a function of the turn, mm per turn.

@@ -3,7 +3,7 @@
 from math import factorial
 
 import numpy as np
-from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
+from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly, splrep
 
 DEGREE = 3
 
@@ -53,6 +53,22 @@ def tabulated(turn, value, interpolation):
     else:
         raise ValueError(f"interpolation must be one of {', '.join(INTERPOLATIONS)}, not {interpolation!r}")
     return PPoly(pieces.c, pieces.x)
+
+
+def smoothed(turn, value, noise):
+    """A cubic spline with as few pieces as the noise of the values allows (FITPACK's smoothing spline).
+
+    Args:
+        turn: increasing turns, shape (n,).
+        value: measured values, shape (n,).
+        noise: their standard deviation; the mean square of the residuals becomes its square.
+
+    Returns:
+        The function as a `scipy.interpolate.PPoly`.
+    """
+    pieces = PPoly.from_spline(splrep(turn, value, w=np.full(len(turn), 1 / noise), s=len(turn)))
+    real = np.diff(pieces.x) > 0  # the end knots are repeated
+    return PPoly(pieces.c[:, real], np.append(pieces.x[:-1][real], pieces.x[-1]))
 
 
 def restricted(function, start, end):

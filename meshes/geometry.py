@@ -189,7 +189,7 @@ class Spring:
     @cached_property
     def warnings(self):
         """What a spring maker would warn of: a list of lines with numbers."""
-        return [f"{finding.place}: {finding.text}" for finding in objections(self) if not finding.fatal]
+        return [finding.text for finding in objections(self) if not finding.fatal]
 
     def stations(self, elements_per_turn=16, **grading):
         """Increasing turns of the nodes of a line mesh, see `coilset.meshes.stations.stations`."""

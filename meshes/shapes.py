@@ -136,32 +136,30 @@ SHAPES = {"cylinder": Cylinder, "cone": Cone, "double cone": DoubleCone, "hourgl
           "funnel": Funnel}
 
 
-def _form(value: Any) -> str | None:
-    """Which form of entry this is; None lets the error name the forms that there are."""
-    if isinstance(value, Table):
-        return "table"
-    if isinstance(value, tuple(SHAPES.values())):
-        return value.shape
+def _form(value: Any) -> str:
+    """Tag of the form of an entry; tags are in brackets because they are no part of its place in the case file."""
     if isinstance(value, dict):
-        return value.get("shape") if "shape" in value else "table"
-    return "number"
+        return f"({value['shape']})" if "shape" in value else "(table)"
+    if isinstance(value, Entry):
+        return f"({getattr(value, 'shape', 'table')})"
+    return "(number)"
 
 
 Profile = Annotated[
-    Annotated[Length, Tag("number")] | Annotated[Table, Tag("table")],
+    Annotated[Length, Tag("(number)")] | Annotated[Table, Tag("(table)")],
     Discriminator(_form, custom_error_type="form", custom_error_message="must be a number or a table"),
 ]
 """A length over the turns: a number in mm, or a table."""
 
 DiameterProfile = Annotated[
-    Annotated[Length, Tag("number")]
-    | Annotated[Table, Tag("table")]
-    | Annotated[Cylinder, Tag("cylinder")]
-    | Annotated[Cone, Tag("cone")]
-    | Annotated[DoubleCone, Tag("double cone")]
-    | Annotated[Hourglass, Tag("hourglass")]
-    | Annotated[Barrel, Tag("barrel")]
-    | Annotated[Funnel, Tag("funnel")],
+    Annotated[Length, Tag("(number)")]
+    | Annotated[Table, Tag("(table)")]
+    | Annotated[Cylinder, Tag("(cylinder)")]
+    | Annotated[Cone, Tag("(cone)")]
+    | Annotated[DoubleCone, Tag("(double cone)")]
+    | Annotated[Hourglass, Tag("(hourglass)")]
+    | Annotated[Barrel, Tag("(barrel)")]
+    | Annotated[Funnel, Tag("(funnel)")],
     Discriminator(_form, custom_error_type="form",
                   custom_error_message=f"must be a number, a table, or one of the shapes {', '.join(SHAPES)}"),
 ]

@@ -1,17 +1,18 @@
 """The `spring:` section of the case file, and what is built from it."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from coilset.meshes import functions
 from coilset.meshes.checks import refuse
-from coilset.meshes.ends import OPEN, BothEnds, EndCoils, pitch_with_ends, touching_pitch
+from coilset.meshes.ends import OPEN, Ends, bottom_and_top, pitch_with_ends, touching_pitch
 from coilset.meshes.geometry import Spring
+from coilset.meshes.measured import MeasuredSpec
 from coilset.meshes.shapes import DiameterProfile, Entry, Length, Profile, profile_function
 from coilset.model.errors import InputError
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
-__all__ = ["Spring", "SpringSpec"]
+__all__ = ["MeasuredSpec", "Spring", "SpringEntry", "SpringSpec"]
 
 
 class SpringSpec(Entry):
@@ -27,7 +28,7 @@ class SpringSpec(Entry):
         Length | None, Field(description="outer length of the unloaded spring, mm; or give pitch")
     ] = None
     hand: Annotated[Literal["right", "left"], Field(description="the way the coils turn")] = "right"
-    end_coils: Annotated[EndCoils | BothEnds, Field(description="both ends, or bottom and top")] = OPEN
+    end_coils: Ends = OPEN
 
     @model_validator(mode="after")
     def _has_length(self):
@@ -35,14 +36,11 @@ class SpringSpec(Entry):
             raise ValueError("pitch and free_length are both missing; give one of them")
         return self
 
-    @property
-    def ends(self):
-        """Bottom and top end."""
-        both = self.end_coils
-        return (both, both) if isinstance(both, EndCoils) else (both.bottom, both.top)
-
-    def build(self):
+    def build(self, folder=None):
         """The geometry.
+
+        Args:
+            folder: of the case file; this kind of spring needs no other file.
 
         Returns:
             `Spring`.
@@ -52,14 +50,14 @@ class SpringSpec(Entry):
         """
         wire, diameter = self._function("wire_diameter"), self._function("mean_diameter")
         radius = functions.PPoly(0.5 * diameter.c, diameter.x)
-        ends_and_transitions = sum(end.end_turns + end.transition_turns for end in self.ends)
+        ends_and_transitions = sum(end.end_turns + end.transition_turns for end in bottom_and_top(self.end_coils))
         if ends_and_transitions >= self.turns:
             raise InputError(f"{self.turns:g} turns are too few: end turns and transitions alone are "
                              f"{ends_and_transitions:g}", "spring.turns")
 
         def spring(pitch):
             height = self._pitch_with_ends(pitch, wire, radius).antiderivative()
-            return Spring(radius, height, wire, 1 if self.hand == "right" else -1, *self.ends)
+            return Spring(radius, height, wire, 1 if self.hand == "right" else -1, *bottom_and_top(self.end_coils))
 
         if self.pitch is None:
             return refuse(spring(functions.constant(self._pitch_of_free_length(spring), self.turns)))
@@ -79,10 +77,10 @@ class SpringSpec(Entry):
         slope = radius.derivative()
 
         def touching(start, end):
-            breaks = np.linspace(start, end, 65)
-            return functions.integral(lambda t: touching_pitch(wire(t), slope(t)), breaks).sum() / (end - start)
+            t = np.linspace(start, end, 65)
+            return touching_pitch(wire(t), slope(t)).max()
 
-        return pitch_with_ends(pitch, *self.ends, touching)
+        return pitch_with_ends(pitch, *bottom_and_top(self.end_coils), touching)
 
     def _pitch_of_free_length(self, spring):
         """The body's pitch, on which the free length depends linearly."""
@@ -93,3 +91,14 @@ class SpringSpec(Entry):
             raise InputError(f"{self.free_length:g} mm leave no pitch: end coils and wire alone need {touching:.4g} mm",
                              "spring.free_length")
         return pitch
+
+
+def _origin(value: Any) -> str:
+    measured = isinstance(value, MeasuredSpec) or (isinstance(value, dict) and "file" in value)
+    return "(measured)" if measured else "(drawn)"
+
+
+SpringEntry = Annotated[
+    Annotated[SpringSpec, Tag("(drawn)")] | Annotated[MeasuredSpec, Tag("(measured)")], Discriminator(_origin)
+]
+"""The `spring:` section of the case file; a spring with the entry `file` was measured."""

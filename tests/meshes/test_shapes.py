@@ -128,7 +128,8 @@ def test_ground_spring():
 
 def test_closed_ends_lie_on_the_next_coil():
     spec = {"wire_diameter": 4.0, "mean_diameter": 32.0, "turns": 7.0, "pitch": 10.0}
-    spring = SpringSpec(**spec, end_coils={"bottom": {"form": "closed", "turns": 1.25}, "top": {"form": "closed"}}).build()
+    ends = {"bottom": {"form": "closed", "turns": 1.25}, "top": {"form": "closed"}}
+    spring = SpringSpec(**spec, end_coils=ends).build()
     z = spring.centre_line(np.array([0.0, 1.0, 1.25, 1.75, 5.5, 6.0, 7.0]))[:, 2]
     # smooth transition: the mean of both pitches, (4 + 10)/2, over half a turn
     np.testing.assert_allclose(np.diff(z), [4, 1, 3.5, 37.5, 3.5, 4], rtol=1e-9)

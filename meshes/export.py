@@ -1,0 +1,88 @@
+"""The line mesh of a spring as a file: gmsh's own format with named groups, and every format that meshio writes."""
+
+from pathlib import Path
+
+import gmsh
+import meshio
+import numpy as np
+from coilset.meshes.measured import WIRE_DIAMETER
+from coilset.model.errors import InputError
+
+
+def write_mesh(spring, turns, path):
+    """Write the nodes on the centre line and the elements between them.
+
+    The file holds the turn and the wire diameter of every node, where its format holds data, and the groups wire,
+    bottom end, top end and end coils (the elements whose middle lies in an end turn), where it holds groups.
+
+    Args:
+        spring: `Spring`.
+        turns: increasing turns of the nodes, shape (n + 1,).
+        path: the file; its suffix says the format.
+
+    Raises:
+        InputError: a suffix that meshio does not know, or a format without line elements.
+    """
+    path = Path(path)
+    points, data = spring.centre_line(turns), {"turn": turns, WIRE_DIAMETER: spring.wire_diameter(turns)}
+    middle = 0.5 * (turns[1:] + turns[:-1])
+    coil = np.where(middle < spring.bottom.end_turns, 0, np.where(middle > spring.turns - spring.top.end_turns, 2, 1))
+    if path.suffix == ".msh":
+        _write_gmsh(points, coil, data, path)
+    else:
+        _write_meshio(points, coil, data, path)
+
+
+def _write_meshio(points, coil, data, path):
+    nodes = np.arange(len(points))
+    lines = np.stack([nodes[:-1], nodes[1:]], axis=1)
+    mesh = meshio.Mesh(points, [("line", lines)], point_data=data, cell_data={"end_coil": [(coil != 1).astype(int)]})
+    options = {"data_format": "XML"} if path.suffix == ".xdmf" else {}
+    if path.suffix == ".inp":  # Abaqus has sets in the place of data, with names without spaces
+        elements = {"wire": [nodes[:-1]], "end_coils": [nodes[:-1][coil != 1]]}
+        mesh = meshio.Mesh(points, [("line", lines)], cell_sets=elements,
+                           point_sets={"bottom_end": nodes[:1], "top_end": nodes[-1:]})
+    try:
+        mesh.write(path, **options)
+        kept = sum(len(block.data) for block in meshio.read(path).cells if block.type == "line")
+    except (meshio.WriteError, meshio.ReadError, KeyError, ValueError, SystemExit) as error:
+        path.unlink(missing_ok=True)
+        raise InputError(f"meshio cannot write a wire so: {' '.join(str(error).split())}; "
+                         "take .vtu, .msh, .inp or .xdmf", "", path) from None
+    if kept != len(lines):
+        path.unlink()
+        raise InputError(f"{path.suffix} files hold no line elements; take .vtu, .msh, .inp or .xdmf", "", path)
+
+
+def _write_gmsh(points, coil, data, path):
+    """The model has one curve for the body and one for each closed end; the group wire is all of them."""
+    started = gmsh.isInitialized()
+    if not started:
+        gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.model.add("spring")
+        tags = np.arange(1, len(points) + 1)
+        curves = {part: gmsh.model.addDiscreteEntity(1) for part in np.unique(coil).tolist()}
+        gmsh.model.mesh.addNodes(1, curves[1], tags, points.ravel())
+        for part, curve in curves.items():
+            elements = tags[:-1][coil == part]
+            gmsh.model.mesh.addElementsByType(curve, 1, elements, np.stack([elements, elements + 1], axis=1).ravel())
+        gmsh.model.addPhysicalGroup(1, list(curves.values()), name="wire")
+        ends = [curve for part, curve in curves.items() if part != 1]
+        if ends:
+            gmsh.model.addPhysicalGroup(1, ends, name="end coils")
+        for name, node in (("bottom end", tags[0]), ("top end", tags[-1])):
+            point = gmsh.model.addDiscreteEntity(0)
+            gmsh.model.mesh.addElementsByType(point, 15, [tags[-1] + point], [node])
+            gmsh.model.addPhysicalGroup(0, [point], name=name)
+        gmsh.write(str(path))
+        for name, values in data.items():
+            view = gmsh.view.add(name)
+            gmsh.view.addModelData(view, 0, "spring", "NodeData", tags, values[:, None].tolist())
+            gmsh.view.write(view, str(path), append=True)
+            gmsh.view.remove(view)
+    finally:
+        gmsh.model.remove()
+        if not started:
+            gmsh.finalize()

@@ -1,0 +1,177 @@
+"""A spring from a measured centre line: points along the wire, from a table or a mesh."""
+
+from pathlib import Path
+from typing import Annotated
+
+import meshio
+import numpy as np
+from coilset.meshes import functions
+from coilset.meshes.checks import refuse
+from coilset.meshes.ends import OPEN, Ends, bottom_and_top
+from coilset.meshes.geometry import Spring
+from coilset.meshes.shapes import Entry, Length
+from coilset.model.errors import InputError
+from pydantic import Field
+
+LEAST_POINTS = 5
+WIDEST_STEP = 1 / 3  # of a turn between neighbouring points
+WIRE_DIAMETER = "wire_diameter"
+
+
+class MeasuredSpec(Entry):
+    """A spring whose centre line was measured. The file's z axis is the axis of the spring, lengths in mm.
+
+    The points become mean radius and height over the polar angle, which the cubic spline joins: a helix stays exactly
+    a helix. The wire diameter is joined without overshoot.
+    """
+
+    file: Annotated[str, Field(description="CSV with the columns x, y, z, wire_diameter, or a mesh that meshio reads")]
+    wire_diameter: Annotated[Length | None, Field(description="mm, for a file that has none")] = None
+    noise: Annotated[
+        float, Field(ge=0, allow_inf_nan=False, strict=True, description="standard deviation of the points, mm")
+    ] = 0.0
+    end_coils: Ends = OPEN
+
+    def build(self, folder=None):
+        """The geometry.
+
+        Args:
+            folder: from which the file's path counts; the working folder if not given.
+
+        Returns:
+            `Spring`.
+
+        Raises:
+            InputError: a file that cannot be read or is no spring, with the file and the point.
+        """
+        path = Path(folder or ".") / self.file
+        points, wire = read_centre_line(path)
+        if wire is None and self.wire_diameter is None:
+            raise InputError(f"has no {WIRE_DIAMETER}; give spring.wire_diameter", "", path)
+        if wire is not None and self.wire_diameter is not None:
+            raise InputError(f"the file {path} has wire diameters too; leave this entry out", "spring.wire_diameter")
+        wire = np.full(len(points), self.wire_diameter) if wire is None else wire
+        if points[-1, 2] < points[0, 2]:  # the bottom end comes first
+            points, wire = points[::-1], wire[::-1]
+        turn, hand, phase = _turns(points, path)
+        # the noise of a coordinate is that of radius and height
+        fit = functions.smoothed if self.noise > 0 else lambda t, y, noise: functions.tabulated(t, y, "spline")
+        radius = fit(turn, np.hypot(points[:, 0], points[:, 1]), self.noise)
+        height = fit(turn, points[:, 2], self.noise)
+        bottom, top = bottom_and_top(self.end_coils)
+        closed = bottom.end_turns + top.end_turns
+        if closed >= turn[-1]:
+            raise InputError(f"{closed:g} end turns, but the centre line has only {turn[-1]:.4g} turns",
+                             "spring.end_coils")
+        spring = Spring(radius, height, functions.tabulated(turn, wire, "monotone"), hand, bottom, top, phase)
+        return refuse(spring, "", path)
+
+
+def read_centre_line(path):
+    """Points along a wire and its diameters, from a CSV file or by meshio.
+
+    Args:
+        path: the file.
+
+    Returns:
+        Points in their order along the wire, shape (n, 3), and wire diameters, shape (n,) or None, mm.
+
+    Raises:
+        InputError: a file that cannot be read, is not one wire, or has too few or wrong numbers.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InputError("there is no such file", "", path)
+    points, wire = _read_csv(path) if path.suffix.lower() in (".csv", ".txt") else _read_mesh(path)
+    if len(points) < LEAST_POINTS:
+        raise InputError(f"has {len(points)} points; a centre line needs {LEAST_POINTS} or more", "", path)
+    bad = ~np.isfinite(points).all(axis=1) | (np.zeros(len(points), bool) if wire is None else ~(wire > 0))
+    if bad.any():
+        i = int(np.argmax(bad))
+        numbers = [*points[i], *([] if wire is None else [wire[i]])]
+        raise InputError(f"{', '.join(f'{n:g}' for n in numbers)}: must be finite numbers and a wire diameter above 0",
+                         f"point {i + 1}", path)
+    return points, wire
+
+
+def _read_csv(path):
+    """Columns x, y, z and perhaps wire_diameter, named in the first line, separated by commas."""
+    try:
+        lines = [line for line in path.read_text(encoding="utf-8-sig").splitlines() if line.strip()]
+    except UnicodeDecodeError:
+        raise InputError("it is not a text file", "", path) from None
+    names = [name.strip() for name in lines[0].split(",")] if lines else []
+    if names not in (["x", "y", "z"], ["x", "y", "z", WIRE_DIAMETER]):
+        raise InputError(f"the columns must be x,y,z or x,y,z,{WIRE_DIAMETER}, not {','.join(names)!r}", "line 1", path)
+    rows = []
+    for number, line in enumerate(lines[1:], start=2):
+        try:
+            row = [float(text) for text in line.split(",")]
+        except ValueError:
+            row = []
+        if len(row) != len(names):
+            raise InputError(f"{line.strip()!r}: must be {len(names)} numbers", f"line {number}", path)
+        rows.append(row)
+    table = np.array(rows).reshape(-1, len(names))
+    return table[:, :3], table[:, 3] if len(names) > 3 else None
+
+
+def _read_mesh(path):
+    """The only chain of line elements in a mesh; points of other elements and loose points do not count."""
+    try:
+        mesh = meshio.read(path)
+    except (meshio.ReadError, KeyError, ValueError, IndexError, OSError, SystemExit) as error:
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise InputError(f"meshio cannot read it: {reason}", "", path) from None
+    lines = [_straight(block) for block in mesh.cells if block.type in ("line", "line3")]
+    if not lines:
+        raise InputError("has no line elements; the wire must be a chain of them", "", path)
+    order = _chain(np.concatenate(lines), path)
+    points = np.zeros((len(order), 3))
+    points[:, :mesh.points.shape[1]] = mesh.points[order]
+    wire = mesh.point_data.get(WIRE_DIAMETER)
+    return points, None if wire is None else np.asarray(wire, dtype=float).reshape(-1)[order]
+
+
+def _straight(block):
+    """Line elements of two nodes; those of three are halved at their middle node."""
+    return block.data if block.type == "line" else np.concatenate([block.data[:, [0, 2]], block.data[:, [2, 1]]])
+
+
+def _chain(lines, path):
+    """Nodes in their order along a chain of line elements, from the end with the smaller number."""
+    lines = np.unique(np.sort(np.asarray(lines, dtype=int), axis=1), axis=0)
+    nodes, uses = np.unique(lines, return_counts=True)
+    if np.sum(uses == 1) != 2 or uses.max() > 2:
+        raise InputError(f"its line elements are not one open chain: {np.sum(uses == 1)} ends, "
+                         f"{np.sum(uses > 2)} branches", "", path)
+    neighbours = {int(node): [] for node in nodes}
+    for a, b in lines.tolist():
+        neighbours[a].append(b)
+        neighbours[b].append(a)
+    order = [int(nodes[uses == 1][0])]
+    previous = None
+    while following := [node for node in neighbours[order[-1]] if node != previous]:
+        previous = order[-1]
+        order.append(following[0])
+    if len(order) != len(nodes):
+        raise InputError("its line elements are an open chain and closed ones; there must be one wire", "", path)
+    return np.array(order)
+
+
+def _turns(points, path):
+    """Turns of the points from the first, hand, and polar angle of the first, rad."""
+    angle = np.arctan2(points[:, 1], points[:, 0])
+    step = (np.diff(angle) + np.pi) % (2 * np.pi) - np.pi
+    hand = 1 if step.sum() > 0 else -1
+    back = step * hand <= 0
+    if back.any():
+        i = int(np.argmax(back))
+        raise InputError("the wire does not go on round the z axis here; the axis of the spring must be the z axis, "
+                         "and no point may occur twice", f"point {i + 2}", path)
+    wide = np.abs(step) > 2 * np.pi * WIDEST_STEP
+    if wide.any():
+        i = int(np.argmax(wide))
+        raise InputError(f"is {np.degrees(abs(step[i])):.0f}° away from the point before; must be at most "
+                         f"{360 * WIDEST_STEP:.0f}°", f"point {i + 2}", path)
+    return np.concatenate([[0.0], np.cumsum(np.abs(step))]) / (2 * np.pi), hand, float(angle[0])
