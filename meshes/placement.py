@@ -58,3 +58,46 @@ def polygon_nodes(spring, turns, keep="points", poisson=0.3):
         raise ValueError(f"keep must be points, length or compliance, not {keep!r}")
     nodes[:, :2] *= outwards[:, None]
     return nodes
+
+
+def section_placement(spring, turns, triads, abscissae):
+    """How the sections of the curved wire hang on the chords between the nodes.
+
+    A section of the true centre line is rigidly tied to the section of the chord at the same ξ, by the offset o. With
+    the chord's strains Γ = (ε, γ12, γ13) and K = (φ′, κ2, κ3) and the triad Q of the true section in the chord's
+    frame, its strains per length of wire are
+
+        Γ_true = Qᵀ (Γ + K × o) dx/ds,    K_true = Qᵀ K dx/ds,
+
+    so that a rigid motion strains nothing, whatever o and Q are. Q is the least turn that brings the chord's axis to
+    the true tangent.
+
+    Args:
+        spring: `Spring`.
+        turns: increasing turns of the nodes, shape (n + 1,); the nodes lie on the centre line.
+        triads: the chords' triads, columns, shape (n, 3, 3).
+        abscissae: ξ of the Gauss sections, from 0 to 1, shape (g,).
+
+    Returns:
+        The matrices from (Γ, K) to (Γ_true, K_true), shape (n, g, 6, 6), and ds/dx, shape (n, g).
+    """
+    position, tangent, length = gauss_points(spring, turns[:-1], turns[1:], abscissae)
+    nodes = spring.centre_line(turns)
+    chord = np.diff(nodes, axis=0)
+    stretch = length / np.linalg.norm(chord, axis=1)[:, None]
+    on_chord = nodes[:-1, None] + chord[:, None] * np.asarray(abscissae)[:, None]
+    offset = np.einsum("nki,ngk->ngi", triads, position - on_chord)
+    t = np.einsum("nki,ngk->ngi", triads, tangent)
+
+    Q = np.zeros((*stretch.shape, 3, 3))
+    Q[..., :, 0] = t
+    Q[..., 0, 1:] = -t[..., 1:]
+    Q[..., 1:, 1:] = np.eye(2) - t[..., 1:, None] * t[..., None, 1:] / (1 + t[..., 0])[..., None, None]
+
+    o = np.moveaxis(offset, -1, 0)
+    zero = np.zeros_like(o[0])
+    K_cross_o = np.moveaxis(np.array([[zero, o[2], -o[1]], [-o[2], zero, o[0]], [o[1], -o[0], zero]]), (0, 1), (-2, -1))
+    P = np.zeros((*stretch.shape, 6, 6))
+    P[..., :3, :3] = P[..., 3:, 3:] = np.swapaxes(Q, -1, -2)
+    P[..., :3, 3:] = np.swapaxes(Q, -1, -2) @ K_cross_o
+    return P / stretch[..., None, None], stretch
