@@ -46,7 +46,7 @@ def solve(case_file, out, force, settings, pictures, comm=MPI.COMM_WORLD):
             analysis.system.restore()
             result.snapshots.append(analysis.snapshot("interrupted"))
     analysed = time.perf_counter() - began
-    summary = summarise(analysis, result)
+    summary = comm.bcast(summarise(analysis, result) if comm.rank == 0 else None)
     if comm.rank == 0:
         _write(out, analysis, result, summary)
         if pictures:

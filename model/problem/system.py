@@ -13,6 +13,11 @@ from petsc4py import PETSc
 SEATS = 2
 
 
+def comm_max(comm, value):
+    """Greatest value of all ranks."""
+    return comm.allreduce(float(value), op=MPI.MAX) if comm.size > 1 else float(value)
+
+
 class System:
     """Residual and tangent of rod, contacts, prescribed values and forces.
 
@@ -39,11 +44,11 @@ class System:
         self.internal = self.vector()  # internal forces without constraints and loads
         self.reaction_start = self.internal.duplicate()
         self._evaluated = None
-        rod = self.rod
         # rows of prescribed values are weighted by an axial stiffness, so that norms of the residual are of one kind
-        stiffness = rod.law.E * np.pi * rod.radius**2 / rod.l0
-        self.weight = self.comm.allreduce(float(stiffness.max(initial=0.0)), op=MPI.MAX)
-        self.rounding = 1e-15 * self.weight  # what rounding leaves of an out-of-balance force, N
+        E, r, l = rod.law.E, rod.radius, rod.l0
+        axial, bending = E * np.pi * r**2 / l, 3.0 * E * np.pi * r**4 / l**3  # E A/l, 12 E I/l³
+        self.weight = comm_max(self.comm, axial.max(initial=0.0))
+        self.stiffest = comm_max(self.comm, np.maximum(axial, bending).max(initial=0.0))
 
     # ---- numbering -------------------------------------------------------------------------------------------------
 
@@ -168,6 +173,11 @@ class System:
         start, stop = vector.getOwnershipRange()
         mine = vector.getArray(readonly=True)[dof - start] if start <= dof < stop else 0.0
         return self.comm.allreduce(mine) if self.comm.size > 1 else float(mine)
+
+    def rounding(self, X):
+        """Norm of the out-of-balance forces that the rounding of the increments leaves, N."""
+        greatest = comm_max(self.comm, np.abs(X.getArray(readonly=True)).max(initial=0.0))
+        return np.finfo(float).eps * greatest * self.stiffest * np.sqrt(X.getSize())
 
     def imbalance(self, F):
         """Norm of the out-of-balance forces, and norm of the change of loads and reactions since the step's start."""

@@ -36,10 +36,8 @@ def characteristic(path, analysis, result, summary):
         axes.axvline(block, color="0.6", lw=0.8, ls="--", label=f"block, {summary['block_height_mm']:.4g} mm high")
         if summary["set_mm"] is not None:
             set_mm = summary["set_mm"]
-            axes.annotate(
-                f"set {set_mm:.3f} mm", (set_mm, 0), (0.5 * set_mm, 0.14 * greatest),
-                ha="center", arrowprops={"arrowstyle": "->", "lw": 0.8},
-            )  # fmt: skip
+            axes.annotate("", (0, 0), (set_mm, 0), arrowprops={"arrowstyle": "<->", "lw": 0.9, "color": "0.3"})
+            axes.annotate(f"set {set_mm:.3f} mm", (0.5 * set_mm, 0.02 * greatest), ha="center", va="bottom")
         axes.set(xlabel="travel in mm", ylabel="axial force in N", title=f"Characteristic, {analysis.law.name}")
         axes.legend(fontsize=8)
         axes.grid(lw=0.3)
@@ -67,5 +65,5 @@ def cross_section(path, analysis, snapshot):
             axes.plot(radius * np.cos(angle), radius * np.sin(angle), "k-", lw=0.8)
             axes.set(aspect="equal", xlabel="towards the coil's axis, mm", ylabel="along the spring, mm", title=name)
             figure.colorbar(shown, ax=axes, label="MPa", shrink=0.85)
-        figure.suptitle(f"Cross-section at mid height, {snapshot.name} (F = {snapshot.force:.4g} N); dots: section points")
+        figure.suptitle(f"Cross-section at mid height, {snapshot.name} (F = {abs(snapshot.force):.1f} N); dots: section points")
         save(figure, path)

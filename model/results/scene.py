@@ -30,7 +30,7 @@ def springs(path, snapshots, wire_radius):
     radius = 0.5 * (np.append(wire_radius, wire_radius[-1]) + np.append(wire_radius[0], wire_radius))
     width = 1.35 * (np.ptp(snapshots[0].x[:, 0]) + 2.0 * radius.max())
     greatest = max(float(shot.shear.max()) for shot in snapshots)
-    plotter = pv.Plotter(off_screen=True, window_size=(1500, 640))
+    plotter = pv.Plotter(off_screen=True, window_size=(1500, 620))
     plotter.set_background("white")
     for place, shot in enumerate(snapshots):
         stress = shot.shear.max(axis=(1, 2))
@@ -39,7 +39,7 @@ def springs(path, snapshots, wire_radius):
         plotter.add_mesh(
             mesh, scalars=name, clim=(0.0, max(greatest, 1e-9)), cmap="viridis", smooth_shading=True,
             scalar_bar_args={"color": "black", "n_labels": 5, "fmt": "%.0f", "title_font_size": 18, "label_font_size": 16,
-                             "position_x": 0.3, "width": 0.4, "position_y": 0.03, "height": 0.07},
+                             "position_x": 0.3, "width": 0.4, "position_y": 0.02, "height": 0.09},
         )  # fmt: skip
         label = f"{shot.name}\n{shot.height:.2f} mm, {abs(shot.force):.0f} N"
         foot = [place * width, 0.0, float(snapshots[0].x[:, 2].max()) + 2.2 * radius.max()]
@@ -49,7 +49,7 @@ def springs(path, snapshots, wire_radius):
                                (0.5 * width * (len(snapshots) - 1), 0.0, float(snapshots[0].x[:, 2].mean())),
                                (0, 0, 1)]  # fmt: skip
     plotter.camera.parallel_projection = True
-    plotter.camera.parallel_scale = 0.24 * width * len(snapshots)
+    plotter.camera.parallel_scale = 0.2 * width * len(snapshots)
     with whole(path) as partial:
         plotter.screenshot(str(partial))
     plotter.close()

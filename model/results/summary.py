@@ -8,7 +8,7 @@ def summarise(analysis, result):
 
     Args:
         analysis: Analysis.
-        result: Result, complete or not.
+        result: Result, complete or not; its snapshots are whole on rank 0 only.
 
     Returns:
         dict, units in the names.
@@ -27,8 +27,8 @@ def summarise(analysis, result):
         "rate_N_per_mm": result.rate,
         "force_max_N": greatest,
         "block_height_mm": analysis.spring.block_height,
-        "residual_shear_max_MPa": float(last.shear.max()) if released and last.shear.size else None,
-        "shear_max_MPa": max((float(shot.shear.max()) for shot in result.snapshots if shot.shear.size), default=None),
+        "residual_shear_max_MPa": float(last.shear.max()) if released else None,
+        "shear_max_MPa": max(float(shot.shear.max()) for shot in result.snapshots),
         "steps": len(result.steps),
         "iterations": int(np.sum([step.iterations for step in result.steps], dtype=int)),
         "material": analysis.law.name,

@@ -39,7 +39,7 @@ def mean_triad(R1, R2, E0, chord, E, A, B, v):
 
 
 @njit(cache=True)
-def section_strains(cells, x, R, E0, l0, shear, xi, E, P, e):
+def section_strains(cells, chords, R, E0, l0, shear, xi, E, P, e):
     """Section strains of all elements at their two Gauss sections, from (5.2.4) in the element's moving triad.
 
     The nodes' turns θ are measured against the triad of the current configuration, so no restriction to small turns
@@ -47,7 +47,7 @@ def section_strains(cells, x, R, E0, l0, shear, xi, E, P, e):
 
     Args:
         cells: node numbers, shape (cells, 2).
-        x: current node positions, shape (nodes, 3), mm.
+        chords: current chords from node 1 to node 2, shape (cells, 3), mm.
         R: turns of the nodes since the stress-free state, shape (nodes, 3, 3).
         E0: triads of the stress-free state, shape (cells, 3, 3), l0: chord lengths there, shape (cells,).
         shear: shear angles u13, u14, shape (cells, 2).
@@ -64,7 +64,7 @@ def section_strains(cells, x, R, E0, l0, shear, xi, E, P, e):
     for c in range(len(cells)):
         i, j = cells[c, 0], cells[c, 1]
         for k in range(3):
-            chord[k] = x[j, k] - x[i, k]
+            chord[k] = chords[c, k]
         l = math.sqrt(chord[0] ** 2 + chord[1] ** 2 + chord[2] ** 2)
         for k in range(3):
             chord[k] /= l

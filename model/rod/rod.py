@@ -40,7 +40,7 @@ class Rod:
             (elements, 2, 6, 6) and (elements, 2); None for straight rods.
 
     Attributes:
-        x, R, shear, strain, history: trial state of the local nodes and owned cells; x in mm, strain shape
+        x, chord, R, shear, strain, history: trial state of the local nodes and owned cells; x in mm, strain shape
             (cells, 2, 6), history shape (cells, 2, points, n_state).
         equilibrium: the same at the last equilibrium, a dict.
     """
@@ -91,6 +91,7 @@ class Rod:
         """The stress-free state."""
         n, points = len(self.cells), len(self.rule)
         self.x = x  # the mesh's own coordinates: the forms are integrated on the current configuration
+        self.chord = x[self.cells[:, 1]] - x[self.cells[:, 0]]
         self.R = np.tile(np.eye(3), (len(x), 1, 1))
         self.chart = np.tile(np.eye(3), (len(x), 1, 1))
         self.shear = np.zeros((n, 2))
@@ -107,11 +108,15 @@ class Rod:
             True, or False if the law found no solution at some section point of this rank.
         """
         increment, start = self.increment.x.array, self.equilibrium
-        np.add(start["x"], increment[self.u_dofs], out=self.x)
+        # Chords are carried on by differences of the increments: those of the positions would lose so many digits that
+        # the bending of short elements, 12 E I/l³, could not come to rest.
+        moved = increment[self.u_dofs]
+        np.add(start["x"], moved, out=self.x)
+        self.chord = start["chord"] + (moved[self.cells[:, 1]] - moved[self.cells[:, 0]])
         turn_nodes(increment[self.turn_dofs], start["R"], self.R, self.chart)
         self.shear = start["shear"] + increment[self.shear_dofs]
         section_strains(
-            self.cells, self.x, self.R, self.E0, self.l0, self.shear, GAUSS,
+            self.cells, self.chord, self.R, self.E0, self.l0, self.shear, GAUSS,
             self.E.values, self.P.values, self.strain,
         )  # fmt: skip
         self.T.values[:] = self.chart[self.cells]
@@ -123,7 +128,7 @@ class Rod:
 
     def commit(self):
         """Make the trial state the equilibrium and set the increments to zero."""
-        for name in ("x", "R", "shear", "strain", "history"):
+        for name in ("x", "chord", "R", "shear", "strain", "history"):
             self.equilibrium[name] = getattr(self, name).copy()
         self.increment.x.array[:] = 0.0
 

@@ -27,7 +27,7 @@ def update_sections(p, y, z, w, radius, de, placement, stretch, old, new, s, D):
         D: written, section tangent ds/de, shape (cells, 2, 6, 6).
 
     Returns:
-        0, or -1 if the law found no solution at some point: then the step must be cut.
+        0, or -1 if the law found no solution at some point or the strains are no numbers: then the step must be cut.
     """
     d = np.empty(6)
     C = np.empty((3, 3))
@@ -52,6 +52,8 @@ def update_sections(p, y, z, w, radius, de, placement, stretch, old, new, s, D):
                 if not integrate_point(p, R * y[k], R * z[k], area * w[k], d, old[c, g, k], new[c, g, k],
                                        C, resultant, tangent):  # fmt: skip
                     return -1
+            if not math.isfinite(resultant.sum()):
+                return -1
             if straight:
                 s[c, g] = resultant
                 D[c, g] = tangent

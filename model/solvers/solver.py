@@ -61,7 +61,7 @@ class Solver:
             return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
         rest, change = self.system.imbalance(self.F)
         self.ratio = rest / change if change > 0.0 else np.inf
-        if rest <= max(self.tolerance * change, self.system.rounding):
+        if rest <= max(self.tolerance * change, self.system.rounding(self.X)):
             return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
         if iteration >= snes.getTolerances()[3]:
             return PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT

@@ -1,0 +1,36 @@
+"""Shared by all tests: small springs and rods, and the communicator of the rank alone."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from coilset.meshes.line import line_mesh
+from coilset.model.material import library
+from coilset.model.rod.rod import Rod
+from coilset.model.section.rules import polar
+
+EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
+
+
+@pytest.fixture(scope="session")
+def ck15():
+    return library.load("ck15")
+
+
+@pytest.fixture
+def make_rod(ck15):
+    """Rod through given stations; keyword arguments: radius (number), law, rule, comm."""
+
+    def make(stations, radius=2.5, law=None, rule=None, comm=MPI.COMM_SELF):
+        line = line_mesh(np.asarray(stations, float), comm)
+        return Rod(line, np.full(len(stations) - 1, float(radius)), law or ck15, rule or polar())
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def example():
+    """The shipped example's path."""
+    return EXAMPLES / "ck15_presetting.yaml"
