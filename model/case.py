@@ -63,6 +63,8 @@ class _Loader(yaml.SafeLoader):
     def construct_mapping(self, node, deep=False):
         seen = set()
         for key, _ in node.value:
+            if not isinstance(key, yaml.ScalarNode):
+                raise yaml.MarkedYAMLError(problem="an entry's name must be a word", problem_mark=key.start_mark)
             if key.value in seen:
                 raise yaml.MarkedYAMLError(problem=f"the entry '{key.value}' is given twice", problem_mark=key.start_mark)
             seen.add(key.value)
@@ -91,10 +93,18 @@ def assign(data, setting):
     place = f"--set {setting}"
     if not equals or not path:
         raise InputError("give it as key=value, as in mesh.elements_per_turn=32", place)
+    put(data, path, load_yaml(text, place), place)
+
+
+def put(data, path, value, place):
+    """Replace the entry at `path`, such as `loading.0.steps`, in nested data; `place` is where the user asked for it.
+
+    Raises:
+        InputError: if the path leads through something that has no entries.
+    """
     *parents, last = path.split(".")
     for part in parents:
         data = _entry(data, part, place)
-    value = load_yaml(text, place)
     if isinstance(data, list):
         data[_index(data, last, place)] = value
     else:
@@ -121,7 +131,7 @@ def _index(data, part, place):
 def explain(error):
     """Place and problem of a pydantic error, in one line: the value that was given, and what would be right."""
     first = error.errors()[0]
-    place = ".".join(str(part) for part in first["loc"] if str(part) not in ("Target", "literal['block']"))
+    place = ".".join(str(part) for part in first["loc"] if str(part) not in ("target", "block"))
     given = "" if first["type"] in ("missing", "value_error") else f"{first['input']!r}: "
     message = first["msg"].removeprefix("Value error, ")
     if first["type"] == "extra_forbidden":
@@ -130,6 +140,47 @@ def explain(error):
         message = "this entry is required"
     more = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
     return place, f"{given}{message}{more}"
+
+
+def read_data(path, settings=(), kind="a case file holds entries such as spring:, material: and loading:"):
+    """Read a YAML file of entries, unchecked.
+
+    Args:
+        path: the YAML file.
+        settings: texts `key=value` that replace entries of the file.
+        kind: what such a file holds, for a file that is no mapping.
+
+    Returns:
+        dict.
+
+    Raises:
+        InputError: if it cannot be read.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "it is not a text file"
+        raise InputError(f"the file cannot be read: {reason}", "", path) from None
+    data = load_yaml(text, path)
+    if not isinstance(data, dict):
+        raise InputError(kind, "", path)
+    for setting in settings:
+        assign(data, setting)
+    return data
+
+
+def check(data, file="", model=Case):
+    """The checked Case (or other `model`) of raw data.
+
+    Raises:
+        InputError: one line with file, place, value and what would be right.
+    """
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        place, problem = explain(error)
+        raise InputError(problem, place, file) from None
 
 
 def read_case(path, settings=()):
@@ -145,19 +196,4 @@ def read_case(path, settings=()):
     Raises:
         InputError: one line with file, place, value and what would be right.
     """
-    path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is not a text file"
-        raise InputError(f"the case file cannot be read: {reason}", "", path) from None
-    data = load_yaml(text, path)
-    if not isinstance(data, dict):
-        raise InputError("a case file holds entries such as spring:, material: and loading:", "", path)
-    for setting in settings:
-        assign(data, setting)
-    try:
-        return Case.model_validate(data)
-    except ValidationError as error:
-        place, problem = explain(error)
-        raise InputError(problem, place, path) from None
+    return check(read_data(path, settings), path)

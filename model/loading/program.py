@@ -2,7 +2,7 @@
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
 
 
 class Strict(BaseModel):
@@ -25,10 +25,19 @@ class Target(Strict):
         return self
 
 
+def _kind(value):
+    """A target with entries, or the word `block`."""
+    return "target" if isinstance(value, (dict, Target)) else "block"
+
+
 class Phase(Strict):
     """Go to a target in equal steps."""
 
-    to: Literal["block"] | Target
+    to: Annotated[
+        Annotated[Literal["block"], Tag("block")] | Annotated[Target, Tag("target")],
+        Discriminator(_kind),
+        Field(description="block, {travel: mm}, {height: mm} or {force: N}"),
+    ]
     steps: Annotated[int, Field(gt=0, le=100_000, description="number of load steps")] = 12
 
     @property

@@ -1,0 +1,125 @@
+"""`coilset solve` from outside: what it writes, and one clear line for every wrong input."""
+
+import csv
+import json
+import subprocess
+import sys
+
+import pytest
+import yaml
+
+from coilset.model.case import read_case
+from coilset.model.errors import CoilsetError, InputError
+
+SHORT = ["--set", "loading=[{to: {travel: 6}, steps: 3}, {to: {force: 0}, steps: 2}]", "--no-pictures"]
+
+
+def coilset(*arguments, cwd):
+    return subprocess.run(
+        [sys.executable, "-m", "coilset.scripts", *map(str, arguments)], cwd=cwd, capture_output=True, text=True, check=False
+    )
+
+
+def test_solve_writes_what_the_readme_says(example, tmp_path):
+    done = coilset("solve", example, "--out", "here", *SHORT, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    summary = json.loads((tmp_path / "here" / "summary.json").read_text())
+    rows = list(csv.DictReader((tmp_path / "here" / "history.csv").read_text().splitlines()))
+    assert [float(row["travel_mm"]) for row in rows[:3]] == pytest.approx([2, 4, 6], abs=1e-9)
+    assert {"seat_height_mm", "travel_mm", "force_N", "iterations", "contacts"} <= set(rows[0])
+    assert summary["set_mm"] == pytest.approx(summary["free_length_before_mm"] - summary["free_length_after_mm"], abs=1e-12)
+    assert summary["force_max_N"] == pytest.approx(max(float(row["force_N"]) for row in rows), rel=1e-12)
+    assert summary["block_height_mm"] == pytest.approx(17.5, rel=1e-12)  # (2.5 + 1) wires of 5 mm
+    assert summary["complete"]
+    assert "set" in done.stdout
+    again = coilset("solve", example, "--out", "here", *SHORT, cwd=tmp_path)
+    assert again.returncode == 2
+    assert "--force" in again.stderr
+
+
+def test_pictures_are_drawn(example, tmp_path):
+    done = coilset("solve", example, "--out", "here", *SHORT[:2], cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    for name in ("characteristic.png", "cross_section.png", "springs.png"):
+        assert (tmp_path / "here" / name).read_bytes().startswith(b"\x89PNG")
+
+
+WRONG = [
+    ("material=ck99", "ck99"),
+    ("spring.wire_diameter=-5", "spring.wire_diameter"),
+    ("spring.wire_diameter=five millimetres", "spring.wire_diameter"),
+    ("spring.wire_diametre=5", "unknown entry"),
+    ("spring.pitch=4", "pitch"),  # the coils overlap: wire 5 mm
+    ("spring.turns=.nan", "spring.turns"),
+    ("mesh.elements_per_turn=2", "mesh.elements_per_turn"),
+    ("mesh.section.rule=simpson", "mesh.section.rule"),
+    ("loading.0.to=blok", "block"),
+    ("ends=glued", "ends"),
+    ("loading=[]", "loading"),
+    ("loading.0.to.travel=1", "block"),  # `to: block` has no entries
+    ("loading.7.steps=1", "0 to 1"),
+    ("loading.0.to={travel: 1, force: 2}", "exactly one"),
+    ("loading.0.to={travel: fast}", "travel"),
+    ("loading.0.steps=0", "steps"),
+    ("solver.tolerance=0", "solver.tolerance"),
+    ("no-equals-sign", "key=value"),
+    ("spring={wire_diameter: [", "YAML"),
+]
+
+
+@pytest.mark.parametrize(("setting", "words"), WRONG)
+def test_wrong_settings_get_one_line(example, setting, words):
+    with pytest.raises(CoilsetError, match=words.replace("=", ".")) as caught:
+        read_and_build(example, setting)
+    assert caught.value.exit_code == 2
+    assert "\n" not in str(caught.value)
+
+
+def read_and_build(example, setting):
+    from mpi4py import MPI
+
+    from coilset.model.analysis import Analysis
+
+    return Analysis(read_case(example, [setting]), MPI.COMM_SELF)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("spring: {wire_diameter: 5.0,\n  turns 3", "line"),
+        ("- 1\n- 2", "entries"),
+        ("material: ck15\nmaterial: ck15\n", "twice"),
+        ("material: !!python/object/apply:os.system ['true']", "YAML"),
+        ("material: ck15", "spring: this entry is required"),
+        ("? [1, 2]\n: 3", "YAML"),
+        ("5: 3\nspring: 1\nloading: 2", "spring"),
+    ],
+)
+def test_wrong_files_get_one_line(tmp_path, text, words):
+    file = tmp_path / "case.yaml"
+    file.write_text(text)
+    with pytest.raises(InputError, match=words) as caught:
+        read_case(file)
+    assert str(caught.value).startswith(str(file))
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_file_and_a_wrong_option_leave_nothing_behind(tmp_path):
+    for arguments in (["solve", "nowhere.yaml"], ["solve"], ["solve", "nowhere.yaml", "--fast"], ["solv"]):
+        done = coilset(*arguments, cwd=tmp_path)
+        assert done.returncode == 2, arguments
+        assert len(done.stderr.strip().splitlines()) == 1, done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_impossible_target_keeps_the_results_and_ends_with_3(example, tmp_path):
+    data = yaml.safe_load(example.read_text())
+    data["ends"], data["loading"] = "clamped", [{"to": {"travel": 3}, "steps": 2}, {"to": {"force": 1e7}, "steps": 1}]
+    (tmp_path / "case.yaml").write_text(yaml.safe_dump(data))
+    done = coilset("solve", "case.yaml", "--no-pictures", cwd=tmp_path)
+    assert done.returncode == 3
+    assert len(done.stderr.strip().splitlines()) == 1
+    assert "no equilibrium" in done.stderr
+    summary = json.loads((tmp_path / "results" / "case" / "summary.json").read_text())
+    assert not summary["complete"]
+    assert summary["steps"] >= 2
