@@ -28,6 +28,10 @@ class MeshSpec(Strict):
     """Elements along the wire."""
 
     elements_per_turn: Annotated[int, Field(ge=3, le=1_000_000, description="straight rods per turn")] = 16
+    axis: Annotated[
+        Literal["curved", "chords"],
+        Field(description="curved: the rods' sections lie on the true centre line; chords: the thesis's polygon"),
+    ] = "curved"
     section: SectionSpec = SectionSpec()
 
 
@@ -131,7 +135,9 @@ def _index(data, part, place):
 def explain(error):
     """Place and problem of a pydantic error, in one line: the value that was given, and what would be right."""
     first = error.errors()[0]
-    place = ".".join(str(part) for part in first["loc"] if str(part) not in ("target", "block"))
+    # names of the alternatives that pydantic tried are no entries of the file: `target`, `block`, `(number)`
+    parts = [str(part) for part in first["loc"]]
+    place = ".".join(part for part in parts if part not in ("target", "block") and not part.startswith("("))
     given = "" if first["type"] in ("missing", "value_error") else f"{first['input']!r}: "
     message = first["msg"].removeprefix("Value error, ")
     if first["type"] == "extra_forbidden":
