@@ -6,13 +6,16 @@ import numpy as np
 from mpi4py import MPI
 
 from coilset.meshes.line import line_mesh
+from coilset.meshes.placement import section_placement
 from coilset.model.contact.gap import Gaps
 from coilset.model.contact.seat import Seats
 from coilset.model.errors import SolveError
+from coilset.model.frames.rotations import triads
 from coilset.model.loading.driver import Drive
 from coilset.model.loading.stepper import Step, Stepper
 from coilset.model.material import library
 from coilset.model.problem.system import System
+from coilset.model.rod.kinematics import GAUSS
 from coilset.model.rod.rod import Rod
 from coilset.model.solvers.solver import Solver
 
@@ -75,7 +78,10 @@ class Analysis:
         self.law = library.load(case.material)
         line = line_mesh(self.spring.centre_line(self.turns), comm)
         self.wire_radius = 0.5 * self.spring.wire_diameter(0.5 * (self.turns[1:] + self.turns[:-1]))
-        self.rod = Rod(line, self.wire_radius, self.law, case.mesh.section.build())
+        placement = None
+        if case.mesh.axis == "curved":
+            placement = section_placement(self.spring, self.turns, triads(np.diff(line.stations, axis=0)), GAUSS)
+        self.rod = Rod(line, self.wire_radius, self.law, case.mesh.section.build(), placement)
         top = self.spring.free_length
         self.system = System(self.rod, self._contacts(line.stations), seats=(0.0, top))
         self.solver = Solver(self.system, tolerance=case.solver.tolerance)

@@ -40,6 +40,12 @@ def test(context: typer.Context):
     raise typer.Exit(run_tests(context.args))
 
 
+@app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
+def python(context: typer.Context):
+    """Run a Python script, or Python itself, in the environment that the commands use."""
+    os.execv(sys.executable, [sys.executable, *context.args])
+
+
 def run():
     """Entry of the command: one line and an exit code for every error that can be foreseen."""
     status = 1
