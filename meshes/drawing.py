@@ -1,0 +1,114 @@
+"""The drawing of a spring: side view with dimensions, pitch and diameters over the turn."""
+
+from itertools import pairwise
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+PIECES_PER_TURN = 96
+OUTLINE = 1.0  # width of an outline, points
+INK, STEEL_FACE, DIMENSION = "0.15", "0.85", "tab:blue"
+STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False}
+
+
+def drawing(spring, title=""):
+    """Draw a spring.
+
+    Args:
+        spring: `Spring`.
+        title: of the figure.
+
+    Returns:
+        A `matplotlib.figure.Figure`; to keep the wire's thickness to scale its size must not change.
+    """
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(9.6, 5.4))
+        view = figure.add_axes((0.01, 0.02, 0.5, 0.9))
+        _side_view(view, spring)
+        _over_turn(figure.add_axes((0.575, 0.58, 0.35, 0.34)), spring, spring.pitch, "pitch in mm", "tab:green")
+        below = figure.add_axes((0.575, 0.11, 0.35, 0.34))
+        _over_turn(below, spring, lambda t: 2 * spring.mean_radius(t), "mean diameter D in mm", "tab:blue")
+        below.set_xlabel("turn")
+        wire = below.twinx()
+        wire.spines["right"].set_visible(True)
+        _over_turn(wire, spring, spring.wire_diameter, "wire diameter d in mm", "tab:red", ls="--")
+        figure.text(0.02, 0.955, title, fontsize=12)
+        return figure
+
+
+def _over_turn(axes, spring, function, label, color, ls="-"):
+    t = spring.breaks
+    values = function(t)
+    axes.plot(t, values, color=color, lw=1.4, ls=ls)
+    axes.set_xlim(0, spring.turns)
+    axes.set_ylim(0, 1.12 * values.max())
+    axes.set_ylabel(label, color=color)
+    axes.tick_params(axis="y", colors=color)
+    for end in (spring.bottom.end_turns, spring.turns - spring.top.end_turns):
+        if 0 < end < spring.turns:
+            axes.axvline(end, color="0.6", lw=0.8, ls="--")
+
+
+def _side_view(axes, spring):
+    """The spring seen against the y axis, its far half turns behind the near ones, cut where its ends are ground."""
+    t = spring.breaks
+    reach = np.max(spring.mean_radius(t) + 0.5 * spring.wire_diameter(t))
+    length, size = spring.free_length, max(spring.free_length, 2 * reach)
+    axes.set_axis_off()
+    axes.set_aspect("equal", adjustable="box", anchor="C")
+    axes.set_xlim(-reach - 0.25 * size, reach + 0.25 * size)
+    axes.set_ylim(-0.2 * size, length + 0.2 * size)
+    axes.apply_aspect()
+    points_per_mm = axes.get_window_extent().width / np.ptp(axes.get_xlim()) * 72 / axes.figure.dpi
+    cut = Rectangle((-2 * reach, 0), 4 * reach, length, transform=axes.transData)
+    for depth, turns in _half_turns(spring):
+        seen = spring.centre_line(turns)[:, [0, 2]]
+        pieces = np.stack([seen[:-1], seen[1:]], axis=1)
+        width = spring.wire_diameter(0.5 * (turns[1:] + turns[:-1])) * points_per_mm
+        for order, (color, narrower) in enumerate(((INK, 0.0), (STEEL_FACE, 2 * OUTLINE))):
+            wire = LineCollection(pieces, colors=color, linewidths=np.maximum(width - narrower, 0.2), capstyle="round",
+                                  zorder=depth + 0.5 * order)
+            axes.add_collection(wire, autolim=False)
+            wire.set_clip_path(cut)
+    _dimensions(axes, spring, reach, size)
+
+
+def _half_turns(spring):
+    """Order of drawing and turns of the pieces between which the wire changes from the far side to the near one."""
+    half = np.pi * spring.hand
+    first = spring.phase / half
+    marks = (np.arange(np.ceil(min(first, first + 2 * spring.turns)), max(first, first + 2 * spring.turns)) - first) / 2
+    marks = np.unique(np.concatenate([[0.0], np.abs(marks), [spring.turns]]))
+    for start, end in pairwise(marks):
+        turns = np.linspace(start, end, max(3, int(PIECES_PER_TURN * (end - start)) + 1))
+        far = spring.centre_line(0.5 * (start + end))[1] > 0
+        yield (1 if far else 1000) + round(2 * start), turns
+
+
+def _dimensions(axes, spring, reach, size):
+    length, last = spring.free_length, spring.turns
+    for level in (0.0, length):
+        axes.plot([-reach - 0.05 * size, reach + 0.2 * size], [level, level], color=DIMENSION, lw=0.7, zorder=0)
+    _dimension(axes, (reach + 0.15 * size, 0), (reach + 0.15 * size, length), f"L0 = {length:.4g} mm")
+    t = spring.breaks
+    outer = 2 * spring.mean_radius(t) + spring.wire_diameter(t)
+    for turn, level in ((0.0, -0.09 * size), (last, length + 0.09 * size)):
+        d, radius = spring.wire_diameter(turn), spring.mean_radius(turn)
+        _dimension(axes, (-radius - d / 2, level), (radius + d / 2, level), f"De = {2 * radius + d:.4g} mm")
+    widest = t[np.argmax(outer)]
+    if outer.max() > 1.001 * max(outer[0], outer[-1]):
+        axes.text(-reach - 0.2 * size, spring.centre_line(widest)[2], f"De = {outer.max():.4g} mm\nwidest", ha="center",
+                  va="center", rotation=90, color=DIMENSION)
+
+
+def _dimension(axes, start, end, text):
+    axes.annotate("", start, end, arrowprops={"arrowstyle": "<->", "color": DIMENSION, "lw": 0.9, "shrinkA": 0,
+                                              "shrinkB": 0})
+    upright = start[0] == end[0]
+    middle = (0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1]))
+    axes.annotate(text, middle, (6, 0) if upright else (0, 3), textcoords="offset points", color=DIMENSION,
+                  rotation=90 if upright else 0, ha="left" if upright else "center",
+                  va="center" if upright else "bottom")
