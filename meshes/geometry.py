@@ -191,9 +191,9 @@ class Spring:
         """What a spring maker would warn of: a list of lines with numbers."""
         return [finding.text for finding in objections(self) if not finding.fatal]
 
-    def stations(self, elements_per_turn=16, **grading):
+    def stations(self, elements_per_turn=16, sagitta=None):
         """Increasing turns of the nodes of a line mesh, see `coilset.meshes.stations.stations`."""
-        return stations(self, elements_per_turn, **grading)
+        return stations(self, elements_per_turn, sagitta)
 
 
 def _in_plane(angle, radial, circumferential, axial):

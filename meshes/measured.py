@@ -11,7 +11,7 @@ from coilset.meshes.ends import OPEN, Ends, bottom_and_top
 from coilset.meshes.geometry import Spring
 from coilset.meshes.shapes import Entry, Length
 from coilset.model.errors import InputError
-from pydantic import Field
+from pydantic import Field, ValidationInfo, field_validator
 
 LEAST_POINTS = 5
 WIDEST_STEP = 1 / 3  # of a turn between neighbouring points
@@ -32,11 +32,14 @@ class MeasuredSpec(Entry):
     ] = 0.0
     end_coils: Ends = OPEN
 
-    def build(self, folder=None):
-        """The geometry.
+    @field_validator("file")
+    @classmethod
+    def _from_folder(cls, file, info: ValidationInfo):
+        """The path counts from the folder of the case file, where the validation's context has one."""
+        return str(Path((info.context or {}).get("folder", "")) / file)
 
-        Args:
-            folder: from which the file's path counts; the working folder if not given.
+    def build(self):
+        """The geometry.
 
         Returns:
             `Spring`.
@@ -44,7 +47,7 @@ class MeasuredSpec(Entry):
         Raises:
             InputError: a file that cannot be read or is no spring, with the file and the point.
         """
-        path = Path(folder or ".") / self.file
+        path = Path(self.file)
         points, wire = read_centre_line(path)
         if wire is None and self.wire_diameter is None:
             raise InputError(f"has no {WIRE_DIAMETER}; give spring.wire_diameter", "", path)

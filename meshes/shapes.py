@@ -136,7 +136,7 @@ SHAPES = {"cylinder": Cylinder, "cone": Cone, "double cone": DoubleCone, "hourgl
           "funnel": Funnel}
 
 
-def _form(value: Any) -> str:
+def form_of_entry(value: Any) -> str:
     """Tag of the form of an entry; tags are in brackets because they are no part of its place in the case file."""
     if isinstance(value, dict):
         return f"({value['shape']})" if "shape" in value else "(table)"
@@ -147,7 +147,7 @@ def _form(value: Any) -> str:
 
 Profile = Annotated[
     Annotated[Length, Tag("(number)")] | Annotated[Table, Tag("(table)")],
-    Discriminator(_form, custom_error_type="form", custom_error_message="must be a number or a table"),
+    Discriminator(form_of_entry, custom_error_type="form", custom_error_message="must be a number or a table"),
 ]
 """A length over the turns: a number in mm, or a table."""
 
@@ -160,7 +160,7 @@ DiameterProfile = Annotated[
     | Annotated[Hourglass, Tag("(hourglass)")]
     | Annotated[Barrel, Tag("(barrel)")]
     | Annotated[Funnel, Tag("(funnel)")],
-    Discriminator(_form, custom_error_type="form",
+    Discriminator(form_of_entry, custom_error_type="form",
                   custom_error_message=f"must be a number, a table, or one of the shapes {', '.join(SHAPES)}"),
 ]
 """The mean coil diameter over the turns: a number in mm, a table, or a shape."""

@@ -36,11 +36,8 @@ class SpringSpec(Entry):
             raise ValueError("pitch and free_length are both missing; give one of them")
         return self
 
-    def build(self, folder=None):
+    def build(self):
         """The geometry.
-
-        Args:
-            folder: of the case file; this kind of spring needs no other file.
 
         Returns:
             `Spring`.

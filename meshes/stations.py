@@ -1,8 +1,20 @@
 """Where the nodes of a line mesh stand along the wire."""
 
+from typing import Annotated
+
 import numpy as np
 from coilset.meshes import functions
+from coilset.meshes.shapes import Table, form_of_entry
 from coilset.model.errors import InputError
+from pydantic import Discriminator, Field, Tag
+
+LEAST, MOST = 3, 1_000_000
+
+ElementsPerTurn = Annotated[
+    Annotated[float, Field(ge=LEAST, le=MOST, strict=True), Tag("(number)")] | Annotated[Table, Tag("(table)")],
+    Discriminator(form_of_entry, custom_error_type="form", custom_error_message="must be a number or a table"),
+]
+"""Number of elements in a turn, or a table of it over the turns where the mesh is graded."""
 
 
 def stations(spring, elements_per_turn=16, sagitta=None):
@@ -13,21 +25,20 @@ def stations(spring, elements_per_turn=16, sagitta=None):
 
     Args:
         spring: `Spring`.
-        elements_per_turn: a number, or a `Table` of numbers over the turn.
+        elements_per_turn: a number, or a `Table` of numbers over the turns.
         sagitta: if given, elements are also so short that their chord leaves the centre line by no more than this, mm.
 
     Returns:
         Increasing turns from 0 to the last turn, shape (elements + 1,).
 
     Raises:
-        InputError: fewer than four elements in a turn, or no positive sagitta.
+        InputError: a table that does not end at the last turn, or too few or too many elements in a turn.
     """
-    table = hasattr(elements_per_turn, "function")
-    if not table and not elements_per_turn >= 4:
-        raise InputError(f"must be at least 4, not {elements_per_turn:g}", "mesh.elements_per_turn")
-    if sagitta is not None and not sagitta > 0:
-        raise InputError(f"must be greater than 0 mm, not {sagitta:g}", "mesh.sagitta")
-    given = elements_per_turn.function(spring.turns) if table else functions.constant(elements_per_turn, spring.turns)
+    try:
+        given = (elements_per_turn.function(spring.turns) if isinstance(elements_per_turn, Table)
+                 else functions.constant(elements_per_turn, spring.turns))
+    except ValueError as error:
+        raise InputError(str(error), "mesh.elements_per_turn") from None
 
     def density(t):
         if sagitta is None:
@@ -36,8 +47,12 @@ def stations(spring, elements_per_turn=16, sagitta=None):
         return np.maximum(given(t), spring.speed(t) * np.sqrt(spring.curvature(t) / (8 * sagitta)))
 
     breaks = np.unique(np.concatenate([spring.breaks, given.x]))
+    densities = density(breaks)
+    if not LEAST <= densities.min() <= densities.max() <= MOST:
+        raise InputError(f"{densities.min():.4g} to {densities.max():.4g} elements in a turn; "
+                         f"must be {LEAST} to {MOST}", "mesh")
     count = np.concatenate([[0.0], np.cumsum(functions.integral(density, breaks, points=2))])
     elements = int(np.ceil(count[-1] * (1 - 1e-9)))
-    if not table and sagitta is None:
+    if np.ptp(densities) == 0:
         return np.linspace(0.0, spring.turns, elements + 1)
     return np.interp(np.linspace(0.0, count[-1], elements + 1), count, breaks)

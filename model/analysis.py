@@ -74,7 +74,7 @@ class Analysis:
     def __init__(self, case, comm=MPI.COMM_WORLD):
         self.case, self.comm = case, comm
         self.spring = case.spring.build()
-        self.turns = self.spring.stations(case.mesh.elements_per_turn)
+        self.turns = self.spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
         self.law = library.load(case.material)
         line = line_mesh(self.spring.centre_line(self.turns), comm)
         self.wire_radius = 0.5 * self.spring.wire_diameter(0.5 * (self.turns[1:] + self.turns[:-1]))

@@ -4,12 +4,12 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import yaml
-from pydantic import Field, ValidationError
-
-from coilset.meshes.spring import SpringSpec
+from coilset.meshes.spring import SpringEntry
+from coilset.meshes.stations import ElementsPerTurn
 from coilset.model.errors import InputError
 from coilset.model.loading.program import Phase, Strict
 from coilset.model.section import rules
+from pydantic import Field, ValidationError
 
 
 class SectionSpec(Strict):
@@ -27,7 +27,12 @@ class SectionSpec(Strict):
 class MeshSpec(Strict):
     """Elements along the wire."""
 
-    elements_per_turn: Annotated[int, Field(ge=3, le=1_000_000, description="straight rods per turn")] = 16
+    elements_per_turn: Annotated[
+        ElementsPerTurn, Field(description="straight rods per turn, a number or a table over the turns")
+    ] = 16
+    sagitta: Annotated[
+        float | None, Field(gt=0, description="greatest distance of a rod from the wire's axis, mm; makes more rods")
+    ] = None
     axis: Annotated[
         Literal["curved", "chords"],
         Field(description="curved: the rods' sections lie on the true centre line; chords: the thesis's polygon"),
@@ -52,7 +57,7 @@ class SolverSpec(Strict):
 class Case(Strict):
     """A whole case; units mm, N, MPa, K."""
 
-    spring: SpringSpec
+    spring: SpringEntry
     material: Annotated[str, Field(description="name in the library, or path of a material file")] = "ck15"
     ends: Annotated[Literal["seats", "clamped"], Field(description="seats or clamped")] = "seats"
     mesh: MeshSpec = MeshSpec()
@@ -78,7 +83,7 @@ class _Loader(yaml.SafeLoader):
 def load_yaml(text, file):
     """Parse YAML safely; InputError with line and column if that fails."""
     try:
-        return yaml.load(text, Loader=_Loader)  # noqa: S506 (a SafeLoader)
+        return yaml.load(text, Loader=_Loader)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark
         place = f"line {mark.line + 1}, column {mark.column + 1}" if mark else ""
@@ -183,7 +188,8 @@ def check(data, file="", model=Case):
         InputError: one line with file, place, value and what would be right.
     """
     try:
-        return model.model_validate(data)
+        # paths in a case count from its folder
+        return model.model_validate(data, context={"folder": Path(file).parent})
     except ValidationError as error:
         place, problem = explain(error)
         raise InputError(problem, place, file) from None
