@@ -32,6 +32,21 @@ def solve(
     run_case(case, out, force, settings, pictures)
 
 
+@app.command()
+def mesh(
+    case: str = typer.Argument(help="case file (YAML)"),
+    out: str = typer.Option(None, help="folder of the pictures; default results/NAME-OF-CASE"),
+    force: bool = typer.Option(False, "--force", help="replace files that are there"),
+    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
+    write: list[str] = typer.Option([], metavar="FILE", help="write the mesh: .msh, .vtu, .vtk, .inp, .xdmf, ..."),
+    pictures: bool = typer.Option(True, help="draw the spring"),
+):
+    """Print the data of a spring, draw it, and write its mesh."""
+    from coilset.scripts.mesh import mesh as mesh_case
+
+    mesh_case(case, out, force, settings, write, pictures)
+
+
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
 def test(context: typer.Context):
     """Run the tests, in serial and under MPI; further arguments go to pytest."""

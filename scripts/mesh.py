@@ -1,0 +1,81 @@
+"""`coilset mesh`: the data of a case's spring, its drawing, and its mesh as a file."""
+
+import os
+from pathlib import Path
+
+from coilset.meshes.data import spring_data
+from coilset.meshes.steel import STEEL, Elastic
+from coilset.model.case import read_case
+from coilset.model.errors import InputError
+from coilset.model.material import library
+from coilset.model.results.folder import whole
+from rich.console import Console
+from rich.table import Table
+
+FILES = ("drawing.png", "spring.png")
+
+
+def mesh(case_file, out=None, force=False, settings=(), write=(), pictures=True):
+    """Print the data of a spring, draw it, and write its mesh; see `coilset mesh --help`.
+
+    Args:
+        case_file: the case file.
+        out: folder of the pictures; default results/NAME-OF-CASE.
+        force: replace files that are there.
+        settings: texts `key=value` that replace entries of the case file.
+        write: mesh files to write, their suffix says the format.
+        pictures: draw the spring.
+
+    Raises:
+        InputError: wrong input, or files that are there already.
+    """
+    console = Console(highlight=False)
+    case = read_case(case_file, settings)
+    out = Path(out or Path("results") / Path(case_file).stem)
+    _refuse_to_replace([out / name for name in FILES if pictures] + [Path(path) for path in write], force)
+    try:
+        spring = case.spring.build()
+        turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
+        law = library.load(case.material)
+    except InputError as error:
+        raise InputError(error.problem, error.place, error.file or case_file) from None
+    console.print(_table(spring_data(spring, Elastic(law.G, law.E, getattr(law, "density", STEEL.density))), turns))
+    for warning in spring.warnings:
+        console.print(f"[yellow]warning:[/] {warning}")
+    for path in write:
+        from coilset.meshes.export import write_mesh
+
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
+        write_mesh(spring, turns, path)
+        console.print(f"mesh in {path}")
+    if pictures:
+        out.mkdir(parents=True, exist_ok=True)
+        _draw(spring, out, Path(case_file).stem, console)
+        console.print(f"pictures in {out}{os.sep}")
+
+
+def _refuse_to_replace(paths, force):
+    for path in paths:
+        if path.exists() and not force:
+            raise InputError("is there already; give --force to replace it", "", path)
+
+
+def _table(data, turns):
+    table = Table(show_header=False, box=None, padding=(0, 2))
+    for label, value, unit in data.rows():
+        table.add_row(label, f"{value} {unit}".strip())
+    table.add_row("elements", str(len(turns) - 1))
+    return table
+
+
+def _draw(spring, out, name, console):
+    from coilset.meshes import drawing, view
+    from coilset.model.results import display
+
+    with whole(out / FILES[0]) as path:
+        drawing.drawing(spring, name).savefig(path, dpi=160)
+    if not display.ensure():
+        console.print(f"[yellow]warning:[/] {FILES[1]} is not drawn: there is no display and no Xvfb")
+        return
+    with whole(out / FILES[1]) as path:
+        view.picture(spring, path)
