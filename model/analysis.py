@@ -87,6 +87,7 @@ class Analysis:
         self.solver = Solver(self.system, tolerance=case.solver.tolerance)
         self.drive = Drive(self.system, case.ends, top)
         self.stepper = Stepper(self.drive, self.solver, self.spring.block_height)
+        self.result = Result()
 
     def _contacts(self, stations):
         """Gap elements between stations one turn apart, and the seats."""
@@ -104,30 +105,39 @@ class Analysis:
             contacts.append(Seats(radius, bedding * share, onset))
         return contacts
 
-    def run(self, report=lambda step: None):
-        """Measure the initial rate, then walk through the load program.
+    def run(self, report=lambda step: None, checkpoint=None):
+        """Walk through the load program; a resumed analysis goes on where its checkpoint was.
 
         Args:
             report: called with each converged Step.
+            checkpoint: Checkpoint that is saved after each step.
 
         Returns:
-            Result. A solve that fails raises SolveError with the result up to there in its attribute `result`.
+            Result; it is also `self.result`, with all steps up to there if the run is interrupted.
+
+        Raises:
+            SolveError: no equilibrium was found; the state is that of the last converged step.
         """
-        self.result = result = Result()
-        result.rate = self.initial_rate()
-        result.snapshots.append(self.snapshot("start"))
+        result, save = self.result, checkpoint.save if checkpoint else lambda analysis: None
 
         def record(step):
             result.steps.append(step)
+            save(self)
             report(step)
 
+        if not result.snapshots:
+            result.rate = self.initial_rate()
+            result.snapshots.append(self.snapshot("start"))
         try:
-            for index, phase in enumerate(self.case.loading):
-                self.stepper.run_phase(index, phase, record)
+            for index in range(self.stepper.walk.phase, len(self.case.loading)):
+                phase = self.case.loading[index]
+                self.stepper.run_phase(phase, record)
                 result.snapshots.append(self.snapshot(phase.label))
-        except SolveError as error:
+                self.stepper.begin(index + 1)
+                save(self)
+        except (SolveError, KeyboardInterrupt):
+            self.system.restore()
             result.snapshots.append(self.snapshot("last equilibrium"))
-            error.result = result
             raise
         result.complete = True
         return result

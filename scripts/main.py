@@ -25,11 +25,12 @@ def solve(
     force: bool = typer.Option(False, "--force", help="replace results that are there"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
     pictures: bool = typer.Option(True, help="draw the figures"),
+    resume: bool = typer.Option(False, "--resume", help="go on from the last converged step in the results folder"),
 ):
     """Run a spring through its load program and write what it found."""
     from coilset.scripts.solve import solve as run_case
 
-    run_case(case, out, force, settings, pictures)
+    run_case(case, out, force, settings, pictures, resume)
 
 
 @app.command()
@@ -45,6 +46,23 @@ def mesh(
     from coilset.scripts.mesh import mesh as mesh_case
 
     mesh_case(case, out, force, settings, write, pictures)
+
+
+@app.command()
+def sweep(
+    sweep_file: str = typer.Argument(metavar="SWEEP", help="sweep file (YAML)"),
+    out: str = typer.Option(None, help="results folder; default results/NAME-OF-SWEEP"),
+    force: bool = typer.Option(False, "--force", help="throw away the cases that are there"),
+    resume: bool = typer.Option(False, "--resume", help="run only the cases that are missing"),
+    retry: bool = typer.Option(False, "--retry", help="like --resume, and run the cases that failed again"),
+    jobs: int = typer.Option(None, min=1, help="processes on this machine; default: one a core"),
+    ranks_per_case: int = typer.Option(1, min=1, help="under mpirun: ranks that share a case"),
+    pictures: bool = typer.Option(True, help="draw the figures"),
+):
+    """Run a case many times with some of its entries varied."""
+    from coilset.scripts.sweep import sweep as run_sweep
+
+    run_sweep(sweep_file, out, force, resume, retry, jobs, ranks_per_case, pictures)
 
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})

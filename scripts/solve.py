@@ -1,5 +1,6 @@
 """`coilset solve`: read, run, write, draw, and say what was found."""
 
+import logging
 import os
 import time
 from pathlib import Path
@@ -10,14 +11,15 @@ from rich.table import Table
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.errors import InputError, SolveError
+from coilset.model.errors import CoilsetError, InputError, SolveError
+from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.folder import prepare, write_history, write_summary
 from coilset.model.results.summary import summarise
 
 STARTED = float(os.environ.get("COILSET_STARTED", time.time()))
 
 
-def solve(case_file, out, force, settings, pictures, comm=MPI.COMM_WORLD):
+def solve(case_file, out, force, settings, pictures, resume=False, comm=MPI.COMM_WORLD):
     """Run one case; see `coilset solve --help`.
 
     Raises:
@@ -30,21 +32,28 @@ def solve(case_file, out, force, settings, pictures, comm=MPI.COMM_WORLD):
         analysis = Analysis(case, comm)
     except InputError as error:
         raise InputError(error.problem, error.place, error.file or case_file) from None
-    _prepare(out, force, comm)
+    _prepare(out, force or resume, comm)
+    checkpoint = Checkpoint(out, case)
+    if resume:
+        checkpoint.resume(analysis)
+    elif comm.rank == 0:
+        checkpoint.clear()
+    if comm.rank == 0:
+        _log_to(out / "log.txt", resume)
     for warning in analysis.spring.warnings:
         console.print(f"[yellow]warning:[/] {warning}")
     began = time.perf_counter()
-    steps = sum(phase.steps for phase in case.loading)
-    console.print(f"{Path(case_file).name}: {len(analysis.turns) - 1} elements, {steps} steps, {comm.size} rank(s)")
+    targets = ", ".join(phase.label for phase in case.loading)
+    console.print(f"{Path(case_file).name}: {len(analysis.turns) - 1} elements, to {targets}, {comm.size} rank(s)")
+    if resume:
+        console.print(f"going on after step {analysis.stepper.number}")
     console.print("   step   seat height/mm      force/N   iterations   contacts")
     failure = None
     try:
-        result = analysis.run(lambda step: console.print(_row(step)))
+        analysis.run(lambda step: console.print(_row(step)), checkpoint)
     except (SolveError, KeyboardInterrupt) as error:
-        failure, result = error, analysis.result
-        if isinstance(error, KeyboardInterrupt):
-            analysis.system.restore()
-            result.snapshots.append(analysis.snapshot("interrupted"))
+        failure = error
+    result = analysis.result
     analysed = time.perf_counter() - began
     summary = comm.bcast(summarise(analysis, result) if comm.rank == 0 else None)
     if comm.rank == 0:
@@ -53,6 +62,7 @@ def solve(case_file, out, force, settings, pictures, comm=MPI.COMM_WORLD):
             _draw(out, analysis, result, summary, console)
     _conclude(console, summary, out, analysed)
     if failure is not None:
+        console.print("go on from the last step with --resume")
         raise failure
 
 
@@ -68,9 +78,22 @@ def _prepare(out, force, comm):
         raise InputError(*problem)
 
 
+def _log_to(path, append):
+    """Every decision of the step control goes to a file in the results folder."""
+    try:
+        handler = logging.FileHandler(path, mode="a" if append else "w", encoding="utf-8")
+    except OSError as error:
+        raise CoilsetError(f"{path}: cannot be written: {error.strerror}") from None
+    handler.setFormatter(logging.Formatter("%(asctime)s %(message)s"))
+    logger = logging.getLogger("coilset")
+    logger.setLevel(logging.INFO)
+    logger.addHandler(handler)
+
+
 def _row(step):
     cuts = f"   cut {step.cuts} times" if step.cuts else ""
-    return f"{step.number:7d}{step.seat_height_mm:17.4f}{step.force_N:13.3f}{step.iterations:13d}{step.contacts:11d}{cuts}"
+    force = round(step.force_N, 3) + 0.0  # no -0.000
+    return f"{step.number:7d}{step.seat_height_mm:17.4f}{force:13.3f}{step.iterations:13d}{step.contacts:11d}{cuts}"
 
 
 def _write(out, analysis, result, summary):

@@ -38,7 +38,10 @@ class Phase(Strict):
         Discriminator(_kind),
         Field(description="block, {travel: mm}, {height: mm} or {force: N}"),
     ]
-    steps: Annotated[int, Field(gt=0, le=100_000, description="number of load steps")] = 12
+    steps: Annotated[
+        Annotated[int, Field(gt=0, le=100_000)] | Literal["auto"],
+        Field(description="number of equal load steps, or auto: as large as converges with ease"),
+    ] = 12
 
     @property
     def label(self):

@@ -1,10 +1,17 @@
-"""Walk through a load program: equal steps, cut where the solve fails, each converged step committed and reported."""
+"""Walk through a load program: stations hit exactly, steps cut on failure and grown on ease, every decision logged."""
 
-from dataclasses import dataclass
+import logging
+from dataclasses import dataclass, replace
 
 from coilset.model.errors import SolveError
 
+log = logging.getLogger("coilset.steps")
+
 SMALLEST = 2.0**-10  # smallest share of a regular step before the program is given up
+ATTEMPTS = 40  # solves per regular step, and 200 more, before a phase is said to creep
+AUTOMATIC = 16  # regular steps of an automatic phase, for its first step
+EASY, HARD = 5, 10  # iterations up to which a step counts as easy, and from which as hard
+GROWTH, SHRINKAGE, LARGEST = 1.5, 0.7, 2.0  # LARGEST in regular steps
 
 
 @dataclass(frozen=True)
@@ -22,6 +29,27 @@ class Step:
     contacts: int
 
 
+@dataclass
+class Walk:
+    """Where in the program the spring stands; part of every checkpoint.
+
+    Attributes:
+        phase: number of the phase, done: share of it that is behind, in regular steps.
+        height, force: where the phase began, mm and N.
+        size: next step, in regular steps.
+        cuts: how often the step in progress was cut.
+        last: size of the last step, whose increments are the guess for the next one; 0 if there is no guess.
+    """
+
+    phase: int = 0
+    done: float = 0.0
+    height: float = 0.0
+    force: float = 0.0
+    size: float = 1.0
+    cuts: int = 0
+    last: float = 0.0
+
+
 class Stepper:
     """Drives a spring through phases.
 
@@ -29,57 +57,92 @@ class Stepper:
         drive: Drive.
         solver: Solver.
         block_height: height that `to: block` means, mm.
+
+    Attributes:
+        walk: Walk; replaced by a checkpoint's on resume, together with `guess`, the last step's increments.
+        number: steps so far.
     """
 
     def __init__(self, drive, solver, block_height):
         self.drive, self.solver, self.system, self.block_height = drive, solver, drive.system, block_height
-        self.number = 0
+        self.number, self.walk, self.guess = 0, Walk(height=drive.height), drive.system.vector()
 
-    def _prescribe(self, phase, start, t):
-        """Set the step's end at share `t` of the phase; heights and forces go linearly from where the phase began."""
-        to, drive = phase.to, self.drive
-        if to != "block" and to.force is not None:
-            drive.by_force(start[1] + t * (to.force - start[1]))
-            return
+    def begin(self, index):
+        """Stand at the start of a phase."""
+        self.walk = Walk(index, height=self.drive.height, force=self.drive.force)
+
+    def target(self, phase):
+        """Kind (`force` or `height`) and value of a phase's end, N or mm."""
+        to = phase.to
         if to == "block":
-            target = self.block_height
-        else:
-            target = to.height if to.height is not None else drive.free_length - to.travel
-        drive.by_height(start[0] + t * (target - start[0]))
+            return "height", self.block_height
+        if to.force is not None:
+            return "force", to.force
+        return "height", to.height if to.height is not None else self.drive.free_length - to.travel
 
-    def run_phase(self, index, phase, report=lambda step: None):
-        """Go to the phase's target; `report` is called with every converged Step.
+    def run_phase(self, phase, report=lambda step: None):
+        """Go on from `walk` to the phase's target; `report` is called with every converged Step.
 
         Raises:
-            SolveError: if a step failed down to the smallest size; the state is that of the last converged step.
+            SolveError: if a step failed down to the smallest size, or the phase creeps; the state is that of the last
+                converged step.
         """
-        start = (self.drive.height, self.drive.force)
-        done, size, cuts, last = 0.0, 1.0, 0, None  # in regular steps; last: increments of the last step and its size
-        while done < phase.steps:
-            size = min(size, phase.steps - done, int(done + 1e-9) + 1 - done)
-            self._prescribe(phase, start, (done + size) / phase.steps)
-            guess = None
-            if last is not None:
-                guess = last[0].copy()
-                guess.scale(size / last[1])
+        regular, attempts = phase.steps if phase.steps != "auto" else AUTOMATIC, 0
+        while self.walk.done < regular:
+            attempts += 1
+            if attempts > ATTEMPTS * regular + 200:
+                raise SolveError(f"{self._where()}: the program creeps, {attempts} solves on the way to {phase.label}")
+            outcome, size = self._try(phase, regular)
+            if outcome.converged:
+                self._accept(phase, regular, outcome, size, report)
+            else:
+                self._cut(phase, outcome, size)
+
+    def _where(self):
+        return f"no equilibrium beyond {self.drive.height:.6g} mm and {self.drive.force:.6g} N"
+
+    def _try(self, phase, regular):
+        """Solve the next step, first from the last step's increments; the outcome and the step's size."""
+        walk = self.walk
+        size = min(walk.size, regular - walk.done)
+        if phase.steps != "auto":  # equal steps end on their marks, also after a cut
+            size = min(size, int(walk.done + 1e-9) + 1 - walk.done)
+        kind, end = self.target(phase)
+        share = (walk.done + size) / regular
+        begin = walk.force if kind == "force" else walk.height
+        value = end if walk.done + size >= regular else begin + share * (end - begin)
+        (self.drive.by_force if kind == "force" else self.drive.by_height)(value)
+        if walk.last:
+            guess = self.guess.copy()
+            guess.scale(size / walk.last)
             outcome = self.solver.solve(guess)
-            if not outcome.converged and guess is not None:
-                outcome = self.solver.solve(None)
-            if not outcome.converged:
-                self.system.restore()
-                size, cuts, last = 0.5 * size, cuts + 1, None
-                if size < SMALLEST:
-                    raise SolveError(
-                        f"no equilibrium beyond {self.drive.height:.6g} mm and {self.drive.force:.6g} N "
-                        f"on the way to {phase.label}: {outcome.reason}"
-                    )
-                continue
-            last = (self.solver.X.copy(), size)
-            height, force = self.drive.read(self.solver.X)
-            self.system.commit()
-            self.drive.accept(height, force)
-            done += size
-            self.number += 1
-            report(Step(self.number, index, done / phase.steps, height, self.drive.free_length - height, force,
-                        outcome.iterations, cuts, self.drive.contacts))  # fmt: skip
-            size, cuts = min(1.0, 2.0 * size), 0
+            if outcome.converged:
+                return outcome, size
+            log.info("step %d: no equilibrium from the last step's direction (%s)", self.number + 1, outcome.reason)
+        return self.solver.solve(None), size
+
+    def _cut(self, phase, outcome, size):
+        self.system.restore()
+        self.walk = replace(self.walk, size=0.5 * size, cuts=self.walk.cuts + 1, last=0.0)
+        log.info("step %d: cut to %.4g of a regular step (%s)", self.number + 1, 0.5 * size, outcome.reason)
+        if self.walk.size < SMALLEST:
+            raise SolveError(f"{self._where()} on the way to {phase.label}: {outcome.reason}")
+
+    def _accept(self, phase, regular, outcome, size, report):
+        """Make the trial state the equilibrium, and choose the next size."""
+        walk, drive = self.walk, self.drive
+        self.solver.X.copy(self.guess)
+        height, force = drive.read(self.solver.X)
+        self.system.commit()
+        drive.accept(height, force)
+        self.number += 1
+        following = min(1.0, 2.0 * size)
+        if phase.steps == "auto":
+            factor = GROWTH if outcome.iterations <= EASY else SHRINKAGE if outcome.iterations >= HARD else 1.0
+            following = min(LARGEST, factor * size)
+        done = walk.done + size
+        self.walk = replace(walk, done=done, size=following, cuts=0, last=size)
+        log.info("step %d: %.6g mm, %.6g N, %d iterations, out of balance %.1e; next %.4g of a regular step",
+                 self.number, height, force, outcome.iterations, outcome.ratio, following)  # fmt: skip
+        report(Step(self.number, walk.phase, done / regular, height, drive.free_length - height, force,
+                    outcome.iterations, walk.cuts, drive.contacts))  # fmt: skip

@@ -68,6 +68,22 @@ class System:
         self.seat_dofs = self.size_rod + np.arange(SEATS, dtype=PETSc.IntType)
         self.contact_dofs = np.concatenate([self.station_dofs[:, :3].ravel(), self.seat_dofs])
         self._nodes = nodes
+        shear = index_map.local_to_global(self.rod.shear_dofs.ravel().astype(np.int32)).reshape(-1, 2)
+        element = np.concatenate(comm.allgather(line.element[: line.owned_cells]))
+        self.element_dofs = np.empty((len(element), 2), dtype=PETSc.IntType)
+        self.element_dofs[element] = np.concatenate(comm.allgather(shear))
+        self._all_dofs = np.concatenate([self.station_dofs.ravel(), self.element_dofs.ravel(), self.seat_dofs])
+
+    def to_order(self, vector):
+        """Values of a vector of the system by stations, elements and seats, the same on any number of ranks."""
+        parts = self.comm.allgather(vector.getArray(readonly=True))
+        return np.concatenate(parts)[self._all_dofs]
+
+    def from_order(self, values, vector):
+        """Set a vector of the system from what `to_order` gave."""
+        everything = np.empty(len(values))
+        everything[self._all_dofs] = values
+        vector.setArray(everything[slice(*vector.getOwnershipRange())])
 
     def vector(self):
         """A new PETSc vector of the system, zero."""

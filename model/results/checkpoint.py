@@ -1,0 +1,155 @@
+"""Checkpoints: the state after each converged step, in an order that no partition changes, written in one move.
+
+The arrays of a checkpoint belong to stations and elements, not to ranks, so that any number of ranks goes on from it.
+"""
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+
+from coilset.model.errors import InputError
+from coilset.model.loading.stepper import Step, Walk
+from coilset.model.results.folder import whole
+
+NODAL, CELLWISE = ("x", "R"), ("chord", "shear", "strain", "history")
+SPRING_ENTRIES = ("spring", "material", "ends", "mesh", "contact")  # what must be the same to go on
+
+
+class Checkpoint:
+    """The folder `checkpoint` of a results folder.
+
+    Args:
+        folder: the results folder.
+        case: Case.
+    """
+
+    def __init__(self, folder, case):
+        self.folder = Path(folder) / "checkpoint"
+        self.case = case.model_dump(mode="json")
+
+    # ---- saving ----------------------------------------------------------------------------------------------------
+
+    def save(self, analysis):
+        """Write the state after a converged step; collective."""
+        rod, system, stepper = analysis.rod, analysis.system, analysis.stepper
+        state = {name: system.gather(rod.equilibrium[name]) for name in NODAL}
+        state |= {name: gather_cells(analysis, rod.equilibrium[name]) for name in CELLWISE}
+        state |= {"guess": system.to_order(stepper.guess), "reactions": system.to_order(system.reaction_start)}
+        if analysis.comm.rank:
+            return
+        state["seats"] = system.seats_start
+        result = analysis.result
+        steps = [asdict(step) for step in result.steps]
+        about = {
+            "case": self.case,
+            "walk": asdict(stepper.walk),
+            "height": analysis.drive.height,
+            "force": analysis.drive.force,
+            "rate": result.rate,
+            "steps": steps,
+            "snapshots": len(result.snapshots),
+        }
+        self.folder.mkdir(exist_ok=True)
+        for number, snapshot in enumerate(result.snapshots):
+            self._save_snapshot(number, snapshot)
+        with whole(self.folder / "state.npz") as path, open(path, "wb") as file:
+            np.savez(file, about=np.array(json.dumps(about)), **state)
+
+    def _save_snapshot(self, number, snapshot):
+        path = self.folder / f"snapshot-{number:02d}.npz"
+        if not path.exists():
+            with whole(path) as partial, open(partial, "wb") as file:
+                np.savez(file, **asdict(snapshot))
+
+    def clear(self):
+        """Forget an earlier run."""
+        for path in self.folder.glob("*.npz"):
+            path.unlink()
+
+    # ---- resuming --------------------------------------------------------------------------------------------------
+
+    def resume(self, analysis):
+        """Bring an analysis to the state of the checkpoint; collective.
+
+        Raises:
+            InputError: if there is no checkpoint, it is broken, or it belongs to another spring or load program.
+        """
+        comm = analysis.comm
+        loaded = problem = None
+        if comm.rank == 0:
+            try:
+                loaded = self._load()
+                self._compare(loaded["about"])
+            except InputError as error:
+                problem = error
+        problem = comm.bcast(problem and (problem.problem, problem.place, str(problem.file)))
+        if problem:
+            raise InputError(*problem)
+        loaded = comm.bcast(loaded)
+        about = loaded.pop("about")
+        rod, system, stepper, drive = analysis.rod, analysis.system, analysis.stepper, analysis.drive
+        for name in NODAL:
+            rod.equilibrium[name] = loaded[name][rod.line.node].copy()
+        for name in CELLWISE:
+            rod.equilibrium[name] = loaded[name][rod.line.element[: rod.line.owned_cells]].copy()
+        system.seats_start = loaded["seats"].copy()
+        system.from_order(loaded["guess"], stepper.guess)
+        system.from_order(loaded["reactions"], system.reaction_start)
+        system.restore()
+        drive.accept(about["height"], about["force"])
+        stepper.walk, stepper.number = Walk(**about["walk"]), len(about["steps"])
+        analysis.result.steps = [Step(**step) for step in about["steps"]]
+        analysis.result.rate = about["rate"]
+        analysis.result.snapshots = [self._snapshot(number, comm.rank) for number in range(about["snapshots"])]
+
+    def _load(self):
+        path = self.folder / "state.npz"
+        if not path.exists():
+            raise InputError("there is no checkpoint to go on from; run it without --resume", "", self.folder)
+        try:
+            with np.load(path, allow_pickle=False) as file:
+                loaded = {name: file[name] for name in file.files}
+            return loaded | {"about": json.loads(str(loaded["about"]))}
+        except (OSError, ValueError, KeyError) as error:
+            raise InputError(f"the checkpoint is not readable: {error}", "", path) from None
+
+    def _snapshot(self, number, rank):
+        from coilset.model.analysis import Snapshot
+
+        with np.load(self.folder / f"snapshot-{number:02d}.npz", allow_pickle=False) as file:
+            fields = {name: file[name] for name in file.files}
+        for name, kind in (("name", str), ("height", float), ("force", float)):
+            fields[name] = kind(fields[name])
+        if rank:
+            fields |= {name: np.empty(0) for name in ("triads", "resultants", "history")}
+        return Snapshot(**fields)
+
+    def _compare(self, about):
+        """The spring must be the same; the phases that are behind too, and the rest may have changed."""
+        old, new = about["case"], self.case
+        for entry in SPRING_ENTRIES:
+            if old[entry] != new[entry]:
+                raise InputError("differs from that of the checkpoint; run it without --resume", entry, self.folder)
+        walk = about["walk"]
+        phase = walk["phase"]
+        if old["loading"][:phase] != new["loading"][:phase]:
+            raise InputError(f"its first {phase} phases are behind and must stay as they were", "loading", self.folder)
+        if old["loading"][phase : phase + 1] != new["loading"][phase : phase + 1]:
+            # a changed target: begin its phase where the spring stands now
+            about["walk"] = asdict(Walk(phase, height=about["height"], force=about["force"]))
+
+
+def gather_cells(analysis, values):
+    """Values of the owned cells in the order of the elements, on rank 0; elsewhere None."""
+    line, comm = analysis.rod.line, analysis.comm
+    if comm.size == 1:
+        out = np.empty_like(values)
+        out[line.element[: line.owned_cells]] = values
+        return out
+    parts = comm.gather((line.element[: line.owned_cells], values), root=0)
+    if comm.rank:
+        return None
+    order = np.argsort(np.concatenate([part[0] for part in parts]))
+    return np.concatenate([part[1] for part in parts])[order]

@@ -1,0 +1,144 @@
+"""Checkpoints: killed runs go on to the same numbers, on any number of ranks, and a changed program goes on too."""
+
+import json
+import random
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from coilset.model.analysis import Analysis
+from coilset.model.case import read_case
+from coilset.model.errors import InputError
+from coilset.model.results import checkpoint as checkpoints
+from coilset.model.results.checkpoint import Checkpoint
+
+SETTINGS = ["mesh.section.rule=abramowitz9", "loading.0.steps=20", "loading.1.steps=20"]
+KILLS = 4  # twenty were made once, see docs/restart.md; each costs a start of Python
+
+
+def command(example, *more):
+    settings = [part for setting in SETTINGS for part in ("--set", setting)]
+    return [sys.executable, "-m", "coilset.scripts", "solve", str(example), "--out", "out", "--no-pictures", *settings, *more]
+
+
+def final(folder):
+    with np.load(folder / "checkpoint" / "state.npz") as file:
+        return {name: file[name] for name in file.files if name != "about"}
+
+
+def test_killed_runs_resume_to_the_same_bits(example, tmp_path):
+    (tmp_path / "whole").mkdir()
+    (tmp_path / "killed").mkdir()
+    began = time.perf_counter()
+    subprocess.run(command(example), cwd=tmp_path / "whole", check=True, capture_output=True)
+    duration = time.perf_counter() - began
+    rng = random.Random(7)
+    kills = 0
+    for attempt in range(3 * KILLS):
+        more = ["--resume"] if (tmp_path / "killed" / "out" / "checkpoint" / "state.npz").exists() else ["--force"]
+        process = subprocess.Popen(command(example, *more), cwd=tmp_path / "killed",
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
+        try:
+            # moments from the start of the solve to its end; later runs have less to do
+            process.wait(duration * rng.uniform(0.5, 1.0) if attempt < KILLS else None)
+        except subprocess.TimeoutExpired:
+            process.send_signal(signal.SIGKILL)
+            process.wait()
+            kills += 1
+            continue
+        if process.returncode == 0 and attempt >= KILLS:
+            break
+    assert kills >= 1
+    undisturbed, resumed = final(tmp_path / "whole" / "out"), final(tmp_path / "killed" / "out")
+    for name, values in undisturbed.items():
+        np.testing.assert_array_equal(resumed[name], values, err_msg=name)
+    whole, killed = ((tmp_path / run / "out" / "history.csv").read_bytes() for run in ("whole", "killed"))
+    assert whole == killed
+
+
+class Killed(Exception):
+    """Stands for the end of the process."""
+
+
+def run_until(analysis, checkpoint, steps):
+    """Run and stop, as if killed, after some steps."""
+
+    def report(step):
+        if step.number == steps:
+            raise Killed
+
+    with pytest.raises(Killed):
+        analysis.run(report, checkpoint)
+
+
+@pytest.mark.mpi
+def test_any_number_of_ranks_goes_on(example, tmp_path_factory):
+    """Begun on all ranks, ended on each alone: within 1e-10 of the run on one rank."""
+    comm = MPI.COMM_WORLD
+    folder = comm.bcast(str(tmp_path_factory.mktemp("ranks")) if comm.rank == 0 else None)
+    case = read_case(example, SETTINGS)
+    whole = Analysis(case, MPI.COMM_SELF).run()
+    begun = Analysis(case, comm)
+    run_until(begun, Checkpoint(folder, case), 17)
+    comm.barrier()
+    resumed = Analysis(case, MPI.COMM_SELF)
+    Checkpoint(folder, case).resume(resumed)
+    assert resumed.stepper.number == 17
+    result = resumed.run()
+    assert len(result.steps) == len(whole.steps)
+    for name in ("seat_height_mm", "force_N"):
+        ours, reference = (np.array([getattr(step, name) for step in run.steps]) for run in (result, whole))
+        np.testing.assert_allclose(ours, reference, rtol=0, atol=1e-10 * np.abs(reference).max())
+
+
+def test_a_kill_while_writing_leaves_the_checkpoint_before(example, tmp_path, monkeypatch):
+    case = read_case(example, SETTINGS)
+    analysis, checkpoint = Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case)
+    run_until(analysis, checkpoint, 3)
+    before = final(tmp_path)
+
+    def half(file, **arrays):
+        file.write(b"PK half a file")
+        raise Killed
+
+    monkeypatch.setattr(checkpoints.np, "savez", half)
+    with pytest.raises(Killed):
+        checkpoint.save(analysis)
+    monkeypatch.undo()
+    for name, values in before.items():
+        np.testing.assert_array_equal(final(tmp_path)[name], values)
+
+
+def test_a_changed_program_goes_on_and_a_changed_spring_does_not(example, tmp_path):
+    case = read_case(example, [*SETTINGS, "loading.0.to={travel: 8}"])
+    analysis = Analysis(case, MPI.COMM_SELF)
+    analysis.run(checkpoint=Checkpoint(tmp_path, case))
+    longer = read_case(example, [*SETTINGS, "loading=[{to: {travel: 8}, steps: 20}, {to: {travel: 6}, steps: 5}]"])
+    resumed = Analysis(longer, MPI.COMM_SELF)
+    about = json.loads(str(np.load(tmp_path / "checkpoint" / "state.npz")["about"]))
+    assert about["walk"]["phase"] == 2
+    with pytest.raises(InputError, match="loading"):  # both phases of the old program are behind
+        Checkpoint(tmp_path, longer).resume(resumed)
+    more = case.model_copy(update={"loading": [*case.loading, longer.loading[1]]})
+    resumed = Analysis(more, MPI.COMM_SELF)
+    Checkpoint(tmp_path, more).resume(resumed)
+    assert resumed.run().steps[-1].travel_mm == pytest.approx(6.0, abs=1e-12)
+    thicker = read_case(example, [*SETTINGS, "loading.0.to={travel: 8}", "spring.wire_diameter=5.1"])
+    with pytest.raises(InputError, match="spring"):
+        Checkpoint(tmp_path, thicker).resume(Analysis(thicker, MPI.COMM_SELF))
+
+
+def test_no_checkpoint_and_a_broken_one_are_said(example, tmp_path):
+    case = read_case(example, SETTINGS)
+    analysis = Analysis(case, MPI.COMM_SELF)
+    with pytest.raises(InputError, match="no checkpoint"):
+        Checkpoint(tmp_path, case).resume(analysis)
+    (tmp_path / "checkpoint").mkdir()
+    (tmp_path / "checkpoint" / "state.npz").write_bytes(b"nothing of the kind")
+    with pytest.raises(InputError, match="not readable"):
+        Checkpoint(tmp_path, case).resume(analysis)
