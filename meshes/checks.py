@@ -92,7 +92,7 @@ def _coils(spring):
     gap = distance - wire
     i = np.argmin(gap / wire)
     if gap[i] < -TOUCH * wire[i]:
-        yield Finding(True, "spring.pitch", f"coils overlap: between the turns {turn[i]:.3g} and {turn[i] + 1:.3g} the "
+        yield Finding(True, "spring", f"coils overlap: between the turns {turn[i]:.3g} and {turn[i] + 1:.3g} the "
                       f"centres of the wire are {distance[i]:.3g} mm apart, must be at least {wire[i]:.3g} mm")
         return
     t = spring.breaks

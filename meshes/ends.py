@@ -32,6 +32,12 @@ class EndCoils(Entry):
         Field(gt=0, lt=1, strict=True, description=f"thickness of the ground tip over d, {GROUND_TIP:g} if not given"),
     ] = None
 
+    @model_validator(mode="before")
+    @classmethod
+    def _from_word(cls, value):
+        """`closed` in short for `{form: closed}`."""
+        return {"form": value} if isinstance(value, str) else value
+
     @model_validator(mode="after")
     def _belongs(self):
         if self.form == "open" and (self.turns is not None or self.transition is not None):

@@ -61,6 +61,7 @@ def _write_gmsh(points, coil, data, path):
         gmsh.initialize(interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("PostProcessing.SaveMesh", 0)  # the data are added to a file that has the mesh
         gmsh.model.add("spring")
         tags = np.arange(1, len(points) + 1)
         curves = {part: gmsh.model.addDiscreteEntity(1) for part in np.unique(coil).tolist()}

@@ -20,7 +20,7 @@ class SpringSpec(Entry):
 
     wire_diameter: Annotated[Profile, Field(description="wire diameter, mm; a number or a table over the turns")]
     mean_diameter: Annotated[DiameterProfile, Field(description="mean coil diameter, mm; a number, a table or a shape")]
-    turns: Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True, description="all turns, end turns included")]
+    turns: Annotated[float, Field(gt=0, le=1000, strict=True, description="all turns, end turns included")]
     pitch: Annotated[
         Profile | None, Field(description="rise in a turn of the body, mm; a number or a table; or give free_length")
     ] = None
