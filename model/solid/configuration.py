@@ -4,7 +4,6 @@ import basix.ufl
 import numpy as np
 import scipy.sparse
 from dolfinx import fem
-from petsc4py import PETSc
 
 # The elements: 20-node hexahedra with 2 x 2 x 2 points, which neither lock in plastic flow nor have zero-energy modes
 # in any patch of 2 x 2 x 2 elements or more; 10-node tetrahedra with 4 points.
@@ -62,19 +61,6 @@ class Configuration:
             modes[i] = e
             modes[3 + i] = np.cross(e, x)
         return modes
-
-    def near_nullspace(self, x):
-        """Orthonormal PETSc near-nullspace of the six rigid modes at the position x, for multigrid."""
-        modes = self.rigid_modes(x - self._centre(x))[:, : self.owned].reshape(6, -1)
-        comm = self.mesh.comm
-        gram = comm.allreduce(modes @ modes.T)
-        basis = np.linalg.solve(np.linalg.cholesky(gram), modes)
-        vectors = [PETSc.Vec().createWithArray(b.copy(), bsize=3, comm=comm) for b in basis]
-        return PETSc.NullSpace().create(vectors=vectors, comm=comm)
-
-    def _centre(self, x):
-        comm = self.mesh.comm
-        return comm.allreduce(x[: self.owned].sum(axis=0)) / self.V.dofmap.index_map.size_global
 
 
 def _node_matrix(mesh, V):

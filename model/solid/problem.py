@@ -10,6 +10,7 @@ from petsc4py import PETSc
 
 from coilset.model.errors import SolveError
 from coilset.model.solid.heads import Head
+from coilset.model.solid.multigrid import VertexMultigrid
 from coilset.model.solid.solid import Solid
 from coilset.model.solid.solvers import choose
 
@@ -52,17 +53,17 @@ class SolidProblem:
         self.comm, self.precision = solid.comm, precision
         self.unknowns = 3 * solid.V.dofmap.index_map.size_global
         self.solver, chosen = choose(solver, self.unknowns)
-        solid.symmetric = self.solver == "multigrid"
         self.bottom, self.top = Head(solid, "bottom"), Head(solid, "top")
         held = np.unique(np.concatenate([self.bottom.blocks, self.top.blocks]))
         self._held = held[held < solid.configuration.owned]
+        self._multigrid = None
         self._prescribed = fem.Function(solid.V)  # increment of the heads in the step
         self._conditions = [fem.dirichletbc(self._prescribed, held)]
-        self._create_snes({**chosen, **(options or {})})
+        self._create_snes({**chosen, **(options or {})}, held)
         self.forces = solid.internal_forces()
         self._start = self.forces.copy()
 
-    def _create_snes(self, options):
+    def _create_snes(self, options, held):
         comm, owned = self.comm, 3 * self.solid.configuration.owned
         self._A = self.solid.create_matrix()
         self._x, self._f = (PETSc.Vec().createMPI((owned, None), bsize=3, comm=comm) for _ in range(2))
@@ -75,6 +76,8 @@ class SolidProblem:
         self.snes.setFunction(self._residual, self._f)
         self.snes.setJacobian(self._tangent, self._A)
         self.snes.setConvergenceTest(self._converged)
+        if self.solver == "multigrid":
+            self._multigrid = VertexMultigrid(self.solid.configuration, held, self.snes.getKSP().getPC())
         self.snes.setFromOptions()
         for key in options:
             database.delValue(key)
@@ -103,7 +106,12 @@ class SolidProblem:
         mine = np.array_equal(X.getArray(readonly=True), self.solid.u[: self.solid.configuration.owned].ravel())
         if not self.comm.allreduce(int(mine)) == self.comm.size:  # a line search may have looked elsewhere last
             self._set(X)
-        self.solid.assemble_tangent(P, self._conditions)
+        self._assemble()
+
+    def _assemble(self):
+        self.solid.assemble_tangent(self._A, self._conditions)
+        if self._multigrid:
+            self._multigrid.update(self._A, self.solid.x)
 
     def _converged(self, snes, iteration, norms):
         """(6.3.1), with the change of the heads' forces since the step's start for the change of the outer forces."""
@@ -153,8 +161,6 @@ class SolidProblem:
         increment = self._prescribed.x.array.reshape(-1, 3)
         for head, motion in ((self.bottom, bottom), (self.top, top)):
             increment[head.blocks] = head.positions(motion) - self.solid.configuration.x[head.blocks]
-        if self.solver == "multigrid":
-            self._A.setNearNullSpace(self.solid.configuration.near_nullspace(self.solid.x))
         predictor = self._predict()
         self.snes.solve(None, self._x)
         return Step(1 + self.snes.getIterationNumber(), predictor + self.snes.getLinearSolveIterations())
@@ -162,7 +168,7 @@ class SolidProblem:
     def _predict(self):
         """Start from the linear answer to the heads' motion, so that the end elements are not torn; K_ff u = −K_fh g − r."""
         ksp = self.snes.getKSP()
-        self.solid.assemble_tangent(self._A, self._conditions)
+        self._assemble()
         b = create_vector(self.solid.forms.residual)
         apply_lifting(b, [self.solid.forms.tangent], bcs=[self._conditions])
         b.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)

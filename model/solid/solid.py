@@ -19,7 +19,7 @@ class Solid:
     Args:
         wire: SolidMesh; its mesh will move with the body.
         points: the law at the points, as `MaterialPoints`: `initial_state(n)` and `update(old, strain, new, C)`.
-        symmetric: keep only the symmetric part of the moduli, for conjugate gradients.
+        symmetric: keep only the symmetric part of the moduli, for solvers that need it.
 
     Attributes:
         wire, configuration, forms: mesh, positions, UFL forms.
@@ -28,7 +28,7 @@ class Solid:
         trial: the same at the current increment.
     """
 
-    def __init__(self, wire, points, symmetric=False):
+    def __init__(self, wire, points, symmetric=True):
         self.wire, self.points, self.symmetric = wire, points, symmetric
         self.configuration = Configuration(wire.mesh)
         self.forms = SolidForms(self.configuration)

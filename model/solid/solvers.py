@@ -4,27 +4,30 @@ from coilset.model.errors import InputError
 
 _NEWTON = {"snes_type": "newtonls", "snes_linesearch_type": "bt", "snes_max_it": 25, "snes_max_linear_solve_fail": 1}
 
-# `direct` factorises and takes the full tangent. `multigrid` is conjugate gradients, for which the moduli are made symmetric
-# (their skew part is of the order of stress over stiffness), with smoothed aggregation about the rigid modes.
+# `direct` factorises; `multigrid` is conjugate gradients with `multigrid.VertexMultigrid`. Both take the symmetric part of the
+# moduli: their skew part is of the order of stress over stiffness and costs less in Newton's convergence than it saves.
 OPTIONS = {
-    "direct": {**_NEWTON, "ksp_type": "preonly", "pc_type": "lu", "pc_factor_mat_solver_type": "mumps"},
+    "direct": {**_NEWTON, "ksp_type": "preonly", "pc_type": "cholesky", "pc_factor_mat_solver_type": "mumps"},
     "multigrid": {
         **_NEWTON,
         "ksp_type": "cg",
-        "ksp_rtol": 1e-6,
+        "ksp_norm_type": "unpreconditioned",
+        "ksp_rtol": 1e-5,
         "ksp_max_it": 1000,
-        "pc_type": "gamg",
-        "pc_gamg_type": "agg",
-        "pc_gamg_agg_nsmooths": 1,
-        "pc_gamg_threshold": 0.02,
-        "pc_gamg_aggressive_coarsening": 0,
-        "pc_gamg_coarse_eq_limit": 1000,
-        "mg_levels_ksp_type": "chebyshev",
-        "mg_levels_ksp_max_it": 2,
-        "mg_levels_pc_type": "jacobi",
-        "mg_levels_esteig_ksp_type": "cg",
-        "mg_levels_esteig_ksp_max_it": 20,
-        "mg_coarse_pc_type": "redundant",
+        "pc_mg_galerkin": "none",
+        "mg_levels_ksp_type": "richardson",
+        "mg_levels_ksp_max_it": 1,
+        "mg_levels_pc_type": "sor",
+        "mg_coarse_ksp_type": "preonly",
+        "mg_coarse_pc_type": "gamg",
+        "mg_coarse_pc_gamg_threshold": 0.02,
+        "mg_coarse_pc_gamg_aggressive_coarsening": 0,
+        "mg_coarse_pc_gamg_coarse_eq_limit": 200,
+        "mg_coarse_pc_gamg_reuse_interpolation": False,
+        # a lone node in an aggregate has no six modes: Jacobi and a pseudo-inverse pass over the zero rows that leaves
+        "mg_coarse_mg_levels_pc_type": "jacobi",
+        "mg_coarse_mg_coarse_pc_type": "redundant",
+        "mg_coarse_mg_coarse_redundant_pc_type": "svd",
     },
 }
 
