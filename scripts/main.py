@@ -26,11 +26,12 @@ def solve(
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
     pictures: bool = typer.Option(True, help="draw the figures"),
     resume: bool = typer.Option(False, "--resume", help="go on from the last converged step in the results folder"),
+    interactive: bool = typer.Option(False, "--interactive", help="ask after each step; Enter goes on, ? helps"),
 ):
     """Run a spring through its load program and write what it found."""
     from coilset.scripts.solve import solve as run_case
 
-    run_case(case, out, force, settings, pictures, resume)
+    run_case(case, out, force, settings, pictures, resume, interactive)
 
 
 @app.command()

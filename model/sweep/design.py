@@ -1,0 +1,73 @@
+"""How inputs are combined: grids of their values, or samples of the unit cube carried to their distributions."""
+
+import itertools
+
+import numpy as np
+from coilset.model.errors import InputError
+from scipy.stats import qmc
+
+
+def rows(spec, base):
+    """The inputs of all cases.
+
+    Args:
+        spec: SweepSpec.
+        base: value of each input in the base case, needed by one_at_a_time only, a dict.
+
+    Returns:
+        List of tuples, one a case, the values in the order of `spec.vary`.
+
+    Raises:
+        InputError: an input that the design cannot use.
+    """
+    if spec.design in ("grid", "together", "one_at_a_time"):
+        columns = [_grid(name, vary) for name, vary in spec.vary.items()]
+        return _combine(spec, columns, base)
+    cube = unit_cube(spec)
+    return list(zip(*(vary.at(cube[:, k]) for k, vary in enumerate(spec.vary.values())), strict=True))
+
+
+def _grid(name, vary):
+    try:
+        return vary.grid()
+    except ValueError as error:
+        raise InputError(str(error), f"vary.{name}") from None
+
+
+def _combine(spec, columns, base):
+    names = list(spec.vary)
+    if spec.design == "grid":
+        return list(itertools.product(*columns))
+    if spec.design == "together":
+        lengths = {name: len(column) for name, column in zip(names, columns, strict=True)}
+        if len(set(lengths.values())) > 1:
+            found = ", ".join(f"{name} {length}" for name, length in lengths.items())
+            raise InputError(f"'together' takes first with first, so all need as many values, not {found}", "vary")
+        return list(zip(*columns, strict=True))
+    middle = [base[name] for name in names]
+    varied = [(k, value) for k, column in enumerate(columns) for value in column if value != middle[k]]
+    return [tuple(middle)] + [(*middle[:k], value, *middle[k + 1 :]) for k, value in varied]
+
+
+def unit_cube(spec):
+    """Points of the unit cube, shape (cases, inputs), strictly inside it.
+
+    For `sobol_indices` they are the blocks A, B, AB₁ … AB_d of Saltelli et al., Comput. Phys. Commun. 181 (2010) 259:
+    ABᵢ is A with column i from B.
+    """
+    d, n = len(spec.vary), spec.samples
+    rng = np.random.default_rng(spec.seed)
+    if spec.design == "random":
+        points = rng.random((n, d))
+    elif spec.design == "latin_hypercube":
+        points = qmc.LatinHypercube(d, rng=rng).random(n)
+    else:
+        double = 2 if spec.design == "sobol_indices" else 1
+        points = qmc.Sobol(double * d, rng=rng).random(n)
+    if spec.design == "sobol_indices":
+        A, B = points[:, :d], points[:, d:]
+        mixed = np.repeat(A[None], d, axis=0)
+        for i in range(d):
+            mixed[i, :, i] = B[:, i]
+        points = np.concatenate([A, B, mixed.reshape(-1, d)])
+    return np.clip(points, 1e-12, 1.0 - 1e-12)

@@ -1,0 +1,249 @@
+"""Figures of a sweep: responses over inputs, a family of characteristics, scatter, sensitivity, convergence."""
+
+import matplotlib as mpl
+import numpy as np
+from coilset.model.errors import InputError
+from coilset.model.results.figures import STYLE, save
+from coilset.model.sweep import spec as sp
+from coilset.model.sweep.sensitivity import rank_correlation, sobol_indices
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+
+LINE_LIMIT = 5000  # curves drawn in a family; more are thinned out evenly
+COLOURS = "viridis"
+
+
+def chosen(plan):
+    """The figures that the sweep file asks for, or those that suit its design."""
+    spec, names = plan.spec, plan.names
+    if spec.figures is not None:
+        return spec.figures
+    if spec.design == "one_at_a_time":
+        return [sp.Convergence(kind="convergence")]
+    family = sp.Family(kind="characteristics", colour=names[0])
+    if spec.design not in sp.SAMPLES and len(names) <= 3:
+        roles = dict(zip(("x", "colour", "panels"), names, strict=False))
+        return [sp.Lines(kind="lines", **roles), family]
+    return [sp.Family(kind="characteristics"), sp.Scatter(kind="scatter"), sp.Sensitivity(kind="sensitivity")]
+
+
+def draw(folder, plan, data):
+    """Draw the figures of a sweep.
+
+    Args:
+        folder: Path to write to.
+        plan: Plan.
+        data: data set of coilset.model.sweep.dataset.collect.
+
+    Returns:
+        Names of the files, and an InputError for each figure of a response that the cases do not have.
+    """
+    files, problems = [], []
+    with mpl.rc_context(STYLE):
+        for number, figure in enumerate(chosen(plan)):
+            try:
+                drawn = DRAW[figure.kind](figure, plan, data, f"figures.{number}")
+            except InputError as error:
+                problems.append(InputError(error.problem, error.place, plan.path))
+                continue
+            if drawn is None:
+                continue
+            drawn.suptitle(f"{plan.path.stem}: {int((data.status == 'done').sum())} of {len(plan)} cases", fontsize=10)
+            files.append(f"{number + 1:02d}_{figure.kind}.png")
+            save(drawn, folder / files[-1])
+    return files, problems
+
+
+def _axis(data, name):
+    """Text of an axis: the words of a variable and its unit."""
+    attributes = data[name].attrs
+    return attributes["long_name"] + (f" in {attributes['units']}" if attributes["units"] else "")
+
+
+def _response(data, name, place):
+    """Values of a response, shape (cases,)."""
+    known = [key for key in data.data_vars if data[key].dims == ("case",) and data[key].dtype.kind == "f"]
+    if name not in known:
+        raise InputError(f"'{name}' is no response of these cases ({', '.join(sorted(known))})", f"{place}.of")
+    return data[name].to_numpy()
+
+
+def _levels(data, name):
+    """Distinct values of an input in their order, and for each the cases that have it; one level if `name` is None."""
+    if name is None:
+        return [(None, np.ones(data.sizes["case"], dtype=bool))]
+    column = data[name].to_numpy()
+    return [(value, column == value) for value in np.unique(column)]
+
+
+def _text(data, name, value):
+    unit = data[name].attrs["units"]
+    shown = value if isinstance(value, str) else f"{value:.5g}"
+    return f"{data[name].attrs['long_name']} {shown}" + (f" {unit}" if unit else "")
+
+
+def lines(figure, plan, data, place):
+    """A response over one input; lines for a second, panels for a third."""
+    values, panels = _response(data, figure.of, place), _levels(data, figure.panels)
+    colours = _levels(data, figure.colour)
+    shades = mpl.colormaps[COLOURS](np.linspace(0.0, 0.9, len(colours)))
+    drawn = Figure(figsize=(1.6 + 3.4 * min(len(panels), 3), 0.8 + 3.2 * -(-len(panels) // 3)), layout="constrained")
+    axes = drawn.subplots(-(-len(panels) // 3), min(len(panels), 3), sharex=True, sharey=True, squeeze=False).ravel()
+    for panel, (panel_value, in_panel) in zip(axes, panels, strict=False):
+        for shade, (value, in_line) in zip(shades, colours, strict=True):
+            x, y = data[figure.x].to_numpy()[in_panel & in_line], values[in_panel & in_line]
+            order = np.argsort(x)
+            label = None if figure.colour is None else _text(data, figure.colour, value)
+            panel.plot(x[order], y[order], "o-", ms=3, lw=1.2, color=shade, label=label)
+        panel.set(xlabel=_axis(data, figure.x), ylabel=_axis(data, figure.of))
+        if figure.panels is not None:
+            panel.set_title(_text(data, figure.panels, panel_value), fontsize=9)
+        panel.label_outer()
+        panel.grid(lw=0.3)
+    for spare in axes[len(panels) :]:
+        spare.remove()
+    if figure.colour is not None:
+        axes[0].legend(fontsize=7)
+    return drawn
+
+
+def contours(figure, plan, data, place):
+    """A response over two inputs; dots where cases have been run."""
+    values = _response(data, figure.of, place)
+    good = np.isfinite(values)
+    x, y = (data[name].to_numpy() for name in (figure.x, figure.y))
+    if good.sum() < 4 or min(len(np.unique(x[good])), len(np.unique(y[good]))) < 2:
+        return None
+    drawn = Figure(figsize=(5.6, 4.4), layout="constrained")
+    axes = drawn.add_subplot()
+    shown = axes.tricontourf(x[good], y[good], values[good], levels=16, cmap=COLOURS)
+    isolines = axes.tricontour(x[good], y[good], values[good], levels=8, colors="k", linewidths=0.5)
+    axes.clabel(isolines, fontsize=7)
+    axes.plot(x[good], y[good], "k.", ms=2)
+    if not good.all():
+        axes.plot(x[~good], y[~good], "rx", ms=4, label="failed or missing")
+        axes.legend(fontsize=7)
+    drawn.colorbar(shown, label=_axis(data, figure.of))
+    axes.set(xlabel=_axis(data, figure.x), ylabel=_axis(data, figure.y))
+    return drawn
+
+
+def characteristics(figure, plan, data, place):
+    """Force over travel of all cases, in the colours of an input or a response."""
+    travel, force = data["curve_travel_mm"].to_numpy(), data["curve_force_N"].to_numpy()
+    words = None
+    if figure.colour not in plan.names:
+        shade = _response(data, figure.colour, place)
+    elif data[figure.colour].dtype.kind == "f":
+        shade = data[figure.colour].to_numpy()
+    else:
+        words, shade = np.unique(data[figure.colour].to_numpy(), return_inverse=True)
+    some = np.flatnonzero(np.isfinite(force).any(axis=1) & np.isfinite(shade))
+    if not len(some):
+        return None
+    some = some[:: -(-len(some) // LINE_LIMIT)]
+    start = np.zeros((len(some), 1))
+    curves = np.stack([np.hstack([start, part[some]]) for part in (travel, force)], axis=-1)
+    drawn = Figure(figsize=(6.4, 4.4), layout="constrained")
+    axes = drawn.add_subplot()
+    width = float(np.clip(30.0 / len(some), 0.25, 1.2))
+    family = LineCollection([curve[np.isfinite(curve[:, 1])] for curve in curves], cmap=COLOURS, lw=width)
+    family.set_array(shade[some])
+    axes.add_collection(family)
+    axes.autoscale()
+    bar = drawn.colorbar(family, label=_axis(data, figure.colour))
+    if words is not None:
+        bar.set_ticks(range(len(words)), labels=list(words))
+    axes.set(xlabel="travel in mm", ylabel="axial force in N")
+    axes.grid(lw=0.3)
+    return drawn
+
+
+def scatter(figure, plan, data, place):
+    """A response over each input in turn, and its distribution."""
+    values = _response(data, figure.of, place)
+    good = np.isfinite(values)
+    if not good.any():
+        return None
+    names, count = plan.names, len(plan.names) + 1
+    drawn = Figure(figsize=(1.4 + 2.9 * min(count, 3), 0.6 + 2.8 * -(-count // 3)), layout="constrained")
+    axes = drawn.subplots(-(-count // 3), min(count, 3), squeeze=False).ravel()
+    for panel, name in zip(axes, names, strict=False):
+        panel.plot(data[name].to_numpy()[good], values[good], ".", ms=3, alpha=0.6)
+        panel.set(xlabel=_axis(data, name), ylabel=_axis(data, figure.of))
+        panel.grid(lw=0.3)
+    mean, deviation = values[good].mean(), values[good].std(ddof=1) if good.sum() > 1 else 0.0
+    last = axes[count - 1]
+    last.hist(values[good], bins="auto", color="0.6")
+    last.axvline(mean, color="k", lw=1)
+    low, high = np.quantile(values[good], [0.05, 0.95])
+    last.axvspan(low, high, color="C0", alpha=0.15)
+    last.set(xlabel=_axis(data, figure.of), ylabel="cases")
+    found = f"mean {mean:.5g}, standard deviation {deviation:.3g}\n5 % to 95 %: {low:.5g} to {high:.5g}"
+    last.set_title(found, fontsize=8)
+    for spare in axes[count:]:
+        spare.remove()
+    return drawn
+
+
+def sensitivity(figure, plan, data, place):
+    """Bars of the Sobol indices (design sobol_indices) or of the rank correlations, with their 95 % intervals."""
+    numeric = [name for name in plan.names if data[name].dtype.kind == "f"]
+    sobol = plan.spec.design == "sobol_indices"
+    names = plan.names if sobol else numeric
+    drawn = Figure(figsize=(6.4, 0.9 + 0.45 * len(names) * len(figure.of) + 0.6 * len(figure.of)), layout="constrained")
+    panels = drawn.subplots(len(figure.of), 1, squeeze=False).ravel()
+    for panel, of in zip(panels, figure.of, strict=True):
+        values = _response(data, of, place)
+        place_y = np.arange(len(names))
+        if sobol:
+            found = sobol_indices(values, len(names), plan.spec.samples, plan.spec.seed)
+            if found is None:
+                return None
+            _bars(panel, place_y - 0.2, 0.38, found.first, found.first_interval, "C0", "first order: the input alone")
+            _bars(panel, place_y + 0.2, 0.38, found.total, found.total_interval, "C1", "total: with its interactions")
+            panel.set(xlabel=f"share of the variance of {data[of].attrs['long_name']} ({found.samples} base samples)")
+            panel.set_xlim(left=min(0.0, panel.get_xlim()[0]))
+        else:
+            x = np.stack([data[name].to_numpy() for name in names], axis=1)
+            found, interval = rank_correlation(x, values)
+            _bars(panel, place_y, 0.6, found, interval, "C0", "Spearman, 95 % interval")
+            panel.set(xlabel=f"rank correlation with {data[of].attrs['long_name']}", xlim=(-1.05, 1.05))
+        panel.axvline(0.0, color="k", lw=0.6)
+        panel.set_yticks(place_y, [data[name].attrs["long_name"] for name in names])
+        panel.invert_yaxis()
+    panels[0].legend(fontsize=7)
+    return drawn
+
+
+def _bars(axes, y, height, values, interval, colour, label):
+    reach = np.abs(interval.T - values)
+    thin = {"lw": 0.8, "capsize": 2}
+    axes.barh(y, values, height, xerr=np.nan_to_num(reach), color=colour, label=label, error_kw=thin)
+
+
+def convergence(figure, plan, data, place):
+    """Relative distance of each response from its value at the greatest value of the input, over that input."""
+    names = [name for name in plan.names if data[name].dtype.kind == "f"]
+    drawn = Figure(figsize=(1.2 + 2.9 * len(names), 3.6), layout="constrained")
+    panels = drawn.subplots(1, len(names), sharey=True, squeeze=False).ravel()
+    inputs = np.array(plan.rows, dtype=object)
+    for panel, name in zip(panels, names, strict=True):
+        others = [k for k, other in enumerate(plan.names) if other != name]
+        ray = (inputs[:, others] == inputs[0, others]).all(axis=1)  # only this input differs from the base case
+        x = data[name].to_numpy()[ray]
+        order = np.argsort(x)
+        for k, of in enumerate(figure.of):
+            values = _response(data, of, place)[ray][order]
+            error = np.abs(values[:-1] / values[-1] - 1.0)
+            panel.loglog(x[order][:-1], error, "o-", ms=3, lw=1.2, color=f"C{k}", label=data[of].attrs["long_name"])
+        panel.set(xlabel=_axis(data, name), ylabel="relative distance from the finest")
+        panel.set_title(f"base {inputs[0, plan.names.index(name)]}, finest {x.max():g}", fontsize=9)
+        panel.label_outer()
+        panel.grid(lw=0.3, which="both")
+    panels[0].legend(fontsize=7)
+    return drawn
+
+
+DRAW = {"lines": lines, "map": contours, "characteristics": characteristics, "scatter": scatter,
+        "sensitivity": sensitivity, "convergence": convergence}  # fmt: skip

@@ -1,0 +1,89 @@
+"""The journal of a sweep: one JSON line for each case that has ended, written as soon as it has."""
+
+import fcntl
+import json
+import os
+import time
+from pathlib import Path
+
+from coilset.model.errors import InputError
+
+SYNC_SECONDS = 1.0
+
+
+class Journal:
+    """Appends records, and reads them back; at most the last line can be torn, and then it does not count.
+
+    Args:
+        path: the file, made if it is not there.
+
+    Raises:
+        InputError: if it cannot be opened, or another process writes to it.
+    """
+
+    def __init__(self, path):
+        self.path, self._synced = Path(path), time.monotonic()
+        try:
+            self._file = open(path, "ab")  # noqa: SIM115 (held open, and locked, until close)
+        except OSError as error:
+            raise InputError(f"cannot be written: {error.strerror}", "", path) from None
+        try:
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            self._file.close()
+            raise InputError("another sweep is writing to this folder", "", path) from None
+        self._file.truncate(whole_length(self.path))
+
+    def append(self, record):
+        """Write a record; it outlives the process at once, and the machine after a second."""
+        self._file.write(json.dumps(record, allow_nan=False).encode() + b"\n")
+        self._file.flush()
+        if time.monotonic() - self._synced > SYNC_SECONDS:
+            self._sync()
+
+    def _sync(self):
+        os.fsync(self._file.fileno())
+        self._synced = time.monotonic()
+
+    def close(self):
+        """Bring all to disk and let go of the lock."""
+        self._sync()
+        self._file.close()
+
+
+def whole_length(path):
+    """Length of the file up to the end of its last whole line, in bytes."""
+    with open(path, "rb") as file:
+        end = file.seek(0, os.SEEK_END)
+        while end > 0:
+            start = max(end - 65536, 0)
+            file.seek(start)
+            found = file.read(end - start).rfind(b"\n")
+            if found >= 0:
+                return start + found + 1
+            end = start
+    return 0
+
+
+def read_records(path):
+    """The records of a journal, one after the other; none if there is no file.
+
+    Raises:
+        InputError: a line that is no record, with its number.
+    """
+    path = Path(path)
+    if not path.exists():
+        return
+    left = whole_length(path)
+    with open(path, "rb") as file:
+        for number, line in enumerate(file, 1):
+            left -= len(line)
+            if left < 0:
+                return
+            try:
+                record = json.loads(line)
+                record["key"], record["status"]
+            except (ValueError, KeyError, TypeError):
+                raise InputError("is no record of a case; remove this line, and --resume runs its case again",
+                                 f"line {number}", path) from None  # fmt: skip
+            yield record

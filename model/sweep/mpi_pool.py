@@ -1,0 +1,56 @@
+"""Cases on the ranks of an MPI job, by mpi4py.futures: rank 0 leads, the others solve, one or several to a case."""
+
+import gc
+import signal
+from contextlib import contextmanager
+
+from coilset.model.errors import InputError
+from coilset.model.sweep.evaluate import evaluate
+from coilset.model.sweep.pools import Pool
+from mpi4py.futures import MPICommExecutor
+
+_group = None  # communicator of the ranks that share a case with this one
+
+
+def solve_in_group(task):
+    """On the first rank of a group: hand the task to the group's other ranks, and solve it with them."""
+    _group.bcast(task)
+    return evaluate(task["data"], _group, task["time_limit"])
+
+
+@contextmanager
+def mpi_pool(comm, ranks_per_case):
+    """A pool over the ranks of `comm`.
+
+    Args:
+        comm: communicator of the whole job.
+        ranks_per_case: ranks that share a case.
+
+    Yields:
+        Pool on rank 0; None on the other ranks, and only after the sweep has ended.
+
+    Raises:
+        InputError: if the ranks cannot be split so.
+    """
+    global _group
+    groups = (comm.size - 1) // ranks_per_case
+    if groups < 1:
+        need = f"one leads, and {ranks_per_case} share a case"
+        raise InputError(f"{comm.size} ranks are too few: {need}", "--ranks-per-case")
+    if comm.rank:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the rank that leads
+    gc.collect()
+    gc.freeze()  # the collection after each case need not go through the libraries
+    number = (comm.rank - 1) // ranks_per_case  # of this rank's group; -1 for the one that leads
+    idle = number >= groups
+    _group = comm.Split(number + 1 if not idle else groups + 1, comm.rank)
+    first = _group.rank == 0 and not idle
+    leaders = comm.Split(0 if first else 1, comm.rank)
+    if first:
+        with MPICommExecutor(leaders, root=0) as executor:
+            yield None if executor is None else Pool(lambda task: executor.submit(solve_in_group, task), groups)
+        _group.bcast(None)
+    else:
+        while not idle and (task := _group.bcast(None)) is not None:
+            evaluate(task["data"], _group, task["time_limit"])
+        yield None

@@ -1,0 +1,94 @@
+"""Where the cases of a sweep run: processes of this machine, or the ranks of an MPI job.
+
+Both give `submit(task)`, which returns a future of the record, and `workers`, the number of cases run at a time.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+
+WORKER = [sys.executable, "-m", "coilset.model.sweep.worker"]
+
+
+class Process:
+    """One worker process; it is started again if a case takes it down.
+
+    Args:
+        environment: of the process. MPI changes the environment of a process that has started it, so this one is kept
+            from before.
+        log: file for what it prints.
+    """
+
+    def __init__(self, environment, log):
+        self.environment, self.log, self.process = environment, log, None
+
+    def run(self, task):
+        """The record of a task; a process that dies is the reason of a failed case."""
+        if self.process is None:
+            self.process = subprocess.Popen(
+                WORKER, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.log, env=self.environment, text=True,
+                encoding="utf-8", start_new_session=True,
+            )  # fmt: skip
+        process, answer = self.process, ""
+        try:
+            process.stdin.write(json.dumps(task) + "\n")
+            process.stdin.flush()
+            answer = process.stdout.readline()
+        except BrokenPipeError:
+            pass
+        if answer.endswith("\n"):
+            return json.loads(answer)
+        status = process.wait()
+        self.close()
+        how = f"signal {-status}" if status < 0 else f"exit code {status}"
+        return {"status": "failed", "reason": f"the process of this case ended with {how}", "summary": {}, "steps": {},
+                "seconds": None}  # fmt: skip
+
+    def close(self):
+        """End the process, whatever it is doing."""
+        process, self.process = self.process, None
+        if process is not None:
+            process.kill()
+            process.wait()
+            process.stdin.close()
+            process.stdout.close()
+
+
+@contextmanager
+def local_pool(jobs, environment, log):
+    """A pool of `jobs` processes on this machine; leaving it ends them."""
+    own = threading.local()
+    started, lock = [], threading.Lock()
+
+    def begin():
+        own.process = Process(environment, log)
+        with lock:
+            started.append(own.process)
+
+    executor = ThreadPoolExecutor(jobs, initializer=begin)
+
+    def submit(task):
+        return executor.submit(lambda: own.process.run(task))
+
+    try:
+        yield Pool(submit, jobs)
+    finally:
+        executor.shutdown(wait=False, cancel_futures=True)
+        for process in list(started):
+            process.close()
+
+
+class Pool:
+    """What leads a sweep sees of its workers."""
+
+    def __init__(self, submit, workers):
+        self.submit, self.workers = submit, workers
+
+
+def usable_cores():
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0))

@@ -1,0 +1,52 @@
+"""Run what is missing of a plan, and record each case as it ends."""
+
+from concurrent.futures import FIRST_COMPLETED, wait
+
+from coilset.model.sweep.journal import read_records
+
+AHEAD = 2  # tasks handed out for each worker, so that none waits
+
+
+def finished(path, retry=False):
+    """Keys of the cases that a journal holds; without the failed ones if they are to be tried again."""
+    return {record["key"] for record in read_records(path) if not (retry and record["status"] == "failed")}
+
+
+def missing(plan, done):
+    """Rows and keys of the cases that are not in `done`, each once."""
+    seen = set(done)
+    for row, key in zip(plan.rows, plan.keys, strict=True):
+        if key not in seen:
+            seen.add(key)
+            yield row, key
+
+
+def run(plan, todo, pool, journal, report=lambda record: None):
+    """Run the cases of `todo`.
+
+    Args:
+        plan: Plan.
+        todo: rows and keys, see `missing`.
+        pool: where they run.
+        journal: Journal.
+        report: called with each record, after it has been written.
+    """
+    waiting, todo = {}, iter(todo)
+    try:
+        _keep_busy(plan, todo, pool, journal, report, waiting)
+    finally:
+        for future in waiting:
+            future.cancel()
+
+
+def _keep_busy(plan, todo, pool, journal, report, waiting):
+    while True:
+        while len(waiting) < AHEAD * pool.workers and (case := next(todo, None)) is not None:
+            row, key = case
+            waiting[pool.submit({"data": plan.data(row), "time_limit": plan.spec.time_limit})] = key
+        if not waiting:
+            return
+        for future in wait(waiting, return_when=FIRST_COMPLETED).done:
+            record = {"key": waiting.pop(future), **future.result()}
+            journal.append(record)
+            report(record)

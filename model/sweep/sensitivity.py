@@ -1,0 +1,75 @@
+"""How much of a response each input explains."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+RESAMPLES = 200
+CONFIDENCE = 0.95
+
+
+@dataclass(frozen=True)
+class Indices:
+    """Sobol indices of one response, shape (inputs,); the intervals have shape (inputs, 2).
+
+    Attributes:
+        first: share of the variance that an input explains alone, total: with all its interactions.
+        first_interval, total_interval: 95 % intervals by bootstrap.
+        samples: base samples that were used.
+    """
+
+    first: np.ndarray
+    total: np.ndarray
+    first_interval: np.ndarray
+    total_interval: np.ndarray
+    samples: int
+
+
+def sobol_indices(values, inputs, samples, seed=0):
+    """First-order and total Sobol indices from the cases of the design `sobol_indices`.
+
+    Args:
+        values: response of the cases in the design's order (blocks A, B, AB₁ …), shape (samples (inputs + 2),). Base
+            samples in which a case has no value are left out; of the others as many as a power of 2 allows are used.
+        inputs: number of inputs.
+        samples: base samples.
+        seed: of the bootstrap.
+
+    Returns:
+        Indices; None if fewer than 2 base samples are left.
+    """
+    blocks = np.asarray(values, dtype=float).reshape(inputs + 2, samples)
+    good = np.flatnonzero(np.isfinite(blocks).all(axis=0))
+    if len(good) < 2:
+        return None
+    n = 2 ** int(np.log2(len(good)))
+    blocks = blocks[:, good[:n]]
+    parts = {"f_A": blocks[:1], "f_B": blocks[1:2], "f_AB": blocks[2:, None, :]}
+    found = stats.sobol_indices(func=parts, n=n, rng=np.random.default_rng(seed))
+    spread = found.bootstrap(confidence_level=CONFIDENCE, n_resamples=RESAMPLES)
+    intervals = [np.stack([np.ravel(part.confidence_interval.low), np.ravel(part.confidence_interval.high)], axis=1)
+                 for part in (spread.first_order, spread.total_order)]  # fmt: skip
+    return Indices(np.ravel(found.first_order), np.ravel(found.total_order), *intervals, n)
+
+
+def rank_correlation(x, values):
+    """Spearman's rank correlation of a response with each input, and its 95 % interval by Fisher's transformation.
+
+    Args:
+        x: inputs, shape (cases, inputs).
+        values: response, shape (cases,); cases without one are left out.
+
+    Returns:
+        Correlations, shape (inputs,), and intervals, shape (inputs, 2); NaN where an input or the response is constant,
+        or fewer than 4 cases are left.
+    """
+    good = np.isfinite(values)
+    correlation = np.full(x.shape[1], np.nan)
+    if good.sum() >= 4 and np.ptp(values[good]) > 0.0:
+        varied = np.flatnonzero(np.ptp(x[good], axis=0) > 0.0)
+        correlation[varied] = [stats.spearmanr(x[good, k], values[good]).statistic for k in varied]
+    # standard error of artanh ρ for Spearman's ρ: 1.03/sqrt(n − 3) (Fieller, Hartley and Pearson, Biometrika 44 (1957))
+    reach = stats.norm.ppf(0.5 + 0.5 * CONFIDENCE) * 1.03 / np.sqrt(max(good.sum() - 3, 1))
+    middle = np.arctanh(np.clip(correlation, -1.0 + 1e-15, 1.0 - 1e-15))
+    return correlation, np.tanh(np.stack([middle - reach, middle + reach], axis=1))

@@ -1,0 +1,186 @@
+"""The sweep file: a base case, the entries that vary, the design that combines them, and the figures."""
+
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from coilset.model.loading.program import Strict
+from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
+from scipy import stats
+
+
+class Input(Strict):
+    """What every varied input has."""
+
+    entries: Annotated[
+        list[str] | None, Field(min_length=1, description="entries of the case that get the value; default: the name")
+    ] = None
+    label: Annotated[str | None, Field(description="name in figures")] = None
+    unit: Annotated[str, Field(description="unit in figures")] = ""
+
+
+class Values(Input):
+    """A list of values; a sampling design picks each equally often."""
+
+    values: Annotated[list[Any], Field(min_length=1, description="numbers, words or any other YAML")]
+
+    def grid(self):
+        """The values."""
+        return list(self.values)
+
+    def at(self, q):
+        """Values at the probabilities `q`, 0 ≤ q < 1."""
+        return [self.values[min(int(part * len(self.values)), len(self.values) - 1)] for part in q]
+
+
+class Range(Input):
+    """From here to there; a sampling design spreads values evenly over it."""
+
+    start: Annotated[float, Field(alias="from", description="first value")]
+    stop: Annotated[float, Field(alias="to", description="last value")]
+    count: Annotated[int | None, Field(ge=2, le=1_000_000, description="number of values in a grid")] = None
+    spacing: Annotated[Literal["linear", "log"], Field(description="equal differences or equal ratios")] = "linear"
+
+    @model_validator(mode="after")
+    def _order(self):
+        if self.start >= self.stop:
+            raise ValueError(f"from {self.start:g} to {self.stop:g} is no range; 'from' must be the smaller one")
+        if self.spacing == "log" and self.start <= 0:
+            raise ValueError(f"equal ratios need a positive start, not {self.start:g}")
+        return self
+
+    def grid(self):
+        """`count` values, both ends among them."""
+        if self.count is None:
+            raise ValueError("a grid needs 'count', the number of values in the range")
+        return self.at(np.linspace(0.0, 1.0, self.count))
+
+    def at(self, q):
+        """Values at the probabilities `q`."""
+        if self.spacing == "log":
+            return (self.start * (self.stop / self.start) ** np.asarray(q)).tolist()
+        return (self.start + (self.stop - self.start) * np.asarray(q)).tolist()
+
+
+class Normal(Input):
+    """Manufacturing scatter: normal about the mean, parts outside mean ± tolerance are sorted out."""
+
+    mean: Annotated[float, Field(description="middle of the tolerance")]
+    tolerance: Annotated[float, Field(gt=0, description="half of the tolerance's width")]
+    sigmas: Annotated[float, Field(gt=0, le=10, description="standard deviations in the tolerance")] = 3.0
+
+    def grid(self):
+        """There is none."""
+        raise ValueError("a scatter has no grid; take the design latin_hypercube, sobol or sobol_indices")
+
+    def at(self, q):
+        """Values at the probabilities `q`, the quantiles of the truncated normal distribution."""
+        scatter = stats.truncnorm(-self.sigmas, self.sigmas, loc=self.mean, scale=self.tolerance / self.sigmas)
+        return scatter.ppf(q).tolist()
+
+
+def _kind(value):
+    """Which of the three an input is, by the entries that only it has."""
+    given = value if isinstance(value, dict) else getattr(value, "__dict__", {})
+    if "values" in given:
+        return "(values)"
+    return "(normal)" if "mean" in given or "tolerance" in given else "(range)"
+
+
+AnyInput = Annotated[
+    Annotated[Values, Tag("(values)")] | Annotated[Range, Tag("(range)")] | Annotated[Normal, Tag("(normal)")],
+    Discriminator(_kind),
+    BeforeValidator(lambda value: {"values": value} if isinstance(value, list) else value),
+]
+
+
+class Lines(Strict):
+    """A response over one input, a line for each value of a second, a panel for each value of a third."""
+
+    kind: Literal["lines"]
+    of: Annotated[str, Field(description="entry of the summary, such as set_mm")] = "set_mm"
+    x: str
+    colour: str | None = None
+    panels: str | None = None
+
+
+class Map(Strict):
+    """A response over two inputs, as contours."""
+
+    kind: Literal["map"]
+    of: Annotated[str, Field(description="entry of the summary")] = "set_mm"
+    x: str
+    y: str
+
+
+class Family(Strict):
+    """The characteristics of all cases, coloured by an input or a response."""
+
+    kind: Literal["characteristics"]
+    colour: Annotated[str, Field(description="an input, or an entry of the summary")] = "set_mm"
+
+
+class Scatter(Strict):
+    """A response over each input in turn, and its distribution."""
+
+    kind: Literal["scatter"]
+    of: Annotated[str, Field(description="entry of the summary")] = "set_mm"
+
+
+class Sensitivity(Strict):
+    """How much of a response each input explains: Sobol indices where the design allows, else rank correlation."""
+
+    kind: Literal["sensitivity"]
+    of: Annotated[list[str], Field(min_length=1, description="entries of the summary")] = Field(["set_mm"])
+
+
+class Convergence(Strict):
+    """Distance of a response from its value at the finest of each input, over that input; for one_at_a_time."""
+
+    kind: Literal["convergence"]
+    of: Annotated[list[str], Field(min_length=1, description="entries of the summary")] = Field(["set_mm"])
+
+
+AnyFigure = Annotated[Lines | Map | Family | Scatter | Sensitivity | Convergence, Field(discriminator="kind")]
+
+Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_.]*$")]  # of a variable in the data set
+
+GRIDS = ("grid", "together", "one_at_a_time")
+SAMPLES = ("latin_hypercube", "sobol", "random", "sobol_indices")
+
+
+class SweepSpec(Strict):
+    """A whole sweep."""
+
+    case: Annotated[str, Field(description="the base case's file, from the folder of the sweep's file")]
+    change: Annotated[dict[str, Any], Field(description="entries replaced in every case")] = Field({})
+    vary: Annotated[dict[Name, AnyInput], Field(min_length=1, description="entry, or a name with `entries`, → values")]
+    design: Annotated[
+        Literal["grid", "together", "one_at_a_time", "latin_hypercube", "sobol", "random", "sobol_indices"],
+        Field(description="how the inputs are combined"),
+    ] = "grid"
+    samples: Annotated[int | None, Field(ge=2, le=100_000_000, description="cases of a sampling design")] = None
+    seed: Annotated[int, Field(ge=0, description="of a sampling design's random numbers")] = 0
+    time_limit: Annotated[float | None, Field(gt=0, description="seconds after which a case is given up")] = None
+    figures: list[AnyFigure] | None = None
+
+    @model_validator(mode="after")
+    def _design_fits(self):
+        if self.design in SAMPLES and self.samples is None:
+            raise ValueError(f"the design {self.design} needs 'samples'")
+        if self.design in GRIDS and self.samples is not None:
+            raise ValueError(f"the design {self.design} has no 'samples': its number of cases follows from the values")
+        if self.design in ("sobol", "sobol_indices") and self.samples & (self.samples - 1):
+            raise ValueError(f"the design {self.design} needs a power of 2 as 'samples', not {self.samples}")
+        return self
+
+    @model_validator(mode="after")
+    def _figures_fit(self):
+        for number, figure in enumerate(self.figures or []):
+            for role in ("x", "y", "panels", "colour"):
+                name = getattr(figure, role, None)
+                if role == "colour" and figure.kind == "characteristics":
+                    continue
+                if name is not None and name not in self.vary:
+                    raise ValueError(f"figures.{number}.{role}: '{name}' is none of the varied inputs "
+                                     f"({', '.join(self.vary)})")  # fmt: skip
+        return self

@@ -1,0 +1,33 @@
+"""A process that runs cases one after the other: JSON lines in, JSON lines out; it ends when its input ends.
+
+Imports, compiled forms and compiled kernels stay warm from case to case. It ends with whoever started it, however that
+ended, since the pipe closes.
+"""
+
+import gc
+import json
+import os
+import signal
+import sys
+
+
+def main():
+    """`python -m coilset.model.sweep.worker`."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that leads
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # what libraries print must not get between the answers
+
+    from coilset.model.sweep.evaluate import evaluate
+    from mpi4py import MPI
+
+    gc.collect()
+    gc.freeze()  # the collection after each case need not go through the libraries
+    for line in sys.stdin:
+        task = json.loads(line)
+        record = evaluate(task["data"], MPI.COMM_SELF, task["time_limit"])
+        answers.write(json.dumps(record, allow_nan=False) + "\n")
+        answers.flush()
+
+
+if __name__ == "__main__":
+    main()

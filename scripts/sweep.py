@@ -1,0 +1,154 @@
+"""`coilset sweep`: run what a sweep file asks for, keep every case as it ends, and draw what was found."""
+
+import os
+import signal
+import time
+from contextlib import closing, contextmanager
+from pathlib import Path
+
+from coilset.model.errors import InputError
+from coilset.model.sweep import dataset
+from coilset.model.sweep.figures import draw
+from coilset.model.sweep.journal import Journal
+from coilset.model.sweep.plan import Plan
+from coilset.model.sweep.pools import local_pool, usable_cores
+from coilset.model.sweep.run import finished, missing, run
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+REPORT_SECONDS = 30.0  # between two lines of progress where there is no terminal
+SHOWN_FAILURES = 5
+
+
+def sweep(sweep_file, out, force, resume, retry, jobs, ranks_per_case, pictures):
+    """Run a sweep; see `coilset sweep --help`.
+
+    Raises:
+        InputError: before anything is run, if a file is wrong or the folder holds a sweep already.
+        KeyboardInterrupt: after the cases that have ended are brought together.
+    """
+    environment = dict(os.environ)  # as it was before MPI
+    from mpi4py import MPI
+
+    comm = MPI.COMM_WORLD
+    out = Path(out or Path("results") / Path(sweep_file).stem)
+    plan = _on_first_rank(comm, lambda: _prepare(sweep_file, out, force, resume or retry, ranks_per_case))
+    console = Console(highlight=False)
+    with _pool(comm, jobs or usable_cores(), ranks_per_case, environment, out) as pool:
+        if pool is not None:
+            _lead(plan, out, retry, pool, console)
+    if comm.rank == 0:
+        _conclude(plan, out, pictures, console)
+
+
+def _on_first_rank(comm, prepare):
+    """What `prepare` gives on rank 0, None elsewhere; its InputError on all ranks."""
+    plan, problem = None, None
+    if comm.rank == 0:
+        try:
+            plan = prepare()
+        except InputError as error:
+            problem = error.problem, error.place, str(error.file)
+    problem = comm.bcast(problem)
+    if problem:
+        raise InputError(*problem)
+    return plan
+
+
+def _prepare(sweep_file, out, force, resume, ranks_per_case):
+    plan = Plan(sweep_file)
+    if plan.spec.time_limit is not None and ranks_per_case > 1:
+        raise InputError("holds for cases on one rank only; leave it out", "time_limit", sweep_file)
+    journal = out / "journal.jsonl"
+    if journal.exists() and not (force or resume):
+        raise InputError("holds a sweep; give --resume for what is missing, --force to replace it", "--out", out)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot be made: {error.strerror}", "--out", out) from None
+    if force and not resume:
+        journal.unlink(missing_ok=True)
+    return plan
+
+
+@contextmanager
+def _pool(comm, jobs, ranks_per_case, environment, out):
+    if comm.size > 1:
+        from coilset.model.sweep.mpi_pool import mpi_pool
+
+        with mpi_pool(comm, ranks_per_case) as pool:
+            yield pool
+    else:
+        with open(out / "workers.log", "a") as log, local_pool(jobs, environment, log) as pool:
+            yield pool
+
+
+def _lead(plan, out, retry, pool, console):
+    """Run the missing cases with a bar of their progress."""
+
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGTERM, stop)  # what a job's scheduler sends at the end of its time
+    path = out / "journal.jsonl"
+    with closing(Journal(path)) as journal:
+        todo = list(missing(plan, finished(path, retry)))
+        there = len(set(plan.keys)) - len(todo)
+        console.print(f"{plan.path.name}: {len(plan)} cases, {there} there already, {pool.workers} at a time")
+        progress = Bar(len(todo), console)
+        with progress.bar:
+            run(plan, todo, pool, journal, progress.report)
+
+
+class Bar:
+    """Progress bar with cases a minute and time left; a line now and then where there is no terminal."""
+
+    def __init__(self, total, console):
+        self.total, self.console, self.done, self.failed = total, console, 0, 0
+        self.began = self.said = time.monotonic()
+        self.bar = Progress(
+            TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[rate]}"),
+            TimeRemainingColumn(), TextColumn("[red]{task.fields[failed]}"), console=console,
+            disable=not console.is_terminal, speed_estimate_period=120.0,
+        )  # fmt: skip
+        self.task = self.bar.add_task("cases", total=total, rate="", failed="")
+
+    def report(self, record):
+        """A case has ended."""
+        now = time.monotonic()
+        self.done += 1
+        self.failed += record["status"] == "failed"
+        speed = 60.0 * self.done / max(now - self.began, 1e-9)
+        failed = f"{self.failed} failed" if self.failed else ""
+        self.bar.update(self.task, completed=self.done, rate=f"{speed:.1f} a minute", failed=failed)
+        if not self.console.is_terminal and now - self.said > REPORT_SECONDS:
+            self.said = now
+            left = f"{(self.total - self.done) / speed:.1f} minutes left"
+            self.console.print(f"{self.done}/{self.total} cases, {speed:.1f} a minute, {left} {failed}")
+
+
+def _conclude(plan, out, pictures, console):
+    """Data set, figures, and what was found in words."""
+    data = dataset.collect(plan, out / "journal.jsonl")
+    dataset.write(out / "sweep.nc", data)
+    files, problems = draw(out, plan, data) if pictures else ([], [])
+    counts = {status: int((data.status == status).sum()) for status in ("done", "failed", "missing")}
+    table = Table(show_header=True, box=None, padding=(0, 2))
+    for column in ("", "least", "mean", "greatest"):
+        table.add_column(column, justify="left" if not column else "right")
+    for name in ("set_mm", "force_max_N", "rate_N_per_mm", "residual_shear_max_MPa"):
+        if name in data and data[name].notnull().any():
+            words, unit = dataset.quantity(name)
+            values = data[name]
+            numbers = (f"{float(value):.5g}" for value in (values.min(), values.mean(), values.max()))
+            table.add_row(f"{words}, {unit}", *numbers)
+    console.print(table)
+    failures = data.where(data.status == "failed", drop=True)
+    for k in range(min(failures.sizes["case"], SHOWN_FAILURES)):
+        inputs = ", ".join(f"{name} = {failures[name].values[k]}" for name in plan.names)
+        console.print(f"[yellow]failed:[/] {inputs}: {failures.reason.values[k]}")
+    console.print(", ".join(f"{count} {status}" for status, count in counts.items() if count or status == "done"))
+    console.print(f"results in {out}{os.sep} (sweep.nc, journal.jsonl{''.join(', ' + name for name in files)})")
+    if problems:
+        raise problems[0]
