@@ -15,17 +15,20 @@ from coilset.model.errors import CoilsetError, InputError, SolveError
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.folder import prepare, write_history, write_summary
 from coilset.model.results.summary import summarise
+from coilset.scripts.interactive import Prompt
 
 STARTED = float(os.environ.get("COILSET_STARTED", time.time()))
 
 
-def solve(case_file, out, force, settings, pictures, resume=False, comm=MPI.COMM_WORLD):
+def solve(case_file, out, force, settings, pictures, resume=False, interactive=False, comm=MPI.COMM_WORLD):
     """Run one case; see `coilset solve --help`.
 
     Raises:
         InputError, SolveError: after the results up to there are written.
     """
     console = Console(quiet=comm.rank != 0, highlight=False)
+    if interactive and comm.size > 1:
+        raise InputError("works on one rank; leave -n out", "--interactive")
     case = read_case(case_file, settings)
     out = Path(out or Path("results") / Path(case_file).stem)
     try:
@@ -49,8 +52,15 @@ def solve(case_file, out, force, settings, pictures, resume=False, comm=MPI.COMM
         console.print(f"going on after step {analysis.stepper.number}")
     console.print("   step   seat height/mm      force/N   iterations   contacts")
     failure = None
+    ask = Prompt(analysis, console.print) if interactive else None
+
+    def report(step):
+        console.print(_row(step))
+        if ask:
+            ask(step)
+
     try:
-        analysis.run(lambda step: console.print(_row(step)), checkpoint)
+        analysis.run(report, checkpoint)
     except (SolveError, KeyboardInterrupt) as error:
         failure = error
     result = analysis.result

@@ -50,6 +50,11 @@ class Walk:
     last: float = 0.0
 
 
+def regular_steps(phase):
+    """Number of regular steps of a phase."""
+    return AUTOMATIC if phase.steps == "auto" else phase.steps
+
+
 class Stepper:
     """Drives a spring through phases.
 
@@ -87,9 +92,9 @@ class Stepper:
             SolveError: if a step failed down to the smallest size, or the phase creeps; the state is that of the last
                 converged step.
         """
-        regular, attempts = phase.steps if phase.steps != "auto" else AUTOMATIC, 0
-        while self.walk.done < regular:
-            attempts += 1
+        self.phase, attempts = phase, 0
+        while self.walk.done < (regular := regular_steps(self.phase)):
+            phase, attempts = self.phase, attempts + 1
             if attempts > ATTEMPTS * regular + 200:
                 raise SolveError(f"{self._where()}: the program creeps, {attempts} solves on the way to {phase.label}")
             outcome, size = self._try(phase, regular)
@@ -97,6 +102,15 @@ class Stepper:
                 self._accept(phase, regular, outcome, size, report)
             else:
                 self._cut(phase, outcome, size)
+
+    def redirect(self, phase):
+        """Go to another target from here on, in place of the phase in progress."""
+        self.begin(self.walk.phase)
+        self.phase = phase
+
+    def resize(self, size):
+        """Make the next step as large as `size` regular steps."""
+        self.walk = replace(self.walk, size=size)
 
     def _where(self):
         return f"no equilibrium beyond {self.drive.height:.6g} mm and {self.drive.force:.6g} N"

@@ -48,6 +48,7 @@ class System:
         E, r, l = rod.law.E, rod.radius, rod.l0
         axial, bending = E * np.pi * r**2 / l, 3.0 * E * np.pi * r**4 / l**3  # E A/l, 12 E I/l³
         self.weight = comm_max(self.comm, axial.max(initial=0.0))
+        self.axial_force = comm_max(self.comm, E * np.pi * r.max(initial=0.0) ** 2)  # E A
         self.stiffest = comm_max(self.comm, np.maximum(axial, bending).max(initial=0.0))
 
     # ---- numbering -------------------------------------------------------------------------------------------------
@@ -191,9 +192,14 @@ class System:
         return self.comm.allreduce(mine) if self.comm.size > 1 else float(mine)
 
     def rounding(self, X):
-        """Norm of the out-of-balance forces that the rounding of the increments leaves, N."""
+        """Norm of the out-of-balance forces that rounding leaves, N.
+
+        That of the increments, times the stiffest of axial and bending stiffness; and the force that strains the
+        wire by 1e-14, so that a step without any change of load is at rest too.
+        """
         greatest = comm_max(self.comm, np.abs(X.getArray(readonly=True)).max(initial=0.0))
-        return np.finfo(float).eps * greatest * self.stiffest * np.sqrt(X.getSize())
+        increments = np.finfo(float).eps * greatest * self.stiffest * np.sqrt(X.getSize())
+        return max(increments, 1e-14 * self.axial_force)
 
     def imbalance(self, F):
         """Norm of the out-of-balance forces, and norm of the change of loads and reactions since the step's start."""

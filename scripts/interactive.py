@@ -1,0 +1,81 @@
+"""`coilset solve --interactive`: watch each step, and change size, method and target before the next."""
+
+import yaml
+from pydantic import ValidationError
+
+from coilset.model.case import explain
+from coilset.model.errors import InputError
+from coilset.model.loading.program import Phase
+
+HELP = """\
+Enter            the next step
+run              go on without asking
+size S           the next step is S regular steps long, as in: size 0.25
+to TARGET        another target from here, as in: to {height: 20}, to block; append ', steps: 8' to say how many
+method NAME      another iteration method, as in: method bfgs
+stop             end here; what was found is written, and --resume goes on"""
+
+
+class Prompt:
+    """Asks after each step; usable as the report of `Analysis.run`.
+
+    Args:
+        analysis: Analysis.
+        say: prints a line.
+        ask: returns the user's line for a prompt.
+    """
+
+    def __init__(self, analysis, say, ask=input):
+        self.analysis, self.say, self.ask, self.free = analysis, say, ask, False
+
+    def __call__(self, step):
+        """Ask until the user lets the next step go."""
+        while not self.free:
+            try:
+                word, _, rest = self.ask("coilset> ").strip().partition(" ")
+            except EOFError:
+                word, rest = "run", ""
+            if word == "":
+                return
+            try:
+                self.obey(word, rest.strip())
+            except (InputError, ValueError) as error:
+                self.say(str(error))
+
+    def obey(self, word, rest):
+        """Carry out one command.
+
+        Raises:
+            InputError, ValueError: if it is wrong; nothing was changed.
+            KeyboardInterrupt: for `stop`.
+        """
+        stepper = self.analysis.stepper
+        if word == "run":
+            self.free = True
+        elif word == "stop":
+            raise KeyboardInterrupt
+        elif word == "size":
+            size = float(rest)
+            if not 0.0 < size <= 1000.0:
+                raise ValueError("a size is a number above 0, in regular steps")
+            stepper.resize(size)
+        elif word == "method":
+            self.analysis.solver.use(rest)
+        elif word == "to":
+            stepper.redirect(parse_phase(rest))
+        else:
+            self.say(HELP)
+
+
+def parse_phase(text):
+    """A Phase from `{height: 20}, steps: 8` or `block`.
+
+    Raises:
+        InputError: if it is none.
+    """
+    try:
+        return Phase.model_validate(yaml.safe_load(f"{{to: {text}}}"))
+    except ValidationError as error:
+        raise InputError(*reversed(explain(error))) from None
+    except yaml.YAMLError:
+        raise InputError("a target is block, {travel: mm}, {height: mm} or {force: N}", text) from None
