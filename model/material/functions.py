@@ -21,7 +21,7 @@ ROW_T, YOUNG, SHEAR, ALPHA, K0, A1, A2, A3, B1, K1, KINF, A4, A5, A6, A7, KAPPA 
 ROW_LENGTH = 16
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def row_functions(p, o, b):
     """k², ∂k²/∂b*, ζ, ∂ζ/∂b*, κ, ∂κ/∂b* of the temperature whose row starts at `o` of `p`, (6.2.2)."""
     if b < p[o + B1]:
@@ -43,7 +43,7 @@ def row_functions(p, o, b):
     return k2, dk2, zeta, dzeta, kappa, 3.0 * p[o + KAPPA] * b * b
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def table_place(p, temperature):
     """Row below `temperature` (its offset in `p`) and the weight of the row above; the end intervals go on outside."""
     last = int(p[N_ROWS]) - 2
@@ -54,7 +54,7 @@ def table_place(p, temperature):
     return o, (temperature - p[o]) / (p[o + ROW_LENGTH] - p[o])
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def functions(p, b, temperature):
     """k², ζ, κ and their slopes at plastic work `b` and `temperature`.
 
@@ -80,7 +80,7 @@ def functions(p, b, temperature):
     )
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def elasticity(p, temperature):
     """E, G in N/mm² and the coefficient of thermal expansion in 1/K at `temperature`."""
     o = ROWS_START

@@ -14,9 +14,15 @@ Two scalars are left, the plastic work b* and Λ, and two equations:
 
     n:n = k²(b*)         (3.1.4)                   b* = b*₀ + n:p        (3.1.7)
 
-For a given b* the root Λ of the first is found by a Newton iteration that cannot fail, since 1/|n| is a concave, growing
-function of Λ. What remains is one equation for b*, solved by Newton inside a bracket: k² is steep at b* = 0, so that Newton
-alone overshoots there, and the slope of k² jumps at b1*.
+Newton's method on both is kept safe in two ways. For a given b* the root Λ of the first comes from a Newton iteration that
+cannot fail, since 1/|n| is a concave, growing function of Λ; and b* stays in a bracket, halved where Newton would leave it:
+k² is steep at b* = 0, so that Newton alone overshoots there, and the slope of k² jumps at b1*.
+
+Neutral loading. The κ term sets in suddenly with loading. In the rod, where x differs between the axial and the shear
+components, there is a narrow cone of strain increments, nearly tangential to the yield surface, for which the elastic
+answer leaves the surface although the plastic one with λ ≥ 0 moves inside: neither may be. The limit of ever smaller steps
+that switch between the two stays on the surface with λ = 0 and a smaller κ; `_neutral` finds that κ. The plastic work is
+then of second order, so ζ and the temperature are kept.
 
 A point has two groups of components: `a`, a single one with modulus `ca` (the rod's axial one), and `c`, any number with
 modulus `cc`, of which only the inner products enter.
@@ -30,18 +36,19 @@ from numba import njit
 from coilset.model.material.functions import functions
 
 MAX_ITERATIONS = 60
-PRECISION = 1e-12
+FINE = 1e-7  # relative residual below which one more Newton step ends the iteration
+COARSE = 1e-3  # relative error of |n| to which Λ is brought before the two equations are solved together
 
 # What the increment starts from. na, ea: n₀ and e of group a, with the metric's weight 3/2 to be applied; dea = de/db*, the
 # thermal strain's part; nn, ne, ee: inner products of n₀ and e of group c.
 Start = namedtuple("Start", "b temperature heating ca na ea dea cc nn ne ee")
 # s, x of a group and their derivatives with respect to b*.
 Group = namedtuple("Group", "s ds x dx")
-# The solution, and the Jacobian of the two equations (r1: n:n − k², r2: b* − b*₀ − n:p) in (b*, Λ).
-Local = namedtuple("Local", "iterations b multiplier zeta dzeta a c r1b r1l r2b r2l")
+# The solution, and the Jacobian of the two equations (r1: n:n − k², r2: b* − b*₀ − n:p) in (b*, Λ), or in (b*, κ) if neutral.
+Local = namedtuple("Local", "iterations neutral b multiplier zeta dzeta a c r1b r1l r2b r2l")
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def yield_crossing(nn, ne, ee, k2):
     """Elastic fraction of an increment that starts inside or on the yield surface and ends outside: |n₀ + β e|² = k².
 
@@ -55,17 +62,18 @@ def yield_crossing(nn, ne, ee, k2):
     return min(max(beta, 0.0), 1.0)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _group(c, zeta, dzeta, kappa, dkappa):
     x = 1.0 / (1.0 + kappa * (zeta + c))
     dx = -x * x * (dkappa * (zeta + c) + kappa * dzeta)
     return Group((c + zeta) * x, dzeta * x + (c + zeta) * dx, x, dx)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _multiplier(qa, sa, qc, sc, k, start):
-    """Root Λ of qa/(1 + sa Λ)² + qc/(1 + sc Λ)² = k²; qa, qc are squared norms."""
-    multiplier = start
+    """Root Λ of qa/(1 + sa Λ)² + qc/(1 + sc Λ)² = k² to `COARSE`; qa, qc are squared norms."""
+    lowest = -1.0 / max(sa, sc)
+    multiplier = max(start, 0.5 * lowest)
     for _ in range(MAX_ITERATIONS):
         ua = 1.0 / (1.0 + sa * multiplier)
         uc = 1.0 / (1.0 + sc * multiplier)
@@ -73,81 +81,145 @@ def _multiplier(qa, sa, qc, sc, k, start):
         yc = qc * uc * uc
         y = ya + yc
         excess = math.sqrt(y) / k - 1.0
-        multiplier += y * excess / (ya * sa * ua + yc * sc * uc)
-        if abs(excess) < 1e-8:  # quadratic: the step just made leaves an error of its square
+        if abs(excess) < COARSE:
             break
+        multiplier = max(multiplier + y * excess / (ya * sa * ua + yc * sc * uc), 0.5 * (multiplier + lowest))
     return multiplier
 
 
-@njit(cache=True)
-def _work(g, c, zeta, dzeta, multiplier, qq, dqq, qt, dqt):
-    """n:p of a group with its derivatives in b* and Λ, then n:n with its."""
+@njit(cache=True, error_model="numpy")
+def _group_terms(g, c, zeta, dzeta, multiplier, qq, dqq, qt, dqt):
+    """A group's n:n and n:p, each with its derivatives in b* and Λ; qq = q:q, qt = q:(n₀ + e), dqq, dqt = d/db*."""
     u = 1.0 / (1.0 + g.s * multiplier)
+    m = 1.0 / (c + zeta)
     du = -u * u * g.ds * multiplier
     lu = -u * u * g.s
-    m = 1.0 / (c + zeta)
     nn = qq * u * u
     work = (qt * u - nn) * m
     slope = (qt - 2.0 * qq * u) * m
     work_b = (dqt * u - dqq * u * u) * m - work * dzeta * m + slope * du
-    return work, work_b, slope * lu, dqq * u * u + 2.0 * qq * u * du, 2.0 * qq * u * lu
+    return nn, dqq * u * u + 2.0 * qq * u * du, 2.0 * qq * u * lu, work, work_b, slope * lu
 
 
-@njit(cache=True)
-def solve(p, start):
+@njit(cache=True, error_model="numpy")
+def _equations(start, values, ga, gc, b, multiplier):
+    """Residuals n:n − k² and b* − b*₀ − n:p, their Jacobian in (b*, Λ), Λ as made coarsely right first, and n:p."""
+    k2, dk2, zeta, dzeta, _, _ = values
+    na, ea = start.na, start.ea + start.dea * (b - start.b)
+    qa, dqa, ta = na + ga.x * ea, ga.dx * ea + ga.x * start.dea, na + ea
+    qqc = start.nn + gc.x * (2.0 * start.ne + gc.x * start.ee)
+    if b > start.b:
+        multiplier = _multiplier(1.5 * qa * qa, ga.s, qqc, gc.s, math.sqrt(k2), multiplier)
+    nna, nnab, nnal, wa, wab, wal = _group_terms(
+        ga, start.ca, zeta, dzeta, multiplier,
+        1.5 * qa * qa, 3.0 * qa * dqa, 1.5 * qa * ta, 1.5 * (dqa * ta + qa * start.dea),
+    )  # fmt: skip
+    nnc, nncb, nncl, wc, wcb, wcl = _group_terms(
+        gc, start.cc, zeta, dzeta, multiplier,
+        qqc, 2.0 * gc.dx * (start.ne + gc.x * start.ee),
+        start.nn + start.ne + gc.x * (start.ne + start.ee), gc.dx * (start.ne + start.ee),
+    )  # fmt: skip
+    work = wa + wc
+    jacobian = (nnab + nncb - dk2, nnal + nncl, 1.0 - wab - wcb, -wal - wcl)
+    return nna + nnc - k2, b - start.b - work, jacobian, multiplier, work
+
+
+@njit(cache=True, error_model="numpy")
+def _neutral(p, start, values):
+    """The smaller κ for which the increment ends on the yield surface with λ = 0."""
+    k2_start, _, zeta, _, kappa, _ = values
+    na, ea = start.na, start.ea
+    low, high, width = 0.0, kappa, math.inf
+    for iteration in range(1, MAX_ITERATIONS):
+        xa, xc = 1.0 / (1.0 + kappa * (zeta + start.ca)), 1.0 / (1.0 + kappa * (zeta + start.cc))
+        dxa, dxc = -xa * xa * (zeta + start.ca), -xc * xc * (zeta + start.cc)
+        # q:q, q:(x e) and q:(x′ e), (x e):(x′ e); x′ = dx/dκ
+        qq = 1.5 * (na + xa * ea) ** 2 + start.nn + xc * (2.0 * start.ne + xc * start.ee)
+        qxe = 1.5 * (na + xa * ea) * xa * ea + xc * (start.ne + xc * start.ee)
+        qdxe = 1.5 * (na + xa * ea) * dxa * ea + dxc * (start.ne + xc * start.ee)
+        xedxe = 1.5 * xa * dxa * ea * ea + xc * dxc * start.ee
+        # With spin, n:p may come out negative by a trifle of higher order; b* does not fall.
+        b = start.b + max(kappa * qxe, 0.0)
+        k2, dk2, _, _, _, _ = functions(p, b, start.temperature)
+        r1 = qq - k2
+        db = qxe + kappa * (qdxe + xedxe) if qxe > 0.0 else 0.0
+        slope = 2.0 * qdxe - dk2 * db
+        if abs(r1) <= 1e-14 * k2_start or high - low <= 1e-15 * high:
+            a, c = Group((start.ca + zeta) * xa, 0.0, xa, 0.0), Group((start.cc + zeta) * xc, 0.0, xc, 0.0)
+            return Local(iteration, True, b, 0.0, zeta, 0.0, a, c, -dk2, 2.0 * qdxe, 1.0, -db)
+        if r1 > 0.0:
+            low = kappa
+        else:
+            high = kappa
+        step = -r1 / slope
+        if low < kappa + step < high and abs(step) <= 0.5 * width:
+            width = abs(step)
+            kappa += step
+        else:
+            width = 0.5 * (high - low)
+            kappa = 0.5 * (low + high)
+    return _failed(start)
+
+
+@njit(cache=True, error_model="numpy")
+def _failed(start):
+    nothing = Group(0.0, 0.0, 0.0, 0.0)
+    return Local(-1, False, start.b, 0.0, 0.0, 0.0, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
+
+
+@njit(cache=True, error_model="numpy")
+def solve(p, start, values):
     """Solve the two local equations.
 
     Args:
         p: parameter array.
         start: the increment's plastic part, a `Start`.
+        values: `functions` where it starts.
 
     Returns:
         A `Local`; its `iterations` are -1 if there was no convergence.
     """
-    ca, na, cc = start.ca, start.na, start.cc
-    qt_end = start.nn + 2.0 * start.ne + start.ee
     low = start.b
     # max over n of n:(n_trial − n) is |n_trial|²/4; twice that leaves room for thermal strain.
-    high = low + 0.5 * (1.5 * (na + start.ea) ** 2 / ca + qt_end / cc)
-    b = low
-    multiplier = 0.0
+    high = low + 0.5 * (1.5 * (start.na + start.ea) ** 2 / start.ca + (start.nn + 2.0 * start.ne + start.ee) / start.cc)
+    b, multiplier, last, share = low, 0.0, math.inf, 1.0
     for iteration in range(1, MAX_ITERATIONS):
-        k2, dk2, zeta, dzeta, kappa, dkappa = functions(p, b, start.temperature + start.heating * (b - start.b))
+        k2, _, zeta, dzeta, kappa, dkappa = values
         if not k2 > 0.0:
             break
-        ga = _group(ca, zeta, dzeta, kappa, dkappa)
-        gc = _group(cc, zeta, dzeta, kappa, dkappa)
-        ea = start.ea + start.dea * (b - start.b)
-        qa = na + ga.x * ea
-        dqa = ga.dx * ea + ga.x * start.dea
-        qqc = start.nn + gc.x * (2.0 * start.ne + gc.x * start.ee)
-        k = math.sqrt(k2)
-        multiplier = _multiplier(1.5 * qa * qa, ga.s, qqc, gc.s, k, multiplier)
-        wa, wab, wal, r1ab, r1al = _work(ga, ca, zeta, dzeta, multiplier, 1.5 * qa * qa, 3.0 * qa * dqa,
-                                         1.5 * qa * (na + ea), 1.5 * (dqa * (na + ea) + qa * start.dea))  # fmt: skip
-        wc, wcb, wcl, r1cb, r1cl = _work(gc, cc, zeta, dzeta, multiplier, qqc, 2.0 * gc.dx * (start.ne + gc.x * start.ee),
-                                         start.nn + start.ne + gc.x * (start.ne + start.ee),
-                                         gc.dx * (start.ne + start.ee))  # fmt: skip
-        r1b = r1ab + r1cb - dk2
-        r1l = r1al + r1cl
-        r2b = 1.0 - wab - wcb
-        r2l = -wal - wcl
-        work = wa + wc
-        g = b - start.b - work
-        # Rounding of b* and of n:(n_trial − n) limits what can be asked for.
-        if abs(g) <= PRECISION * work + 1e-15 * (b + k2 / cc) or high - low <= 1e-15 * high:
-            return Local(iteration, b, multiplier, zeta, dzeta, ga, gc, r1b, r1l, r2b, r2l)
-        if g < 0.0:
-            low = b
-        else:
-            high = b
+        kappa, dkappa = share * kappa, share * dkappa
+        ga = _group(start.ca, zeta, dzeta, kappa, dkappa)
+        gc = _group(start.cc, zeta, dzeta, kappa, dkappa)
+        r1, r2, (r1b, r1l, r2b, r2l), multiplier, work = _equations(start, values, ga, gc, b, multiplier)
+        g = r2 - r2l * r1 / r1l
         slope = r2b - r2l * r1b / r1l
-        step = -g / slope if slope > 0.0 else math.inf
-        if low < b + step < high:
-            # Λ follows along its own curve, so that the next inner iteration starts close.
-            multiplier = max(multiplier - step * r1b / r1l, 0.0)
-            b += step
+        step = -g / slope
+        follow = -(r1 + r1b * step) / r1l
+        if iteration == 1 and r1 < 0.0:
+            return _neutral(p, start, values)
+        if iteration == 1 and g > 0.0:  # see _neutral: on the edge of the cone the spin can make n:p negative
+            share = 0.0
+            continue
+        # The second term is the rounding of b* and of n:(n_trial − n).
+        if abs(g) <= FINE * work + 1e-15 * (b + k2 / start.cc) and abs(r1) <= FINE * k2 and slope > 0.0:
+            # The last Newton step is taken in everything: what it leaves is of the order FINE².
+            return Local(
+                iteration, False, b + step, multiplier + follow, zeta + dzeta * step, dzeta,
+                Group(ga.s + ga.ds * step, ga.ds, ga.x + ga.dx * step, ga.dx),
+                Group(gc.s + gc.ds * step, gc.ds, gc.x + gc.dx * step, gc.dx),
+                r1b, r1l, r2b, r2l,
+            )  # fmt: skip
+        if abs(g) > 10.0 * COARSE * work or abs(r1) <= FINE * k2:  # else Λ is too coarse to be sure of the sign
+            if g < 0.0:
+                low = b
+            else:
+                high = b
+        # Newton, unless it leaves the bracket or swings to and fro across a bend.
+        if slope > 0.0 and low < b + step < high and (step * last > 0.0 or abs(step) <= 0.5 * abs(last)):
+            multiplier += follow
         else:
-            b = 0.5 * (low + high)
-    nothing = Group(0.0, 0.0, 0.0, 0.0)
-    return Local(-1, b, 0.0, 0.0, 0.0, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
+            step = 0.5 * (low + high) - b
+        last = step
+        b += step
+        values = functions(p, b, start.temperature + start.heating * (b - start.b))
+    return _failed(start)

@@ -13,17 +13,17 @@ from coilset.model.material.local import Start, solve, yield_crossing
 
 # Tuples of three are the components 11, 12, 13.
 Point = namedtuple("Point", "stress back spin_stress spin_back")
-# The plastic part of an increment: elastic fraction before it, n₀:e where it starts, e of the whole increment, n at its end, p; u = 1/(1 + sΛ), m = 1/(c + ζ) and db = ∂n/∂b*, dl = ∂n/∂Λ by component.
-Plastic = namedtuple("Plastic", "local beta crossing n0 whole n p u m x db dl dea")
+# The plastic part of an increment: elastic fraction before it, n₀:e where it starts, e of the whole increment, n at its end, p; u = 1/(1 + sΛ), m = 1/(c + ζ) and db = ∂n/∂b*, dl = ∂n/∂Λ (neutral: ∂n/∂κ) by component.
+Plastic = namedtuple("Plastic", "local beta crossing n0 whole n p u m x db dl heating dea")
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _inner(a, b):
     """n:m of two deviators (5.2.28)."""
     return 1.5 * a[0] * b[0] + 2.0 * (a[1] * b[1] + a[2] * b[2])
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def spin_rates(s, b):
     """Changes of σ (or, for B, of B) per γ12 and per γ13 by the spin w1j = −½γ1j, (5.2.33).
 
@@ -34,7 +34,7 @@ def spin_rates(s, b):
     return (-s[1], 0.5 * b, 0.0), (-s[2], 0.0, 0.5 * b)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _turned(p, old, dg12, dg13):
     """Stress and back stress of `old` after the increment's spin, and what the spin adds per unit of γ12, γ13."""
     s = (old[0], old[1], old[2])
@@ -52,12 +52,12 @@ def _turned(p, old, dg12, dg13):
     )
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _active(s, b):
     return (s[0] / 1.5 - b[0], s[1] - b[1], s[2] - b[2])
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def return_map(p, old, de11, dg12, dg13, new, C):
     """Backward Euler step of the rod's law with its consistent tangent.
 
@@ -79,19 +79,19 @@ def return_map(p, old, de11, dg12, dg13, new, C):
     _elastic(old, s, point, E, G, new, C)
     n0 = _active(point.stress, point.back)
     trial = _active(s, point.back)
-    k2 = functions(p, old[6], temperature)[0]
-    if _inner(trial, trial) <= k2 * (1.0 + 1e-12):
+    values = functions(p, old[6], temperature)
+    if _inner(trial, trial) <= values[0] * (1.0 + 1e-12):
         return 0
 
     e = (E * de11 / 1.5, G * dg12, G * dg13)
-    plastic = _plastic(p, old[6], temperature, heating, alpha, E, G, n0, e, k2)
+    plastic = _plastic(p, old[6], temperature, heating, alpha, E, G, n0, e, values)
     local = plastic.local
     if local.iterations < 0:
         for i in range(new.shape[0]):
             new[i] = old[i]
         return -1
     pl = plastic.p
-    rise = heating * (local.b - old[6])
+    rise = plastic.heating * (local.b - old[6])
     new[0] = s[0] - E * (pl[0] + alpha * rise)
     new[1] = s[1] - 2.0 * G * pl[1]
     new[2] = s[2] - 2.0 * G * pl[2]
@@ -100,11 +100,11 @@ def return_map(p, old, de11, dg12, dg13, new, C):
     new[6] = local.b
     if old.shape[0] > 7:
         new[7] = temperature + rise
-    _tangent(plastic, point, E, G, alpha * heating, C)
+    _tangent(plastic, point, E, G, alpha * plastic.heating, C)
     return local.iterations
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _elastic(old, s, point, E, G, new, C):
     for i in range(3):
         new[i] = s[i]
@@ -120,12 +120,12 @@ def _elastic(old, s, point, E, G, new, C):
     C[2, 2] += G
 
 
-@njit(cache=True)
-def _plastic(p, b, temperature, heating, alpha, E, G, n0, e, k2):
+@njit(cache=True, error_model="numpy")
+def _plastic(p, b, temperature, heating, alpha, E, G, n0, e, values):
     """Solve the plastic part: n and p at its end, from n₀ where it starts (n0 + β e) with e reduced to it."""
     ne = _inner(n0, e)
     ee = _inner(e, e)
-    beta = yield_crossing(_inner(n0, n0), ne, ee, k2)
+    beta = yield_crossing(_inner(n0, n0), ne, ee, values[0])
     n0 = (n0[0] + beta * e[0], n0[1] + beta * e[1], n0[2] + beta * e[2])
     crossing = _inner(n0, e)
     rest = 1.0 - beta
@@ -137,7 +137,9 @@ def _plastic(p, b, temperature, heating, alpha, E, G, n0, e, k2):
         2.0 * (n0[1] * n0[1] + n0[2] * n0[2]),
         2.0 * rest * (n0[1] * e[1] + n0[2] * e[2]),
         2.0 * rest * rest * (e[1] * e[1] + e[2] * e[2]),
-    ))  # fmt: skip
+    ), values)  # fmt: skip
+    if local.neutral:
+        heating, dea = 0.0, 0.0
     whole = e
     e = (rest * e[0] + dea * (local.b - b), rest * e[1], rest * e[2])
     a, c, multiplier = local.a, local.c, local.multiplier
@@ -150,26 +152,30 @@ def _plastic(p, b, temperature, heating, alpha, E, G, n0, e, k2):
     pl = _times(m, (n0[0] + e[0] - n[0], n0[1] + e[1] - n[1], n0[2] + e[2] - n[2]))
     db = (ua * (a.dx * e[0] + a.x * dea - n[0] * a.ds * multiplier),
           uc * (c.dx * e[1] - n[1] * c.ds * multiplier), uc * (c.dx * e[2] - n[2] * c.ds * multiplier))  # fmt: skip
-    dl = (-ua * a.s * n[0], -uc * c.s * n[1], -uc * c.s * n[2])
-    return Plastic(local, beta, crossing, n0, whole, n, pl, u, m, x, db, dl, dea)
+    if local.neutral:  # ∂n/∂κ
+        dxa, dxc = -a.x * a.s, -c.x * c.s
+        dl = (dxa * e[0], dxc * e[1], dxc * e[2])
+    else:
+        dl = (-ua * a.s * n[0], -uc * c.s * n[1], -uc * c.s * n[2])
+    return Plastic(local, beta, crossing, n0, whole, n, pl, u, m, x, db, dl, heating, dea)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _add(a, b):
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _times(a, b):
     return (a[0] * b[0], a[1] * b[1], a[2] * b[2])
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _scaled(a, f):
     return (f * a[0], f * a[1], f * a[2])
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _sensitivity(plastic, dn, de):
     """Change of the plastic strain increment and of b* with the start n₀ (by `dn`) and with e (by `de`)."""
     local, beta, n, m = plastic.local, plastic.beta, plastic.n, plastic.m
@@ -193,7 +199,7 @@ def _sensitivity(plastic, dn, de):
     return _times(m, (p[0] + plastic.dea * b, p[1], p[2])), b
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _tangent(plastic, point, E, G, expansion, C):
     """Subtract from the elastic tangent in C what the plastic strain takes; `expansion` is thermal strain per b*."""
     zero = (0.0, 0.0, 0.0)
@@ -204,7 +210,7 @@ def _tangent(plastic, point, E, G, expansion, C):
     _subtract(_sensitivity(plastic, start, (0.0, 0.0, G)), 2, E, G, expansion, C)
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def _subtract(change, j, E, G, expansion, C):
     p, b = change
     C[0, j] -= E * (p[0] + expansion * b)
