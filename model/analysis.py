@@ -102,7 +102,8 @@ class Analysis:
         pairs = np.stack([lower, upper], axis=1)
         contacts = [Gaps(pairs, radius[lower] + radius[upper], bedding * share[lower], onset)]
         if self.case.ends == "seats":
-            contacts.append(Seats(radius, bedding * share, onset))
+            reach = np.stack([spring.seat_distance(turns, end) for end in ("bottom", "top")])
+            contacts.append(Seats(reach, bedding * share, onset))
         return contacts
 
     def run(self, report=lambda step: None, checkpoint=None):

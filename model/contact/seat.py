@@ -14,16 +14,17 @@ class Seats:
     that "zero force" is the one position in which both tips just touch, and the spring cannot float between the seats.
 
     Args:
-        radius: wire radius at the stations, shape (n,), mm.
+        reach: from the wire's axis to its surface at the bottom and the top seat, shape (2, n) or (n,), mm: the wire's
+            radius, and less where an end is ground.
         stiffness: c of each station, shape (n,), N/mm.
         onset: way over which contact sets in, mm.
     """
 
     name = "seat"
 
-    def __init__(self, radius, stiffness, onset):
-        n, self.onset = len(radius), onset
-        self.radius, self.stiffness = np.asarray(radius), np.asarray(stiffness)
+    def __init__(self, reach, stiffness, onset):
+        n, self.onset = len(stiffness), onset
+        self.reach, self.stiffness = np.broadcast_to(reach, (2, n)), np.asarray(stiffness)
         self.cord = np.zeros((2, n))
         self.cord[0, 0], self.cord[1, -1] = CORD * self.stiffness[[0, -1]]
         z = 3 * np.arange(n) + 2
@@ -32,7 +33,7 @@ class Seats:
     def evaluate(self, x, seats):
         """Gap g of the underside, g < 0 where it sinks in; the force acts along the axis."""
         side = np.array([1.0, -1.0])[:, None]  # the wire lies above the bottom seat, below the top seat
-        g = side * (x[:, 2] - seats[:, None]) - self.radius
+        g = side * (x[:, 2] - seats[:, None]) - self.reach
         pressure, c = one_sided(g, self.stiffness, self.onset)
         # the tips bear from the first touch, so that there is a stiffness to begin with, and hang on cords beyond
         tip, closed = self.cord > 0.0, g <= 0.0
