@@ -202,7 +202,12 @@ class System:
         return max(increments, 1e-14 * self.axial_force)
 
     def imbalance(self, F):
-        """Norm of the out-of-balance forces, and norm of the change of loads and reactions since the step's start."""
+        """How far the trial state with residual `F` is from equilibrium.
+
+        Returns:
+            Norm of the out-of-balance forces, norm of the change of loads and reactions since the step's start, N, and
+            share of the prescribed increments that is still missing.
+        """
         start, stop = F.getOwnershipRange()
         fixed = np.array([dof for dof in self.fixed if start <= dof < stop], dtype=np.int64) - start
         loaded = np.array([dof for dof in self.forces if start <= dof < stop], dtype=np.int64) - start
@@ -210,10 +215,13 @@ class System:
         rest[fixed] = 0.0
         held = np.unique(np.concatenate([fixed, loaded]))
         change = self.internal.getArray(readonly=True)[held] - self.reaction_start.getArray(readonly=True)[held]
-        squares = np.array([rest @ rest, change @ change])
+        missed = F.getArray(readonly=True)[fixed] / self.weight
+        squares = np.array([rest @ rest, change @ change, missed @ missed])
         if self.comm.size > 1:
             squares = self.comm.allreduce(squares)
-        return tuple(np.sqrt(squares))
+        rest, change, missed = np.sqrt(squares)
+        prescribed = np.linalg.norm(list(self.fixed.values()))
+        return rest, change, missed / prescribed if prescribed > 0.0 else missed
 
     def tangent(self, snes, X, J, P):
         """SNES callback: derivative of the residual at the state of the last evaluation."""

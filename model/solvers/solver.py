@@ -59,9 +59,9 @@ class Solver:
         """|r − f| / |²R − ²F(step start)| ≤ ε (6.3.1): the change of loads and reactions is the measure."""
         if not np.isfinite(norms[2]):
             return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
-        rest, change = self.system.imbalance(self.F)
+        rest, change, missed = self.system.imbalance(self.F)
         self.ratio = rest / change if change > 0.0 else np.inf
-        if rest <= max(self.tolerance * change, self.system.rounding(self.X)):
+        if missed <= self.tolerance and rest <= max(self.tolerance * change, self.system.rounding(self.X)):
             return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
         if iteration >= snes.getTolerances()[3]:
             return PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
