@@ -1,12 +1,17 @@
-"""The material functions k²(b*, T), ζ(b*, T) and κ(b*, T) of chapter 3, compiled, and the array that holds their constants.
+"""The material functions k²(b*, T), ζ(b*, T), κ(b*, T) of chapter 3, compiled, and the array of their constants.
 
-The kernels take one 1-D array `p`: a head of `ROWS_START` entries, then one row of `ROW_LENGTH` constants for every temperature
-of the material's table. Between two temperatures the values of the functions are interpolated linearly.
+The kernels take one 1-D array `p`: a head of `ROWS_START` entries, then one row of `ROW_LENGTH` constants for every
+temperature of the material's table. Between two temperatures the values of the functions are interpolated linearly.
 """
 
 import math
 
 from numba import njit
+
+# How the kernels are compiled: no checks of divisors, multiply-add contracted; the inner ones are put into their
+# caller.
+KERNEL = {"cache": True, "error_model": "numpy", "fastmath": {"contract"}}
+INLINE = KERNEL | {"forceinline": True}
 
 # Head of the parameter array.
 SPIN = 0  # 1: with the spin terms (5.2.33), 0: without
@@ -21,7 +26,7 @@ ROW_T, YOUNG, SHEAR, ALPHA, K0, A1, A2, A3, B1, K1, KINF, A4, A5, A6, A7, KAPPA 
 ROW_LENGTH = 16
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def row_functions(p, o, b):
     """k², ∂k²/∂b*, ζ, ∂ζ/∂b*, κ, ∂κ/∂b* of the temperature whose row starts at `o` of `p`, (6.2.2)."""
     if b < p[o + B1]:
@@ -43,7 +48,7 @@ def row_functions(p, o, b):
     return k2, dk2, zeta, dzeta, kappa, 3.0 * p[o + KAPPA] * b * b
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def table_place(p, temperature):
     """Row below `temperature` (its offset in `p`) and the weight of the row above; the end intervals go on outside."""
     last = int(p[N_ROWS]) - 2
@@ -54,7 +59,7 @@ def table_place(p, temperature):
     return o, (temperature - p[o]) / (p[o + ROW_LENGTH] - p[o])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def functions(p, b, temperature):
     """k², ζ, κ and their slopes at plastic work `b` and `temperature`.
 
@@ -80,7 +85,7 @@ def functions(p, b, temperature):
     )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def elasticity(p, temperature):
     """E, G in N/mm² and the coefficient of thermal expansion in 1/K at `temperature`."""
     o = ROWS_START

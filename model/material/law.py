@@ -164,7 +164,7 @@ class Law:
         low, high = self.temperature_range
         if not low <= temperature <= high:
             known = f"only for {low:g} K" if low == high else f"for {low:g} to {high:g} K"
-            self._fail("temperature", f"{temperature:g} K is outside the table of '{self.name}', which is known {known}")
+            self._fail("temperature", f"{temperature:g} K is outside the table of '{self.name}', known {known}")
         head = np.zeros(fn.ROWS_START)
         head[fn.SPIN] = self.spin
         head[fn.TEMPERATURE] = temperature
@@ -196,7 +196,7 @@ class Law:
                 if abs(k1 - second.k1_squared) > 1e-4 * k1:
                     self._fail(
                         f"temperatures.{i}.isotropic.saturation.k1_squared",
-                        f"{second.k1_squared:g} N²/mm⁴, but the first branch of k² ends at {k1:.6g}; k² must not jump at b1",
+                        f"{second.k1_squared:g} N²/mm⁴, but the first branch ends at {k1:.6g}; k² must not jump at b1",
                     )
                 # The first branch's own end, so that k² is continuous to the last digit.
                 row[[fn.B1, fn.K1, fn.KINF, fn.A4]] = second.b1, k1, second.k_inf_squared, second.a4
@@ -221,12 +221,12 @@ class Law:
                 if 2 * zeta + dk2 < 0:
                     self._fail(
                         f"temperatures.{i}.isotropic",
-                        f"2ζ + k²′ = {2 * zeta + dk2:.4g} N/mm² {where}; it must not be negative, or the material softens",
+                        f"2ζ + k²′ = {2 * zeta + dk2:.4g} N/mm² {where}; it must not be negative",
                     )
                 if kappa * dk2 >= 2:
                     self._fail(
                         f"temperatures.{i}.non_normality.a",
-                        f"κ k²′ = {kappa * dk2:.4g} {where}; it must stay below 2, or the law (3.1.9) is not positive definite",
+                        f"κ k²′ = {kappa * dk2:.4g} {where}; it must stay below 2, or (3.1.9) is not positive definite",
                     )
 
 
@@ -249,7 +249,7 @@ def read(path, **options):
         problem = " ".join(str(error).split())
         raise InputError(f"is not YAML: {problem}", file=str(path)) from error
     if not isinstance(content, dict):
-        raise InputError("is no material file; it must hold name, source, units, validity, temperatures", file=str(path))
+        raise InputError("is no material file; it wants name, source, units, validity, ...", file=str(path))
     try:
         data = MaterialFile.model_validate(content)
     except ValidationError as error:

@@ -1,8 +1,8 @@
 """The local problem of the implicit return mapping, common to the rod and to the three-dimensional law.
 
-Backward Euler for the rate equations of chapter 3: all functions are taken at the end of the plastic part of the increment.
-With e the elastic increment of the active deviator over that part (e = c Δε′; c = 2G, but ⅔E for the rod's axial component),
-n₀ its value when the part starts, p the plastic strain increment and n = T − B at the end,
+Backward Euler for the rate equations of chapter 3: all functions are taken at the end of the plastic part of the
+increment. With e the elastic increment of the active deviator over that part (e = c Δε′; c = 2G, but ⅔E for the rod's
+axial component), n₀ its value when the part starts, p the plastic strain increment and n = T − B at the end,
 
     (1 + κζ) p = Λ n + κ ΔT,   ΔT = e − c p,   ΔB = ζ p          (3.1.6, 3.1.8), Λ = 2λΔt
 
@@ -14,18 +14,18 @@ Two scalars are left, the plastic work b* and Λ, and two equations:
 
     n:n = k²(b*)         (3.1.4)                   b* = b*₀ + n:p        (3.1.7)
 
-Newton's method on both is kept safe in two ways. For a given b* the root Λ of the first comes from a Newton iteration that
-cannot fail, since 1/|n| is a concave, growing function of Λ; and b* stays in a bracket, halved where Newton would leave it:
-k² is steep at b* = 0, so that Newton alone overshoots there, and the slope of k² jumps at b1*.
+Newton's method on both is kept safe in two ways. For a given b* the root Λ of the first comes from a Newton iteration
+that cannot fail, since 1/|n| is a concave, growing function of Λ; and b* stays in a bracket, halved where Newton would
+leave it: k² is steep at b* = 0, so that Newton alone overshoots there, and the slope of k² jumps at b1*.
 
 Neutral loading. The κ term sets in suddenly with loading. In the rod, where x differs between the axial and the shear
 components, there is a narrow cone of strain increments, nearly tangential to the yield surface, for which the elastic
-answer leaves the surface although the plastic one with λ ≥ 0 moves inside: neither may be. The limit of ever smaller steps
-that switch between the two stays on the surface with λ = 0 and a smaller κ; `_neutral` finds that κ. The plastic work is
-then of second order, so ζ and the temperature are kept.
+answer leaves the surface although the plastic one with λ ≥ 0 moves inside: neither may be. The limit of ever smaller
+steps that switch between the two stays on the surface with λ = 0 and a smaller κ; `_neutral` finds that κ. The plastic
+work is then of second order, so ζ and the temperature are kept.
 
-A point has two groups of components: `a`, a single one with modulus `ca` (the rod's axial one), and `c`, any number with
-modulus `cc`, of which only the inner products enter.
+A point has two groups of components: `a`, a single one with modulus `ca` (the rod's axial one), and `c`, any number
+with modulus `cc`, of which only the inner products enter.
 """
 
 import math
@@ -33,22 +33,23 @@ from collections import namedtuple
 
 from numba import njit
 
-from coilset.model.material.functions import functions
+from coilset.model.material.functions import INLINE, KERNEL, functions
 
 MAX_ITERATIONS = 60
 FINE = 1e-7  # relative residual below which one more Newton step ends the iteration
 COARSE = 1e-3  # relative error of |n| to which Λ is brought before the two equations are solved together
 
-# What the increment starts from. na, ea: n₀ and e of group a, with the metric's weight 3/2 to be applied; dea = de/db*, the
-# thermal strain's part; nn, ne, ee: inner products of n₀ and e of group c.
+# What the increment starts from. na, ea: n₀ and e of group a, with the metric's weight 3/2 to be applied; dea = de/db*,
+# the thermal strain's part; nn, ne, ee: inner products of n₀ and e of group c.
 Start = namedtuple("Start", "b temperature heating ca na ea dea cc nn ne ee")
 # s, x of a group and their derivatives with respect to b*.
 Group = namedtuple("Group", "s ds x dx")
-# The solution, and the Jacobian of the two equations (r1: n:n − k², r2: b* − b*₀ − n:p) in (b*, Λ), or in (b*, κ) if neutral.
+# The solution, and the Jacobian of the two equations (r1: n:n − k², r2: b* − b*₀ − n:p) in (b*, Λ), or in (b*, κ) if
+# neutral, divided by its determinant.
 Local = namedtuple("Local", "iterations neutral b multiplier zeta dzeta a c r1b r1l r2b r2l")
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def yield_crossing(nn, ne, ee, k2):
     """Elastic fraction of an increment that starts inside or on the yield surface and ends outside: |n₀ + β e|² = k².
 
@@ -62,35 +63,32 @@ def yield_crossing(nn, ne, ee, k2):
     return min(max(beta, 0.0), 1.0)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def _group(c, zeta, dzeta, kappa, dkappa):
     x = 1.0 / (1.0 + kappa * (zeta + c))
     dx = -x * x * (dkappa * (zeta + c) + kappa * dzeta)
     return Group((c + zeta) * x, dzeta * x + (c + zeta) * dx, x, dx)
 
 
-@njit(cache=True, error_model="numpy")
-def _multiplier(qa, sa, qc, sc, k, start):
-    """Root Λ of qa/(1 + sa Λ)² + qc/(1 + sc Λ)² = k² to `COARSE`; qa, qc are squared norms."""
+@njit(**INLINE)
+def _multiplier(qa, sa, qc, sc, k2, start):
+    """Root Λ of qa/(1 + sa Λ)² + qc/(1 + sc Λ)² = k² to `COARSE`, and both 1/(1 + s Λ); qa, qc: squared norms."""
     lowest = -1.0 / max(sa, sc)
     multiplier = max(start, 0.5 * lowest)
     for _ in range(MAX_ITERATIONS):
-        ua = 1.0 / (1.0 + sa * multiplier)
-        uc = 1.0 / (1.0 + sc * multiplier)
-        ya = qa * ua * ua
-        yc = qc * uc * uc
+        ua, uc = 1.0 / (1.0 + sa * multiplier), 1.0 / (1.0 + sc * multiplier)
+        ya, yc = qa * ua * ua, qc * uc * uc
         y = ya + yc
-        excess = math.sqrt(y) / k - 1.0
-        if abs(excess) < COARSE:
+        if abs(y - k2) < 2.0 * COARSE * k2:
             break
-        multiplier = max(multiplier + y * excess / (ya * sa * ua + yc * sc * uc), 0.5 * (multiplier + lowest))
-    return multiplier
+        step = y * (math.sqrt(y / k2) - 1.0) / (ya * sa * ua + yc * sc * uc)  # Newton for 1/|n| = 1/k
+        multiplier = max(multiplier + step, 0.5 * (multiplier + lowest))
+    return multiplier, ua, uc
 
 
-@njit(cache=True, error_model="numpy")
-def _group_terms(g, c, zeta, dzeta, multiplier, qq, dqq, qt, dqt):
+@njit(**INLINE)
+def _group_terms(g, c, zeta, dzeta, multiplier, u, qq, dqq, qt, dqt):
     """A group's n:n and n:p, each with its derivatives in b* and Λ; qq = q:q, qt = q:(n₀ + e), dqq, dqt = d/db*."""
-    u = 1.0 / (1.0 + g.s * multiplier)
     m = 1.0 / (c + zeta)
     du = -u * u * g.ds * multiplier
     lu = -u * u * g.s
@@ -101,30 +99,31 @@ def _group_terms(g, c, zeta, dzeta, multiplier, qq, dqq, qt, dqt):
     return nn, dqq * u * u + 2.0 * qq * u * du, 2.0 * qq * u * lu, work, work_b, slope * lu
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def _equations(start, values, ga, gc, b, multiplier):
     """Residuals n:n − k² and b* − b*₀ − n:p, their Jacobian in (b*, Λ), Λ as made coarsely right first, and n:p."""
     k2, dk2, zeta, dzeta, _, _ = values
     na, ea = start.na, start.ea + start.dea * (b - start.b)
     qa, dqa, ta = na + ga.x * ea, ga.dx * ea + ga.x * start.dea, na + ea
+    qqa = 1.5 * qa * qa
     qqc = start.nn + gc.x * (2.0 * start.ne + gc.x * start.ee)
+    ua = uc = 1.0
     if b > start.b:
-        multiplier = _multiplier(1.5 * qa * qa, ga.s, qqc, gc.s, math.sqrt(k2), multiplier)
+        multiplier, ua, uc = _multiplier(qqa, ga.s, qqc, gc.s, k2, multiplier)
     nna, nnab, nnal, wa, wab, wal = _group_terms(
-        ga, start.ca, zeta, dzeta, multiplier,
-        1.5 * qa * qa, 3.0 * qa * dqa, 1.5 * qa * ta, 1.5 * (dqa * ta + qa * start.dea),
-    )  # fmt: skip
+        ga, start.ca, zeta, dzeta, multiplier, ua, qqa, 3.0 * qa * dqa, 1.5 * qa * ta, 1.5 * (dqa * ta + qa * start.dea)
+    )
     nnc, nncb, nncl, wc, wcb, wcl = _group_terms(
-        gc, start.cc, zeta, dzeta, multiplier,
+        gc, start.cc, zeta, dzeta, multiplier, uc,
         qqc, 2.0 * gc.dx * (start.ne + gc.x * start.ee),
         start.nn + start.ne + gc.x * (start.ne + start.ee), gc.dx * (start.ne + start.ee),
     )  # fmt: skip
     work = wa + wc
-    jacobian = (nnab + nncb - dk2, nnal + nncl, 1.0 - wab - wcb, -wal - wcl)
-    return nna + nnc - k2, b - start.b - work, jacobian, multiplier, work
+    r1, r2 = nna + nnc - k2, b - start.b - work
+    return r1, r2, nnab + nncb - dk2, nnal + nncl, 1.0 - wab - wcb, -wal - wcl, multiplier, work
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**KERNEL)
 def _neutral(p, start, values):
     """The smaller κ for which the increment ends on the yield surface with λ = 0."""
     k2_start, _, zeta, _, kappa, _ = values
@@ -146,7 +145,10 @@ def _neutral(p, start, values):
         slope = 2.0 * qdxe - dk2 * db
         if abs(r1) <= 1e-14 * k2_start or high - low <= 1e-15 * high:
             a, c = Group((start.ca + zeta) * xa, 0.0, xa, 0.0), Group((start.cc + zeta) * xc, 0.0, xc, 0.0)
-            return Local(iteration, True, b, 0.0, zeta, 0.0, a, c, -dk2, 2.0 * qdxe, 1.0, -db)
+            inverse = 1.0 / (dk2 * db - 2.0 * qdxe)
+            return Local(
+                iteration, True, b, 0.0, zeta, 0.0, a, c, -dk2 * inverse, 2.0 * qdxe * inverse, inverse, -db * inverse
+            )
         if r1 > 0.0:
             low = kappa
         else:
@@ -161,13 +163,13 @@ def _neutral(p, start, values):
     return _failed(start)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def _failed(start):
     nothing = Group(0.0, 0.0, 0.0, 0.0)
     return Local(-1, False, start.b, 0.0, 0.0, 0.0, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def solve(p, start, values):
     """Solve the two local equations.
 
@@ -190,24 +192,24 @@ def solve(p, start, values):
         kappa, dkappa = share * kappa, share * dkappa
         ga = _group(start.ca, zeta, dzeta, kappa, dkappa)
         gc = _group(start.cc, zeta, dzeta, kappa, dkappa)
-        r1, r2, (r1b, r1l, r2b, r2l), multiplier, work = _equations(start, values, ga, gc, b, multiplier)
+        r1, r2, r1b, r1l, r2b, r2l, multiplier, work = _equations(start, values, ga, gc, b, multiplier)
         g = r2 - r2l * r1 / r1l
-        slope = r2b - r2l * r1b / r1l
-        step = -g / slope
-        follow = -(r1 + r1b * step) / r1l
+        inverse = 1.0 / (r1b * r2l - r1l * r2b)  # positive as r1l < 0 where dg/db* is
+        step = (r1l * r2 - r2l * r1) * inverse
+        follow = (r2b * r1 - r1b * r2) * inverse
         if iteration == 1 and r1 < 0.0:
             return _neutral(p, start, values)
         if iteration == 1 and g > 0.0:  # see _neutral: on the edge of the cone the spin can make n:p negative
             share = 0.0
             continue
         # The second term is the rounding of b* and of n:(n_trial − n).
-        if abs(g) <= FINE * work + 1e-15 * (b + k2 / start.cc) and abs(r1) <= FINE * k2 and slope > 0.0:
+        if abs(g) <= FINE * work + 1e-15 * (b + k2 / start.cc) and abs(r1) <= FINE * k2 and inverse > 0.0:
             # The last Newton step is taken in everything: what it leaves is of the order FINE².
             return Local(
                 iteration, False, b + step, multiplier + follow, zeta + dzeta * step, dzeta,
                 Group(ga.s + ga.ds * step, ga.ds, ga.x + ga.dx * step, ga.dx),
                 Group(gc.s + gc.ds * step, gc.ds, gc.x + gc.dx * step, gc.dx),
-                r1b, r1l, r2b, r2l,
+                r1b * inverse, r1l * inverse, r2b * inverse, r2l * inverse,
             )  # fmt: skip
         if abs(g) > 10.0 * COARSE * work or abs(r1) <= FINE * k2:  # else Λ is too coarse to be sure of the sign
             if g < 0.0:
@@ -215,7 +217,7 @@ def solve(p, start, values):
             else:
                 high = b
         # Newton, unless it leaves the bracket or swings to and fro across a bend.
-        if slope > 0.0 and low < b + step < high and (step * last > 0.0 or abs(step) <= 0.5 * abs(last)):
+        if inverse > 0.0 and low < b + step < high and (step * last > 0.0 or abs(step) <= 0.5 * abs(last)):
             multiplier += follow
         else:
             step = 0.5 * (low + high) - b

@@ -1,29 +1,32 @@
 """The constitutive law of the rod: σ11, τ12, τ13 from ε11, γ12, γ13, with σ22 = σ33 = τ23 = 0 (5.2.32).
 
-A point's history row is σ11, τ12, τ13, B11, B12, B13 (N/mm²), b* (N/mm²) and, with adiabatic heating, the temperature (K).
-The active deviator is n11 = ⅔σ11 − B11, n1j = τ1j − B1j, and n:n = 3/2 n11² + 2 n12² + 2 n13² (5.2.28).
+A point's history row is σ11, τ12, τ13, B11, B12, B13 (N/mm²), b* (N/mm²) and, with adiabatic heating, the temperature
+(K). The active deviator is n11 = ⅔σ11 − B11, n1j = τ1j − B1j, and n:n = 3/2 n11² + 2 n12² + 2 n13² (5.2.28).
 """
 
 from collections import namedtuple
 
 from numba import njit
 
-from coilset.model.material.functions import HEATING, SPIN, TEMPERATURE, elasticity, functions
+from coilset.model.material.functions import HEATING, INLINE, KERNEL, SPIN, TEMPERATURE, elasticity, functions
 from coilset.model.material.local import Start, solve, yield_crossing
 
 # Tuples of three are the components 11, 12, 13.
 Point = namedtuple("Point", "stress back spin_stress spin_back")
-# The plastic part of an increment: elastic fraction before it, n₀:e where it starts, e of the whole increment, n at its end, p; u = 1/(1 + sΛ), m = 1/(c + ζ) and db = ∂n/∂b*, dl = ∂n/∂Λ (neutral: ∂n/∂κ) by component.
-Plastic = namedtuple("Plastic", "local beta crossing n0 whole n p u m x db dl heating dea")
+# The plastic part of an increment: elastic fraction before it, n₀:e where it starts, e of the whole increment and of
+# the plastic part, n at its end, p, and by component u = 1/(1 + sΛ), m = 1/(c + ζ), x.
+Plastic = namedtuple("Plastic", "local beta crossing n0 whole e n p u m x heating dea")
+# Derivatives of b* (bn, be) and of Λ (ln, le) by n₀ and e, as factors of the inner product, and ∂n/∂b*, ∂n/∂Λ.
+Gradients = namedtuple("Gradients", "bn be ln le db dl")
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def _inner(a, b):
     """n:m of two deviators (5.2.28)."""
     return 1.5 * a[0] * b[0] + 2.0 * (a[1] * b[1] + a[2] * b[2])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def spin_rates(s, b):
     """Changes of σ (or, for B, of B) per γ12 and per γ13 by the spin w1j = −½γ1j, (5.2.33).
 
@@ -34,7 +37,7 @@ def spin_rates(s, b):
     return (-s[1], 0.5 * b, 0.0), (-s[2], 0.0, 0.5 * b)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def _turned(p, old, dg12, dg13):
     """Stress and back stress of `old` after the increment's spin, and what the spin adds per unit of γ12, γ13."""
     s = (old[0], old[1], old[2])
@@ -52,12 +55,12 @@ def _turned(p, old, dg12, dg13):
     )
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def _active(s, b):
     return (s[0] / 1.5 - b[0], s[1] - b[1], s[2] - b[2])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**KERNEL)
 def return_map(p, old, de11, dg12, dg13, new, C):
     """Backward Euler step of the rod's law with its consistent tangent.
 
@@ -69,7 +72,8 @@ def return_map(p, old, de11, dg12, dg13, new, C):
         C: d(σ11, τ12, τ13)/d(ε11, γ12, γ13), shape (3, 3), N/mm²; written.
 
     Returns:
-        Number of local iterations, 0 for an elastic increment, -1 if there was no convergence (then `new` is `old`, C elastic).
+        Number of local iterations, 0 for an elastic increment, -1 if there was no convergence (then `new` is `old`, C
+        elastic).
     """
     temperature = old[7] if old.shape[0] > 7 else p[TEMPERATURE]
     heating = p[HEATING] if old.shape[0] > 7 else 0.0
@@ -104,7 +108,7 @@ def return_map(p, old, de11, dg12, dg13, new, C):
     return local.iterations
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def _elastic(old, s, point, E, G, new, C):
     for i in range(3):
         new[i] = s[i]
@@ -120,7 +124,7 @@ def _elastic(old, s, point, E, G, new, C):
     C[2, 2] += G
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def _plastic(p, b, temperature, heating, alpha, E, G, n0, e, values):
     """Solve the plastic part: n and p at its end, from n₀ where it starts (n0 + β e) with e reduced to it."""
     ne = _inner(n0, e)
@@ -143,74 +147,86 @@ def _plastic(p, b, temperature, heating, alpha, E, G, n0, e, values):
     whole = e
     e = (rest * e[0] + dea * (local.b - b), rest * e[1], rest * e[2])
     a, c, multiplier = local.a, local.c, local.multiplier
-    x = (a.x, c.x, c.x)
     ua, uc = 1.0 / (1.0 + a.s * multiplier), 1.0 / (1.0 + c.s * multiplier)
-    u = (ua, uc, uc)
     ma, mc = 1.0 / (ca + local.zeta), 1.0 / (cc + local.zeta)
-    m = (ma, mc, mc)
+    x, u, m = (a.x, c.x, c.x), (ua, uc, uc), (ma, mc, mc)
     n = _times(u, _add(n0, _times(x, e)))
     pl = _times(m, (n0[0] + e[0] - n[0], n0[1] + e[1] - n[1], n0[2] + e[2] - n[2]))
-    db = (ua * (a.dx * e[0] + a.x * dea - n[0] * a.ds * multiplier),
-          uc * (c.dx * e[1] - n[1] * c.ds * multiplier), uc * (c.dx * e[2] - n[2] * c.ds * multiplier))  # fmt: skip
-    if local.neutral:  # ∂n/∂κ
-        dxa, dxc = -a.x * a.s, -c.x * c.s
-        dl = (dxa * e[0], dxc * e[1], dxc * e[2])
-    else:
-        dl = (-ua * a.s * n[0], -uc * c.s * n[1], -uc * c.s * n[2])
-    return Plastic(local, beta, crossing, n0, whole, n, pl, u, m, x, db, dl, heating, dea)
+    return Plastic(local, beta, crossing, n0, whole, e, n, pl, u, m, x, heating, dea)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def _add(a, b):
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def _times(a, b):
     return (a[0] * b[0], a[1] * b[1], a[2] * b[2])
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def _scaled(a, f):
     return (f * a[0], f * a[1], f * a[2])
 
 
-@njit(cache=True, error_model="numpy")
-def _sensitivity(plastic, dn, de):
-    """Change of the plastic strain increment and of b* with the start n₀ (by `dn`) and with e (by `de`)."""
-    local, beta, n, m = plastic.local, plastic.beta, plastic.n, plastic.m
-    start = _add(dn, _scaled(de, beta))
-    rest = _scaled(de, 1.0 - beta)
-    if beta > 0.0 and plastic.crossing > 0.0:
-        dbeta = -_inner(plastic.n0, start) / plastic.crossing  # of |n₀ + β e|² = k²
-        start = _add(start, _scaled(plastic.whole, dbeta))
-        rest = _add(rest, _scaled(plastic.whole, -dbeta))
-    # First at fixed b* and Λ, then with the change of both that keeps the two local equations.
-    a = _times(plastic.u, _add(start, _times(plastic.x, rest)))
-    trial = _add(start, rest)
-    r1 = 2.0 * _inner(n, a)
-    r2 = -_inner(a, plastic.p) - _inner(n, _times(m, _add(trial, _scaled(a, -1.0))))
-    det = local.r1b * local.r2l - local.r1l * local.r2b
-    b = (local.r1l * r2 - local.r2l * r1) / det
-    multiplier = (local.r2b * r1 - local.r1b * r2) / det
-    end = _add(a, _add(_scaled(plastic.db, b), _scaled(plastic.dl, multiplier)))
-    p = _add(trial, _scaled(end, -1.0))
-    p = _add(p, _scaled(plastic.p, -local.dzeta * b))
-    return _times(m, (p[0] + plastic.dea * b, p[1], p[2])), b
-
-
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
 def _tangent(plastic, point, E, G, expansion, C):
     """Subtract from the elastic tangent in C what the plastic strain takes; `expansion` is thermal strain per b*."""
+    gradients = _gradients(plastic)
     zero = (0.0, 0.0, 0.0)
-    _subtract(_sensitivity(plastic, zero, (E / 1.5, 0.0, 0.0)), 0, E, G, expansion, C)
     start = _active(point.spin_stress[0], point.spin_back[0])
-    _subtract(_sensitivity(plastic, start, (0.0, G, 0.0)), 1, E, G, expansion, C)
-    start = _active(point.spin_stress[1], point.spin_back[1])
-    _subtract(_sensitivity(plastic, start, (0.0, 0.0, G)), 2, E, G, expansion, C)
+    end = _active(point.spin_stress[1], point.spin_back[1])
+    _subtract(_sensitivity(plastic, gradients, zero, (E / 1.5, 0.0, 0.0)), 0, E, G, expansion, C)
+    _subtract(_sensitivity(plastic, gradients, start, (0.0, G, 0.0)), 1, E, G, expansion, C)
+    _subtract(_sensitivity(plastic, gradients, end, (0.0, 0.0, G)), 2, E, G, expansion, C)
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**INLINE)
+def _gradients(plastic):
+    """How b* and Λ follow n₀ and e, so that the two local equations stay true, and how n follows b* and Λ."""
+    local, n, p, u, m, x, e = plastic.local, plastic.n, plastic.p, plastic.u, plastic.m, plastic.x, plastic.e
+    a, c, multiplier = local.a, local.c, local.multiplier
+    dx, s = (a.dx, c.dx, c.dx), (a.s, c.s, c.s)
+    if local.neutral:  # κ is the unknown in the place of Λ
+        db = (x[0] * plastic.dea, 0.0, 0.0)
+        dl = _scaled(_times(_times(x, s), e), -1.0)
+    else:
+        ds = (a.ds * multiplier, c.ds * multiplier, c.ds * multiplier)
+        db = (dx[0] * e[0] + x[0] * plastic.dea, dx[1] * e[1], dx[2] * e[2])
+        db = _times(u, _add(db, _scaled(_times(n, ds), -1.0)))
+        dl = _scaled(_times(_times(u, s), n), -1.0)
+    un, up, ux, mn = _times(u, n), _times(u, p), _times(u, x), _times(m, n)
+    r1n = _scaled(un, 2.0)
+    r1e = _times(x, r1n)
+    r2n = (up[0] + mn[0] * (1.0 - u[0]), up[1] + mn[1] * (1.0 - u[1]), up[2] + mn[2] * (1.0 - u[2]))
+    r2e = _add(_times(x, up), (mn[0] * (1.0 - ux[0]), mn[1] * (1.0 - ux[1]), mn[2] * (1.0 - ux[2])))
+    bn = _add(_scaled(r2n, -local.r1l), _scaled(r1n, -local.r2l))
+    be = _add(_scaled(r2e, -local.r1l), _scaled(r1e, -local.r2l))
+    ln = _add(_scaled(r2n, local.r1b), _scaled(r1n, local.r2b))
+    le = _add(_scaled(r2e, local.r1b), _scaled(r1e, local.r2b))
+    return Gradients(bn, be, ln, le, db, dl)
+
+
+@njit(**INLINE)
+def _sensitivity(plastic, g, dn, de):
+    """Change of the plastic strain increment and of b* with the start n₀ (by `dn`) and with e (by `de`)."""
+    trial = _add(dn, de)
+    if plastic.beta > 0.0 and plastic.crossing > 0.0:
+        dn = _add(dn, _scaled(de, plastic.beta))
+        dbeta = -_inner(plastic.n0, dn) / plastic.crossing  # of |n₀ + β e|² = k²
+        dn = _add(dn, _scaled(plastic.whole, dbeta))
+        de = _add(trial, _scaled(dn, -1.0))
+    b = _inner(g.bn, dn) + _inner(g.be, de)
+    multiplier = _inner(g.ln, dn) + _inner(g.le, de)
+    end = _times(plastic.u, _add(dn, _times(plastic.x, de)))
+    end = _add(end, _add(_scaled(g.db, b), _scaled(g.dl, multiplier)))
+    rest = _scaled(plastic.p, plastic.local.dzeta * b)
+    trial = (trial[0] + plastic.dea * b, trial[1], trial[2])
+    return _times(plastic.m, _add(trial, _scaled(_add(end, rest), -1.0))), b
+
+
+@njit(**INLINE)
 def _subtract(change, j, E, G, expansion, C):
     p, b = change
     C[0, j] -= E * (p[0] + expansion * b)
