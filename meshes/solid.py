@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import dolfinx.mesh
 import gmsh
 import numpy as np
+
 from coilset.meshes.solid_grid import SectionGrid, gmsh_cylinder
 from coilset.model.compat import mesh_from_gmsh
 from coilset.model.errors import InputError
@@ -135,7 +136,7 @@ def coil_section(wire_diameter, mean_diameter, pitch, degrees, layers, comm, gri
         InputError: sizes that are no coil.
     """
     if not mean_diameter > wire_diameter:
-        raise InputError(f"{mean_diameter} mm is not more than the wire diameter of {wire_diameter} mm", "mean_diameter")
+        raise InputError(f"{mean_diameter} mm is not more than the wire's {wire_diameter} mm", "mean_diameter")
     if not degrees > 0:
         raise InputError(f"{degrees}° cannot be; give a positive angle", "degrees")
     helix = Helix(mean_diameter, pitch, degrees)

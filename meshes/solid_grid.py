@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import gmsh
 import numpy as np
+
 from coilset.model.errors import InputError
 
 
@@ -65,7 +66,8 @@ def gmsh_disk(radius, grid, recombine):
         j = (i + 1) % 4
         arcs.append(occ.addCircleArc(ring[i], centre, ring[j]))
         middle = φ + np.pi / 4
-        sides.append(occ.addCircleArc(core[i], occ.addPoint(-behind * np.cos(middle), -behind * np.sin(middle), 0), core[j]))
+        away = occ.addPoint(-behind * np.cos(middle), -behind * np.sin(middle), 0)
+        sides.append(occ.addCircleArc(core[i], away, core[j]))
         rays.append(occ.addLine(core[i], ring[i]))
     surfaces = [occ.addPlaneSurface([occ.addCurveLoop(sides)])]
     for i in range(4):

@@ -64,7 +64,7 @@ class Configuration:
 
 
 def _node_matrix(mesh, V):
-    """Matrix from position coefficients to geometry nodes, shape (nodes, blocks): row i evaluates the space at node i."""
+    """Matrix from position coefficients to geometry nodes, shape (nodes, blocks): row i evaluates node i."""
     geometry, dofs = mesh.geometry, V.dofmap.list
     points = mesh.ufl_domain().ufl_coordinate_element().basix_element.points
     shape = V.element.basix_element.tabulate(0, points)[0, :, :, 0]  # (nodes of a cell, blocks of a cell)

@@ -1,4 +1,4 @@
-"""UFL forms of the solid on the current configuration: virtual work, its linearisation, and the incremental gradient."""
+"""UFL forms of the solid on the current configuration: virtual work, its linearisation, the gradient."""
 
 import basix.ufl
 import numpy as np

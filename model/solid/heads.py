@@ -62,7 +62,7 @@ class Head:
         self.motion = Motion()
 
     def positions(self, motion):
-        """Position coefficients of the face's blocks after a motion, shape (blocks, 3); they are linear in the position."""
+        """Position coefficients of the face's blocks after a motion, shape (blocks, 3), mm; they are linear in it."""
         R = Rotation.from_rotvec(motion.rotation).as_matrix()
         return (self._start - self.centre) @ R.T + self.centre + np.asarray(motion.translation)
 

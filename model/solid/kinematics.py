@@ -1,9 +1,10 @@
 """Finite increments at the points: logarithmic stretch and polar rotation, and their exact linearisation.
 
-The increment is `F = R U` from the last equilibrium. The law is integrated in the unrotated frame with the strain increment
-`ln U`, and stress and back stress are turned by R. On the path `R(t) exp(t ln U)` the spin of R is the material's spin W, so
-this integrates the Zaremba-Jaumann rate of theory.md, 1 without error of its own; a rigid motion superposed on the increment
-turns the result and changes nothing else, and `tr ln U` is the logarithm of the change of volume.
+The increment is `F = R U` from the last equilibrium. The law is integrated in the unrotated frame with the strain
+increment `ln U`, and stress and back stress are turned by R. On the path `R(t) exp(t ln U)` the spin of R is the
+material's spin W, so this integrates the Zaremba-Jaumann rate of chapter 3 without error of its own; a rigid motion
+superposed on the increment turns the result and changes nothing else, and `tr ln U` is the logarithm of the change of
+volume.
 
 Six components are ordered 11, 22, 33, 12, 13, 23. Inside, Mandel's basis is used (shear times √2), in which rotations
 of tensors are orthogonal 6 × 6 matrices.
@@ -153,8 +154,8 @@ def principal_moduli(s, ln, C, A):
 
         δ(ln U)ij = x / sinh x · dij        (δR Rᵀ)ij = wij − tanh(x/2) dij
 
-    so that δσ = w σ − σ w + C : δ ln U − N s + s N with N = tanh(x/2) ∘ d. The current volume adds σ tr d, and the turning
-    of the gradient −σ (d − w); what is left of both beside the initial-stress term is −(d s + s d).
+    so that δσ = w σ − σ w + C : δ ln U − N s + s N with N = tanh(x/2) ∘ d. The current volume adds σ tr d, and the
+    turning of the gradient −σ (d − w); what is left of both beside the initial-stress term is −(d s + s d).
 
     Args:
         s: stress in the axes of U, 3 × 3.

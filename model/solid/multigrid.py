@@ -1,7 +1,7 @@
-"""Multigrid for the solid: quadratic elements, then the same elements with their vertices only, then smoothed aggregation.
+"""Multigrid for the solid: quadratic elements, then the same elements with vertices only, then smoothed aggregation.
 
-Smoothed aggregation straight on the quadratic basis makes aggregates too small for six rigid modes, and needs more
-iterations. The vertices' space is nested in the quadratic one: a function linear along the edges has on an edge the mean
+Smoothed aggregation straight on the quadratic basis needs more iterations, with aggregates too small for six rigid
+modes. The vertices' space is nested in the quadratic one: a function linear along the edges has on an edge the mean
 (hexahedra) or the mid-edge value (tetrahedra) that is half the sum of the edge's end values.
 """
 

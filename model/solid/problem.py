@@ -1,7 +1,7 @@
 """The solid between its two rigid heads as a SNES problem: steps, cut where one does not converge."""
 
 import itertools
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 from dolfinx import fem
@@ -28,7 +28,7 @@ class Step:
 
     def __add__(self, other):
         """The effort of both."""
-        return Step(*(getattr(self, name) + getattr(other, name) for name in ("iterations", "linear_iterations", "cuts")))
+        return Step(*(a + b for a, b in zip(astuple(self), astuple(other), strict=True)))
 
 
 class SolidProblem:
@@ -104,7 +104,7 @@ class SolidProblem:
 
     def _tangent(self, snes, X, J, P):
         mine = np.array_equal(X.getArray(readonly=True), self.solid.u[: self.solid.configuration.owned].ravel())
-        if not self.comm.allreduce(int(mine)) == self.comm.size:  # a line search may have looked elsewhere last
+        if self.comm.allreduce(int(mine)) != self.comm.size:  # a line search may have looked elsewhere last
             self._set(X)
         self._assemble()
 
@@ -166,7 +166,7 @@ class SolidProblem:
         return Step(1 + self.snes.getIterationNumber(), predictor + self.snes.getLinearSolveIterations())
 
     def _predict(self):
-        """Start from the linear answer to the heads' motion, so that the end elements are not torn; K_ff u = −K_fh g − r."""
+        """Start from the linear answer to the heads' motion g, which tears no end element: K_ff u = −K_fh g − r."""
         ksp = self.snes.getKSP()
         self._assemble()
         b = create_vector(self.solid.forms.residual)

@@ -14,7 +14,7 @@ CHUNK = 2048
 
 
 class Solid:
-    """A wire as a 3D body, updated Lagrange: all refers to the current configuration, increments to the last equilibrium.
+    """A wire as a 3D body, updated Lagrange: increments count from the last equilibrium, forms from where it is now.
 
     Args:
         wire: SolidMesh; its mesh will move with the body.
@@ -62,7 +62,8 @@ class Solid:
         cells = slice(first, min(first + CHUNK, self.n_cells))
         gradient = self.forms.evaluate_gradient(np.arange(cells.start, cells.stop))
         n, rows = len(gradient), self.state.shape[-1]
-        strain, axes, rotation, log_stretch = np.empty((n, 6)), np.empty((n, 3, 3)), np.empty((n, 3, 3)), np.empty((n, 3))
+        strain, log_stretch = np.empty((n, 6)), np.empty((n, 3))
+        axes, rotation = np.empty((n, 3, 3)), np.empty((n, 3, 3))
         if stretches(gradient, strain, axes, rotation, log_stretch) != 0:
             return False
         C = np.empty((n, 6, 6))

@@ -4,8 +4,9 @@ from coilset.model.errors import InputError
 
 _NEWTON = {"snes_type": "newtonls", "snes_linesearch_type": "bt", "snes_max_it": 25, "snes_max_linear_solve_fail": 1}
 
-# `direct` factorises; `multigrid` is conjugate gradients with `multigrid.VertexMultigrid`. Both take the symmetric part of the
-# moduli: their skew part is of the order of stress over stiffness and costs less in Newton's convergence than it saves.
+# `direct` factorises; `multigrid` is conjugate gradients with `multigrid.VertexMultigrid`. Both take the symmetric part
+# of the moduli: their skew part is of the order of stress over stiffness and costs less in Newton's convergence than it
+# saves.
 OPTIONS = {
     "direct": {**_NEWTON, "ksp_type": "preonly", "pc_type": "cholesky", "pc_factor_mat_solver_type": "mumps"},
     "multigrid": {

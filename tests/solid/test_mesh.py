@@ -1,0 +1,74 @@
+import numpy as np
+import pytest
+import ufl
+from dolfinx import fem
+from mpi4py import MPI
+
+from coilset.meshes.solid import Helix, SectionGrid, coil_section, straight_wire
+from coilset.model.errors import InputError
+from coilset.model.solid.configuration import Configuration
+
+
+def sizes(wire):
+    """Volume, and area of each named group."""
+    mesh = wire.mesh
+    one = fem.Constant(mesh, 1.0)
+    ds = ufl.Measure("ds", domain=mesh, subdomain_data=wire.facet_tags)
+
+    def total(measure):
+        return mesh.comm.allreduce(fem.assemble_scalar(fem.form(one * measure)))
+
+    return total(ufl.dx(domain=mesh)), {name: total(ds(tag)) for name, tag in wire.groups.items()}
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("cell", ["hexahedron", "tetrahedron"])
+def test_volume_and_areas_of_a_coil_section(cell):
+    # Pappus: a disk swept normal to its centre line has the volume πd²/4 L and the surface πd L; the surface elements are
+    # parabolic, so the error falls with h⁴
+    d, D, p, degrees = 5.0, 40.0, 12.0, 400.0
+    length = np.radians(degrees) / (2 * np.pi) * np.hypot(np.pi * D, p)
+    errors = []
+    for n in (1, 2):
+        wire = coil_section(d, D, p, degrees, 20 * n, MPI.COMM_WORLD, SectionGrid(2 * n, n), cell)
+        Configuration(wire.mesh)  # puts hexahedra into their 20-node form
+        volume, areas = sizes(wire)
+        exact = np.array([np.pi * d**2 / 4 * length, np.pi * d**2 / 4, np.pi * d**2 / 4, np.pi * d * length])
+        errors.append(np.abs(np.array([volume, areas["bottom"], areas["top"], areas["surface"]]) / exact - 1))
+    assert np.all(errors[1] < 3e-4)
+    assert np.all(np.log2(errors[0] / errors[1]) > 3.5)
+
+
+def test_frame_of_the_helix():
+    helix = Helix(40.0, 12.0, 360.0)
+    s = np.linspace(0, helix.length, 7)
+    centre, outward, second, tangent = helix.frame(s)
+    step = 1e-5
+    assert np.allclose((helix.frame(s + step)[0] - helix.frame(s - step)[0]) / (2 * step), tangent, atol=1e-9)
+    frame = np.stack([outward, second, tangent], axis=-1)
+    assert np.allclose(np.swapaxes(frame, 1, 2) @ frame, np.eye(3), atol=1e-14)
+    assert np.allclose(np.linalg.det(frame), 1.0)
+    assert centre[-1] == pytest.approx([20.0, 0.0, 12.0])
+
+
+def test_moving_the_mesh_is_exact_for_rigid_motion():
+    wire = coil_section(5.0, 40.0, 12.0, 90.0, 4, MPI.COMM_WORLD, SectionGrid(2, 1))
+    configuration = Configuration(wire.mesh)
+    nodes = wire.mesh.geometry.x.copy()
+    R = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    configuration.move(configuration.x @ R.T + [1.0, 2.0, 3.0])
+    assert np.allclose(wire.mesh.geometry.x, nodes @ R.T + [1.0, 2.0, 3.0], atol=1e-12)
+
+
+@pytest.mark.parametrize(("call", "place"), [
+    (lambda: coil_section(5.0, 4.0, 12.0, 90.0, 4, MPI.COMM_WORLD), "mean_diameter"),
+    (lambda: coil_section(5.0, 40.0, 12.0, 0.0, 4, MPI.COMM_WORLD), "degrees"),
+    (lambda: straight_wire(-5.0, 40.0, 4, MPI.COMM_WORLD), "diameter"),
+    (lambda: straight_wire(5.0, 40.0, 0, MPI.COMM_WORLD), "layers"),
+    (lambda: straight_wire(5.0, 40.0, 4, MPI.COMM_WORLD, cell="wedge"), "cell"),
+    (lambda: SectionGrid(0, 1), "grid"),
+    (lambda: SectionGrid(2, 1, core_size=1.5), "grid.core_size"),
+])  # fmt: skip
+def test_impossible_meshes_are_refused(call, place):
+    with pytest.raises(InputError, match=place):
+        call()
