@@ -1,0 +1,78 @@
+"""Springs of any shape, solved: rates and characteristics against closed formulas, and round trips through files."""
+
+import numpy as np
+import pytest
+
+from coilset.meshes.export import write_mesh
+from coilset.meshes.spring import MeasuredSpec, SpringSpec
+from coilset.model.material import library
+from coilset.verification.springs import progressive, representation
+from coilset.verification.springs.curved_rod import clamped_rate
+
+CURVED = "curved"
+
+
+@pytest.fixture(scope="module")
+def law():
+    return library.load("ck15")
+
+
+def test_sections_on_the_curved_axis_reach_the_rate(tmp_path):
+    """The inscribed polygon is 3.5 % too stiff at 16 elements a turn, sections on the axis less than 0.3 %."""
+    errors = representation.study()
+    representation.figure(errors, tmp_path / "representation.png")
+    sixteen = representation.ELEMENTS.index(16)
+    for by_key in errors.values():
+        assert by_key["points"][sixteen] == pytest.approx(0.0355, abs=3e-4)
+        # 1 − sinc² (cos² + sin²/(3 (1 + ν))) of what is left after stretching by 1/sinc: 1.6 %
+        assert by_key["length"][sixteen] == pytest.approx(0.0158, abs=3e-4)
+        assert abs(by_key["compliance"][sixteen]) < 3e-4
+        assert abs(by_key[CURVED][sixteen]) < 3e-5
+        for key in ("points", "length", CURVED):
+            orders = np.log2(by_key[key][1:-1] / by_key[key][2:])
+            np.testing.assert_allclose(orders, 2, atol=0.05)
+
+
+def test_conical_spring_meets_the_closed_formula(law):
+    # Wahl, Mechanical Springs, conical springs: R = G d⁴/(16 n (r1 + r2)(r1² + r2²)); it leaves out pitch, bending and
+    # shear, so the cone is slender (D/d from 10 to 20) with small pitch, and long enough for the heads not to matter
+    r1, r2, n, d = 30.0, 15.0, 10.0, 3.0
+    cone = SpringSpec(wire_diameter=d, mean_diameter={"shape": "cone", "bottom": 2 * r1, "top": 2 * r2}, turns=n,
+                      pitch=7.0).build()
+    rate = representation.rate(cone, cone.stations(16), CURVED, law)
+    assert rate == pytest.approx(law.G * d**4 / (16 * n * (r1 + r2) * (r1**2 + r2**2)), rel=0.01)
+    # and the curved rod with bending, shear and heads much closer
+    assert rate == pytest.approx(clamped_rate(cone, law.E, law.G), rel=1e-4)
+
+
+@pytest.mark.parametrize(("name", "stiffer", "within"), [
+    # the formula closes a coil at once, a seat from its tip on: 2.5 % where the first coil lies down
+    ("telescoping cone on a seat", 2.8, 0.03),
+    ("barrel", 2.3, 0.02),
+    ("variable pitch", 2.1, 0.02),
+])
+def test_progressive_springs(name, stiffer, within):
+    found = progressive.solve(name)
+    assert found.work == 0.0  # elastic, so that the formula holds
+    np.testing.assert_allclose(found.travel, found.formula, rtol=within)
+    assert found.rates[-1] > stiffer * found.rates[0]
+    # stiffer from step to step, but for the first coil's lying down
+    assert np.all(np.diff(found.rates) > -0.02 * found.rates[:-1])
+
+
+@pytest.mark.parametrize("suffix", [".msh", ".vtu"])
+def test_round_trip_keeps_the_rate(law, tmp_path, suffix):
+    ends = {"form": "closed and ground"}
+    drawn = SpringSpec(wire_diameter=4.0, mean_diameter={"shape": "barrel", "ends": 30.0, "middle": 44.0}, turns=7.25,
+                       free_length=90.0, hand="left", end_coils=ends).build()
+    write_mesh(drawn, drawn.stations(16), tmp_path / f"spring{suffix}")
+    measured = MeasuredSpec(file=str(tmp_path / f"spring{suffix}"), end_coils=ends).build()
+    rates = [representation.rate(spring, spring.stations(16), CURVED, law) for spring in (drawn, measured)]
+    assert rates[1] == pytest.approx(rates[0], rel=1e-3)  # issue's bound; found: some 1e-6
+
+
+@pytest.mark.parametrize("hand", ["right", "left"])
+def test_hand_does_not_change_the_rate(law, hand):
+    spring = SpringSpec(wire_diameter=5.0, mean_diameter=40.0, turns=2.5, pitch=12.0, hand=hand).build()
+    assert representation.rate(spring, spring.stations(16), CURVED, law) == pytest.approx(
+        clamped_rate(spring, law.E, law.G), rel=2e-5)

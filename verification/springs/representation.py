@@ -1,0 +1,99 @@
+"""Which straight rods represent a curved wire best? Rates of clamped springs against the curved rod.
+
+The thesis's rods are inscribed in the centre line. Others: nodes moved outwards until the chords are as long as the
+arcs, or until they give way as much (`polygon_nodes`); and sections that lie on the true centre line
+(`section_placement`).
+"""
+
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+from mpi4py import MPI
+
+from coilset.meshes.line import line_mesh
+from coilset.meshes.placement import polygon_nodes, section_placement
+from coilset.meshes.spring import SpringSpec
+from coilset.model.frames.rotations import triads
+from coilset.model.loading.driver import Drive
+from coilset.model.material import library
+from coilset.model.problem.system import System
+from coilset.model.results.figures import STYLE, save
+from coilset.model.rod.kinematics import GAUSS
+from coilset.model.rod.rod import Rod
+from coilset.model.section.rules import polar
+from coilset.model.solvers.solver import Solver
+from coilset.verification.springs.curved_rod import clamped_rate
+
+TRAVEL = 1e-4  # of the free length, in both directions
+ELEMENTS = (8, 16, 32, 64)
+REPRESENTATIONS = {
+    "points": "inscribed polygon (thesis)",
+    "length": "polygon of the wire's length",
+    "compliance": "polygon of the same compliance",
+    "curved": "sections on the curved axis (default)",
+}
+SPRINGS = {
+    "cylinder, 2.5 turns": SpringSpec(wire_diameter=5.0, mean_diameter=40.0, turns=2.5, pitch=12.0),
+    "barrel, 6 turns": SpringSpec(
+        wire_diameter=5.0, mean_diameter={"shape": "barrel", "ends": 30.0, "middle": 50.0}, turns=6.0, pitch=14.0),
+}
+
+
+def rate(spring, turns, representation, law):
+    """Initial rate between clamped heads, N/mm.
+
+    Args:
+        spring: `Spring`.
+        turns: of the nodes, shape (n + 1,).
+        representation: a key of `REPRESENTATIONS`.
+        law: material law.
+    """
+    keep = "points" if representation == "curved" else representation
+    line = line_mesh(polygon_nodes(spring, turns, keep, poisson=law.E / (2 * law.G) - 1), MPI.COMM_SELF)
+    placement = None
+    if representation == "curved":
+        placement = section_placement(spring, turns, triads(np.diff(line.stations, axis=0)), GAUSS)
+    radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
+    system = System(Rod(line, radius, law, polar(2, 8), placement))
+    drive, solver = Drive(system, "clamped", spring.free_length), Solver(system)
+    forces = []
+    for travel in (TRAVEL * spring.free_length, -TRAVEL * spring.free_length):
+        drive.by_height(spring.free_length - travel)
+        if not solver.solve().converged:
+            raise RuntimeError(f"no equilibrium at a travel of {travel:g} mm")
+        forces.append(drive.read(solver.X)[1])
+        system.restore()
+    # the central difference leaves no share of the characteristic's curvature
+    return (forces[0] - forces[1]) / (2 * TRAVEL * spring.free_length)
+
+
+def study():
+    """Relative errors of the rate: spring → representation → errors at `ELEMENTS` a turn, shape (4,)."""
+    law = library.load("ck15")
+    errors = {}
+    for name, spec in SPRINGS.items():
+        spring = spec.build()
+        exact = clamped_rate(spring, law.E, law.G)
+        errors[name] = {key: np.array([rate(spring, spring.stations(n), key, law) / exact - 1 for n in ELEMENTS])
+                        for key in REPRESENTATIONS}
+    return errors
+
+
+def figure(errors, path):
+    """Draw the errors over the elements in a turn."""
+    with mpl.rc_context(STYLE):
+        drawn = Figure(figsize=(9.2, 4.6), layout="constrained")
+        for place, (name, by_representation) in enumerate(errors.items()):
+            axes = drawn.add_subplot(1, 2, place + 1)
+            for key, label in REPRESENTATIONS.items():
+                axes.loglog(ELEMENTS, 100 * np.abs(by_representation[key]), "o-", ms=4, lw=1.3, label=label)
+            axes.axhline(0.3, color="0.5", lw=0.8, ls="--", label="0.3 %")
+            axes.set(title=name, xlabel="elements in a turn", ylabel="error of the rate in %", xticks=ELEMENTS)
+            axes.set_xticklabels(ELEMENTS)
+            axes.minorticks_off()
+            axes.grid(lw=0.3)
+        drawn.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8)
+        drawn.suptitle("Rate of clamped springs against the curved rod by Castigliano", fontsize=10)
+        save(drawn, Path(path))
