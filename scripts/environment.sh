@@ -116,6 +116,7 @@ enter_private_root() {
                 *) [ -d "$folder" ] && [ ! -L "$folder" ] && binds+=(--bind "$folder" "$folder") ;;
             esac
         done
+        trap '' INT # bwrap must outlive Ctrl-C, which is for the command inside: that one listens to it again
         exec bwrap --bind "$private_root" / "${binds[@]}" --dev /dev --proc /proc --ro-bind /sys /sys \
             --setenv PATH /usr/local/bin:/usr/bin:/bin --setenv LANG C.UTF-8 --setenv HOME "$HOME" \
             --setenv OMPI_ALLOW_RUN_AS_ROOT 1 --setenv OMPI_ALLOW_RUN_AS_ROOT_CONFIRM 1 --setenv COILSET_PRIVATE_ROOT 1 \

@@ -82,6 +82,7 @@ def python(context: typer.Context):
 
 def run():
     """Entry of the command: one line and an exit code for every error that can be foreseen."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     status = 1
     try:
         status = app(standalone_mode=False) or 0
