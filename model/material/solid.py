@@ -1,0 +1,202 @@
+"""The constitutive law for the full stress state.
+
+Order of components: 11, 22, 33, 12, 13, 23. Strain increments hold engineering shear strains, γ12 = 2ε12; stress and
+back stress hold the tensor's components. A point's history row is σ (6), B (6), b* and, with adiabatic heating, the
+temperature: 13 or 14 numbers, in N/mm² and K.
+
+The law is hypoelastic with the Zaremba-Jaumann rate (3.1.2): it holds in a frame that turns with the material's spin.
+Either the caller works in such a frame, or it turns the history row by the increment's rotation first, with `turn`.
+"""
+
+from numba import njit
+
+from coilset.model.material.functions import HEATING, INLINE, KERNEL, TEMPERATURE, elasticity, functions
+from coilset.model.material.local import Start, solve, yield_crossing
+
+COMPONENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+PLACES = ((0, 3, 4), (3, 1, 5), (4, 5, 2))  # where the component (i, j) is stored
+
+
+@njit(**INLINE)
+def _inner(a, b):
+    """a:b of two symmetric tensors."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
+
+
+@njit(**INLINE)
+def _deviator_increment(dD, G):
+    """2G times the deviator of a strain increment."""
+    g = 2.0 * G
+    mean = (dD[0] + dD[1] + dD[2]) / 3.0
+    return (g * (dD[0] - mean), g * (dD[1] - mean), g * (dD[2] - mean), G * dD[3], G * dD[4], G * dD[5])
+
+
+@njit(**INLINE)
+def _active(row):
+    """n = T − B of a history row."""
+    mean = (row[0] + row[1] + row[2]) / 3.0
+    return (
+        row[0] - mean - row[6], row[1] - mean - row[7], row[2] - mean - row[8],
+        row[3] - row[9], row[4] - row[10], row[5] - row[11],
+    )  # fmt: skip
+
+
+@njit(**INLINE)
+def _combined(f, a, g, b):
+    """f a + g b."""
+    return (
+        f * a[0] + g * b[0], f * a[1] + g * b[1], f * a[2] + g * b[2],
+        f * a[3] + g * b[3], f * a[4] + g * b[4], f * a[5] + g * b[5],
+    )  # fmt: skip
+
+
+@njit(**INLINE)
+def _elastic(old, dD, E, G, new, C):
+    bulk = E * G / (3.0 * (3.0 * G - E))
+    volume = bulk * (dD[0] + dD[1] + dD[2])
+    e = _deviator_increment(dD, G)
+    for i in range(6):
+        new[i] = old[i] + e[i] + (volume if i < 3 else 0.0)
+        for j in range(6):
+            C[i, j] = 0.0
+    for i in range(6, old.shape[0]):
+        new[i] = old[i]
+    for i in range(3):
+        for j in range(3):
+            C[i, j] = bulk - 2.0 * G / 3.0
+        C[i, i] += 2.0 * G
+        C[3 + i, 3 + i] = G
+    return e
+
+
+@njit(**KERNEL)
+def return_map(p, old, dD, new, C):
+    """Backward Euler step of the law for the full stress state, with its consistent tangent.
+
+    Args:
+        p: parameter array of the law, `Law.parameters()`.
+        old: history row at the start, shape (13,) or, with adiabatic heating, (14,); not written.
+        dD: strain increment, shape (6,), engineering shear strains.
+        new: history row at the end; always fully written.
+        C: dσ/dε, shape (6, 6), N/mm²; written.
+
+    Returns:
+        Number of local iterations, 0 for an elastic increment, -1 if there was no convergence (then `new` is `old`, C
+        elastic).
+    """
+    thermal = old.shape[0] > 13
+    temperature = old[13] if thermal else p[TEMPERATURE]
+    heating = p[HEATING] if thermal else 0.0
+    E, G, alpha = elasticity(p, temperature)
+    e = _elastic(old, dD, E, G, new, C)
+    n0 = _active(old)
+    trial = _active(new)
+    values = functions(p, old[12], temperature)
+    if _inner(trial, trial) <= values[0] * (1.0 + 1e-12):
+        return 0
+
+    ne, ee = _inner(n0, e), _inner(e, e)
+    beta = yield_crossing(_inner(n0, n0), ne, ee, values[0])
+    rest = 1.0 - beta
+    n0 = _combined(1.0, n0, beta, e)
+    nn, ne = _inner(n0, n0), _inner(n0, e)
+    c = 2.0 * G
+    start = Start(old[12], temperature, heating, c, 0.0, 0.0, 0.0, c, nn, rest * ne, rest * rest * ee)
+    local = solve(p, start, values)
+    if local.iterations < 0:
+        for i in range(new.shape[0]):
+            new[i] = old[i]
+        return -1
+    if local.neutral:
+        heating = 0.0
+    u, m = 1.0 / (1.0 + local.c.s * local.multiplier), 1.0 / (c + local.zeta)
+    pl = _combined(m * (1.0 - u), n0, m * rest * (1.0 - u * local.c.x), e)
+    expansion = E * G / (3.0 * G - E) * alpha * heating  # of the stress by thermal strain, per b*: 3Kα dT/db*
+    pressure = expansion * (local.b - old[12])
+    for i in range(6):
+        new[i] -= c * pl[i] + (pressure if i < 3 else 0.0)
+        new[6 + i] += local.zeta * pl[i]  # (3.1.8)
+    new[12] = local.b
+    if thermal:
+        new[13] = temperature + heating * (local.b - old[12])
+    _tangent(local, n0, e, beta, (ne, ee), u, m, c, expansion, C)
+    return local.iterations
+
+
+@njit(**INLINE)
+def _pair(f, a, g, b):
+    return (f * a[0] + g * b[0], f * a[1] + g * b[1])
+
+
+@njit(**INLINE)
+def _tangent(local, n0, e, beta, products, u, m, c, expansion, C):
+    """Subtract from the elastic tangent in C what the plastic strain takes.
+
+    Every vector here is a combination of n₀ and of the increment's e and is written as the pair of its two factors.
+    """
+    ne, ee = products
+    g, rest, x = local.c, 1.0 - beta, local.c.x
+    n = (u, u * x * rest)
+    pl = (m * (1.0 - u), m * rest * (1.0 - u * x))
+    # Derivatives of n:n − k² and of b*₀ + n:p by n₀ and by e; from them those of b* and Λ.
+    r1n, r2n = _pair(2.0 * u, n, 0.0, n), _pair(u, pl, m * (1.0 - u), n)
+    r1e, r2e = _pair(x, r1n, 0.0, n), _pair(u * x, pl, m * (1.0 - u * x), n)
+    bn, be = _pair(-local.r1l, r2n, -local.r2l, r1n), _pair(-local.r1l, r2e, -local.r2l, r1e)
+    ln, le = _pair(local.r1b, r2n, local.r2b, r1n), _pair(local.r1b, r2e, local.r2b, r1e)
+    # The elastic fraction β follows e, too: |n₀ + β e|² = k².
+    gb, gl, gbeta = _pair(beta, bn, rest, be), _pair(beta, ln, rest, le), (0.0, 0.0)
+    if beta > 0.0 and ne > 0.0:
+        gbeta = (-beta / ne, 0.0)
+        gb = _pair(1.0, gb, (bn[0] - be[0]) * ne + (bn[1] - be[1]) * ee, gbeta)
+        gl = _pair(1.0, gl, (ln[0] - le[0]) * ne + (ln[1] - le[1]) * ee, gbeta)
+    if local.neutral:  # κ is the unknown in the place of Λ
+        fb, fl = (0.0, 0.0), (0.0, -x * g.s * rest)
+    else:
+        fb = _pair(local.dzeta, pl, -u * g.ds * local.multiplier, n)
+        fb = (fb[0], fb[1] + u * g.dx * rest)
+        fl = _pair(-u * g.s, n, 0.0, n)
+    # dp = m [(1 − u (β + x (1 − β))) de − u (1 − x) e dβ − fb db* − fl dΛ]
+    scale = c * c * m
+    identity = scale * (1.0 - u * (beta + x * rest))
+    fbeta = (0.0, u * (1.0 - x))
+    left_n = -scale * fb[0], -scale * fl[0], -scale * fbeta[0]
+    left_e = -scale * fb[1], -scale * fl[1], -scale * fbeta[1]
+    for j in range(6):
+        db = gb[0] * n0[j] + gb[1] * e[j]
+        dl = gl[0] * n0[j] + gl[1] * e[j]
+        dbeta = gbeta[0] * n0[j]
+        along_n = left_n[0] * db + left_n[1] * dl + left_n[2] * dbeta
+        along_e = left_e[0] * db + left_e[1] * dl + left_e[2] * dbeta
+        for i in range(6):
+            C[i, j] -= along_n * n0[i] + along_e * e[i]
+        for i in range(3):
+            C[i, j] -= c * expansion * db
+    for i in range(3):
+        C[i, i] -= identity
+        C[3 + i, 3 + i] -= 0.5 * identity
+        for j in range(3):
+            C[i, j] += identity / 3.0
+
+
+@njit(**KERNEL)
+def turn(old, R, new):
+    """Turn stress and back stress of a history row by a rotation, S → R S Rᵀ.
+
+    With R = exp(W), W = ½(grad Δu − grad Δuᵀ), before the update with the strain increment in the turned frame, this
+    integrates the Zaremba-Jaumann rate; all invariants stay, so that the update is objective for any size of W.
+
+    Args:
+        old: history row, shape (13,) or (14,); not written.
+        R: rotation, shape (3, 3).
+        new: turned row, not the same array as `old`.
+    """
+    for o in (0, 6):
+        for k in range(6):
+            i, j = COMPONENTS[k]
+            value = 0.0
+            for a in range(3):
+                for b in range(3):
+                    value += R[i, a] * old[o + PLACES[a][b]] * R[j, b]
+            new[o + k] = value
+    for i in range(12, old.shape[0]):
+        new[i] = old[i]
