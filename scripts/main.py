@@ -91,9 +91,7 @@ def run():
         _complain(str(error))
     except typer.Exit as error:
         status = error.exit_code
-    except typer.Abort:
-        status = 130
-    except KeyboardInterrupt:
+    except (typer.Abort, KeyboardInterrupt):
         status = 128 + signal.SIGINT
         _complain("interrupted")
     except Exception as error:

@@ -3,14 +3,15 @@
 import os
 from pathlib import Path
 
+from rich.console import Console
+from rich.table import Table
+
 from coilset.meshes.data import spring_data
 from coilset.meshes.steel import STEEL, Elastic
 from coilset.model.case import read_case
 from coilset.model.errors import InputError
 from coilset.model.material import library
 from coilset.model.results.folder import whole
-from rich.console import Console
-from rich.table import Table
 
 FILES = ("drawing.png", "spring.png")
 

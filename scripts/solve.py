@@ -16,6 +16,7 @@ from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.folder import prepare, write_history, write_summary
 from coilset.model.results.summary import summarise
 from coilset.scripts.interactive import Prompt
+from coilset.scripts.interrupt import Interrupt
 
 STARTED = float(os.environ.get("COILSET_STARTED", time.time()))
 
@@ -36,44 +37,61 @@ def solve(case_file, out, force, settings, pictures, resume=False, interactive=F
     except InputError as error:
         raise InputError(error.problem, error.place, error.file or case_file) from None
     _prepare(out, force or resume, comm)
-    checkpoint = Checkpoint(out, case)
-    if resume:
-        checkpoint.resume(analysis)
-    elif comm.rank == 0:
-        checkpoint.clear()
-    if comm.rank == 0:
-        _log_to(out / "log.txt", resume)
-    for warning in analysis.spring.warnings:
-        console.print(f"[yellow]warning:[/] {warning}")
+    checkpoint = _begin(analysis, out, resume)
+    _announce(console, analysis, case_file, resume)
     began = time.perf_counter()
-    targets = ", ".join(phase.label for phase in case.loading)
-    console.print(f"{Path(case_file).name}: {len(analysis.turns) - 1} elements, to {targets}, {comm.size} rank(s)")
-    if resume:
-        console.print(f"going on after step {analysis.stepper.number}")
-    console.print("   step   seat height/mm      force/N   iterations   contacts")
-    failure = None
-    ask = Prompt(analysis, console.print) if interactive else None
-
-    def report(step):
-        console.print(_row(step))
-        if ask:
-            ask(step)
-
-    try:
-        analysis.run(report, checkpoint)
-    except (SolveError, KeyboardInterrupt) as error:
-        failure = error
-    result = analysis.result
+    failure = _run(console, analysis, checkpoint, interactive)
     analysed = time.perf_counter() - began
-    summary = comm.bcast(summarise(analysis, result) if comm.rank == 0 else None)
+    summary = comm.bcast(summarise(analysis, analysis.result) if comm.rank == 0 else None)
     if comm.rank == 0:
-        _write(out, analysis, result, summary)
+        _write(out, analysis, analysis.result, summary)
         if pictures:
-            _draw(out, analysis, result, summary, console)
+            _draw(out, analysis, analysis.result, summary, console)
     _conclude(console, summary, out, analysed)
     if failure is not None:
         console.print("go on from the last step with --resume")
         raise failure
+
+
+def _begin(analysis, out, resume):
+    """The checkpoint, resumed from or cleared, and the log."""
+    checkpoint = Checkpoint(out, analysis.case)
+    if resume:
+        checkpoint.resume(analysis)
+    if analysis.comm.rank == 0:
+        if not resume:
+            checkpoint.clear()
+        _log_to(out / "log.txt", resume)
+    return checkpoint
+
+
+def _announce(console, analysis, case_file, resume):
+    for warning in analysis.spring.warnings:
+        console.print(f"[yellow]warning:[/] {warning}")
+    targets = ", ".join(phase.label for phase in analysis.case.loading)
+    elements, ranks = len(analysis.turns) - 1, analysis.comm.size
+    console.print(f"{Path(case_file).name}: {elements} elements, to {targets}, {ranks} rank(s)")
+    if resume:
+        console.print(f"going on after step {analysis.stepper.number}")
+    console.print("   step   seat height/mm      force/N   iterations   contacts")
+
+
+def _run(console, analysis, checkpoint, interactive):
+    """Walk through the program; what ended it early is returned, for the results up to there are written first."""
+    ask = Prompt(analysis, console.print) if interactive else None
+
+    def report(step):
+        console.print(_row(step))
+        interrupt.check()
+        if ask:
+            ask(step)
+
+    try:
+        with Interrupt(analysis.comm, console.print) as interrupt:
+            analysis.run(report, checkpoint)
+    except (SolveError, KeyboardInterrupt) as error:
+        return error
+    return None
 
 
 def _prepare(out, force, comm):

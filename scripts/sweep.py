@@ -6,6 +6,10 @@ import time
 from contextlib import closing, contextmanager
 from pathlib import Path
 
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
 from coilset.model.errors import InputError
 from coilset.model.sweep import dataset
 from coilset.model.sweep.figures import draw
@@ -13,9 +17,6 @@ from coilset.model.sweep.journal import Journal
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.pools import local_pool, usable_cores
 from coilset.model.sweep.run import finished, missing, run
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-from rich.table import Table
 
 REPORT_SECONDS = 30.0  # between two lines of progress where there is no terminal
 SHOWN_FAILURES = 5
@@ -33,13 +34,20 @@ def sweep(sweep_file, out, force, resume, retry, jobs, ranks_per_case, pictures)
 
     comm = MPI.COMM_WORLD
     out = Path(out or Path("results") / Path(sweep_file).stem)
-    plan = _on_first_rank(comm, lambda: _prepare(sweep_file, out, force, resume or retry, ranks_per_case))
+    plan = _on_first_rank(comm, lambda: _prepare(sweep_file, out, force, resume or retry))
     console = Console(highlight=False)
-    with _pool(comm, jobs or usable_cores(), ranks_per_case, environment, out) as pool:
-        if pool is not None:
-            _lead(plan, out, retry, pool, console)
+    interrupted = False
+    try:
+        with _pool(comm, jobs or usable_cores(), ranks_per_case, environment, out) as pool:
+            if pool is not None:
+                _lead(plan, out, retry, pool, console)
+    except KeyboardInterrupt:
+        interrupted = True
     if comm.rank == 0:
         _conclude(plan, out, pictures, console)
+    if interrupted:
+        console.print("interrupted; the same command with --resume goes on")
+        raise KeyboardInterrupt
 
 
 def _on_first_rank(comm, prepare):
@@ -56,10 +64,8 @@ def _on_first_rank(comm, prepare):
     return plan
 
 
-def _prepare(sweep_file, out, force, resume, ranks_per_case):
+def _prepare(sweep_file, out, force, resume):
     plan = Plan(sweep_file)
-    if plan.spec.time_limit is not None and ranks_per_case > 1:
-        raise InputError("holds for cases on one rank only; leave it out", "time_limit", sweep_file)
     journal = out / "journal.jsonl"
     if journal.exists() and not (force or resume):
         raise InputError("holds a sweep; give --resume for what is missing, --force to replace it", "--out", out)
