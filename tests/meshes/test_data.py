@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from coilset.meshes.checks import buckling_travel
 from coilset.meshes.data import spring_data, torsion_rate
 from coilset.meshes.spring import SpringSpec

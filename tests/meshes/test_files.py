@@ -4,6 +4,7 @@ import gmsh
 import meshio
 import numpy as np
 import pytest
+
 from coilset.meshes.export import write_mesh
 from coilset.meshes.measured import MeasuredSpec
 from coilset.meshes.spring import SpringSpec

@@ -5,8 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from coilset.meshes.spring import SpringSpec
 from scipy.integrate import quad
+
+from coilset.meshes.spring import SpringSpec
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "springs"
 EXACT = 1e-9
@@ -60,7 +61,7 @@ SHAPES = {
     # name: (d, r at the bottom, r at the top, turns, rise, wire length, rise at block)
     "cylinder": (5, 20, 20, 2.5, 30, cylindrical_length(20, 2.5, 12), 2.5 * 5),
     "cone": (5, 30, 15, 5, 70, conical_length(30, 15, 5, 14), conical_rise(30, 15, 5, 5)),
-    "double_cone": (4, 12, 12, 6, 66, 2 * conical_length(12, 22, 3, 11), 2 * conical_rise(12, 22, 3, 4)),
+    "double_cone": (4, 14, 14, 6, 66, 2 * conical_length(14, 20, 3, 11), 2 * conical_rise(14, 20, 3, 4)),
     "barrel": (5, 15, 15, 6, 84, parabolic_length(15, 25, 6, 14), None),
     "hourglass": (4, 22, 22, 6, 66, parabolic_length(22, 14, 6, 11), None),
     "funnel": (4, 26, 14, 6, 66, conical_length(26, 14, 3, 11) + cylindrical_length(14, 3, 11), 3 * 0 + 3 * 4),

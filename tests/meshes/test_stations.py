@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from coilset.meshes.shapes import Table
 from coilset.meshes.spring import SpringSpec
 from coilset.model.errors import InputError

@@ -1,6 +1,7 @@
 """Wrong specifications, each with the one line that it must raise, as the reader of case files gives it."""
 
 import pytest
+
 from coilset.meshes.spring import SpringSpec
 from coilset.model.case import check
 from coilset.model.errors import InputError

@@ -1,0 +1,64 @@
+"""`coilset mesh`: what it prints, draws and writes, for every shipped spring."""
+
+from pathlib import Path
+
+import matplotlib.image
+import meshio
+import numpy as np
+import pytest
+
+from coilset.meshes.drawing import drawing
+from coilset.meshes.spring import SpringSpec
+from coilset.model.errors import InputError
+from coilset.scripts.mesh import mesh
+
+SPRINGS = Path(__file__).parents[2] / "examples" / "springs"
+
+
+@pytest.mark.parametrize("case", sorted(SPRINGS.glob("*.yaml")), ids=lambda path: path.stem)
+def test_every_example_has_its_data(case, capsys):
+    mesh(case, pictures=False)
+    printed = capsys.readouterr().out
+    for label in ("turns", "active turns", "wire length", "mass", "block length", "spring index D/d", "rate"):
+        assert label in printed
+    assert "warning" not in printed
+
+
+def test_data_of_the_cylinder(capsys):
+    mesh(SPRINGS / "cylinder.yaml", pictures=False, settings=["mesh.elements_per_turn=20"])
+    rows = dict(line.strip().split("   ", 1) for line in capsys.readouterr().out.splitlines() if "   " in line.strip())
+    rows = {label: value.strip() for label, value in rows.items()}
+    assert rows["free length"] == "35 mm"
+    assert rows["block length"] == "17.5 mm"
+    assert rows["wire length"] == "315.59 mm"  # 2.5 √((40 π)² + 12²)
+    assert rows["mass"] == "48.64 g"  # · π 5²/4 · 7.85e-3 g/mm³
+    assert rows["rate G d⁴/(8 D³ n), EN 13906-1"] == "41.016 N/mm"  # G = 84000 MPa of Ck 15
+    assert rows["elements"] == "50"
+
+
+def test_files_and_pictures(tmp_path, capsys):
+    out, file = tmp_path / "out", tmp_path / "new" / "spring.vtu"
+    mesh(SPRINGS / "closed_and_ground.yaml", out=out, write=[str(file)])
+    assert len(meshio.read(file).cells[0].data) == 120
+    for name in ("drawing.png", "spring.png"):
+        image = matplotlib.image.imread(out / name)[..., :3]
+        assert 0.02 < np.mean(image.min(axis=-1) < 0.95) < 0.6  # neither empty nor full
+    with pytest.raises(InputError, match="is there already; give --force to replace it"):
+        mesh(SPRINGS / "closed_and_ground.yaml", out=out)
+    mesh(SPRINGS / "closed_and_ground.yaml", out=out, write=[str(file)], force=True)
+
+
+def test_wrong_case_names_file_and_entry(capsys):
+    case = SPRINGS / "cone.yaml"
+    with pytest.raises(InputError, match=r"cone\.yaml: spring\.mean_diameter: the wire is thicker than the coil"):
+        mesh(case, pictures=False, settings=["spring.wire_diameter=11"])
+
+
+@pytest.mark.parametrize(("hand", "rises"), [("right", 1), ("left", -1)])
+def test_side_view_shows_the_hand(hand, rises):
+    """Seen from outside, the near half turns of a right-hand helix rise to the right."""
+    spring = SpringSpec(wire_diameter=5.0, mean_diameter=40.0, turns=3.0, pitch=12.0, hand=hand).build()
+    wires = sorted(drawing(spring).axes[0].collections, key=lambda wire: wire.get_zorder())
+    nearest = np.array([piece[0] for piece in wires[-1].get_segments()])
+    left, right = nearest[np.argmin(nearest[:, 0])], nearest[np.argmax(nearest[:, 0])]
+    assert np.sign(right[1] - left[1]) == rises
