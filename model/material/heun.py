@@ -1,0 +1,289 @@
+"""The thesis's integrator (5.2.5): a modified Heun scheme with automatic sub-steps, for the rod and for the full stress
+state.
+
+In each sub-step the yield and the loading condition (5.2.41) decide between the elastic and the elastic-plastic rate
+equations. Where an elastic sub-step would leave the yield surface it is cut at the surface. The difference between the
+Euler and the Heun result estimates the error: it steers the size of the sub-steps and, added to the Euler result,
+corrects it. What drift from the yield surface is left after that is taken out along n.
+
+Both forms are written for one vector y = (t, B, b*, T, σm): t is the deviator's components that the form carries (⅔σ11,
+τ12, τ13 or all six), with metric w and elastic moduli c of each (3/2, 2, 2 and ⅔E, 2G, 2G; or 1 and 2, all 2G), σm the
+mean stress (in the rod it follows from t and is not used).
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from coilset.model.material.functions import (
+    HEATING,
+    KERNEL,
+    SPIN,
+    TEMPERATURE,
+    TOLERANCE,
+    elasticity,
+    functions,
+)
+from coilset.model.material.local import yield_crossing
+
+MAX_SUBSTEPS = 20000
+ROD_METRIC = (1.5, 2.0, 2.0)
+SOLID_METRIC = (1.0, 1.0, 1.0, 2.0, 2.0, 2.0)
+ELASTIC, PLASTIC, BY_LOADING = 0, 1, 2
+
+
+@njit(**KERNEL)
+def _yield_excess(p, y, w):
+    """F/k² = n:n/k² − 1."""
+    m = w.shape[0]
+    nn = 0.0
+    for i in range(m):
+        n = y[i] - y[m + i]
+        nn += w[i] * n * n
+    return nn / functions(p, y[2 * m], y[2 * m + 1])[0] - 1.0
+
+
+@njit(**KERNEL)
+def _neutral_kappa(kappa, zeta, ca, cc, axial, rest, spin):
+    """The κ below the material's for which n:n does not change with λ = 0: spin + axial x_a + rest x_c = 0."""
+    a, c = zeta + ca, zeta + cc
+    # Multiplied by (1 + κ a)(1 + κ c): a quadratic equation q2 κ² + q1 κ + q0 = 0.
+    q2, q1, q0 = spin * a * c, spin * (a + c) + axial * c + rest * a, spin + axial + rest
+    root = q1 * q1 - 4.0 * q2 * q0
+    if root < 0.0:
+        return kappa
+    q = -0.5 * (q1 + math.copysign(math.sqrt(root), q1))
+    first, second = q / q2 if q2 != 0.0 else math.inf, q0 / q
+    found = kappa
+    for candidate in (first, second):
+        if 0.0 <= candidate < found:
+            found = candidate
+    return found
+
+
+@njit(**KERNEL)
+def _rates(p, y, w, d, volume, heating, mode, rate):
+    """Rates of y for the strain rate `d` (tensor components, deviatoric in the solid) and the rate of volume strain.
+
+    Returns:
+        Whether the point loads plastically.
+    """
+    m = w.shape[0]
+    rod = m == 3
+    E, G, alpha = elasticity(p, y[2 * m + 1])
+    cc = 2.0 * G
+    ca = E / 1.5 if rod else cc
+    _, dk2, zeta, _, kappa, _ = functions(p, y[2 * m], y[2 * m + 1])
+    for i in range(2 * m + 2):
+        rate[i] = 0.0
+    if rod and p[SPIN] != 0.0:  # (5.2.33), γ1j = 2 d1j; in terms of t11 = ⅔σ11, and of 3/2 B11 = B11 − B22
+        for j in range(1, 3):
+            g = 2.0 * d[j]
+            rate[0] -= g * y[j] / 1.5
+            rate[j] += 0.75 * g * y[0]
+            rate[3] -= g * y[3 + j]
+            rate[3 + j] += 0.75 * g * y[3]
+    axial = rest = spin = axial_nn = rest_nn = 0.0
+    for i in range(m):
+        n = y[i] - y[m + i]
+        spin += w[i] * n * (rate[i] - rate[m + i])
+        if i == 0:
+            axial, axial_nn = w[i] * n * ca * d[i], w[i] * n * n
+        else:
+            rest += w[i] * n * cc * d[i]
+            rest_nn += w[i] * n * n
+        rate[i] += (ca if i == 0 else cc) * d[i]
+    bulk = E * G / (3.0 * (3.0 * G - E))
+    rate[2 * m + 2] = bulk * volume
+    loading = (2.0 - kappa * dk2) * (axial + rest + spin) > 0.0  # (5.2.41)
+    if mode == ELASTIC or (mode == BY_LOADING and not loading):
+        return False
+
+    # The multiplier μ of n in (1 + κζ) D_pl = κ Ť + μ n follows from n:n = k². `warm` is d e11/db*, from thermal
+    # strain.
+    xa, xc = 1.0 / (1.0 + kappa * (zeta + ca)), 1.0 / (1.0 + kappa * (zeta + cc))
+    warm = -ca * alpha * heating if rod else 0.0
+    n0 = y[0] - y[m]
+    thermal = w[0] * n0 * xa * warm
+    xe = xa * axial + xc * rest
+    xnn = xa * axial_nn + xc * rest_nn
+    cxnn = (ca + zeta) * xa * axial_nn + (cc + zeta) * xc * rest_nn
+    half = (0.5 * dk2 - thermal) / (1.0 - kappa * thermal)
+    mu = (spin + xe * (1.0 - kappa * half)) / (cxnn + xnn * half)
+    work = (kappa * xe + mu * xnn) / (1.0 - kappa * thermal)
+    if mode == BY_LOADING and (mu < 0.0 or work < 0.0):  # neutral loading, see `local`
+        kappa = _neutral_kappa(kappa, zeta, ca, cc, axial, rest, spin)
+        xa, xc = 1.0 / (1.0 + kappa * (zeta + ca)), 1.0 / (1.0 + kappa * (zeta + cc))
+        mu = work = 0.0
+    for i in range(m):
+        c, x = (ca, xa) if i == 0 else (cc, xc)
+        e = c * d[i] + (warm * work if i == 0 else 0.0)
+        plastic = x * (kappa * e + mu * (y[i] - y[m + i]))
+        rate[i] += e - c * d[i] - c * plastic
+        rate[m + i] += zeta * plastic  # (3.1.8)
+    rate[2 * m] = work  # (3.1.7)
+    rate[2 * m + 1] = heating * work
+    rate[2 * m + 2] -= 3.0 * bulk * alpha * heating * work
+    return True
+
+
+@njit(**KERNEL)
+def _heun(p, y, w, d, volume, heating, h, mode, work):
+    """One Heun step of size `h` from y to work[2]; work[1] becomes the Euler result.
+
+    Returns:
+        Whether it was plastic.
+    """
+    plastic = _rates(p, y, w, d, volume, heating, mode, work[0])
+    for i in range(y.shape[0]):
+        work[1, i] = y[i] + h * work[0, i]
+    _rates(p, work[1], w, d, volume, heating, BY_LOADING if plastic else ELASTIC, work[3])
+    for i in range(y.shape[0]):
+        work[2, i] = y[i] + 0.5 * h * (work[0, i] + work[3, i])
+    return plastic
+
+
+@njit(**KERNEL)
+def _elastic_part(p, y, w, d, volume, heating, h, work):
+    """Largest elastic step up to `h` that does not leave the yield surface; its end is left in work[2]."""
+    _heun(p, y, w, d, volume, heating, h, ELASTIC, work)
+    if _yield_excess(p, work[2], w) <= 1e-12:
+        return h
+    m = w.shape[0]
+    nn = ne = ee = 0.0
+    for i in range(m):
+        n, e = y[i] - y[m + i], h * (work[0, i] - work[0, m + i])
+        nn += w[i] * n * n
+        ne += w[i] * n * e
+        ee += w[i] * e * e
+    beta = yield_crossing(nn, ne, ee, functions(p, y[2 * m], y[2 * m + 1])[0])
+    h *= max(beta, 1e-6)
+    _heun(p, y, w, d, volume, heating, h, ELASTIC, work)
+    _onto_surface(p, work[2], w)  # the spin bends the path a little
+    return h
+
+
+@njit(**KERNEL)
+def _onto_surface(p, y, w):
+    """Take out the drift: n → n k/|n| at fixed B and b*."""
+    m = w.shape[0]
+    factor = 1.0 / math.sqrt(1.0 + _yield_excess(p, y, w))
+    for i in range(m):
+        y[i] = y[m + i] + factor * (y[i] - y[m + i])
+
+
+@njit(**KERNEL)
+def _integrate(p, y, w, d, volume, heating):
+    """Advance y over the strain increment `d` in sub-steps.
+
+    Returns:
+        Number of sub-steps (-1: too many), and whether the last one was plastic.
+    """
+    work = np.empty((4, y.shape[0]))
+    m = w.shape[0]
+    done, h, steps, plastic = 0.0, 1.0, 0, False
+    while done < 1.0:
+        steps += 1
+        if steps > MAX_SUBSTEPS:
+            return -1, plastic
+        rest = 1.0 - done
+        on_surface = _yield_excess(p, y, w) > -1e-12
+        plastic = on_surface and _rates(p, y, w, d, volume, heating, BY_LOADING, work[0])
+        if not plastic:
+            step = _elastic_part(p, y, w, d, volume, heating, rest, work)
+            y[:] = work[2]
+        else:
+            step = min(h, rest)
+            _heun(p, y, w, d, volume, heating, step, BY_LOADING, work)
+            error = 0.0
+            for i in range(m):
+                error += w[i] * (work[2, i] - work[1, i]) ** 2
+            error = math.sqrt(error / functions(p, y[2 * m], y[2 * m + 1])[0]) / p[TOLERANCE]
+            factor = 0.9 / math.sqrt(error) if error > 0.0 else 5.0
+            h = step * min(max(factor, 0.1), 5.0)
+            if error > 1.0:
+                continue
+            y[:] = work[2]
+            _onto_surface(p, y, w)
+        done = 1.0 if step == rest else done + step
+    return steps, plastic
+
+
+@njit(**KERNEL)
+def rod_heun(p, old, de11, dg12, dg13, new, C):
+    """The thesis's integrator for the rod: the same arguments as `rod.return_map`.
+
+    The relative error of stress allowed in a sub-step is `heun_tolerance` of the law; if it is infinite, the plastic
+    part of the increment is one step. C is the tangent of the rate equations at the end (3.2.4).
+
+    Returns:
+        Number of sub-steps, 0 for an elastic increment, -1 if there were too many.
+    """
+    w = np.array(ROD_METRIC)
+    d = np.array((de11, 0.5 * dg12, 0.5 * dg13))
+    y = np.zeros(9)
+    thermal = old.shape[0] > 7
+    heating = p[HEATING] if thermal else 0.0
+    y[0] = old[0] / 1.5
+    y[1:7] = old[1:7]
+    y[7] = old[7] if thermal else p[TEMPERATURE]
+    start = y[6]
+    steps, plastic = _integrate(p, y, w, d, 0.0, heating)
+    new[:] = old
+    if steps >= 0:
+        new[0] = 1.5 * y[0]
+        new[1:7] = y[1:7]
+        if thermal:
+            new[7] = y[7]
+    rate = np.empty(9)
+    for j in range(3):
+        d[:] = 0.0
+        d[j] = 1.0 if j == 0 else 0.5
+        _rates(p, y, w, d, 0.0, heating, PLASTIC if plastic else ELASTIC, rate)
+        C[0, j], C[1, j], C[2, j] = 1.5 * rate[0], rate[1], rate[2]
+    return 0 if steps >= 0 and y[6] == start else steps
+
+
+@njit(**KERNEL)
+def solid_heun(p, old, dD, new, C):
+    """The thesis's integrator for the full stress state: arguments of `solid.return_map`, the rest as in `rod_heun`."""
+    w = np.array(SOLID_METRIC)
+    thermal = old.shape[0] > 13
+    heating = p[HEATING] if thermal else 0.0
+    y = np.zeros(15)
+    mean = (old[0] + old[1] + old[2]) / 3.0
+    for i in range(6):
+        y[i] = old[i] - (mean if i < 3 else 0.0)
+    y[6:13] = old[6:13]
+    y[13] = old[13] if thermal else p[TEMPERATURE]
+    y[14] = mean
+    start = y[12]
+    d = np.empty(6)
+    steps, plastic = _integrate(p, y, w, d, _split(dD, d), heating)
+    new[:] = old
+    if steps >= 0:
+        for i in range(6):
+            new[i] = y[i] + (y[14] if i < 3 else 0.0)
+        new[6:13] = y[6:13]
+        if thermal:
+            new[13] = y[13]
+    rate = np.empty(15)
+    unit = np.zeros(6)
+    for j in range(6):
+        unit[:] = 0.0
+        unit[j] = 1.0
+        _rates(p, y, w, d, _split(unit, d), heating, PLASTIC if plastic else ELASTIC, rate)
+        for i in range(6):
+            C[i, j] = rate[i] + (rate[14] if i < 3 else 0.0)
+    return 0 if steps >= 0 and y[12] == start else steps
+
+
+@njit(**KERNEL)
+def _split(dD, d):
+    """Write the deviator of a strain increment to `d`, tensor components, and return its volume strain."""
+    volume = dD[0] + dD[1] + dD[2]
+    for i in range(3):
+        d[i] = dD[i] - volume / 3.0
+        d[3 + i] = 0.5 * dD[3 + i]
+    return volume
