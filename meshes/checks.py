@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+
 from coilset.meshes.ends import touching_pitch
 from coilset.meshes.steel import STEEL
 from coilset.model.errors import InputError

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+
 from coilset.meshes import functions
 from coilset.meshes.checks import buckling_travel
 from coilset.meshes.steel import STEEL

@@ -3,13 +3,14 @@
 from typing import Annotated, Any, Literal
 
 import numpy as np
+from pydantic import Discriminator, Field, Tag, model_validator
+
 from coilset.meshes import functions
 from coilset.meshes.shapes import Entry
-from pydantic import Discriminator, Field, Tag, model_validator
 
 CLOSED_TURNS, CLOSED_TRANSITION, GROUND_TIP = 1.0, 0.5, 0.25
 
-_Turns = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
+_Turns = Annotated[float, Field(ge=0.01, allow_inf_nan=False, strict=True)]
 
 
 class EndCoils(Entry):

@@ -5,6 +5,7 @@ from pathlib import Path
 import gmsh
 import meshio
 import numpy as np
+
 from coilset.meshes.measured import WIRE_DIAMETER
 from coilset.model.errors import InputError
 

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from scipy.interpolate import PPoly
+
 from coilset.meshes import functions
 from coilset.meshes.checks import objections
 from coilset.meshes.ends import OPEN, EndCoils, touching_pitch
 from coilset.meshes.stations import stations
-from scipy.interpolate import PPoly
 
 INTERVALS_PER_TURN = 64
 

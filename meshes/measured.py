@@ -5,13 +5,14 @@ from typing import Annotated
 
 import meshio
 import numpy as np
+from pydantic import Field, ValidationInfo, field_validator
+
 from coilset.meshes import functions
 from coilset.meshes.checks import refuse
 from coilset.meshes.ends import OPEN, Ends, bottom_and_top
 from coilset.meshes.geometry import Spring
 from coilset.meshes.shapes import Entry, Length
 from coilset.model.errors import InputError
-from pydantic import Field, ValidationInfo, field_validator
 
 LEAST_POINTS = 5
 WIDEST_STEP = 1 / 3  # of a turn between neighbouring points

@@ -3,10 +3,21 @@
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from coilset.meshes import functions
-from pydantic import BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
 
-Length = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True)]
+from coilset.meshes import functions
+
+SHORTEST, LONGEST = 1e-3, 1e5  # mm
+CLOSEST = 1e-3  # turns
+
+
+def _of_a_spring(length):
+    if not SHORTEST <= length <= LONGEST:
+        raise ValueError(f"{length:g} is no length of a spring; must be {SHORTEST:g} to {LONGEST:g}")
+    return length
+
+
+Length = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True), AfterValidator(_of_a_spring)]
 Turn = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
 
 
@@ -30,8 +41,8 @@ class Table(Entry):
     def _fits(self):
         if len(self.turns) != len(self.values):
             raise ValueError(f"has {len(self.turns)} turns but {len(self.values)} values; give one value for each turn")
-        if np.any(np.diff(self.turns) <= 0):
-            raise ValueError("turns must increase from one to the next")
+        if np.any(np.diff(self.turns) < CLOSEST):
+            raise ValueError(f"turns must increase from one to the next, by {CLOSEST:g} or more")
         if self.turns[0] != 0:
             raise ValueError(f"must begin at turn 0, not at {self.turns[0]:g}")
         return self
@@ -72,7 +83,7 @@ class Funnel(Entry):
     shape: Literal["funnel"]
     bottom: Annotated[Length, Field(description="mean coil diameter at the bottom end, mm")]
     neck: Annotated[Length, Field(description="mean coil diameter of the cylinder, mm")]
-    cone_turns: Annotated[float, Field(gt=0, strict=True, description="turns of the cone")]
+    cone_turns: Annotated[float, Field(ge=0.1, allow_inf_nan=False, strict=True, description="turns of the cone")]
 
     def function(self, turns):
         """The diameter as a function of the turn, mm; raises ValueError if the cone has too many turns."""

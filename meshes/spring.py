@@ -3,6 +3,9 @@
 from typing import Annotated, Any, Literal
 
 import numpy as np
+from pydantic import Discriminator, Field, Tag, model_validator
+from scipy.optimize import brentq
+
 from coilset.meshes import functions
 from coilset.meshes.checks import refuse
 from coilset.meshes.ends import OPEN, Ends, bottom_and_top, pitch_with_ends, touching_pitch
@@ -10,7 +13,6 @@ from coilset.meshes.geometry import Spring
 from coilset.meshes.measured import MeasuredSpec
 from coilset.meshes.shapes import DiameterProfile, Entry, Length, Profile, profile_function
 from coilset.model.errors import InputError
-from pydantic import Discriminator, Field, Tag, model_validator
 
 __all__ = ["MeasuredSpec", "Spring", "SpringEntry", "SpringSpec"]
 
@@ -20,7 +22,7 @@ class SpringSpec(Entry):
 
     wire_diameter: Annotated[Profile, Field(description="wire diameter, mm; a number or a table over the turns")]
     mean_diameter: Annotated[DiameterProfile, Field(description="mean coil diameter, mm; a number, a table or a shape")]
-    turns: Annotated[float, Field(gt=0, le=1000, strict=True, description="all turns, end turns included")]
+    turns: Annotated[float, Field(ge=0.1, le=1000, strict=True, description="all turns, end turns included")]
     pitch: Annotated[
         Profile | None, Field(description="rise in a turn of the body, mm; a number or a table; or give free_length")
     ] = None
@@ -57,7 +59,7 @@ class SpringSpec(Entry):
             return Spring(radius, height, wire, 1 if self.hand == "right" else -1, *bottom_and_top(self.end_coils))
 
         if self.pitch is None:
-            return refuse(spring(functions.constant(self._pitch_of_free_length(spring), self.turns)))
+            return refuse(self._with_free_length(spring, self.turns - ends_and_transitions))
         built = spring(self._function("pitch"))
         if self.free_length is not None and abs(built.free_length - self.free_length) > 1e-6 * self.free_length:
             raise InputError(f"{self.free_length:g} mm contradicts the pitch, which makes {built.free_length:.6g} mm; "
@@ -79,15 +81,18 @@ class SpringSpec(Entry):
 
         return pitch_with_ends(pitch, *bottom_and_top(self.end_coils), touching)
 
-    def _pitch_of_free_length(self, spring):
-        """The body's pitch, on which the free length depends linearly."""
-        touching = spring(functions.constant(0.0, self.turns)).free_length
-        slope = spring(functions.constant(1.0, self.turns)).free_length - touching
-        pitch = (self.free_length - touching) / slope
-        if pitch <= 0:
-            raise InputError(f"{self.free_length:g} mm leave no pitch: end coils and wire alone need {touching:.4g} mm",
+    def _with_free_length(self, spring, body_turns):
+        """The spring whose body has the pitch that makes the free length; this grows with the pitch."""
+        def too_long(pitch):
+            return spring(functions.constant(pitch, self.turns)).free_length - self.free_length
+
+        least = too_long(0.0) + self.free_length
+        if least >= self.free_length:
+            raise InputError(f"{self.free_length:g} mm leave no pitch: end coils and wire alone need {least:.4g} mm",
                              "spring.free_length")
-        return pitch
+        # the body alone rises by the greatest pitch times its turns
+        pitch = brentq(too_long, 0.0, self.free_length / body_turns, xtol=1e-12, rtol=1e-14)
+        return spring(functions.constant(pitch, self.turns))
 
 
 def _origin(value: Any) -> str:

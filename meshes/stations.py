@@ -3,10 +3,11 @@
 from typing import Annotated
 
 import numpy as np
+from pydantic import Discriminator, Field, Tag
+
 from coilset.meshes import functions
 from coilset.meshes.shapes import Table, form_of_entry
 from coilset.model.errors import InputError
-from pydantic import Discriminator, Field, Tag
 
 LEAST, MOST = 3, 1_000_000
 

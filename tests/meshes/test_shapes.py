@@ -198,6 +198,13 @@ def test_table_with_a_spline_meets_a_cubic():
     np.testing.assert_allclose(2 * spring.mean_radius(t), cubic(t), rtol=1e-12)
 
 
+def test_free_length_of_a_spring_that_is_thicker_in_its_middle():
+    # at a small pitch the thick middle would reach below the tips; here the tips stand on the seats: 60 = 5 p + 3
+    wire = {"turns": [0, 2.5, 5], "values": [3.0, 9.0, 3.0], "interpolation": "linear"}
+    spring = SpringSpec(wire_diameter=wire, mean_diameter=60.0, turns=5.0, free_length=60.0).build()
+    assert spring.pitch(2.0) == pytest.approx(57 / 5, rel=1e-12)
+
+
 def test_free_length_and_pitch_derive_each_other():
     ends = {"form": "closed and ground", "turns": 1.0, "transition": 0.75, "tip": 0.5}
     spec = {"wire_diameter": 4.0, "mean_diameter": {"shape": "cone", "bottom": 40.0, "top": 30.0}, "turns": 7.0}
