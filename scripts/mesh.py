@@ -3,6 +3,7 @@
 import os
 from pathlib import Path
 
+from mpi4py import MPI
 from rich.console import Console
 from rich.table import Table
 
@@ -30,6 +31,8 @@ def mesh(case_file, out=None, force=False, settings=(), write=(), pictures=True)
     Raises:
         InputError: wrong input, or files that are there already.
     """
+    if MPI.COMM_WORLD.rank:
+        return  # nothing here is worth dividing
     console = Console(highlight=False)
     case = read_case(case_file, settings)
     out = Path(out or Path("results") / Path(case_file).stem)
