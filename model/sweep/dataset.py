@@ -2,6 +2,7 @@
 
 import numpy as np
 import xarray as xr
+
 from coilset.model.results.folder import whole
 from coilset.model.sweep.journal import read_records
 

@@ -3,8 +3,9 @@
 import itertools
 
 import numpy as np
-from coilset.model.errors import InputError
 from scipy.stats import qmc
+
+from coilset.model.errors import InputError
 
 
 def rows(spec, base):

@@ -2,32 +2,26 @@
 
 import gc
 import math
-import signal
 import sys
-import threading
 import time
 import traceback
-from contextlib import contextmanager
 from dataclasses import asdict, fields
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import check
-from coilset.model.errors import CoilsetError
+from coilset.model.errors import CoilsetError, SolveError
 from coilset.model.loading.stepper import Step
 from coilset.model.results.summary import summarise
 
 
-class TimeOver(CoilsetError):
-    """A case took longer than its time limit."""
-
-
-def evaluate(data, comm, time_limit=None):
+def evaluate(data, comm, file="", time_limit=None):
     """Run a case; nothing that goes wrong in it gets out, but is recorded.
 
     Args:
         data: raw data of the case, as a case file holds it.
         comm: communicator of the ranks that solve it.
-        time_limit: seconds after which it is given up, for a case on one rank.
+        file: the base case's file, from whose folder other files count.
+        time_limit: seconds after which it is given up at the end of its step.
 
     Returns:
         The record, plain data: `status` ("done" or "failed"), `reason`, `seconds`, `summary`, `steps` (columns of the
@@ -36,14 +30,8 @@ def evaluate(data, comm, time_limit=None):
     began = time.perf_counter()
     reason, analysis = "", None
     try:
-        with limited(time_limit):
-            analysis = Analysis(check(data), comm)
-            result = analysis.run()
-    except TimeOver as error:
-        reason = str(error)
-        if hasattr(analysis, "result"):
-            analysis.system.restore()
-            analysis.result.snapshots.append(analysis.snapshot("given up"))
+        analysis = Analysis(check(data, file), comm)
+        analysis.run(watch(comm, began, time_limit))
     except CoilsetError as error:
         reason = str(error)
     except Exception as error:
@@ -69,20 +57,11 @@ def plain(value):
     return value
 
 
-@contextmanager
-def limited(seconds):
-    """Raise TimeOver inside when `seconds` are over (None: never)."""
-    if seconds is None or threading.current_thread() is not threading.main_thread():
-        yield
-        return
+def watch(comm, began, time_limit):
+    """A report for each step that gives the case up when its time is over; rank 0's clock counts."""
 
-    def over(*_):
-        raise TimeOver(f"given up after the time limit of {seconds:g} s")
+    def report(step):
+        if time_limit is not None and comm.bcast(time.perf_counter() - began > time_limit):
+            raise SolveError(f"given up after the time limit of {time_limit:g} s")
 
-    before = signal.signal(signal.SIGALRM, over)
-    signal.setitimer(signal.ITIMER_REAL, seconds, 1.0)  # again every second, should one be lost in a callback
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, before)
+    return report

@@ -2,12 +2,14 @@
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.collections import LineCollection
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
+
 from coilset.model.errors import InputError
 from coilset.model.results.figures import STYLE, save
 from coilset.model.sweep import spec as sp
 from coilset.model.sweep.sensitivity import rank_correlation, sobol_indices
-from matplotlib.collections import LineCollection
-from matplotlib.figure import Figure
 
 LINE_LIMIT = 5000  # curves drawn in a family; more are thinned out evenly
 COLOURS = "viridis"
@@ -239,6 +241,8 @@ def convergence(figure, plan, data, place):
             panel.loglog(x[order][:-1], error, "o-", ms=3, lw=1.2, color=f"C{k}", label=data[of].attrs["long_name"])
         panel.set(xlabel=_axis(data, name), ylabel="relative distance from the finest")
         panel.set_title(f"base {inputs[0, plan.names.index(name)]}, finest {x.max():g}", fontsize=9)
+        panel.xaxis.set_minor_locator(NullLocator())
+        panel.set_xticks(np.unique(x)[:-1], [f"{value:g}" for value in np.unique(x)[:-1]])
         panel.label_outer()
         panel.grid(lw=0.3, which="both")
     panels[0].legend(fontsize=7)

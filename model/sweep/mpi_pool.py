@@ -4,10 +4,11 @@ import gc
 import signal
 from contextlib import contextmanager
 
+from mpi4py.futures import MPICommExecutor
+
 from coilset.model.errors import InputError
 from coilset.model.sweep.evaluate import evaluate
 from coilset.model.sweep.pools import Pool
-from mpi4py.futures import MPICommExecutor
 
 _group = None  # communicator of the ranks that share a case with this one
 
@@ -15,7 +16,7 @@ _group = None  # communicator of the ranks that share a case with this one
 def solve_in_group(task):
     """On the first rank of a group: hand the task to the group's other ranks, and solve it with them."""
     _group.bcast(task)
-    return evaluate(task["data"], _group, task["time_limit"])
+    return evaluate(comm=_group, **task)
 
 
 @contextmanager
@@ -52,5 +53,5 @@ def mpi_pool(comm, ranks_per_case):
         _group.bcast(None)
     else:
         while not idle and (task := _group.bcast(None)) is not None:
-            evaluate(task["data"], _group, task["time_limit"])
+            evaluate(comm=_group, **task)
         yield None

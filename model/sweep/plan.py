@@ -23,6 +23,7 @@ class Plan:
 
     Attributes:
         spec: SweepSpec.
+        case_path: file of the base case, from whose folder other files count.
         names: names of the inputs.
         rows: values of the inputs, a tuple a case.
         keys: key of each case: a digest of all its entries and of its material's constants.
@@ -35,9 +36,8 @@ class Plan:
         self.path = Path(path)
         kind = "a sweep file holds the entries case: and vary:"
         self.spec = check(read_data(path, kind=kind), path, SweepSpec)
-        case_path = self.path.parent / self.spec.case
-        self.base = read_data(case_path)
-        self.folder = str(case_path.parent)
+        self.case_path = self.path.parent / self.spec.case
+        self.base = read_data(self.case_path)
         try:
             for entry, value in self.spec.change.items():
                 put(self.base, entry, value, f"change.{entry}")
@@ -67,6 +67,10 @@ class Plan:
                 return None
         return value
 
+    def task(self, row):
+        """What is needed to run a case: its raw data, the base case's file, and the time limit."""
+        return {"data": self.data(row), "file": str(self.case_path), "time_limit": self.spec.time_limit}
+
     def data(self, row):
         """The raw data of one case, as a case file would hold it."""
         data = copy.deepcopy(self.base)
@@ -77,14 +81,15 @@ class Plan:
 
     def _key(self, row):
         try:
-            case = check(self.data(row))
+            case = check(self.data(row), self.case_path)
         except InputError as error:
             inputs = ", ".join(f"{name} = {value}" for name, value in zip(self.names, row, strict=True))
             raise InputError(f"{error.problem} (in the case {inputs})", error.place) from None
-        content = json.dumps(case.model_dump(mode="json"), sort_keys=True) + material_digest(case.material)
-        measured = getattr(case.spring, "file", None)
-        if measured is not None:
-            content += file_digest(Path(self.folder) / measured)
+        content = case.model_dump(mode="json")
+        content["material"] = material_digest(case.material)
+        if "file" in content["spring"]:
+            content["spring"]["file"] = file_digest(Path(content["spring"]["file"]))
+        content = json.dumps(content, sort_keys=True)
         return hashlib.blake2b(content.encode(), digest_size=KEY_BYTES).hexdigest()
 
 

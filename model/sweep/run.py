@@ -43,7 +43,7 @@ def _keep_busy(plan, todo, pool, journal, report, waiting):
     while True:
         while len(waiting) < AHEAD * pool.workers and (case := next(todo, None)) is not None:
             row, key = case
-            waiting[pool.submit({"data": plan.data(row), "time_limit": plan.spec.time_limit})] = key
+            waiting[pool.submit(plan.task(row))] = key
         if not waiting:
             return
         for future in wait(waiting, return_when=FIRST_COMPLETED).done:

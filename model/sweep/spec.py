@@ -3,9 +3,10 @@
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from coilset.model.loading.program import Strict
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 from scipy import stats
+
+from coilset.model.loading.program import Strict
 
 
 class Input(Strict):

@@ -17,14 +17,14 @@ def main():
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # what libraries print must not get between the answers
 
-    from coilset.model.sweep.evaluate import evaluate
     from mpi4py import MPI
+
+    from coilset.model.sweep.evaluate import evaluate
 
     gc.collect()
     gc.freeze()  # the collection after each case need not go through the libraries
     for line in sys.stdin:
-        task = json.loads(line)
-        record = evaluate(task["data"], MPI.COMM_SELF, task["time_limit"])
+        record = evaluate(comm=MPI.COMM_SELF, **json.loads(line))
         answers.write(json.dumps(record, allow_nan=False) + "\n")
         answers.flush()
 

@@ -1,0 +1,101 @@
+"""The same numbers on every number of ranks, and sweeps over the ranks of a job; also run under mpirun."""
+
+from contextlib import closing
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from coilset.model.analysis import Analysis
+from coilset.model.case import read_case
+from coilset.model.errors import InputError
+from coilset.model.sweep.evaluate import evaluate
+from coilset.model.sweep.journal import Journal, read_records
+from coilset.model.sweep.mpi_pool import mpi_pool
+from coilset.model.sweep.plan import Plan
+from coilset.model.sweep.run import missing, run
+
+pytestmark = pytest.mark.mpi
+COMM = MPI.COMM_WORLD
+AGREEMENT = 1e-10
+
+
+def relative(found, expected):
+    """Greatest difference over the greatest magnitude."""
+    return np.abs(np.asarray(found) - expected).max() / np.abs(expected).max()
+
+
+def apart(found, expected):
+    """Greatest difference between two springs by quantity, each over its own greatest magnitude; complete on rank 0."""
+    differences = {name: relative(*([getattr(step, name) for step in result.steps] for result in (found, expected)))
+                   for name in ("seat_height_mm", "force_N")}  # fmt: skip
+    for shot, other in zip(found.snapshots, expected.snapshots, strict=True):
+        if shot.name != "start":
+            stresses, forces = slice(0, 6), slice(0, 3)
+            differences[shot.name] = {
+                "position": relative(shot.x, other.x),
+                "stress": relative(shot.history[..., stresses], other.history[..., stresses]),
+                "plastic work": relative(shot.history[..., 6], other.history[..., 6]),
+                "forces": relative(shot.resultants[..., forces], other.resultants[..., forces]),
+                "moments": relative(shot.resultants[..., 3:], other.resultants[..., 3:]),
+            }
+    return differences
+
+
+@pytest.mark.parametrize("ends", ["seats", "clamped"])
+def test_every_number_of_ranks_finds_the_same_spring(example, ends):
+    """With coils in contact, up and down. The tolerance of the solve is tightened, as it bounds the agreement."""
+    settings = ["mesh.elements_per_turn=10", "solver.tolerance=1e-11", "loading.0.steps=5", "loading.1.steps=3"]
+    case = read_case(example, [f"ends={ends}", *settings])
+    alone, shared = (Analysis(case, comm) for comm in (MPI.COMM_SELF, COMM))
+    expected, found = alone.run(), shared.run()
+    assert [step.contacts for step in found.steps] == [step.contacts for step in expected.steps]
+    assert max(step.contacts for step in expected.steps) > 2
+    differences = COMM.bcast(apart(found, expected) if COMM.rank == 0 else None)  # all ranks pass or fail together
+    for difference in differences.values():
+        parts = difference.values() if isinstance(difference, dict) else [difference]
+        assert max(parts) < AGREEMENT, differences
+
+
+def small_plan(write_sweep, text):
+    """The plan on rank 0, whose files the others need not see."""
+    return Plan(write_sweep(text)) if COMM.rank == 0 else None
+
+
+@pytest.mark.skipif(COMM.size == 1, reason="needs a rank that leads and one that solves")
+def test_sweep_over_ranks_is_the_sweep_of_one_process(write_sweep, tmp_path):
+    """One rank a case, and a wrong spring among them."""
+    plan = small_plan(write_sweep, "vary: {spring.wire_diameter: [4.0, 4.5, 39.0, 5.0]}")
+    with mpi_pool(COMM, 1) as pool:
+        if pool is not None:
+            assert pool.workers == COMM.size - 1
+            with closing(Journal(tmp_path / "journal.jsonl")) as journal:
+                run(plan, missing(plan, ()), pool, journal)
+    if COMM.rank == 0:
+        records = {record["key"]: record for record in read_records(tmp_path / "journal.jsonl")}
+        assert [records[key]["status"] for key in plan.keys] == ["done", "done", "failed", "done"]
+        alone = evaluate(**plan.task(plan.rows[1]), comm=MPI.COMM_SELF)
+        assert records[plan.keys[1]]["summary"] == alone["summary"]
+
+
+@pytest.mark.skipif(COMM.size < 3, reason="needs a rank that leads and two that share a case")
+def test_two_ranks_share_a_case(write_sweep, tmp_path):
+    plan = small_plan(write_sweep, "vary: {spring.wire_diameter: [4.0, 39.0, 5.0]}")
+    with mpi_pool(COMM, 2) as pool:
+        if pool is not None:
+            assert pool.workers == (COMM.size - 1) // 2
+            with closing(Journal(tmp_path / "journal.jsonl")) as journal:
+                run(plan, missing(plan, ()), pool, journal)
+    if COMM.rank == 0:
+        records = {record["key"]: record for record in read_records(tmp_path / "journal.jsonl")}
+        assert [records[key]["status"] for key in plan.keys] == ["done", "failed", "done"]
+        for row, key in zip(plan.rows[::2], plan.keys[::2], strict=True):
+            alone = evaluate(**plan.task(row), comm=MPI.COMM_SELF)
+            for name in ("set_mm", "force_max_N"):  # the case's own tolerance of 1e-7 bounds the agreement
+                assert records[key]["summary"][name] == pytest.approx(alone["summary"][name], rel=1e-7)
+
+
+@pytest.mark.skipif(COMM.size == 1, reason="needs several ranks")
+def test_too_few_ranks_are_said(write_sweep):
+    with pytest.raises(InputError, match=f"{COMM.size} ranks are too few"), mpi_pool(COMM, COMM.size):
+        pass

@@ -1,0 +1,230 @@
+"""Sweeps from file to data set: equal to single runs, unimpressed by failing cases, whole after kill -9."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from contextlib import closing
+
+import pytest
+import xarray as xr
+from mpi4py import MPI
+
+from coilset.model.analysis import Analysis
+from coilset.model.case import check
+from coilset.model.errors import InputError
+from coilset.model.results.summary import summarise
+from coilset.model.sweep import dataset, pools
+from coilset.model.sweep.evaluate import evaluate
+from coilset.model.sweep.figures import draw
+from coilset.model.sweep.journal import Journal, read_records
+from coilset.model.sweep.plan import Plan
+from coilset.model.sweep.pools import local_pool
+from coilset.model.sweep.run import finished, missing, run
+
+THREE = """
+    vary:
+      spring.wire_diameter: [4.0, 5.0, 39.0]
+"""
+
+
+def sweep(plan, folder, jobs=1, retry=False):
+    """Run what is missing; returns the keys that were run."""
+    ran, path = [], folder / "journal.jsonl"
+    with (
+        open(folder / "log", "a") as log,
+        closing(Journal(path)) as journal,
+        local_pool(jobs, dict(os.environ), log) as pool,
+    ):
+        run(plan, missing(plan, finished(path, retry)), pool, journal, lambda record: ran.append(record["key"]))
+    return ran
+
+
+def test_cases_are_those_of_single_runs_and_a_wrong_spring_stops_nothing(write_sweep, tmp_path):
+    plan = Plan(write_sweep(THREE))
+    assert len(sweep(plan, tmp_path)) == 3
+    data = dataset.collect(plan, tmp_path / "journal.jsonl")
+    assert data.status.values.tolist() == ["done", "done", "failed"]
+    assert "spring" in str(data.reason.values[2])
+    for k in range(2):
+        analysis = Analysis(check(plan.data(plan.rows[k])), MPI.COMM_SELF)
+        result = analysis.run()
+        expected = summarise(analysis, result)
+        for name in ("set_mm", "force_max_N", "rate_N_per_mm"):
+            assert data[name].values[k] == expected[name]  # the same code on the same data: to the last bit
+        curve = [step.force_N for step in result.steps]
+        assert data.curve_force_N.values[k, : len(curve)].tolist() == curve
+    assert data.set_mm.isnull().values.tolist() == [False, False, True]
+
+
+def test_resume_runs_only_what_is_missing_and_retry_what_failed(write_sweep, tmp_path):
+    plan = Plan(write_sweep(THREE))
+    sweep(plan, tmp_path)
+    more = Plan(write_sweep("vary: {spring.wire_diameter: [4.0, 4.5, 39.0]}"))
+    assert sweep(more, tmp_path) == [more.keys[1]]
+    assert sweep(more, tmp_path, retry=True) == [more.keys[2]]
+    changed = Plan(write_sweep("change: {solver.tolerance: 1.0e-8}\nvary: {spring.wire_diameter: [4.0]}"))
+    assert sweep(changed, tmp_path) == changed.keys
+
+
+def test_process_that_dies_is_the_reason_of_its_case_only(write_sweep, tmp_path, monkeypatch):
+    """A stand-in worker that kills itself at 5 mm wire and answers otherwise."""
+    stub = tmp_path / "stub.py"
+    stub.write_text(
+        "import json, os, sys\n"
+        "for line in sys.stdin:\n"
+        "    if json.loads(line)['data']['spring']['wire_diameter'] == 5.0: os.kill(os.getpid(), 11)\n"
+        "    print(json.dumps(dict(status='done', reason='', summary={}, steps={}, seconds=0)), flush=True)\n"
+    )
+    monkeypatch.setattr(pools, "WORKER", [sys.executable, str(stub)])
+    plan = Plan(write_sweep(THREE))
+    sweep(plan, tmp_path)
+    data = dataset.collect(plan, tmp_path / "journal.jsonl")
+    assert data.status.values.tolist() == ["done", "failed", "done"]
+    assert data.reason.values[1] == "the process of this case ended with signal 11"
+
+
+def test_time_limit_gives_a_case_up(write_sweep):
+    plan = Plan(write_sweep("change: {loading.0.steps: 100000}\nvary: {spring.wire_diameter: [5.0]}"))
+    began = time.monotonic()
+    record = evaluate(plan.data(plan.rows[0]), MPI.COMM_SELF, time_limit=0.5)
+    assert record["status"] == "failed"
+    assert record["reason"] == "given up after the time limit of 0.5 s"
+    assert 0 < len(record["steps"]["force_N"]) < 100_000
+    assert record["summary"]["set_mm"] is None
+    assert time.monotonic() - began < 10.0
+
+
+def command(path, out, *more):
+    return [sys.executable, "-m", "coilset.scripts", "sweep", str(path), "--out", str(out), "--no-pictures", *more]
+
+
+def wait_until(true, seconds=60.0):
+    end = time.monotonic() + seconds
+    while not true():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.02)
+
+
+def workers_of(leader):
+    """Process ids of a process's children."""
+    with open(f"/proc/{leader}/task/{leader}/children") as file:
+        return [int(pid) for pid in file.read().split()]
+
+
+def gone(pid):
+    try:
+        with open(f"/proc/{pid}/stat") as file:
+            return file.read().rsplit(")", 1)[1].split()[0] == "Z"
+    except FileNotFoundError:
+        return True
+
+
+def test_kill_and_resume_lose_nothing_and_repeat_nothing(write_sweep, tmp_path):
+    path = write_sweep("vary: {spring.wire_diameter: {from: 4, to: 5, count: 12}}")
+    out = tmp_path / "out"
+    journal = out / "journal.jsonl"
+    leader = subprocess.Popen(command(path, out, "--jobs", "1"), stdout=subprocess.DEVNULL)
+    wait_until(lambda: journal.exists() and journal.read_bytes().count(b"\n") >= 3)
+    workers = workers_of(leader.pid)
+    leader.send_signal(signal.SIGKILL)
+    leader.wait()
+    wait_until(lambda: all(gone(pid) for pid in workers))
+    before = journal.read_bytes()
+    kept = [record["key"] for record in read_records(journal)]
+    assert 3 <= len(kept) < 12
+    assert "holds a sweep" in subprocess.run(command(path, out), capture_output=True, text=True, check=False).stderr
+    subprocess.run(command(path, out, "--resume"), check=True, stdout=subprocess.DEVNULL)
+    keys = Counter(record["key"] for record in read_records(journal))
+    assert set(keys) == set(Plan(path).keys)
+    assert set(keys.values()) == {1}
+    assert journal.read_bytes().startswith(before[: before.rfind(b"\n") + 1])
+    with xr.open_dataset(out / "sweep.nc", engine="h5netcdf") as data:
+        assert (data.status == "done").all()
+        assert data.set_mm.notnull().all()
+
+
+def test_ctrl_c_keeps_what_has_ended(write_sweep, tmp_path):
+    path = write_sweep("vary: {spring.wire_diameter: {from: 4, to: 5, count: 200}}")
+    out = tmp_path / "out"
+    journal = out / "journal.jsonl"
+    leader = subprocess.Popen(command(path, out, "--jobs", "1"), stdout=subprocess.PIPE)
+    wait_until(lambda: journal.exists() and journal.read_bytes().count(b"\n") >= 2)
+    workers = workers_of(leader.pid)
+    leader.send_signal(signal.SIGINT)
+    said = leader.communicate(timeout=30)[0]
+    assert leader.returncode == 130
+    assert b"interrupted; the same command with --resume goes on" in said
+    wait_until(lambda: all(gone(pid) for pid in workers))
+    with xr.open_dataset(out / "sweep.nc", engine="h5netcdf") as data:
+        done = int((data.status == "done").sum())
+    assert 2 <= done < 200
+    assert done == len(list(read_records(journal)))
+
+
+def test_figures_of_each_kind_and_a_wrong_response(write_sweep, tmp_path):
+    text = """
+        vary: {spring.wire_diameter: [4.0, 5.0], spring.pitch: [11.0, 12.0]}
+        figures:
+          - {kind: lines, x: spring.wire_diameter, colour: spring.pitch}
+          - {kind: map, x: spring.wire_diameter, y: spring.pitch}
+          - {kind: characteristics, colour: spring.pitch}
+          - {kind: scatter, of: force_max_N}
+          - {kind: sensitivity, of: [set_mm, force_max_N]}
+          - {kind: scatter, of: weight_kg}
+    """
+    plan = Plan(write_sweep(text))
+    with closing(Journal(tmp_path / "journal.jsonl")) as journal:
+        for row, key in zip(plan.rows, plan.keys, strict=True):
+            journal.append({"key": key, **evaluate(**plan.task(row), comm=MPI.COMM_SELF)})
+    files, problems = draw(tmp_path, plan, dataset.collect(plan, tmp_path / "journal.jsonl"))
+    assert [name.split("_")[1] for name in files] == [
+        "lines.png", "map.png", "characteristics.png", "scatter.png", "sensitivity.png",
+    ]  # fmt: skip
+    assert all((tmp_path / name).stat().st_size > 10_000 for name in files)
+    assert [error.place for error in problems] == ["figures.5.of"]
+    assert "'weight_kg' is no response" in problems[0].problem
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("vary: {spring.wire_diametre: [5.0]}", "unknown entry"),
+        ("vary: {spring.wire_diameter: [5.0, -1.0]}", "spring.wire_diameter"),
+        ("vary: {loading.7.steps: [3]}", "vary.loading.7.steps: '7' is not an entry of this list"),
+        ("change: {material: unobtainium}\nvary: {spring.wire_diameter: [5.0]}", "unobtainium"),
+        ("vary: {mesh.axis: [curved]}\ndesign: one_at_a_time", "needs this entry in the base case"),
+        ("vary: 3", "vary"),
+    ],
+)
+def test_wrong_entries_are_refused_before_anything_runs(write_sweep, text, words):
+    with pytest.raises(InputError) as found:
+        Plan(write_sweep(text))
+    assert words in str(found.value)
+    assert "\n" not in str(found.value)
+
+
+def test_a_changed_material_file_makes_new_cases(write_sweep, tmp_path):
+    text = "change: {material: %s}\nvary: {spring.wire_diameter: [5.0]}" % (tmp_path / "own.yaml")
+    from coilset.model.material.library import FOLDER
+
+    ck15 = (FOLDER / "ck15.yaml").read_text()
+    (tmp_path / "own.yaml").write_text(ck15)
+    first = Plan(write_sweep(text)).keys
+    assert Plan(write_sweep(text)).keys == first
+    from coilset.model.sweep import plan
+
+    plan.material_digest.cache_clear()
+    assert "22480" in ck15
+    (tmp_path / "own.yaml").write_text(ck15.replace("22480", "22481"))
+    assert Plan(write_sweep(text)).keys != first
+
+
+def test_records_hold_no_nan(write_sweep):
+    plan = Plan(write_sweep("change: {loading: [{to: {travel: 1}, steps: 1}]}\nvary: {spring.wire_diameter: [5.0]}"))
+    record = evaluate(plan.data(plan.rows[0]), MPI.COMM_SELF)
+    assert record["summary"]["set_mm"] is None  # it has not been released
+    json.dumps(record, allow_nan=False)
