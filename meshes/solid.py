@@ -1,7 +1,7 @@
 """Solid meshes of a wire: a structured straight cylinder from gmsh, mapped onto the helix of a coil section."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import dolfinx.mesh
 import gmsh
@@ -56,7 +56,7 @@ class Helix:
         return centre + straight[:, :1] * outward + straight[:, 1:2] * second
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SolidMesh:
     """A distributed solid mesh of a wire with named groups.
 
@@ -66,6 +66,7 @@ class SolidMesh:
         groups: tag of each group of facets: ``bottom``, ``top`` (the two heads) and ``surface``.
         wire_diameter: d, mm.
         length: length of the centre line, mm.
+        straight: where each geometry node of this rank lay in the straight wire, (y, z, s), shape (nodes, 3), mm.
         place: maps points (y, z, s) of the straight wire, shape (n, 3), to where they lie in the mesh, shape (n, 3).
     """
 
@@ -74,6 +75,7 @@ class SolidMesh:
     groups: dict[str, int]
     wire_diameter: float
     length: float
+    straight: np.ndarray
     place: Callable[[np.ndarray], np.ndarray]
 
     def facets(self, group):
@@ -113,7 +115,7 @@ def straight_wire(diameter, length, layers, comm, grid=SectionGrid(), cell="hexa
         mesh, _, facet_tags = mesh_from_gmsh(gmsh.model, comm, partitioner=partitioner)
     finally:
         gmsh.finalize()
-    return SolidMesh(mesh, facet_tags, groups, diameter, length, lambda straight: straight)
+    return SolidMesh(mesh, facet_tags, groups, diameter, length, mesh.geometry.x.copy(), lambda straight: straight)
 
 
 def coil_section(wire_diameter, mean_diameter, pitch, degrees, layers, comm, grid=SectionGrid(), cell="hexahedron"):  # noqa: B008, frozen
@@ -141,5 +143,5 @@ def coil_section(wire_diameter, mean_diameter, pitch, degrees, layers, comm, gri
         raise InputError(f"{degrees}° cannot be; give a positive angle", "degrees")
     helix = Helix(mean_diameter, pitch, degrees)
     wire = straight_wire(wire_diameter, helix.length, layers, comm, grid, cell)
-    wire.mesh.geometry.x[:] = helix.place(wire.mesh.geometry.x)
-    return SolidMesh(wire.mesh, wire.facet_tags, wire.groups, wire_diameter, helix.length, helix.place)
+    wire.mesh.geometry.x[:] = helix.place(wire.straight)
+    return replace(wire, place=helix.place)

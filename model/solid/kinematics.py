@@ -84,7 +84,7 @@ def stretches(gradient, strain, axes, rotation, log_stretch):
 
     Args:
         gradient: ∂Δu/∂x at the end of the increment, shape (points, 3, 3).
-        strain: written, ln U in the unrotated frame, tensor components, shape (points, 6).
+        strain: written, ln U in the unrotated frame, shear doubled, shape (points, 6).
         axes: written, columns are the eigenvectors of U, shape (points, 3, 3).
         rotation: written, R, shape (points, 3, 3).
         log_stretch: written, logarithms of the eigenvalues of U, shape (points, 3).
@@ -108,7 +108,8 @@ def stretches(gradient, strain, axes, rotation, log_stretch):
             ln[k] = 0.5 * math.log(C[k, k])
         for a in range(6):
             i, j = FIRST[a], SECOND[a]
-            strain[point, a] = ln[0] * Q[i, 0] * Q[j, 0] + ln[1] * Q[i, 1] * Q[j, 1] + ln[2] * Q[i, 2] * Q[j, 2]
+            entry = ln[0] * Q[i, 0] * Q[j, 0] + ln[1] * Q[i, 1] * Q[j, 1] + ln[2] * Q[i, 2] * Q[j, 2]
+            strain[point, a] = entry if a < 3 else 2.0 * entry
         for i in range(3):  # W = F Q / λ, R = W Qᵀ
             for k in range(3):
                 W[i, k] = (F[i, 0] * Q[0, k] + F[i, 1] * Q[1, k] + F[i, 2] * Q[2, k]) / math.exp(ln[k])

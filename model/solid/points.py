@@ -1,8 +1,8 @@
 """The material law at the integration points of the solid."""
 
-import numpy as np
 from numba import njit
 
+from coilset.model.material.points import initial_state
 from coilset.model.material.solid import return_map
 
 
@@ -13,7 +13,7 @@ def update_points(p, old, strain, new, C):
     Args:
         p: parameters of the law.
         old, new: history rows, shape (points, n_state); `new` is written.
-        strain: increment ln U, tensor components 11, 22, 33, 12, 13, 23, shape (points, 6).
+        strain: increment ln U, components 11, 22, 33, 12, 13, 23 with doubled shear, shape (points, 6).
         C: written, dσ/dε for strain components with doubled shear, shape (points, 6, 6), MPa.
 
     Returns:
@@ -39,8 +39,7 @@ class MaterialPoints:
 
     def initial_state(self, points):
         """History rows of unstressed points, shape (points, n_state); first stress and back stress, 6 entries each."""
-        rod = self.law.initial_state(points)
-        return np.concatenate([np.zeros((points, 12)), rod[:, 6:]], axis=1)
+        return initial_state(self.law, points, 6)
 
     def update(self, old, strain, new, C):
         """Write new history rows and moduli, see `update_points`; False if the law found no solution."""

@@ -12,7 +12,7 @@ from coilset.model.errors import SolveError
 from coilset.model.solid.heads import Head
 from coilset.model.solid.multigrid import VertexMultigrid
 from coilset.model.solid.solid import Solid
-from coilset.model.solid.solvers import choose
+from coilset.model.solid.solvers import SYMMETRIC, choose
 
 MAX_CUTS = 6
 _numbers = itertools.count()
@@ -37,7 +37,7 @@ class SolidProblem:
     Args:
         wire: SolidMesh.
         points: the law at the points, as `MaterialPoints`.
-        solver: ``direct``, ``multigrid`` or ``auto``.
+        solver: ``direct``, ``multigrid``, ``multigrid-cg`` or ``auto``, see `solvers`.
         precision: ε of (6.3.1): out-of-balance forces over the change of the heads' forces in the step.
         options: further PETSc options, which replace those of the solver.
 
@@ -53,6 +53,7 @@ class SolidProblem:
         self.comm, self.precision = solid.comm, precision
         self.unknowns = 3 * solid.V.dofmap.index_map.size_global
         self.solver, chosen = choose(solver, self.unknowns)
+        solid.symmetric = self.solver in SYMMETRIC
         self.bottom, self.top = Head(solid, "bottom"), Head(solid, "top")
         held = np.unique(np.concatenate([self.bottom.blocks, self.top.blocks]))
         self._held = held[held < solid.configuration.owned]
@@ -76,7 +77,7 @@ class SolidProblem:
         self.snes.setFunction(self._residual, self._f)
         self.snes.setJacobian(self._tangent, self._A)
         self.snes.setConvergenceTest(self._converged)
-        if self.solver == "multigrid":
+        if self.solver.startswith("multigrid"):
             self._multigrid = VertexMultigrid(self.solid.configuration, held, self.snes.getKSP().getPC())
         self.snes.setFromOptions()
         for key in options:

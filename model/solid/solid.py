@@ -28,7 +28,7 @@ class Solid:
         trial: the same at the current increment.
     """
 
-    def __init__(self, wire, points, symmetric=True):
+    def __init__(self, wire, points, symmetric=False):
         self.wire, self.points, self.symmetric = wire, points, symmetric
         self.configuration = Configuration(wire.mesh)
         self.forms = SolidForms(self.configuration)

@@ -20,7 +20,7 @@ DOUBLE = np.array([1.0, 1, 1, 2, 2, 2])
 
 def patch(kind, layers=2):
     """A prism with the topology of the wire's mesh, its edges straight and its inner vertices displaced."""
-    solid = Solid(straight_wire(2.0, 1.5, layers, MPI.COMM_SELF, SectionGrid(2, 1), kind), Elastic(), symmetric=False)
+    solid = Solid(straight_wire(2.0, 1.5, layers, MPI.COMM_SELF, SectionGrid(2, 1), kind), Elastic())
     x, cells = solid.configuration.x, solid.V.dofmap.list
     vertices, edges = basix.topology(solid.wire.mesh.basix_cell())[:2]
     inside = np.setdiff1d(cells[:, : len(vertices)], boundary(solid))
@@ -131,7 +131,7 @@ def test_manufactured_solution_converges_at_the_elements_rate(cell):
 def test_tangent_by_taylor_in_a_plastic_state():
     # r(u + h v) − r(u) − h K v falls with h², in a body that is partly plastic and has turned by 0.6 rad
     law = IdealPlastic()
-    solid = Solid(coil_section(5.0, 20.0, 8.0, 60.0, 4, MPI.COMM_SELF, SectionGrid(2, 1)), law, symmetric=False)
+    solid = Solid(coil_section(5.0, 20.0, 8.0, 60.0, 4, MPI.COMM_SELF, SectionGrid(2, 1)), law)
     rng = np.random.default_rng(5)
     turn = scipy.spatial.transform.Rotation.from_rotvec([0.3, -0.5, 0.2]).as_matrix()
     x = solid.configuration.x

@@ -1,0 +1,111 @@
+"""Stress at chosen material points of a cross-section, in the frame of the section as it lies now.
+
+The stresses of these elements are best at their integration points. From there they are carried to a sample point, the
+wire's surface included, by a quadratic least-squares polynomial through the nearest ones (superconvergent patch recovery,
+Zienkiewicz and Zhu, IJNME 33 (1992) 1331, with patches of points).
+"""
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+NEIGHBOURS = 16  # integration points of a patch in each of the four planes of points about the section
+
+
+class SectionSample:
+    """Points of one cross-section of a wire, followed as material points.
+
+    Args:
+        solid: Solid.
+        section: arc length of the section, mm.
+        y, z: places in the section, outward and t × outward, shape (n,), mm.
+
+    Attributes:
+        y, z: as given.
+    """
+
+    def __init__(self, solid, section, y, z):
+        self.solid, self.y, self.z = solid, np.asarray(y, float), np.asarray(z, float)
+        mesh, n = solid.wire.mesh, solid.n_cells
+        straight = solid.wire.straight[mesh.geometry.dofmap[:n]]
+        thickness = np.ptp(straight[:, :, 2], axis=1)
+        middle = straight[:, :, 2].mean(axis=1)
+        self._cells = np.flatnonzero(np.abs(middle - section) < 1.02 * thickness)
+        element = mesh.ufl_domain().ufl_coordinate_element().basix_element
+        places = np.einsum("qb,cbi->cqi", element.tabulate(0, solid.forms.points)[0, :, :, 0], straight[self._cells])
+        self._shape = solid.V.element.basix_element.tabulate(0, solid.forms.points)[0, :, :, 0]
+        places = self._gather(places) - [0.0, 0.0, section]
+        planes = 4 if solid.n_points == 8 else 8
+        self._points, self._weights = _patches(places, np.stack([self.y, self.z], axis=1), planes * NEIGHBOURS)
+        self._start, self._axes = self.positions(), _axes(solid.wire, section)
+
+    def _gather(self, values):
+        """Values at the integration points of the cells about the section, from all ranks, shape (points, …)."""
+        return np.concatenate(self.solid.comm.allgather(values.reshape(-1, *values.shape[2:])))
+
+    def _recover(self, values):
+        """Recover values of the points of this rank's cells at the samples, shape (cells, points, …) → (n, …)."""
+        return np.einsum("nk,nk...->n...", self._weights, self._gather(values)[self._points])
+
+    def positions(self):
+        """Where the points are now, shape (n, 3), mm."""
+        blocks = self.solid.V.dofmap.list[self._cells]
+        return self._recover(np.einsum("qb,cbi->cqi", self._shape, self.solid.x[blocks]))
+
+    def frame(self):
+        """Centre of the section, mm, and its axes t, outward, t × outward as columns, as the section lies now.
+
+        The section's turning since the start is the rotation that carries its points best, in the least squares.
+        """
+        now = self.positions()
+        a, b = self._start - self._start.mean(axis=0), now - now.mean(axis=0)
+        U, _, Vt = np.linalg.svd(b.T @ a)
+        R = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
+        return now.mean(axis=0), R @ self._axes
+
+    def stress(self):
+        """σ11, τ12, τ13 at the last equilibrium with 1 = t, 2 = outward, 3 = t × outward, shape (n, 3), MPa."""
+        six = self._recover(self.solid.state[self._cells, :, :6])
+        σ = six[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
+        axes = self.frame()[1]
+        return np.einsum("nij,i,jk->nk", σ, axes[:, 0], axes)
+
+    def history(self, entry):
+        """An entry of the history rows at the points, for instance 12 for the plastic work b*, shape (n,)."""
+        return self._recover(self.solid.state[self._cells, :, entry])
+
+
+def disk_grid(radius, rings=8, spokes=24):
+    """Places y, z of a polar grid on the wire's disk, centre first and surface included, each of shape (n,), mm."""
+    r = radius * np.arange(1, rings + 1) / rings
+    φ = 2 * np.pi * np.arange(spokes) / spokes
+    y, z = np.outer(r, np.cos(φ)).ravel(), np.outer(r, np.sin(φ)).ravel()
+    return np.concatenate([[0.0], y]), np.concatenate([[0.0], z])
+
+
+def _axes(wire, section):
+    """Axes t, outward, t × outward of a section at the start as columns, from differences of the wire's map."""
+    step = 1e-3 * wire.wire_diameter
+    places = np.array([[0.0, 0, section], [step, 0, section], [0, step, section]])
+    centre, outward, second = wire.place(places)
+    outward, second = (outward - centre) / step, (second - centre) / step
+    return np.stack([np.cross(outward, second), outward, second], axis=1)
+
+
+def _patches(places, samples, size):
+    """Nearest points of each sample in the section's plane, and their weights in the sample's least-squares value.
+
+    Args:
+        places: y, z, s of the points, s from the section, shape (points, 3), mm.
+        samples: y, z, shape (n, 2), mm.
+        size: points of a patch.
+
+    Returns:
+        Indices and weights, each of shape (n, size).
+    """
+    distance, points = cKDTree(places[:, :2]).query(samples, k=size)
+    reach = distance[:, -1:]
+    y, z = np.moveaxis((places[points, :2] - samples[:, None]) / reach[:, :, None], 2, 0)
+    s = places[points, 2] / np.abs(places[:, 2]).max()
+    basis = np.stack([np.ones_like(y), y, z, s, y * y, z * z, s * s, y * z, s * y, s * z], axis=2)
+    weight = np.exp(-2 * (distance / reach) ** 2)
+    return points, np.linalg.pinv(basis * weight[:, :, None])[:, 0] * weight
