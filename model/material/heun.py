@@ -174,6 +174,12 @@ def _onto_surface(p, y, w):
 
 
 @njit(**KERNEL)
+def _copy(a, b):
+    for i in range(a.shape[0]):
+        b[i] = a[i]
+
+
+@njit(**KERNEL)
 def _integrate(p, y, w, d, volume, heating):
     """Advance y over the strain increment `d` in sub-steps.
 
@@ -192,7 +198,7 @@ def _integrate(p, y, w, d, volume, heating):
         plastic = on_surface and _rates(p, y, w, d, volume, heating, BY_LOADING, work[0])
         if not plastic:
             step = _elastic_part(p, y, w, d, volume, heating, rest, work)
-            y[:] = work[2]
+            _copy(work[2], y)
         else:
             step = min(h, rest)
             _heun(p, y, w, d, volume, heating, step, BY_LOADING, work)
@@ -204,7 +210,7 @@ def _integrate(p, y, w, d, volume, heating):
             h = step * min(max(factor, 0.1), 5.0)
             if error > 1.0:
                 continue
-            y[:] = work[2]
+            _copy(work[2], y)
             _onto_surface(p, y, w)
         done = 1.0 if step == rest else done + step
     return steps, plastic

@@ -135,6 +135,7 @@ class Law:
     G = property(lambda self: self.data.temperatures[0].elasticity.G, doc="At the reference temperature, N/mm².")
     nu = property(lambda self: self.data.temperatures[0].elasticity.nu, doc="At the reference temperature.")
     E = property(lambda self: 2 * self.G * (1 + self.nu), doc="At the reference temperature, N/mm².")
+    is_adiabatic = property(lambda self: self.data.heating is not None, doc="Whether plastic work heats the points.")
     n_state = property(lambda self: 8 if self.data.heating else 7, doc="Length of a rod point's history row.")
 
     @property

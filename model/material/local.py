@@ -12,7 +12,10 @@ is solved in closed form: with h = 1 + κ(ζ + c), x = 1/h, s = (c + ζ)/h
 
 Two scalars are left, the plastic work b* and Λ, and two equations:
 
-    n:n = k²(b*)         (3.1.4)                   b* = b*₀ + n:p        (3.1.7)
+    n:n = k²(b*)    (3.1.4)         b* = b*₀ + f n:p,  f = ½(1 + k(b*₀)/k(b*))        (3.1.7)
+
+The factor f puts the mean of |n| at the start and at the end into the work, which makes the classic radial return with a
+yield stress linear in the plastic strain a special case, exact to rounding.
 
 Newton's method on both is kept safe in two ways. For a given b* the root Λ of the first comes from a Newton iteration
 that cannot fail, since 1/|n| is a concave, growing function of Λ; and b* stays in a bracket, halved where Newton would
@@ -44,9 +47,9 @@ COARSE = 1e-3  # relative error of |n| to which Λ is brought before the two equ
 Start = namedtuple("Start", "b temperature heating ca na ea dea cc nn ne ee")
 # s, x of a group and their derivatives with respect to b*.
 Group = namedtuple("Group", "s ds x dx")
-# The solution, and the Jacobian of the two equations (r1: n:n − k², r2: b* − b*₀ − n:p) in (b*, Λ), or in (b*, κ) if
-# neutral, divided by its determinant.
-Local = namedtuple("Local", "iterations neutral b multiplier zeta dzeta a c r1b r1l r2b r2l")
+# The solution, and the Jacobian of the two equations (r1: n:n − k², r2: b* − b*₀ − f n:p) in (b*, Λ), or in (b*, κ) if
+# neutral, divided by its determinant; mean is f.
+Local = namedtuple("Local", "iterations neutral b multiplier mean zeta dzeta a c r1b r1l r2b r2l")
 
 
 @njit(**INLINE)
@@ -100,8 +103,8 @@ def _group_terms(g, c, zeta, dzeta, multiplier, u, qq, dqq, qt, dqt):
 
 
 @njit(**INLINE)
-def _equations(start, values, ga, gc, b, multiplier):
-    """Residuals n:n − k² and b* − b*₀ − n:p, their Jacobian in (b*, Λ), Λ as made coarsely right first, and n:p."""
+def _equations(start, k_start, values, ga, gc, b, multiplier):
+    """Residuals n:n − k² and b* − b*₀ − f n:p, their Jacobian in (b*, Λ), Λ made coarsely right first, f n:p and f."""
     k2, dk2, zeta, dzeta, _, _ = values
     na, ea = start.na, start.ea + start.dea * (b - start.b)
     qa, dqa, ta = na + ga.x * ea, ga.dx * ea + ga.x * start.dea, na + ea
@@ -118,9 +121,12 @@ def _equations(start, values, ga, gc, b, multiplier):
         qqc, 2.0 * gc.dx * (start.ne + gc.x * start.ee),
         start.nn + start.ne + gc.x * (start.ne + start.ee), gc.dx * (start.ne + start.ee),
     )  # fmt: skip
-    work = wa + wc
+    ratio = 0.5 * k_start / math.sqrt(k2)
+    mean = 0.5 + ratio
+    work = mean * (wa + wc)
     r1, r2 = nna + nnc - k2, b - start.b - work
-    return r1, r2, nnab + nncb - dk2, nnal + nncl, 1.0 - wab - wcb, -wal - wcl, multiplier, work
+    r2b = 1.0 - mean * (wab + wcb) + ratio * 0.5 * dk2 / k2 * (wa + wc)
+    return r1, r2, nnab + nncb - dk2, nnal + nncl, r2b, -mean * (wal + wcl), multiplier, work, mean
 
 
 @njit(**KERNEL)
@@ -147,7 +153,8 @@ def _neutral(p, start, values):
             a, c = Group((start.ca + zeta) * xa, 0.0, xa, 0.0), Group((start.cc + zeta) * xc, 0.0, xc, 0.0)
             inverse = 1.0 / (dk2 * db - 2.0 * qdxe)
             return Local(
-                iteration, True, b, 0.0, zeta, 0.0, a, c, -dk2 * inverse, 2.0 * qdxe * inverse, inverse, -db * inverse
+                iteration, True, b, 0.0, 1.0, zeta, 0.0, a, c, -dk2 * inverse, 2.0 * qdxe * inverse, inverse, -db *
+                inverse
             )
         if r1 > 0.0:
             low = kappa
@@ -166,7 +173,7 @@ def _neutral(p, start, values):
 @njit(**INLINE)
 def _failed(start):
     nothing = Group(0.0, 0.0, 0.0, 0.0)
-    return Local(-1, False, start.b, 0.0, 0.0, 0.0, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
+    return Local(-1, False, start.b, 0.0, 1.0, 0.0, 0.0, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit(**INLINE)
@@ -184,6 +191,7 @@ def solve(p, start, values):
     low = start.b
     # max over n of n:(n_trial − n) is |n_trial|²/4; twice that leaves room for thermal strain.
     high = low + 0.5 * (1.5 * (start.na + start.ea) ** 2 / start.ca + (start.nn + 2.0 * start.ne + start.ee) / start.cc)
+    k_start = math.sqrt(values[0])
     b, multiplier, last, share = low, 0.0, math.inf, 1.0
     for iteration in range(1, MAX_ITERATIONS):
         k2, _, zeta, dzeta, kappa, dkappa = values
@@ -192,7 +200,7 @@ def solve(p, start, values):
         kappa, dkappa = share * kappa, share * dkappa
         ga = _group(start.ca, zeta, dzeta, kappa, dkappa)
         gc = _group(start.cc, zeta, dzeta, kappa, dkappa)
-        r1, r2, r1b, r1l, r2b, r2l, multiplier, work = _equations(start, values, ga, gc, b, multiplier)
+        r1, r2, r1b, r1l, r2b, r2l, multiplier, work, mean = _equations(start, k_start, values, ga, gc, b, multiplier)
         g = r2 - r2l * r1 / r1l
         inverse = 1.0 / (r1b * r2l - r1l * r2b)  # positive as r1l < 0 where dg/db* is
         step = (r1l * r2 - r2l * r1) * inverse
@@ -206,7 +214,7 @@ def solve(p, start, values):
         if abs(g) <= FINE * work + 1e-15 * (b + k2 / start.cc) and abs(r1) <= FINE * k2 and inverse > 0.0:
             # The last Newton step is taken in everything: what it leaves is of the order FINE².
             return Local(
-                iteration, False, b + step, multiplier + follow, zeta + dzeta * step, dzeta,
+                iteration, False, b + step, multiplier + follow, mean, zeta + dzeta * step, dzeta,
                 Group(ga.s + ga.ds * step, ga.ds, ga.x + ga.dx * step, ga.dx),
                 Group(gc.s + gc.ds * step, gc.ds, gc.x + gc.dx * step, gc.dx),
                 r1b * inverse, r1l * inverse, r2b * inverse, r2l * inverse,

@@ -201,6 +201,7 @@ def _gradients(plastic):
     r1e = _times(x, r1n)
     r2n = (up[0] + mn[0] * (1.0 - u[0]), up[1] + mn[1] * (1.0 - u[1]), up[2] + mn[2] * (1.0 - u[2]))
     r2e = _add(_times(x, up), (mn[0] * (1.0 - ux[0]), mn[1] * (1.0 - ux[1]), mn[2] * (1.0 - ux[2])))
+    r2n, r2e = _scaled(r2n, local.mean), _scaled(r2e, local.mean)
     bn = _add(_scaled(r2n, -local.r1l), _scaled(r1n, -local.r2l))
     be = _add(_scaled(r2e, -local.r1l), _scaled(r1e, -local.r2l))
     ln = _add(_scaled(r2n, local.r1b), _scaled(r1n, local.r2b))

@@ -135,12 +135,12 @@ def _tangent(local, n0, e, beta, products, u, m, c, expansion, C):
     Every vector here is a combination of n₀ and of the increment's e and is written as the pair of its two factors.
     """
     ne, ee = products
-    g, rest, x = local.c, 1.0 - beta, local.c.x
+    g, f, rest, x = local.c, local.mean, 1.0 - beta, local.c.x
     n = (u, u * x * rest)
     pl = (m * (1.0 - u), m * rest * (1.0 - u * x))
-    # Derivatives of n:n − k² and of b*₀ + n:p by n₀ and by e; from them those of b* and Λ.
-    r1n, r2n = _pair(2.0 * u, n, 0.0, n), _pair(u, pl, m * (1.0 - u), n)
-    r1e, r2e = _pair(x, r1n, 0.0, n), _pair(u * x, pl, m * (1.0 - u * x), n)
+    # Derivatives of n:n − k² and of b*₀ + f n:p by n₀ and by e; from them those of b* and Λ.
+    r1n, r2n = _pair(2.0 * u, n, 0.0, n), _pair(f * u, pl, f * m * (1.0 - u), n)
+    r1e, r2e = _pair(x, r1n, 0.0, n), _pair(f * u * x, pl, f * m * (1.0 - u * x), n)
     bn, be = _pair(-local.r1l, r2n, -local.r2l, r1n), _pair(-local.r1l, r2e, -local.r2l, r1e)
     ln, le = _pair(local.r1b, r2n, local.r2b, r1n), _pair(local.r1b, r2e, local.r2b, r1e)
     # The elastic fraction β follows e, too: |n₀ + β e|² = k².
