@@ -7,8 +7,7 @@ from mpi4py import MPI
 
 from coilset.meshes.line import line_mesh
 from coilset.meshes.placement import section_placement
-from coilset.model.contact.gap import Gaps
-from coilset.model.contact.seat import Seats
+from coilset.model.contact.build import build_contacts
 from coilset.model.errors import SolveError
 from coilset.model.frames.rotations import triads
 from coilset.model.loading.driver import Drive
@@ -19,7 +18,6 @@ from coilset.model.rod.kinematics import GAUSS
 from coilset.model.rod.rod import Rod
 from coilset.model.solvers.solver import Solver
 
-ONSET = 1e-3  # way over which contact sets in, in wire diameters
 PROBE = 1e-3  # travel by which the initial rate is measured, in free lengths
 
 
@@ -83,28 +81,12 @@ class Analysis:
             placement = section_placement(self.spring, self.turns, triads(np.diff(line.stations, axis=0)), GAUSS)
         self.rod = Rod(line, self.wire_radius, self.law, case.mesh.section.build(), placement)
         top = self.spring.free_length
-        self.system = System(self.rod, self._contacts(line.stations), seats=(0.0, top))
+        contacts = build_contacts(case.contact, case.ends, self.spring, self.turns, line.stations, self.law.E)
+        self.system = System(self.rod, contacts, seats=(0.0, top))
         self.solver = Solver(self.system, tolerance=case.solver.tolerance)
         self.drive = Drive(self.system, case.ends, top)
         self.stepper = Stepper(self.drive, self.solver, self.spring.block_height)
         self.result = Result()
-
-    def _contacts(self, stations):
-        """Gap elements between stations one turn apart, and the seats."""
-        spring, turns = self.spring, self.turns
-        lengths = np.linalg.norm(np.diff(stations, axis=0), axis=1)
-        share = 0.5 * (np.append(lengths, 0.0) + np.append(0.0, lengths))  # length of wire of each station
-        bedding = self.case.contact.bedding or self.law.E / 40.0
-        radius = 0.5 * spring.wire_diameter(turns)
-        onset = ONSET * 2.0 * float(radius.min())
-        lower = np.flatnonzero(turns <= turns[-1] - 1.0 + 1e-9)
-        upper = np.abs(turns[None, :] - turns[lower, None] - 1.0).argmin(axis=1) if len(lower) else lower
-        pairs = np.stack([lower, upper], axis=1)
-        contacts = [Gaps(pairs, radius[lower] + radius[upper], bedding * share[lower], onset)]
-        if self.case.ends == "seats":
-            reach = np.stack([spring.seat_distance(turns, end) for end in ("bottom", "top")])
-            contacts.append(Seats(reach, bedding * share, onset))
-        return contacts
 
     def run(self, report=lambda step: None, checkpoint=None):
         """Walk through the load program; a resumed analysis goes on where its checkpoint was.

@@ -43,6 +43,10 @@ class MeshSpec(Strict):
 class ContactSpec(Strict):
     """Stiffness of seats and coils against penetration."""
 
+    coils: Annotated[
+        Literal["closest", "gaps"],
+        Field(description="closest points of the wires, or the thesis's gap elements between nodes one turn apart"),
+    ] = "closest"
     bedding: Annotated[
         float | None, Field(gt=0, description="force per length and penetration, N/mm per mm; default E/40")
     ] = None

@@ -20,12 +20,14 @@ class Contribution:
         forces: internal forces, the gradient of the contact's potential, shape (m, k), N.
         stiffness: shape (m, k, k), N/mm.
         pressure: compressive force of each element, positive when closed, shape (m,), N.
+        penetration: how far the bodies overlap, shape (m,), mm; negative where they do not.
     """
 
     dofs: np.ndarray
     forces: np.ndarray
     stiffness: np.ndarray
     pressure: np.ndarray
+    penetration: np.ndarray
 
     @property
     def closed(self):

@@ -129,4 +129,4 @@ class Coils:
         pressure, c = one_sided(gap, self.stiffness[touching], self.onset)
         dofs = (3 * np.stack([i, a, a + 1], axis=1)[:, :, None] + np.arange(3)).reshape(-1, 9)
         k = c[:, None, None] * grad[:, :, None] * grad[:, None, :] - pressure[:, None, None] * second
-        return Contribution(dofs, -pressure[:, None] * grad, k, pressure)
+        return Contribution(dofs, -pressure[:, None] * grad, k, pressure, -gap)

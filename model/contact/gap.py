@@ -33,4 +33,4 @@ class Gaps:
         force = -pressure[:, None] * n
         nn = n[:, :, None] * n[:, None, :]
         k = c[:, None, None] * nn - (pressure / length)[:, None, None] * (np.eye(3) - nn)
-        return Contribution(self.dofs, np.hstack([-force, force]), np.block([[k, -k], [-k, k]]), pressure)
+        return Contribution(self.dofs, np.hstack([-force, force]), np.block([[k, -k], [-k, k]]), pressure, self.free_length - length)
