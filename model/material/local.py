@@ -14,8 +14,8 @@ Two scalars are left, the plastic work b* and Λ, and two equations:
 
     n:n = k²(b*)    (3.1.4)         b* = b*₀ + f n:p,  f = ½(1 + k(b*₀)/k(b*))        (3.1.7)
 
-The factor f puts the mean of |n| at the start and at the end into the work, which makes the classic radial return with a
-yield stress linear in the plastic strain a special case, exact to rounding.
+The factor f puts the mean of |n| at the start and at the end into the work, which makes the classic radial return with
+a yield stress linear in the plastic strain a special case, exact to rounding.
 
 Newton's method on both is kept safe in two ways. For a given b* the root Λ of the first comes from a Newton iteration
 that cannot fail, since 1/|n| is a concave, growing function of Λ; and b* stays in a bracket, halved where Newton would
