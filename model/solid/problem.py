@@ -115,13 +115,17 @@ class SolidProblem:
             self._multigrid.update(self._A, self.solid.x)
 
     def _converged(self, snes, iteration, norms):
-        """(6.3.1), with the change of the heads' forces since the step's start for the change of the outer forces."""
+        """(6.3.1): out-of-balance forces against the change of the heads' forces since the step's start.
+
+        A thousandth of the heads' forces themselves is added, lest a tiny step ask for more than arithmetic gives.
+        """
         norm = norms[2]
         if not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
-        change = (self.forces - self._start)[self._held]
-        scale = np.sqrt(self.comm.allreduce(float(np.sum(change**2))))
-        return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE if norm <= self.precision * scale else 0
+        now, start = self.forces[self._held], self._start[self._held]
+        change, size = np.sqrt(self.comm.allreduce(np.array([np.sum((now - start) ** 2), np.sum(now**2)])))
+        converged = norm <= self.precision * (change + 1e-3 * size)
+        return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE if converged else 0
 
     # ---- steps -----------------------------------------------------------------------------------------------------
 

@@ -1,8 +1,8 @@
 """Stress at chosen material points of a cross-section, in the frame of the section as it lies now.
 
 The stresses of these elements are best at their integration points. From there they are carried to a sample point, the
-wire's surface included, by a quadratic least-squares polynomial through the nearest ones (superconvergent patch recovery,
-Zienkiewicz and Zhu, IJNME 33 (1992) 1331, with patches of points).
+wire's surface included, by a quadratic least-squares polynomial through the nearest ones (superconvergent patch
+recovery, Zienkiewicz and Zhu, IJNME 33 (1992) 1331, with patches of points).
 """
 
 import numpy as np
@@ -35,28 +35,34 @@ class SectionSample:
         self._shape = solid.V.element.basix_element.tabulate(0, solid.forms.points)[0, :, :, 0]
         places = self._gather(places) - [0.0, 0.0, section]
         planes = 4 if solid.n_points == 8 else 8
-        self._points, self._weights = _patches(places, np.stack([self.y, self.z], axis=1), planes * NEIGHBOURS)
-        self._start, self._axes = self.positions(), _axes(solid.wire, section)
+        ring = np.stack(disk_grid(0.4 * solid.wire.wire_diameter, 2, 8), axis=1)  # shows how the section lies
+        self._patches = _patches(places, np.stack([self.y, self.z], axis=1), planes * NEIGHBOURS)
+        self._ring = _patches(places, ring, planes * NEIGHBOURS)
+        self._start, self._axes = self._positions(self._ring), _axes(solid.wire, section)
 
     def _gather(self, values):
         """Values at the integration points of the cells about the section, from all ranks, shape (points, …)."""
         return np.concatenate(self.solid.comm.allgather(values.reshape(-1, *values.shape[2:])))
 
-    def _recover(self, values):
-        """Recover values of the points of this rank's cells at the samples, shape (cells, points, …) → (n, …)."""
-        return np.einsum("nk,nk...->n...", self._weights, self._gather(values)[self._points])
+    def _recover(self, values, patches):
+        """Recover values at this rank's integration points at the middles of patches, shape (cells, points, …) → (n, …)."""
+        points, weights = patches
+        return np.einsum("nk,nk...->n...", weights, self._gather(values)[points])
+
+    def _positions(self, patches):
+        blocks = self.solid.V.dofmap.list[self._cells]
+        return self._recover(np.einsum("qb,cbi->cqi", self._shape, self.solid.x[blocks]), patches)
 
     def positions(self):
-        """Where the points are now, shape (n, 3), mm."""
-        blocks = self.solid.V.dofmap.list[self._cells]
-        return self._recover(np.einsum("qb,cbi->cqi", self._shape, self.solid.x[blocks]))
+        """Where the sample points are now, shape (n, 3), mm."""
+        return self._positions(self._patches)
 
     def frame(self):
         """Centre of the section, mm, and its axes t, outward, t × outward as columns, as the section lies now.
 
-        The section's turning since the start is the rotation that carries its points best, in the least squares.
+        The section's turning since the start is the rotation that carries a ring of its points best, in the least squares.
         """
-        now = self.positions()
+        now = self._positions(self._ring)
         a, b = self._start - self._start.mean(axis=0), now - now.mean(axis=0)
         U, _, Vt = np.linalg.svd(b.T @ a)
         R = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
@@ -64,14 +70,14 @@ class SectionSample:
 
     def stress(self):
         """σ11, τ12, τ13 at the last equilibrium with 1 = t, 2 = outward, 3 = t × outward, shape (n, 3), MPa."""
-        six = self._recover(self.solid.state[self._cells, :, :6])
+        six = self._recover(self.solid.state[self._cells, :, :6], self._patches)
         σ = six[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
         axes = self.frame()[1]
         return np.einsum("nij,i,jk->nk", σ, axes[:, 0], axes)
 
     def history(self, entry):
         """An entry of the history rows at the points, for instance 12 for the plastic work b*, shape (n,)."""
-        return self._recover(self.solid.state[self._cells, :, entry])
+        return self._recover(self.solid.state[self._cells, :, entry], self._patches)
 
 
 def disk_grid(radius, rings=8, spokes=24):

@@ -1,0 +1,43 @@
+"""Results of a study's cases on disk, so that an interrupted study goes on where it was."""
+
+import json
+from pathlib import Path
+
+from coilset.model.results.folder import whole
+
+
+class Store:
+    """A folder with one JSON file a case.
+
+    Args:
+        folder: path, made if it is not there.
+        comm: MPI communicator; the first rank reads and writes.
+        report: called with a line of progress, on the first rank.
+    """
+
+    def __init__(self, folder, comm, report=lambda line: None):
+        self.folder, self.comm = Path(folder), comm
+        self.report = report if comm.rank == 0 else lambda line: None
+        if comm.rank == 0:
+            self.folder.mkdir(parents=True, exist_ok=True)
+
+    def get(self, name, compute):
+        """The case's result: read if it is there, else computed and written.
+
+        Args:
+            name: of the case; a file name without its ending.
+            compute: function without arguments that returns plain data, called on all ranks.
+        """
+        path, known = self.folder / f"{name}.json", None
+        if self.comm.rank == 0 and path.exists():
+            known = json.loads(path.read_text(encoding="utf-8"))
+        known = self.comm.bcast(known)
+        if known is not None:
+            self.report(f"{name}: known")
+            return known
+        self.report(f"{name}: begun")
+        result = compute()
+        if self.comm.rank == 0:
+            with whole(path) as part:
+                part.write_text(json.dumps(result, indent=1), encoding="utf-8")
+        return result
