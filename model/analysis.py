@@ -83,7 +83,7 @@ class Analysis:
         top = self.spring.free_length
         contacts = build_contacts(case.contact, case.ends, self.spring, self.turns, line.stations, self.law.E)
         self.system = System(self.rod, contacts, seats=(0.0, top))
-        self.solver = Solver(self.system, tolerance=case.solver.tolerance)
+        self.solver = Solver(self.system, case.solver.method, case.solver.tolerance, case.solver.options)
         self.drive = Drive(self.system, case.ends, top)
         self.stepper = Stepper(self.drive, self.solver, self.spring.block_height)
         self.result = Result()

@@ -9,6 +9,7 @@ from coilset.meshes.stations import ElementsPerTurn
 from coilset.model.errors import InputError
 from coilset.model.loading.program import Phase, Strict
 from coilset.model.section import rules
+from coilset.model.solvers.methods import METHODS
 from pydantic import Field, ValidationError
 
 
@@ -55,7 +56,12 @@ class ContactSpec(Strict):
 class SolverSpec(Strict):
     """How equilibrium is found."""
 
+    method: Annotated[Literal[tuple(METHODS)], Field(description="iteration method")] = "newton"
     tolerance: Annotated[float, Field(gt=0, lt=1, description="ε of (6.3.1)")] = 1e-7
+    options: Annotated[
+        dict[Annotated[str, Field(pattern="^[a-z]\\w*$")], bool | int | float | str | None],
+        Field(description="any PETSc options, without the leading hyphen, as in snes_max_it: 50; they win"),
+    ] = {}
 
 
 class Case(Strict):

@@ -27,10 +27,12 @@ def solve(
     pictures: bool = typer.Option(True, help="draw the figures"),
     resume: bool = typer.Option(False, "--resume", help="go on from the last converged step in the results folder"),
     interactive: bool = typer.Option(False, "--interactive", help="ask after each step; Enter goes on, ? helps"),
+    method: str = typer.Option(None, help="iteration method; newton, modified-newton, bfgs, broyden, arc-length, ..."),
 ):
     """Run a spring through its load program and write what it found."""
     from coilset.scripts.solve import solve as run_case
 
+    settings = [*settings, f"solver.method={method}"] if method else settings
     run_case(case, out, force, settings, pictures, resume, interactive)
 
 

@@ -48,7 +48,8 @@ class System:
         E, r, l = rod.law.E, rod.radius, rod.l0
         axial, bending = E * np.pi * r**2 / l, 3.0 * E * np.pi * r**4 / l**3  # E A/l, 12 E I/l³
         self.weight = comm_max(self.comm, axial.max(initial=0.0))
-        self.axial_force = comm_max(self.comm, E * np.pi * r.max(initial=0.0) ** 2)  # E A
+        self.largest_radius = comm_max(self.comm, r.max(initial=0.0))
+        self.axial_force = E * np.pi * self.largest_radius**2  # E A
         self.stiffest = comm_max(self.comm, np.maximum(axial, bending).max(initial=0.0))
 
     # ---- numbering -------------------------------------------------------------------------------------------------
@@ -200,6 +201,20 @@ class System:
         greatest = comm_max(self.comm, np.abs(X.getArray(readonly=True)).max(initial=0.0))
         increments = np.finfo(float).eps * greatest * self.stiffest * np.sqrt(X.getSize())
         return max(increments, 1e-14 * self.axial_force)
+
+    def bring_to(self, X):
+        """Make `X` the trial state, if the last evaluation was at another one, as line searches may leave it."""
+        if not self._is_evaluated(X):
+            self.set_increments(X)
+            self.assemble_internal()
+
+    def misses(self, X):
+        """Do the increments `X` miss a prescribed value by more than rounding?"""
+        start, stop = X.getOwnershipRange()
+        x = X.getArray(readonly=True)
+        off = [abs(x[dof - start] - value) for dof, value in self.fixed.items() if start <= dof < stop]
+        scale = max((abs(value) for value in self.fixed.values()), default=0.0)
+        return comm_max(self.comm, max(off, default=0.0)) > 1e-12 * scale
 
     def imbalance(self, F):
         """How far the trial state with residual `F` is from equilibrium.

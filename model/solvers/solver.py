@@ -1,13 +1,17 @@
 """One step to equilibrium: SNES with the convergence test of the thesis (6.3.1)."""
 
+import itertools
+import weakref
 from dataclasses import dataclass
 
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.model.solvers.methods import options
+from coilset.model.errors import InputError
+from coilset.model.solvers.methods import ONE_STEP, check_method, options
 
-REASONS = {value: name for name, value in vars(PETSc.SNES.ConvergedReason).items() if isinstance(value, int)}
+Reason = PETSc.SNES.ConvergedReason
+REASONS = {value: name for name, value in vars(Reason).items() if isinstance(value, int)}
 WORDS = {
     "DIVERGED_FNORM_NAN": "the residual is not a number, or the law found no stress",
     "DIVERGED_FUNCTION_DOMAIN": "the law found no stress",
@@ -15,17 +19,36 @@ WORDS = {
     "DIVERGED_MAX_IT": "no equilibrium within the greatest number of iterations",
     "DIVERGED_LINE_SEARCH": "the line search found no better state",
     "DIVERGED_DTOL": "the out-of-balance forces grow without bound",
+    "DIVERGED_LOCAL_MIN": "the iteration stagnates: the out-of-balance forces no longer fall",
+    "DIVERGED_TR_DELTA": "the iteration stagnates: the trust region has shrunk to nothing",
+    "DIVERGED_INNER": "the preconditioning step found no state",
 }
+PATIENCE = 25  # iterations without a new least residual: that is stagnation
+FIRST = {**ONE_STEP, "snes_linesearch_type": "basic"}
+ARC = "newtonal"
+FORGETFUL = ("newtonls", "newtontr")  # SNES types that keep nothing from one step to the next
+numbers = itertools.count()
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a step ended: converged or not, iterations, factorisations, reason in words, ratio of (6.3.1)."""
+    """How a step ended.
+
+    Attributes:
+        converged: is it in equilibrium?
+        iterations: new states; a first one that only meets the prescribed increments counts too.
+        reason: in words.
+        ratio: left side of (6.3.1).
+        factorisations: tangents set up and factorised.
+        evaluations: residuals evaluated.
+    """
 
     converged: bool
     iterations: int
     reason: str
     ratio: float
+    factorisations: int
+    evaluations: int
 
 
 class Solver:
@@ -35,37 +58,102 @@ class Solver:
         system: System.
         method: a key of coilset.model.solvers.methods.METHODS.
         tolerance: ε of (6.3.1).
-        greatest: greatest number of iterations.
-        extra: PETSc options of the user.
+        extra: PETSc options of the user, without a leading hyphen; they win over the method's. With
+            `snes_convergence_test` PETSc's own test takes the place of (6.3.1).
+
+    Raises:
+        InputError: if there is no such method, or PETSc refuses an option.
     """
 
-    prefix = "coilset_"
+    def __init__(self, system, method="newton", tolerance=1e-7, extra=None):
+        self.system, self.tolerance, self.extra = system, tolerance, dict(extra or {})
+        self.X, self.F, self.A, self.load = system.vector(), system.vector(), system.matrix(), system.vector()
+        self.prefix, self._keys, self.snes = f"coilset_{next(numbers)}_", set(), None
+        self.ratio, self.evaluations, self.factorisations = np.inf, 0, 0
+        weakref.finalize(self, forget, self._keys).atexit = False  # what is left then PETSc names as not used
+        # one Newton step that does nothing but meet the prescribed increments
+        self._first = self._build("first_", options("newton", system.comm.size, FIRST))
+        self.use(method)
 
-    def __init__(self, system, method="newton", tolerance=1e-7, greatest=30, extra=None):
-        self.system, self.tolerance, self.ratio = system, tolerance, np.inf
-        self.X, self.F, self.A = system.vector(), system.vector(), system.matrix()
-        self.snes = snes = PETSc.SNES().create(system.comm)
-        snes.setOptionsPrefix(self.prefix)
-        database = PETSc.Options(self.prefix)
-        for key, value in options(method, system.comm.size, extra).items():
-            database[key] = value
-        snes.setFunction(system.residual, self.F)
-        snes.setJacobian(system.tangent, self.A)
-        snes.setFromOptions()
-        snes.setTolerances(max_it=greatest)
-        snes.setConvergenceTest(self._test)
+    def use(self, method):
+        """Go on with another method.
+
+        Raises:
+            InputError: as on construction; the method stays what it was.
+        """
+        check_method(method)
+        # an arc by which every node moves by about the wire's radius
+        arc = self.system.largest_radius * np.sqrt(len(self.system.station_dofs))
+        step = {"snes_newtonal_step_size": arc} if method == "arc-length" else {}
+        self._settings = options(method, self.system.comm.size, step | self.extra)
+        self.method = method
+        self._renew()
+
+    def _renew(self):
+        if self.snes is not None:
+            self.snes.destroy()
+        self.snes = self._build("", self._settings)
+        if "snes_convergence_test" not in self.extra:
+            me = weakref.proxy(self)  # PETSc keeps its callbacks out of Python's sight: no cycle through them
+            self.snes.setConvergenceTest(lambda *arguments: me._test(*arguments))
+
+    def _set_load(self):
+        """What the step adds to loads and prescribed values: minus the residual at its start."""
+        self.system.residual(self.snes, self.X, self.load)
+        self.load.scale(-1.0)
+        return self.load
+
+    def _build(self, part, settings):
+        """A SNES for the system's residual and tangent with the PETSc options `settings`."""
+        prefix, me = self.prefix + part, weakref.proxy(self)
+        database = PETSc.Options()
+        for key, value in settings.items():
+            database[prefix + key] = value
+            self._keys.add(prefix + key)
+        snes = PETSc.SNES().create(self.system.comm)
+        snes.setOptionsPrefix(prefix)
+        snes.setFunction(lambda *arguments: me._residual(*arguments), self.F)
+        snes.setJacobian(lambda *arguments: me._tangent(*arguments), self.A)
+        try:
+            snes.setFromOptions()
+        except PETSc.Error as error:
+            raise InputError(f"PETSc refuses an option: {str(error).splitlines()[-1]}", "solver.options") from None
+        return snes
+
+    def _residual(self, snes, X, F):
+        self.evaluations += 1
+        self.system.residual(snes, X, F)
+        if snes.getType() == ARC:  # SNES takes its share of the load off: F(x) − λ load
+            F.axpy(1.0, self.load)
+
+    def _tangent(self, snes, X, J, P):
+        self.factorisations += 1
+        return self.system.tangent(snes, X, J, P)
 
     def _test(self, snes, iteration, norms):
         """|r − f| / |²R − ²F(step start)| ≤ ε (6.3.1): the change of loads and reactions is the measure."""
-        if not np.isfinite(norms[2]):
-            return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
+        norm = norms[2]
+        if iteration == 0:
+            self._start, self._least = norm, (norm, 0)
+        if not np.isfinite(norm):
+            return Reason.DIVERGED_FNORM_NAN
+        if iteration == 0 and snes.getType() == ARC:
+            return Reason.ITERATING  # at the load share 0 every step is in equilibrium
+        self.system.bring_to(self.X)
         rest, change, missed = self.system.imbalance(self.F)
         self.ratio = rest / change if change > 0.0 else np.inf
         if missed <= self.tolerance and rest <= max(self.tolerance * change, self.system.rounding(self.X)):
-            return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE
+            return Reason.CONVERGED_FNORM_RELATIVE
         if iteration >= snes.getTolerances()[3]:
-            return PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
-        return PETSc.SNES.ConvergedReason.ITERATING
+            return Reason.DIVERGED_MAX_IT
+        if snes.getType() != ARC:
+            if norm > snes.getDivergenceTolerance() * self._start:
+                return Reason.DIVERGED_DTOL
+            if norm < self._least[0]:
+                self._least = norm, iteration
+            elif iteration - self._least[1] >= PATIENCE:
+                return Reason.DIVERGED_LOCAL_MIN
+        return Reason.ITERATING
 
     def solve(self, guess=None):
         """Solve one step from the increments `guess` (zero if None); the system is left at the last iterate.
@@ -73,12 +161,31 @@ class Solver:
         Returns:
             Outcome.
         """
-        if guess is None:
+        self.ratio, self.evaluations, self.factorisations = np.inf, 0, 0
+        kind, first, load = self.snes.getType(), 0, None
+        if guess is None or kind == ARC:
             self.X.set(0.0)
         else:
             guess.copy(self.X)
-        self.ratio = np.inf
-        self.snes.solve(None, self.X)
+        if kind not in FORGETFUL:
+            self._renew()
+        if kind == ARC:
+            load = self._set_load()
+        elif kind not in FORGETFUL and self.system.misses(self.X):
+            # Quasi-Newton vectors belong to the free unknowns: a start that meets the prescribed increments keeps the
+            # rows of these, and their weights, at zero.
+            self._first.solve(None, self.X)
+            first = 1
+        self.snes.solve(load, self.X)
+        self.system.bring_to(self.X)
         reason = self.snes.getConvergedReason()
         name = REASONS.get(reason, str(reason))
-        return Outcome(reason > 0, self.snes.getIterationNumber(), WORDS.get(name, name), self.ratio)
+        return Outcome(reason > 0, first + self.snes.getIterationNumber(), WORDS.get(name, name), self.ratio,
+                       self.factorisations, self.evaluations)  # fmt: skip
+
+
+def forget(keys):
+    """Take options out of PETSc's database."""
+    database = PETSc.Options()
+    for key in keys:
+        database.delValue(key)
