@@ -60,8 +60,8 @@ class SolverSpec(Strict):
     tolerance: Annotated[float, Field(gt=0, lt=1, description="ε of (6.3.1)")] = 1e-7
     options: Annotated[
         dict[Annotated[str, Field(pattern="^[a-z]\\w*$")], bool | int | float | str | None],
-        Field(description="any PETSc options, without the leading hyphen, as in snes_max_it: 50; they win"),
-    ] = {}
+        Field(default_factory=dict, description="any PETSc options, without the leading hyphen; they win"),
+    ]
 
 
 class Case(Strict):

@@ -70,7 +70,7 @@ class Solver:
         self.X, self.F, self.A, self.load = system.vector(), system.vector(), system.matrix(), system.vector()
         self.prefix, self._keys, self.snes = f"coilset_{next(numbers)}_", set(), None
         self.ratio, self.evaluations, self.factorisations = np.inf, 0, 0
-        weakref.finalize(self, forget, self._keys).atexit = False  # what is left then PETSc names as not used
+        weakref.finalize(self, forget, self._keys).atexit = False
         # one Newton step that does nothing but meet the prescribed increments
         self._first = self._build("first_", options("newton", system.comm.size, FIRST))
         self.use(method)
@@ -109,7 +109,8 @@ class Solver:
         database = PETSc.Options()
         for key, value in settings.items():
             database[prefix + key] = value
-            self._keys.add(prefix + key)
+            if key not in self.extra:  # the user's stay, so that PETSc names those at its end which it did not know
+                self._keys.add(prefix + key)
         snes = PETSc.SNES().create(self.system.comm)
         snes.setOptionsPrefix(prefix)
         snes.setFunction(lambda *arguments: me._residual(*arguments), self.F)
