@@ -85,6 +85,15 @@ def functions(p, b, temperature):
     )
 
 
+@njit(**KERNEL)
+def many(p, works, temperature, values):
+    """`functions` at many plastic works; `values` has shape (6, works)."""
+    for i in range(works.shape[0]):
+        values[0, i], values[1, i], values[2, i], values[3, i], values[4, i], values[5, i] = functions(
+            p, works[i], temperature
+        )
+
+
 @njit(**INLINE)
 def elasticity(p, temperature):
     """E, G in N/mm² and the coefficient of thermal expansion in 1/K at `temperature`."""

@@ -45,6 +45,15 @@ def _yield_excess(p, y, w):
 
 
 @njit(**KERNEL)
+def _onto_surface(p, y, w):
+    """Take out the drift: n → n k/|n| at fixed B and b*."""
+    m = w.shape[0]
+    factor = 1.0 / math.sqrt(1.0 + _yield_excess(p, y, w))
+    for i in range(m):
+        y[i] = y[m + i] + factor * (y[i] - y[m + i])
+
+
+@njit(**KERNEL)
 def _neutral_kappa(kappa, zeta, ca, cc, axial, rest, spin):
     """The κ below the material's for which n:n does not change with λ = 0: spin + axial x_a + rest x_c = 0."""
     a, c = zeta + ca, zeta + cc
@@ -130,53 +139,48 @@ def _rates(p, y, w, d, volume, heating, mode, rate):
 
 @njit(**KERNEL)
 def _heun(p, y, w, d, volume, heating, h, mode, work):
-    """One Heun step of size `h` from y to work[2]; work[1] becomes the Euler result.
+    """One Heun step of size `h` from y to work[2]; work[0] becomes the rate at y, work[1] the Euler result.
 
     Returns:
         Whether it was plastic.
     """
-    plastic = _rates(p, y, w, d, volume, heating, mode, work[0])
-    for i in range(y.shape[0]):
-        work[1, i] = y[i] + h * work[0, i]
-    _rates(p, work[1], w, d, volume, heating, BY_LOADING if plastic else ELASTIC, work[3])
-    for i in range(y.shape[0]):
-        work[2, i] = y[i] + 0.5 * h * (work[0, i] + work[3, i])
+    plastic = False
+    size = y.shape[0]
+    for i in range(size):
+        work[1, i] = y[i]
+        work[2, i] = y[i]
+    for stage in range(2):
+        loads = _rates(p, work[1], w, d, volume, heating, mode, work[3])
+        if stage == 0:
+            plastic = loads
+            mode = mode if plastic else ELASTIC
+            for i in range(size):
+                work[0, i] = work[3, i]
+                work[1, i] = y[i] + h * work[3, i]
+        for i in range(size):
+            work[2, i] += 0.5 * h * work[3, i]
     return plastic
 
 
 @njit(**KERNEL)
 def _elastic_part(p, y, w, d, volume, heating, h, work):
     """Largest elastic step up to `h` that does not leave the yield surface; its end is left in work[2]."""
-    _heun(p, y, w, d, volume, heating, h, ELASTIC, work)
-    if _yield_excess(p, work[2], w) <= 1e-12:
-        return h
     m = w.shape[0]
-    nn = ne = ee = 0.0
-    for i in range(m):
-        n, e = y[i] - y[m + i], h * (work[0, i] - work[0, m + i])
-        nn += w[i] * n * n
-        ne += w[i] * n * e
-        ee += w[i] * e * e
-    beta = yield_crossing(nn, ne, ee, functions(p, y[2 * m], y[2 * m + 1])[0])
-    h *= max(beta, 1e-6)
-    _heun(p, y, w, d, volume, heating, h, ELASTIC, work)
-    _onto_surface(p, work[2], w)  # the spin bends the path a little
+    for cut in range(2):
+        _heun(p, y, w, d, volume, heating, h, ELASTIC, work)
+        if cut == 1:
+            _onto_surface(p, work[2], w)  # the spin bends the path a little
+        elif _yield_excess(p, work[2], w) <= 1e-12:
+            break
+        else:
+            nn = ne = ee = 0.0
+            for i in range(m):
+                n, e = y[i] - y[m + i], h * (work[0, i] - work[0, m + i])
+                nn += w[i] * n * n
+                ne += w[i] * n * e
+                ee += w[i] * e * e
+            h *= max(yield_crossing(nn, ne, ee, functions(p, y[2 * m], y[2 * m + 1])[0]), 1e-6)
     return h
-
-
-@njit(**KERNEL)
-def _onto_surface(p, y, w):
-    """Take out the drift: n → n k/|n| at fixed B and b*."""
-    m = w.shape[0]
-    factor = 1.0 / math.sqrt(1.0 + _yield_excess(p, y, w))
-    for i in range(m):
-        y[i] = y[m + i] + factor * (y[i] - y[m + i])
-
-
-@njit(**KERNEL)
-def _copy(a, b):
-    for i in range(a.shape[0]):
-        b[i] = a[i]
 
 
 @njit(**KERNEL)
@@ -194,14 +198,9 @@ def _integrate(p, y, w, d, volume, heating):
         if steps > MAX_SUBSTEPS:
             return -1, plastic
         rest = 1.0 - done
-        on_surface = _yield_excess(p, y, w) > -1e-12
-        plastic = on_surface and _rates(p, y, w, d, volume, heating, BY_LOADING, work[0])
-        if not plastic:
-            step = _elastic_part(p, y, w, d, volume, heating, rest, work)
-            _copy(work[2], y)
-        else:
-            step = min(h, rest)
-            _heun(p, y, w, d, volume, heating, step, BY_LOADING, work)
+        step = min(h, rest)
+        plastic = _yield_excess(p, y, w) > -1e-12 and _heun(p, y, w, d, volume, heating, step, BY_LOADING, work)
+        if plastic:
             error = 0.0
             for i in range(m):
                 error += w[i] * (work[2, i] - work[1, i]) ** 2
@@ -210,8 +209,11 @@ def _integrate(p, y, w, d, volume, heating):
             h = step * min(max(factor, 0.1), 5.0)
             if error > 1.0:
                 continue
-            _copy(work[2], y)
-            _onto_surface(p, y, w)
+            _onto_surface(p, work[2], w)
+        else:
+            step = _elastic_part(p, y, w, d, volume, heating, rest, work)
+        for i in range(y.shape[0]):
+            y[i] = work[2, i]
         done = 1.0 if step == rest else done + step
     return steps, plastic
 

@@ -175,10 +175,31 @@ class Law:
         return np.concatenate([head, self._rows.ravel()])
 
     def initial_state(self, points):
-        """History rows of unstressed points, shape (points, n_state)."""
+        """History rows of unstressed points of the rod, shape (points, n_state)."""
         state = np.zeros((points, self.n_state))
         state[:, 7:] = self.reference_temperature
         return state
+
+    def functions(self, work, temperature=None):
+        """k², k²′, ζ, ζ′, κ, κ′ at plastic works b*.
+
+        Args:
+            work: b*, N/mm², any shape.
+            temperature: K; default is the reference temperature.
+
+        Returns:
+            Array with the six functions along its first axis, in N, mm.
+        """
+        p = self.parameters(temperature)
+        p[fn.HEATING] = 0.0  # slopes along b* alone
+        work = np.asarray(work, float)
+        values = np.empty((6, work.size))
+        fn.many(p, work.ravel(), p[fn.TEMPERATURE], values)
+        return values.reshape(6, *work.shape)
+
+    def k_squared(self, work):
+        """k² at the reference temperature, N²/mm⁴."""
+        return self.functions(work)[0]
 
     def _fail(self, place, problem):
         raise InputError(problem, place, self.file)
@@ -209,13 +230,11 @@ class Law:
 
     def _check_functions(self):
         """k² > 0, 2ζ + k²′ ≥ 0 and κ k²′ < 2 over the range of validity: else (3.1.9) is not positive."""
-        p = self.parameters()
         for i, row in enumerate(self._rows):
             if math.isinf(row[fn.K0]):
                 continue
             places = np.linspace(0, self.validity.plastic_work, 2001)
-            for b in places:
-                k2, dk2, zeta, _, kappa, _ = fn.row_functions(p, fn.ROWS_START + i * fn.ROW_LENGTH, b)
+            for b, (k2, dk2, zeta, _, kappa, _) in zip(places, self.functions(places, row[fn.ROW_T]).T, strict=True):
                 where = f"at b* = {b:g} N/mm² (b* is checked up to validity.plastic_work)"
                 if not k2 > 0:
                     self._fail(f"temperatures.{i}.isotropic", f"k² = {k2:.4g} N²/mm⁴ {where}; it must be positive")
@@ -254,11 +273,11 @@ def read(path, **options):
     try:
         data = MaterialFile.model_validate(content)
     except ValidationError as error:
-        raise _first_problem(error, path) from error
+        raise first_problem(error, path) from error
     return Law(data, file=path, **options)
 
 
-def _first_problem(error, path):
+def first_problem(error, path):
     """The `InputError` of pydantic's first complaint, in place terms of the file."""
     first = error.errors()[0]
     inside = {"IsotropicHardening", "KinematicHardening", "NonNormality"}

@@ -6,75 +6,47 @@ import numpy as np
 from numba import njit
 
 from coilset.model.errors import SolveError
-from coilset.model.material import heun, rod, solid
-from coilset.model.material.functions import TEMPERATURE, TOLERANCE, functions
+from coilset.model.material.functions import KERNEL, TOLERANCE
+from coilset.model.material.heun import rod_heun, solid_heun
+from coilset.model.material.rod import return_map as rod_return_map
+from coilset.model.material.solid import return_map as solid_return_map
 
 INTEGRATORS = ("return_mapping", "heun")
+SMALLEST_SUBSTEP = 1e-9
 
 
-@njit(error_model="numpy")  # no cache: numba would not find a closure again
-def _distance(p, a, b, components):
-    """Size of the difference of stress of two history rows against the yield stress, sqrt(Δσ:Δσ/k²)."""
-    square = 0.0
-    for i in range(components):
-        normal = i == 0 if components == 3 else i < 3
-        square += (1.0 if normal else 2.0) * (a[i] - b[i]) ** 2
-    work = b[2 * components]
-    return math.sqrt(square / functions(p, work, p[TEMPERATURE])[0])
+# One loop each, since numba keeps only functions on disk whose callees are known by name.
+@njit(**KERNEL)
+def _rod_return_map(p, state, increments, new, tangent, count):
+    for i in range(state.shape[0]):
+        de = increments[i]
+        count[i] = rod_return_map(p, state[i], de[0], de[1], de[2], new[i], tangent[i])
 
 
-def _batch(step, components):
-    """Compile the loop over points for one form of the law and one integrator."""
-
-    @njit(error_model="numpy")
-    def advance(p, row, increment, h, new, tangent):
-        if components == 3:
-            return step(p, row, h * increment[0], h * increment[1], h * increment[2], new, tangent)
-        return step(p, row, h * increment, new, tangent)
-
-    @njit(error_model="numpy")
-    def controlled(p, row, increment, tolerance, new, tangent):
-        # Step doubling: the difference of one step and two half ones estimates the error of the first order method.
-        one, mid, done, h, steps = row.copy(), row.copy(), 0.0, 1.0, 0
-        row = row.copy()
-        while done < 1.0:
-            rest = 1.0 - done
-            h = min(h, rest)
-            last = h == rest
-            count = advance(p, row, increment, h, one, tangent)
-            if count > 0:
-                advance(p, row, increment, 0.5 * h, mid, tangent)
-                count = advance(p, mid, increment, 0.5 * h, new, tangent)
-            else:
-                new[:] = one
-            error = _distance(p, one, new, components) / tolerance
-            steps += 1
-            if count < 0 or error > 1.0:
-                if h < 1e-9:
-                    return -1
-                h *= 0.5 if count < 0 else max(0.2, 0.9 / math.sqrt(error))
-                continue
-            row[:] = new
-            done = 1.0 if last else done + h
-            h *= min(4.0, 0.9 / math.sqrt(error + 1e-300))
-        return steps
-
-    @njit(error_model="numpy")
-    def batch(p, state, increments, tolerance, new, tangent, count):
-        for i in range(state.shape[0]):
-            if tolerance > 0.0:
-                count[i] = controlled(p, state[i], increments[i], tolerance, new[i], tangent[i])
-            else:
-                count[i] = advance(p, state[i], increments[i], 1.0, new[i], tangent[i])
-
-    return batch
+@njit(**KERNEL)
+def _rod_heun(p, state, increments, new, tangent, count):
+    for i in range(state.shape[0]):
+        de = increments[i]
+        count[i] = rod_heun(p, state[i], de[0], de[1], de[2], new[i], tangent[i])
 
 
-_BATCHES = {
-    (3, "return_mapping"): _batch(rod.return_map, 3),
-    (3, "heun"): _batch(heun.rod_heun, 3),
-    (6, "return_mapping"): _batch(solid.return_map, 6),
-    (6, "heun"): _batch(heun.solid_heun, 6),
+@njit(**KERNEL)
+def _solid_return_map(p, state, increments, new, tangent, count):
+    for i in range(state.shape[0]):
+        count[i] = solid_return_map(p, state[i], increments[i], new[i], tangent[i])
+
+
+@njit(**KERNEL)
+def _solid_heun(p, state, increments, new, tangent, count):
+    for i in range(state.shape[0]):
+        count[i] = solid_heun(p, state[i], increments[i], new[i], tangent[i])
+
+
+_LOOPS = {
+    (3, "return_mapping"): _rod_return_map,
+    (3, "heun"): _rod_heun,
+    (6, "return_mapping"): _solid_return_map,
+    (6, "heun"): _solid_heun,
 }
 
 
@@ -100,15 +72,14 @@ def update(law, state, increments, integrator="return_mapping", temperature=None
 
     Args:
         law: a `Law`.
-        state: history rows, shape (points, 7 or 8) for the rod (`rod`), (points, 13 or 14) in three dimensions
-        (`solid`). increments: shape (points, 3): ε11, γ12, γ13, or (points, 6): ε11, ε22, ε33, γ12, γ13, γ23; without
-        thermal strain. integrator: "return_mapping" (backward Euler, consistent tangent) or "heun" (the thesis's,
-        tangent of the rates). temperature: of all points, K, where the state holds none; default is the reference
-        temperature.
-
-        tolerance: error of stress, relative to the yield stress, allowed in a sub-step. None: the return mapping makes one
-            step of each increment, Heun takes the tolerance of the law. With a number the return mapping, too, divides the
-            increments where the direction of loading turns; the tangent is then that of the last sub-step.
+        state: history rows, shape (points, 7 or 8) as in `rod`, or (points, 13 or 14) as in `solid`.
+        increments: ε11, γ12, γ13, shape (points, 3), or ε11, ε22, ε33, γ12, γ13, γ23, shape (points, 6); without
+            thermal strain.
+        integrator: "return_mapping" (backward Euler, consistent tangent) or "heun" (the thesis's, the rates' tangent).
+        temperature: of all points, K, where the state holds none; default is the reference temperature.
+        tolerance: error of stress, relative to the yield stress, allowed in a sub-step. None: the return mapping makes
+            one step of each increment, Heun takes the law's tolerance. With a number the return mapping, too, divides
+            the increments where the direction of loading turns; the tangent is then that of the last sub-step.
 
     Returns:
         The new state, the tangent (points, 3, 3) or (points, 6, 6) in N/mm², and the number of local iterations or
@@ -125,16 +96,51 @@ def update(law, state, increments, integrator="return_mapping", temperature=None
         raise ValueError(f"integrator '{integrator}' is none of {', '.join(INTEGRATORS)}")
     if components not in (3, 6) or state.shape != (points, 2 * components + 1 + law.is_adiabatic):
         raise ValueError(f"state of shape {state.shape} does not fit strain increments of shape {increments.shape}")
+    p = law.parameters(temperature)
+    loop = _LOOPS[components, integrator]
+    if tolerance is not None and integrator == "return_mapping":
+        return _divided(loop, p, law, state, increments, tolerance)
+    if tolerance is not None:
+        p[TOLERANCE] = tolerance
+    new, tangent, count = _advance(loop, p, state, increments)
+    _refuse(count < 0)
+    return new, tangent, count
+
+
+def _advance(loop, p, state, increments):
+    points, components = increments.shape
     new, tangent = np.empty_like(state), np.empty((points, components, components))
     count = np.empty(points, dtype=np.int64)
-    p, control = law.parameters(temperature), 0.0
-    if tolerance is not None:
-        if integrator == "heun":
-            p[TOLERANCE] = tolerance
-        else:
-            control = float(tolerance)
-    _BATCHES[components, integrator](p, state, increments, control, new, tangent, count)
-    failed = np.flatnonzero(count < 0)
-    if failed.size:
-        raise SolveError(f"{failed.size} of {points} material points did not converge: too large a strain increment")
+    loop(p, state, increments, new, tangent, count)
     return new, tangent, count
+
+
+def _refuse(failed):
+    if failed.any():
+        raise SolveError(f"{failed.sum()} of {failed.size} material points did not converge; use smaller increments")
+
+
+def _divided(loop, p, law, state, increments, tolerance):
+    """Sub-steps by step doubling: one step against two half ones estimates the error of the first-order method."""
+    points, components = increments.shape
+    weight = np.where(np.arange(components) < (1 if components == 3 else 3), 1.0, 2.0)
+    row, tangent = state.copy(), np.empty((points, components, components))
+    done, size, count = np.zeros(points), np.ones(points), np.zeros(points, dtype=np.int64)
+    while (open_ := np.flatnonzero(done < 1.0)).size:
+        _refuse(size < SMALLEST_SUBSTEP)
+        h = np.minimum(size[open_], 1.0 - done[open_])
+        part = 0.5 * h[:, None] * increments[open_]
+        one, _, plain = _advance(loop, p, row[open_], 2.0 * part)
+        half, _, first = _advance(loop, p, row[open_], part)
+        two, C, second = _advance(loop, p, half, part)
+        lost = (plain < 0) | (first < 0) | (second < 0)
+        difference = ((one - two)[:, :components] ** 2 * weight).sum(axis=1)
+        error = np.sqrt(difference / law.k_squared(two[:, 2 * components])) / tolerance
+        error = np.where(lost, math.inf, error)
+        good = error <= 1.0
+        accepted = open_[good]
+        row[accepted], tangent[accepted] = two[good], C[good]
+        count[accepted] += second[good] > 0
+        done[accepted] = np.where(h[good] >= 1.0 - done[accepted], 1.0, done[accepted] + h[good])
+        size[open_] = h * np.clip(0.9 / np.sqrt(np.maximum(error, 1e-6)), 0.2, 4.0)
+    return row, tangent, count

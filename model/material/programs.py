@@ -1,0 +1,221 @@
+"""Programs for one point: targets of strain or stress, one after the other, as in a tension-torsion testing machine.
+
+At every instant each component is driven either by its strain or by its stress. A step names components and their
+values at its end, reached in equal increments; what it does not name stays driven as before, at its last value. At the
+start every stress is driven, and zero: tension is `eps11` alone.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+import yaml
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from coilset.model.errors import InputError, SolveError
+from coilset.model.material import functions as fn
+from coilset.model.material.law import first_problem
+from coilset.model.material.points import initial_state, update
+
+STRAINS = {
+    "rod": ("eps11", "gamma12", "gamma13"),
+    "solid": ("eps11", "eps22", "eps33", "gamma12", "gamma13", "gamma23"),
+}
+STRESSES = {
+    "rod": ("sigma11", "tau12", "tau13"),
+    "solid": ("sigma11", "sigma22", "sigma33", "tau12", "tau13", "tau23"),
+}
+MAX_ITERATIONS = 50
+MAX_HALVINGS = 12
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+
+
+class _Section(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Step(_Section):
+    """One straight piece of a program."""
+
+    name: str = ""
+    to: dict[str, Finite] = {}  # strains (1) and stresses (N/mm²) at the end
+    temperature: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None  # K, at the end
+    increments: Annotated[int, Field(ge=1, le=1_000_000)]
+
+
+class Program(_Section):
+    """A whole program."""
+
+    name: str
+    description: str = ""
+    source: str = ""
+    form: Literal["rod", "solid"] = "rod"
+    steps: Annotated[tuple[Step, ...], Field(min_length=1)]
+
+
+@dataclass(frozen=True)
+class History:
+    """What a point went through; the first row is the start.
+
+    strain: engineering shear strains, shape (rows, 3 or 6); stress, back (N/mm²): the same shape; work: b*, N/mm²;
+    temperature: K; step: index of the step that the row belongs to.
+    """
+
+    form: str
+    strain: np.ndarray
+    stress: np.ndarray
+    back: np.ndarray
+    work: np.ndarray
+    temperature: np.ndarray
+    step: np.ndarray
+
+    def columns(self):
+        """Names and values of a table's columns."""
+        yield "step", self.step
+        for names, values in ((STRAINS, self.strain), (STRESSES, self.stress)):
+            for i, name in enumerate(names[self.form]):
+                yield name, values[:, i]
+        for i, name in enumerate(STRESSES[self.form]):
+            yield "back" + name[-2:], self.back[:, i]
+        yield "plastic_work", self.work
+        yield "temperature", self.temperature
+
+
+def read(path):
+    """Read a program.
+
+    Raises:
+        InputError: if the file cannot be read or says something wrong.
+    """
+    path = Path(path)
+    try:
+        content = yaml.safe_load(path.read_text(encoding="utf-8"))
+        program = Program.model_validate(content)
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", file=str(path)) from error
+    except yaml.YAMLError as error:
+        raise InputError(f"is not YAML: {' '.join(str(error).split())}", file=str(path)) from error
+    except ValidationError as error:
+        raise first_problem(error, path) from error
+    for i, step in enumerate(program.steps):
+        _check_targets(step, program.form, f"steps.{i}.to", str(path))
+    return program
+
+
+def _check_targets(step, form, place, file):
+    strains, stresses = STRAINS[form], STRESSES[form]
+    for name in step.to:
+        if name not in strains + stresses:
+            raise InputError(f"'{name}' is none of {', '.join(strains + stresses)} ({form})", place, file)
+    for strain, stress in zip(strains, stresses, strict=True):
+        if strain in step.to and stress in step.to:
+            raise InputError(f"{strain} and {stress} cannot both be prescribed", place, file)
+
+
+def run(law, program, integrator="return_mapping"):
+    """Drive one point through a program.
+
+    Args:
+        law: a `Law`.
+        program: a `Program`.
+        integrator: see `points.update`.
+
+    Returns:
+        A `History`.
+
+    Raises:
+        InputError: if a temperature lies outside the material's table, or is prescribed for a material that heats
+        itself. SolveError: if an increment cannot be solved, for instance because the material cannot carry a stress.
+    """
+    point = _Point(law, program.form, integrator)
+    rows = [point.row(0)]
+    for index, step in enumerate(program.steps):
+        if step.temperature is not None and law.is_adiabatic:
+            place = f"steps.{index}.temperature"
+            raise InputError(f"'{law.name}' has adiabatic heating and finds its own temperature", place)
+        start = point.drive(step.to)
+        end = start.copy()
+        for i, names in enumerate(zip(STRAINS[program.form], STRESSES[program.form], strict=True)):
+            end[i] = next((step.to[name] for name in names if name in step.to), end[i])
+        heat = 0.0 if step.temperature is None else (step.temperature - point.temperature) / step.increments
+        for k in range(1, step.increments + 1):
+            try:
+                point.advance(start + (end - start) * k / step.increments, heat)
+            except SolveError as error:
+                where = f"step {index + 1} of the program ({step.name or 'unnamed'}), increment {k}"
+                raise SolveError(f"{where}: {error}") from error
+            rows.append(point.row(index))
+    return History(program.form, *(np.array(column) for column in zip(*rows, strict=True)))
+
+
+class _Point:
+    """The point under the machine: state, total strain, and which components are driven by strain."""
+
+    def __init__(self, law, form, integrator):
+        self.law, self.form, self.integrator = law, form, integrator
+        self.n = len(STRAINS[form])
+        self.state = initial_state(law, 1, self.n)[0]
+        self.strain = np.zeros(self.n)
+        self.by_strain = np.zeros(self.n, dtype=bool)
+        self.temperature = law.reference_temperature
+        self.tangent = update(law, self.state[None], np.zeros((1, self.n)))[1][0]
+
+    def drive(self, targets):
+        """Take over which components are driven by strain; returns the present values of what drives them."""
+        for i, (strain, stress) in enumerate(zip(STRAINS[self.form], STRESSES[self.form], strict=True)):
+            if strain in targets or stress in targets:
+                self.by_strain[i] = strain in targets
+        return np.where(self.by_strain, self.strain, self.state[: self.n])
+
+    def row(self, index):
+        n, s = self.n, self.state
+        temperature = s[2 * n + 1] if self.law.is_adiabatic else self.temperature
+        return self.strain.copy(), s[:n].copy(), s[n : 2 * n].copy(), s[2 * n], temperature, index
+
+    def advance(self, target, heat, halvings=0):
+        """One increment to `target`; where Newton does not find it, two of half the size."""
+        now = np.where(self.by_strain, self.strain, self.state[: self.n])
+        if self._newton(target, heat):
+            return
+        if halvings == MAX_HALVINGS:
+            raise SolveError("no strain was found that gives the prescribed stress; can the material carry it?")
+        self.advance(0.5 * (now + target), 0.5 * heat, halvings + 1)
+        self.advance(target, 0.5 * heat, halvings + 1)
+
+    def _newton(self, target, heat):
+        held, free = self.by_strain, ~self.by_strain
+        temperature = self.temperature + heat
+        at = None if self.law.is_adiabatic else temperature
+        thermal = self._thermal_strain(self.temperature, temperature) if heat else np.zeros(self.n)
+        increment = np.where(held, target - self.strain, 0.0)
+        tangent, stress = self.tangent, self.state[: self.n]
+        scale = max(1.0, float(np.abs(stress).max()), float(np.abs(target[free]).max(initial=0.0)))
+        # The free components follow the last tangent first.
+        residual = target[free] - stress[free] - tangent[np.ix_(free, held)] @ (increment - thermal)[held]
+        for _ in range(MAX_ITERATIONS):
+            if free.any():
+                try:
+                    increment[free] += np.linalg.solve(tangent[np.ix_(free, free)], residual)
+                except np.linalg.LinAlgError:
+                    return False
+            try:
+                new, tangents, _ = update(self.law, self.state[None], (increment - thermal)[None], self.integrator, at)
+            except SolveError:
+                return False
+            tangent = tangents[0]
+            residual = target[free] - new[0, : self.n][free]
+            if np.abs(residual).max(initial=0.0) <= 1e-10 * scale:
+                self.state, self.tangent, self.temperature = new[0], tangent, temperature
+                self.strain = self.strain + increment
+                return True
+            if not np.abs(increment).max() < 1.0:
+                return False
+        return False
+
+    def _thermal_strain(self, start, end):
+        """α ΔT of the normal components, α as the mean of both ends."""
+        alpha = [fn.elasticity(self.law.parameters(at), at)[2] for at in (start, end)]
+        normal = np.zeros(self.n)
+        normal[: 1 if self.form == "rod" else 3] = 1.0
+        return 0.5 * sum(alpha) * (end - start) * normal
