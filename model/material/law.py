@@ -135,6 +135,7 @@ class Law:
     G = property(lambda self: self.data.temperatures[0].elasticity.G, doc="At the reference temperature, N/mm².")
     nu = property(lambda self: self.data.temperatures[0].elasticity.nu, doc="At the reference temperature.")
     E = property(lambda self: 2 * self.G * (1 + self.nu), doc="At the reference temperature, N/mm².")
+    temperatures = property(lambda self: tuple(float(t) for t in self._temperatures), doc="Of the table, K.")
     is_adiabatic = property(lambda self: self.data.heating is not None, doc="Whether plastic work heats the points.")
     n_state = property(lambda self: 8 if self.data.heating else 7, doc="Length of a rod point's history row.")
 
@@ -148,6 +149,13 @@ class Law:
         """Rise of temperature per plastic work b*, K mm²/N."""
         h = self.data.heating
         return h.dissipated / (h.density * h.specific_heat) if h else 0.0
+
+    def constants(self, temperature):
+        """Names, values and units of the constants that the file gives at one of its temperatures."""
+        at = self.data.temperatures[self.temperatures.index(temperature)]
+        for section in (at.elasticity, at.isotropic, getattr(at.isotropic, "saturation", None), at.kinematic):
+            yield from _entries(section)
+        yield from _entries(at.non_normality)
 
     def parameters(self, temperature=None):
         """Parameter array of the kernels.
@@ -248,6 +256,20 @@ class Law:
                         f"temperatures.{i}.non_normality.a",
                         f"κ k²′ = {kappa * dk2:.4g} {where}; it must stay below 2, or (3.1.9) is not positive definite",
                     )
+
+
+UNITS = {
+    "G": "N/mm²", "nu": "", "alpha": "1/K", "k0_squared": "N²/mm⁴", "a1": "N²/mm⁴", "a2": "mm²/N", "a3": "mm²/N",
+    "b1": "N/mm²", "k1_squared": "N²/mm⁴", "k_inf_squared": "N²/mm⁴", "a4": "mm²/N", "a5": "N/mm²", "a6": "mm²/N",
+    "a7": "mm²/N", "a": "mm⁶/N³",
+}  # fmt: skip
+
+
+def _entries(section):
+    if isinstance(section, _Section):
+        for name, value in section:
+            if not isinstance(value, _Section) and value is not None:
+                yield name, (value, UNITS[name])
 
 
 def read(path, **options):

@@ -1,0 +1,88 @@
+"""Figures of the material: its functions, a program's answer, and the fit of tests."""
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+
+from coilset.model.material.programs import STRAINS, STRESSES
+
+STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False}
+SYMBOLS = {
+    "eps11": "ε11", "eps22": "ε22", "eps33": "ε33", "gamma12": "γ12", "gamma13": "γ13", "gamma23": "γ23",
+    "sigma11": "σ11", "sigma22": "σ22", "sigma33": "σ33", "tau12": "τ12", "tau13": "τ13", "tau23": "τ23",
+}  # fmt: skip
+
+
+def _figure(width, height):
+    return Figure(figsize=(width, height), layout="constrained")
+
+
+def material_functions(law):
+    """k², ζ and 2Gκ over the plastic work b*, one line a temperature; figures 6.3 to 6.5 of the thesis for Ck 15."""
+    work = np.linspace(0.0, law.validity.plastic_work, 801)
+    with mpl.rc_context(STYLE):
+        figure = _figure(10.5, 3.4)
+        axes = figure.subplots(1, 3)
+        for temperature in law.temperatures:
+            G = dict(law.constants(temperature))["G"][0]
+            k2, _, zeta, _, kappa, _ = law.functions(work, temperature)
+            for place, values in zip(axes, (k2 / 1e3, zeta, 2 * G * kappa), strict=True):
+                place.plot(work, np.where(np.isfinite(values), values, np.nan), lw=1.3, label=f"{temperature:g} K")
+        axes[0].set(ylabel="k² in 10³ N²/mm⁴", title="isotropic hardening")
+        axes[1].set(ylabel="ζ in N/mm²", title="kinematic hardening")
+        if np.nanmax(zeta) > 0:
+            axes[1].set_yscale("log")
+        axes[2].set(ylabel="2Gκ", title="deviation from normality")
+        for place in axes:
+            place.set_xlabel("plastic work b* in N/mm²")
+            place.set_xlim(0, work[-1])
+            place.grid(lw=0.3)
+        axes[0].legend(title=law.name)
+    return figure
+
+
+def program(law, run, history):
+    """What a program did: stress over strain, and for the rod the way of the stress between its yield surfaces."""
+    strains, stresses = STRAINS[history.form], STRESSES[history.form]
+    moved = [i for i in range(len(strains)) if np.ptp(history.stress[:, i]) > 1e-3]
+    with mpl.rc_context(STYLE):
+        figure = _figure(10.5, 4.0)
+        axes = figure.subplots(1, 3 if history.form == "rod" else 2)
+        for i in moved:
+            label = f"{SYMBOLS[stresses[i]]} over {SYMBOLS[strains[i]]}"
+            axes[0].plot(100 * history.strain[:, i], history.stress[:, i], lw=1.3, label=label)
+        axes[0].set(xlabel="strain in %", ylabel="stress in N/mm²", title="stress and strain")
+        steps = np.linalg.norm(np.diff(history.strain, axis=0), axis=1)
+        length = 100 * np.concatenate([[0.0], np.cumsum(steps)])
+        for i in moved:
+            axes[1].plot(length, history.stress[:, i], lw=1.3, label=SYMBOLS[stresses[i]])
+            axes[1].plot(length, history.back[:, i], lw=0.9, ls="--", color=axes[1].lines[-1].get_color())
+        for change in np.flatnonzero(np.diff(history.step[1:])) + 1:
+            axes[1].axvline(length[change], color="0.7", lw=0.7, ls=":")
+        axes[1].plot([], [], "k--", lw=0.9, label="back stress")
+        axes[1].set(xlabel="length of the strain path in %", ylabel="stress in N/mm²", title="along the program")
+        if history.form == "rod":
+            _stress_plane(axes[2], law, history)
+        for place in axes[:2]:
+            place.grid(lw=0.3)
+            place.legend(fontsize=8)
+        source = f"; after {run.source}" if run.source else ""
+        figure.suptitle(f"{run.name}, {law.name}{source}", fontsize=10)
+    return figure
+
+
+def _stress_plane(axes, law, history):
+    shear = np.sqrt(3.0)
+    axes.plot(history.stress[:, 0], shear * history.stress[:, 1], lw=1.3, label="way of the stress")
+    angle = np.linspace(0, 2 * np.pi, 181)
+    for row, name, style in ((0, "yield surface at the start", "0.6"), (-1, "at the end", "k")):
+        k = np.sqrt(law.k_squared(history.work[row]))
+        if not np.isfinite(k):
+            continue
+        # 3/2 n11² + 2 n12² = k², σ11 = 3/2 (n11 + B11), τ12 = n12 + B12; B13 plays no part in these programs.
+        normal = 1.5 * (np.sqrt(2 / 3) * k * np.cos(angle) + history.back[row, 0])
+        tangential = np.sqrt(0.5) * k * np.sin(angle) + history.back[row, 1]
+        axes.plot(normal, shear * tangential, lw=0.8, ls="--", color=style, label=name)
+    axes.set(xlabel="σ11 in N/mm²", ylabel="√3 τ12 in N/mm²", title="stress plane", aspect="equal")
+    axes.grid(lw=0.3)
+    axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.16))

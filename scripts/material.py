@@ -1,0 +1,118 @@
+"""`coilset material`: draw a material's functions, drive one point through a program, identify constants from tests."""
+
+import csv
+import os
+from pathlib import Path
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from coilset.model.errors import InputError
+
+app = typer.Typer(help="Draw a material, test it at one point, or fit it to tests.", no_args_is_help=True)
+MATERIAL = typer.Argument(help="name in the library, or the path of a material file")
+OUT = typer.Option(None, help="results folder; default results/material/NAME")
+FORCE = typer.Option(False, "--force", help="replace files that are there")
+
+
+@app.command()
+def show(material: str = MATERIAL, out: str = OUT, force: bool = FORCE):
+    """Print a material's constants and draw k², ζ and 2Gκ over the plastic work."""
+    from coilset.model.material import figures, library
+
+    law = library.load(material)
+    out = _folder(out, law.name)
+    console = Console(highlight=False)
+    console.print(f"[bold]{law.name}[/]: {law.description}\nsource: {law.source}\nvalid: {law.validity.remark}")
+    console.print(_constants(law))
+    _save(figures.material_functions(law), out / "functions.png", force, console)
+
+
+@app.command("test")
+def run_program(
+    material: str = MATERIAL,
+    program: str = typer.Argument(help="program file (YAML): targets of strain and stress"),
+    integrator: str = typer.Option("return_mapping", help="return_mapping, or heun as in the thesis"),
+    out: str = OUT,
+    force: bool = FORCE,
+):
+    """Drive one point through a program of strain, stress or both, and draw it."""
+    from coilset.model.material import figures, library, points, programs
+
+    if integrator not in points.INTEGRATORS:
+        raise InputError(f"'{integrator}' is none of {', '.join(points.INTEGRATORS)}", "--integrator")
+    law, steps = library.load(material), programs.read(program)
+    out = _folder(out, law.name)
+    name = Path(program).stem
+    console = Console(highlight=False)
+    try:
+        history = programs.run(law, steps, integrator)
+    except InputError as error:
+        raise InputError(error.problem, error.place, error.file or program) from None
+    console.print(_ends(steps, history))
+    _refuse([out / f"{name}.csv"], force)
+    out.mkdir(parents=True, exist_ok=True)
+    _write_csv(out / f"{name}.csv", history)
+    _save(figures.program(law, steps, history), out / f"{name}.png", force, console)
+
+
+def _folder(out, name):
+    return Path(out or Path("results") / "material" / name)
+
+
+def _refuse(paths, force):
+    for path in paths:
+        if path.exists() and not force:
+            raise InputError("is there already; give --force to replace it", "", path)
+
+
+def _save(figure, path, force, console):
+    from coilset.model.results.folder import whole
+
+    _refuse([path], force)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with whole(path) as partial:
+        figure.savefig(partial, dpi=160)
+    console.print(f"picture in {path.parent}{os.sep}{path.name}")
+
+
+def _write_csv(path, history):
+    from coilset.model.results.folder import whole
+
+    names, values = zip(*history.columns(), strict=True)
+    with whole(path) as partial, open(partial, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(names)
+        writer.writerows(zip(*(column.tolist() for column in values), strict=True))
+
+
+def _constants(law):
+    table = Table(box=None, padding=(0, 2))
+    table.add_column("constant")
+    for temperature in law.temperatures:
+        table.add_column(f"{temperature:g} K", justify="right")
+    table.add_column("unit")
+    rows = [dict(law.constants(temperature)) for temperature in law.temperatures]
+    for name, (_, unit) in rows[0].items():
+        values = [row[name][0] if name in row else "–" for row in rows]
+        table.add_row(name, *(f"{value:.7g}" if not isinstance(value, str) else value for value in values), unit)
+    return table
+
+
+def _ends(program, history):
+    """Table of the state at the end of each step: the strains and stresses that the program moves, and b*."""
+    from coilset.model.material.figures import SYMBOLS
+
+    names = {**SYMBOLS, "plastic_work": "b*"}
+    columns = [(names[name], values) for name, values in history.columns() if name in names and np.ptp(values) > 1e-9]
+    table = Table(box=None, padding=(0, 1))
+    table.add_column("end of step")
+    for name, _ in columns:
+        table.add_column(name, justify="right", no_wrap=True)
+    for index, step in enumerate(program.steps):
+        row = (history.step == index).nonzero()[0][-1]
+        values = (values[row] if abs(values[row]) > 1e-9 * abs(values).max() else 0.0 for _, values in columns)
+        table.add_row(f"{index + 1} {step.name}", *(f"{value:.5g}" for value in values))
+    return table
