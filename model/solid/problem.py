@@ -111,20 +111,23 @@ class SolidProblem:
 
     def _assemble(self):
         self.solid.assemble_tangent(self._A, self._conditions)
+        diagonal = self._A.getDiagonal()
+        diagonal.array[:] *= 0.5 * np.finfo(float).eps * self.solid.x[: self.solid.configuration.owned].ravel()
+        self._rounding = diagonal.norm()
         if self._multigrid:
             self._multigrid.update(self._A, self.solid.x)
 
     def _converged(self, snes, iteration, norms):
         """(6.3.1): out-of-balance forces against the change of the heads' forces since the step's start.
 
-        A thousandth of the heads' forces themselves is added, lest a tiny step ask for more than arithmetic gives.
+        A tiny step cannot ask for more than arithmetic gives: what rounding the positions does to the forces is allowed.
         """
         norm = norms[2]
         if not np.isfinite(norm):
             return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
-        now, start = self.forces[self._held], self._start[self._held]
-        change, size = np.sqrt(self.comm.allreduce(np.array([np.sum((now - start) ** 2), np.sum(now**2)])))
-        converged = norm <= self.precision * (change + 1e-3 * size)
+        change = (self.forces - self._start)[self._held]
+        scale = np.sqrt(self.comm.allreduce(float(np.sum(change**2))))
+        converged = norm <= max(self.precision * scale, self._rounding)
         return PETSc.SNES.ConvergedReason.CONVERGED_FNORM_RELATIVE if converged else 0
 
     # ---- steps -----------------------------------------------------------------------------------------------------

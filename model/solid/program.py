@@ -8,6 +8,7 @@ from coilset.model.errors import SolveError
 from coilset.model.solid.heads import Motion
 
 MAX_RELEASE_STEPS = 20
+PROBE = 0.01  # part of the travel by which the rate of release is measured
 
 
 @dataclass(frozen=True)
@@ -66,10 +67,10 @@ class AxialProgram:
             self.go(travel * part)
 
     def release(self, steps, precision=1e-5):
-        """Go back to zero axial force: in equal steps to where the elastic rate would bring it, then by secants.
+        """Go back to zero axial force: in equal steps to where the rate of release brings it, then by secants.
 
         Args:
-            steps: of the first part.
+            steps: of the first part, after a small one that shows the rate.
             precision: force that is left, over the greatest force so far.
 
         Returns:
@@ -78,15 +79,16 @@ class AxialProgram:
         Raises:
             SolveError: if there is no equilibrium, or the force does not come to zero.
         """
-        first, last = self.stations[1], self.stations[-1]
-        back = last.force * first.travel / first.force  # the first step's rate: elastic, or not much less
         limit = precision * max(abs(station.force) for station in self.stations)
+        last = self.stations[-1]
+        first = self.go(last.travel * (1 - PROBE))
+        rate = (last.force - first.force) / (last.travel - first.travel)
         for part in np.arange(1, steps + 1) / steps:
-            station = self.go(last.travel - back * part)
+            station = self.go(first.travel - first.force / rate * part)
         for _ in range(MAX_RELEASE_STEPS):
             if abs(station.force) <= limit:
                 return station
             before = self.stations[-2]
-            rate = (station.force - before.force) / (station.travel - before.travel)
-            station = self.go(station.travel - station.force / rate)
+            secant = (station.force - before.force) / (station.travel - before.travel)
+            station = self.go(station.travel - station.force / np.clip(secant, 0.5 * rate, 1.5 * rate))
         raise SolveError(f"the force does not come below {limit:g} N on release")

@@ -45,7 +45,7 @@ class SectionSample:
         return np.concatenate(self.solid.comm.allgather(values.reshape(-1, *values.shape[2:])))
 
     def _recover(self, values, patches):
-        """Recover values at this rank's integration points at the middles of patches, shape (cells, points, …) → (n, …)."""
+        """Recover values at this rank's integration points in patches, shape (cells, points, …) → (n, …)."""
         points, weights = patches
         return np.einsum("nk,nk...->n...", weights, self._gather(values)[points])
 
@@ -60,7 +60,7 @@ class SectionSample:
     def frame(self):
         """Centre of the section, mm, and its axes t, outward, t × outward as columns, as the section lies now.
 
-        The section's turning since the start is the rotation that carries a ring of its points best, in the least squares.
+        The section's turning since the start is the rotation that carries rings of its points best.
         """
         now = self._positions(self._ring)
         a, b = self._start - self._start.mean(axis=0), now - now.mean(axis=0)

@@ -24,9 +24,9 @@ _MULTIGRID = {
     "mg_coarse_mg_coarse_redundant_pc_type": "svd",
 }
 
-# `multigrid` is `multigrid.VertexMultigrid` with the full tangent. The one with conjugate gradients needs symmetric moduli
-# and less memory; without hardening Newton's method then stalls, because the skew part, of the order of the stress, is
-# no longer small beside the shear moduli that are left.
+# `multigrid` is `multigrid.VertexMultigrid` with the full tangent. The one with conjugate gradients needs symmetric
+# moduli and less memory; without hardening Newton's method then stalls, because the skew part, of the order of the
+# stress, is no longer small beside the shear moduli that are left.
 OPTIONS = {
     "direct": {**_NEWTON, "ksp_type": "preonly", "pc_type": "lu", "pc_factor_mat_solver_type": "mumps"},
     "multigrid": {**_MULTIGRID, "ksp_type": "gmres", "ksp_gmres_restart": 80, "ksp_pc_side": "right"},

@@ -24,8 +24,8 @@ def sizes(wire):
 @pytest.mark.mpi
 @pytest.mark.parametrize("cell", ["hexahedron", "tetrahedron"])
 def test_volume_and_areas_of_a_coil_section(cell):
-    # Pappus: a disk swept normal to its centre line has the volume πd²/4 L and the surface πd L; the surface elements are
-    # parabolic, so the error falls with h⁴
+    # Pappus: a disk swept normal to its centre line has the volume πd²/4 L and the surface πd L; the surface elements
+    # are parabolic, so the error falls with h⁴
     d, D, p, degrees = 5.0, 40.0, 12.0, 400.0
     length = np.radians(degrees) / (2 * np.pi) * np.hypot(np.pi * D, p)
     errors = []

@@ -22,7 +22,7 @@ def test_ideal_plastic_is_radial_return():
             assert points.update(old, strain, new, C)
             results.append((new, C))
         (a, Ca), (b, Cb) = results
-        # the library puts the elastic part of an increment before the plastic one, which ideal plasticity does not notice
+        # the library splits off the elastic part of an increment, which ideal plasticity does not notice
         assert np.allclose(a[:, :6], b[:, :6], rtol=1e-9, atol=1e-7 * law.yield_stress)
         assert np.allclose(Ca, Cb, rtol=1e-8, atol=1e-8 * law.G)
     assert np.all(b[:, 12] > 0)

@@ -1,0 +1,26 @@
+"""Run the study: `scripts/coilset python -m coilset.verification.solid_vs_rod FOLDER [whole]`; it resumes by itself."""
+
+import sys
+
+from mpi4py import MPI
+from rich.console import Console
+
+from coilset.verification.solid_vs_rod import study
+from coilset.verification.solid_vs_rod.store import Store
+
+
+def main(folder, extent="standard"):
+    """Run the standard or the whole study and print its records and its table."""
+    console = Console(highlight=False, quiet=MPI.COMM_WORLD.rank != 0)
+    found = study.run(Store(folder, MPI.COMM_WORLD, console.print), {"standard": study.STANDARD, "whole": study.WHOLE}[extent])
+    for record in study.records(found):
+        deviation = record["ours"] / record["reference"] - 1
+        console.print(f"{record['quantity']}: {record['ours']:.5g}, {record['source']} {record['reference']:.5g}, "
+                      f"{100 * deviation:+.2f} % of {100 * record['tolerance']:g} %")  # fmt: skip
+    for name, unknowns, quantity, solid, rod, deviation in study.table(found):
+        last = "" if deviation is None else f"{100 * deviation:+.2f} %"
+        console.print(f"{name:28s}{unknowns:8d}  {quantity:32s}{solid:12.4f}{rod:12.4f}  {last}")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
