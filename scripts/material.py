@@ -10,9 +10,11 @@ from rich.console import Console
 from rich.table import Table
 
 from coilset.model.errors import InputError
+from coilset.model.material.law import UNITS
 
 app = typer.Typer(help="Draw a material, test it at one point, or fit it to tests.", no_args_is_help=True)
 MATERIAL = typer.Argument(help="name in the library, or the path of a material file")
+DATA = typer.Argument(help="tests (CSV): columns eps11, gamma12, sigma11, tau12")
 OUT = typer.Option(None, help="results folder; default results/material/NAME")
 FORCE = typer.Option(False, "--force", help="replace files that are there")
 
@@ -56,6 +58,40 @@ def run_program(
     out.mkdir(parents=True, exist_ok=True)
     _write_csv(out / f"{name}.csv", history)
     _save(figures.program(law, steps, history), out / f"{name}.png", force, console)
+
+
+@app.command()
+def fit(
+    data: list[str] = DATA,
+    shear_modulus: float = typer.Option(..., "--G", min=0.0, help="shear modulus, N/mm²"),
+    poisson: float = typer.Option(..., "--nu", min=-1.0, max=0.5, help="Poisson's ratio"),
+    saturation: bool = typer.Option(True, help="whether k² has its second branch; tests must reach it"),
+    name: str = typer.Option("fitted", help="name of the material"),
+    out: str = OUT,
+    force: bool = FORCE,
+):
+    """Identify the constants of k², ζ and κ from tension, reversed torsion and tension-torsion tests."""
+    import yaml
+
+    from coilset.model.material import figures
+    from coilset.model.material import fit as fitting
+    from coilset.model.results.folder import whole
+
+    out = _folder(out, name)
+    _refuse([out / f"{name}.yaml"], force)
+    result = fitting.fit([fitting.read_test(path) for path in data], shear_modulus, poisson, saturation)
+    console = Console(highlight=False)
+    table = Table("constant", "value", "± 95 %", "unit", box=None, padding=(0, 2))
+    for key, value in result.constants.items():
+        table.add_row(key, f"{value:.6g}", f"{result.uncertainty[key]:.2g}", UNITS[key])
+    console.print(table)
+    for test, scatter in zip(result.tests, result.scatter, strict=True):
+        console.print(f"{test.name} ({test.kind}): rms residual {scatter:.3g} N/mm²")
+    out.mkdir(parents=True, exist_ok=True)
+    with whole(out / f"{name}.yaml") as path:
+        path.write_text(yaml.safe_dump(result.material(name), sort_keys=False, allow_unicode=True), encoding="utf-8")
+    console.print(f"material file in {out / name}.yaml")
+    _save(figures.fit(result, name), out / "fit.png", force, console)
 
 
 def _folder(out, name):

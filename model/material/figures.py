@@ -86,3 +86,26 @@ def _stress_plane(axes, law, history):
     axes.set(xlabel="σ11 in N/mm²", ylabel="√3 τ12 in N/mm²", title="stress plane", aspect="equal")
     axes.grid(lw=0.3)
     axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.16))
+
+
+def fit(result, name):
+    """Tests, the law fitted to them, and what is left; one column a test."""
+    with mpl.rc_context(STYLE):
+        figure = _figure(3.6 * len(result.tests), 5.6)
+        axes = figure.subplots(2, len(result.tests), sharex="col", squeeze=False, height_ratios=(2, 1))
+        for column, test, stress, scatter in zip(axes.T, result.tests, result.stress, result.scatter, strict=True):
+            length = 100 * np.concatenate([[0.0], np.cumsum(np.abs(np.diff(test.strain, axis=0)).sum(axis=1))])
+            for i, symbol in enumerate(("σ11", "τ12")):
+                color = f"C{i}"
+                column[0].plot(length, test.stress[:, i], ".", ms=2, alpha=0.4, color=color, label=f"{symbol}, test")
+                column[0].plot(length, stress[:, i], lw=1.2, color=color, label=f"{symbol}, law")
+                column[1].plot(length, stress[:, i] - test.stress[:, i], ".", ms=2, color=color)
+            column[0].set(ylabel="stress in N/mm²", title=test.name)
+            column[0].legend(fontsize=7)
+            column[1].axhline(0.0, color="k", lw=0.6)
+            column[1].set(xlabel="length of the strain path in %", ylabel="law − test in N/mm²")
+            column[1].set_title(f"rms {scatter:.3g} N/mm²", fontsize=8)
+            for place in column:
+                place.grid(lw=0.3)
+        figure.suptitle(f"{name}: constants fitted to {len(result.tests)} tests", fontsize=10)
+    return figure
