@@ -130,7 +130,8 @@ class System:
         good = self.rod.update()
         if self.comm.size > 1:
             good = self.comm.allreduce(int(good)) == self.comm.size
-        if self.contacts:
+        self.contributions = []
+        if self.contacts and good:
             x = self.gather(self.rod.x)
             self.contributions = [contact.evaluate(x, self.seats) for contact in self.contacts]
         self.failed = not good

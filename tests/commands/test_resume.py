@@ -31,29 +31,31 @@ def final(folder):
         return {name: file[name] for name in file.files if name != "about"}
 
 
+def written(state):
+    """When the checkpoint was written, 0 if there is none."""
+    return state.stat().st_mtime_ns if state.exists() else 0
+
+
 def test_killed_runs_resume_to_the_same_bits(example, tmp_path):
-    (tmp_path / "whole").mkdir()
-    (tmp_path / "killed").mkdir()
-    began = time.perf_counter()
+    """Killed at random moments after a first new checkpoint, also while one is written; then left to end."""
+    for run in ("whole", "killed"):
+        (tmp_path / run).mkdir()
     subprocess.run(command(example), cwd=tmp_path / "whole", check=True, capture_output=True)
-    duration = time.perf_counter() - began
-    rng = random.Random(7)
-    kills = 0
-    for attempt in range(3 * KILLS):
-        more = ["--resume"] if (tmp_path / "killed" / "out" / "checkpoint" / "state.npz").exists() else ["--force"]
+    rng, state, killed_at = random.Random(7), tmp_path / "killed" / "out" / "checkpoint" / "state.npz", []
+    for _ in range(KILLS):
+        before = written(state)
+        more = ["--resume"] if before else []
         process = subprocess.Popen(command(example, *more), cwd=tmp_path / "killed",
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
-        try:
-            # moments from the start of the solve to its end; later runs have less to do
-            process.wait(duration * rng.uniform(0.5, 1.0) if attempt < KILLS else None)
-        except subprocess.TimeoutExpired:
-            process.send_signal(signal.SIGKILL)
-            process.wait()
-            kills += 1
-            continue
-        if process.returncode == 0 and attempt >= KILLS:
-            break
-    assert kills >= 1
+        while process.poll() is None and written(state) == before:
+            time.sleep(0.001)
+        time.sleep(rng.uniform(0.0, 0.05))
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        with np.load(state) as file:
+            killed_at.append(len(json.loads(str(file["about"]))["steps"]))
+    assert killed_at[0] < 40  # the program has 40 steps: it was killed on the way
+    subprocess.run(command(example, "--resume"), cwd=tmp_path / "killed", check=True, capture_output=True)
     undisturbed, resumed = final(tmp_path / "whole" / "out"), final(tmp_path / "killed" / "out")
     for name, values in undisturbed.items():
         np.testing.assert_array_equal(resumed[name], values, err_msg=name)
