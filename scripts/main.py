@@ -7,6 +7,7 @@ import sys
 import typer
 
 from coilset.model.errors import CoilsetError
+from coilset.scripts.material import app as material
 
 app = typer.Typer(
     name="coilset",
@@ -16,6 +17,9 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+
+app.add_typer(material, name="material")
 
 
 @app.command()
@@ -66,6 +70,22 @@ def sweep(
     from coilset.scripts.sweep import sweep as run_sweep
 
     run_sweep(sweep_file, out, force, resume, retry, jobs, ranks_per_case, pictures)
+
+
+@app.command()
+def verify(
+    names: list[str] = typer.Argument(None, metavar="[NAME]...", help="cases; all if none is named"),
+    out: str = typer.Option("results/verify", help="folder of the records and figures; what is there is replaced"),
+    fast: bool = typer.Option(False, "--fast", help="only cases that take seconds"),
+    show: bool = typer.Option(False, "--list", help="list the cases"),
+):
+    """Compare with tables, closed solutions and finer models; exits 1 if a value is off."""
+    from coilset.scripts import verify as verification
+
+    if show:
+        verification.show()
+    else:
+        raise typer.Exit(verification.verify(names, out, fast))
 
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})

@@ -1,1 +1,18 @@
-"""Comparisons with tables, closed solutions, finer meshes and the 3D model, each with its source and tolerance."""
+"""Comparisons with tables, closed solutions, finer meshes and the 3D model, each with its source and tolerance.
+
+A case is a module `cases/some_name.py`; `coilset verify some-name` finds it by its file's name. It holds
+
+- a docstring: the first line says what is compared with what; the rest, where the reference comes from, what the
+  tolerance rests on, and what was found;
+- `FAST = True` if it takes seconds: then the tests run it too and assert that it passes;
+- `def run(study)`, which fills a `coilset.verification.study.Study`::
+
+      study.check("greatest force, N", ours, 251.6, "Table 7.3", 0.01)                    # relative deviation up to 1 %
+      study.check("turn of the free end, rad", ours, 0.0, "symmetry", 1e-9, "absolute")
+      study.check("iterations", ours, 6, "issue", kind="at_most")
+      study.table("Table 7.3", ["u/l", "F ours", "F thesis"], rows)                       # printed and kept, not judged
+      study.note("The last row is out of balance in the source itself.")
+      study.figure("characteristic", figure)                                              # a matplotlib Figure, as PNG
+
+Results go to `results/verify/some-name/`: `record.json` with all of it, and the figures.
+"""

@@ -1,0 +1,42 @@
+"""The cases of verification, found as the modules of `coilset.verification.cases`."""
+
+import importlib
+import inspect
+import pkgutil
+from collections.abc import Callable
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+from coilset.model.errors import InputError
+from coilset.verification import cases
+
+
+@dataclass(frozen=True)
+class Case:
+    """One case: its name, title, text, whether it takes seconds only, and the function that fills a Study."""
+
+    name: str
+    title: str
+    text: str
+    fast: bool
+    run: Callable
+
+
+def names():
+    """Names of all cases, in alphabetical order."""
+    return sorted(module.name.replace("_", "-") for module in pkgutil.iter_modules(cases.__path__))
+
+
+def load(name):
+    """The case of a name.
+
+    Raises:
+        InputError: if there is none of this name.
+    """
+    if name not in names():
+        near = get_close_matches(name, names(), 1)
+        hint = f"; is {near[0]} meant?" if near else ""
+        raise InputError(f"'{name}' is no case; there are {', '.join(names())}{hint}", "verify")
+    module = importlib.import_module(f"{cases.__name__}.{name.replace('-', '_')}")
+    title, _, text = inspect.getdoc(module).partition("\n")
+    return Case(name, title, text.strip(), getattr(module, "FAST", False), module.run)

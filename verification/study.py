@@ -1,0 +1,109 @@
+"""What a case of verification leaves behind: judged numbers, tables, notes and figures."""
+
+import json
+import math
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from coilset.model.results.figures import save
+from coilset.model.results.folder import whole
+
+KINDS = ("relative", "absolute", "at_most")
+
+
+@dataclass(frozen=True)
+class Check:
+    """One number against its reference.
+
+    Attributes:
+        quantity: what it is, with its unit.
+        ours, reference: the numbers.
+        source: where the reference comes from.
+        tolerance: greatest deviation.
+        kind: `relative`: |ours/reference − 1|; `absolute`: |ours − reference|; `at_most`: ours − reference.
+    """
+
+    quantity: str
+    ours: float
+    reference: float
+    source: str
+    tolerance: float
+    kind: str = "relative"
+
+    def __post_init__(self):
+        if self.kind not in KINDS:
+            raise ValueError(f"kind '{self.kind}' is none of {', '.join(KINDS)}")
+        if self.kind == "relative" and self.reference == 0.0:
+            raise ValueError(f"{self.quantity}: there is no relative deviation from 0; use 'absolute'")
+
+    @property
+    def deviation(self):
+        """As the kind says; signed, but for its use in `passed`."""
+        difference = self.ours - self.reference
+        return difference / abs(self.reference) if self.kind == "relative" else difference
+
+    @property
+    def passed(self):
+        """Within the tolerance; never for NaN."""
+        deviation = self.deviation if self.kind == "at_most" else abs(self.deviation)
+        return bool(deviation <= self.tolerance)
+
+
+class Study:
+    """Collects what a case finds; numbers may be NumPy's.
+
+    Args:
+        folder: where figures and record.json go; made if it is not there.
+    """
+
+    def __init__(self, folder):
+        self.folder = Path(folder)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        self.checks, self.tables, self.notes, self.figures = [], [], [], []
+
+    def check(self, quantity, ours, reference, source, tolerance=0.0, kind="relative"):
+        """Judge a number; see Check."""
+        self.checks.append(Check(quantity, float(ours), float(reference), source, float(tolerance), kind))
+
+    def table(self, title, columns, rows):
+        """Keep a table for reading; its rows hold numbers and texts, None for an empty place."""
+        rows = [[plain(value) for value in row] for row in rows]
+        self.tables.append({"title": title, "columns": list(columns), "rows": rows})
+
+    def note(self, text):
+        """Keep a sentence for the reader."""
+        self.notes.append(text)
+
+    def figure(self, name, figure):
+        """Write a matplotlib Figure as NAME.png."""
+        save(figure, self.folder / f"{name}.png")
+        self.figures.append(f"{name}.png")
+
+    @property
+    def passed(self):
+        """All numbers are within their tolerances, and there is at least one."""
+        return bool(self.checks) and all(check.passed for check in self.checks)
+
+    def write(self, name):
+        """record.json."""
+        checks = [asdict(check) | {"deviation": check.deviation, "passed": check.passed} for check in self.checks]
+        record = {"case": name, "passed": self.passed, "checks": checks, "tables": self.tables, "notes": self.notes,
+                  "figures": self.figures}  # fmt: skip
+        with whole(self.folder / "record.json") as path:
+            path.write_text(json.dumps(json_ready(record), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def plain(value):
+    """A Python number or text for NumPy's."""
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def json_ready(value):
+    """The same with None for numbers that JSON does not know."""
+    if isinstance(value, dict):
+        return {key: json_ready(entry) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [json_ready(entry) for entry in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
