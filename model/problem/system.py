@@ -171,6 +171,10 @@ class System:
         """SNES callback: internal minus external forces; increment minus prescribed increment where it is fixed."""
         self.set_increments(X)
         self.assemble_internal()
+        self.balance(X, F)
+
+    def balance(self, X, F):
+        """The residual at the state of the last evaluation, `X`, into F."""
         self.internal.copy(F)
         start, stop = F.getOwnershipRange()
         values, x = F.getArray(), X.getArray(readonly=True)

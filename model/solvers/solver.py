@@ -67,7 +67,8 @@ class Solver:
 
     def __init__(self, system, method="newton", tolerance=1e-7, extra=None):
         self.system, self.tolerance, self.extra = system, tolerance, dict(extra or {})
-        self.X, self.F, self.A, self.load = system.vector(), system.vector(), system.matrix(), system.vector()
+        self.X, self.F, self.load, self._balance = (system.vector() for _ in range(4))
+        self.A = system.matrix()
         self.prefix, self._keys, self.snes = f"coilset_{next(numbers)}_", set(), None
         self.ratio, self.evaluations, self.factorisations = np.inf, 0, 0
         weakref.finalize(self, forget, self._keys).atexit = False
@@ -140,8 +141,12 @@ class Solver:
             return Reason.DIVERGED_FNORM_NAN
         if iteration == 0 and snes.getType() == ARC:
             return Reason.ITERATING  # at the load share 0 every step is in equilibrium
-        self.system.bring_to(self.X)
-        rest, change, missed = self.system.imbalance(self.F)
+        balance = self.F
+        if snes.getType() != ARC:  # some methods call a preconditioned step their function: judge the forces themselves
+            self.system.bring_to(self.X)
+            balance = self._balance
+            self.system.balance(self.X, balance)
+        rest, change, missed = self.system.imbalance(balance)
         self.ratio = rest / change if change > 0.0 else np.inf
         if missed <= self.tolerance and rest <= max(self.tolerance * change, self.system.rounding(self.X)):
             return Reason.CONVERGED_FNORM_RELATIVE
