@@ -107,7 +107,7 @@ def run():
     signal.signal(signal.SIGINT, signal.default_int_handler)
     status = 1
     try:
-        status = app(standalone_mode=False) or 0
+        status = app(prog_name="coilset", standalone_mode=False) or 0
     except CoilsetError as error:
         status = error.exit_code
         _complain(str(error))

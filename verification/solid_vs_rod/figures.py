@@ -1,0 +1,142 @@
+"""Figures of the study: shear factors, characteristics, stress over the wire's section, mesh convergence."""
+
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+
+from coilset.model.results.figures import STYLE, save
+from coilset.verification.solid_vs_rod import pressing, references, study
+
+
+def draw(folder, found):
+    """Draw all figures that the results allow.
+
+    Args:
+        folder: where the PNG files go.
+        found: of `study.run`.
+
+    Returns:
+        Paths of the figures.
+    """
+    folder = Path(folder)
+    paths = [factors(folder / "shear_factors.png", found["elastic"])]
+    indices = sorted({case.index for case, _, _ in found["pressed"]})
+    for index in indices:
+        case, solid, rod = max((f for f in found["pressed"] if f[0].index == index), key=lambda f: f[1]["unknowns"])
+        paths.append(characteristic(folder / f"characteristic_C{index:g}.png", case, solid, rod))
+        paths.append(sections(folder / f"sections_C{index:g}.png", case, solid, rod))
+    if len(indices) > 1:
+        paths.append(deviations(folder / "rod_over_index.png", found["pressed"]))
+    return paths
+
+
+def factors(path, results):
+    """Shear factor at inside and outside over the spring index, and its error over the mesh."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(8.6, 3.8), layout="constrained")
+        left, right = figure.subplots(1, 2)
+        C = np.linspace(3.5, 13, 60)
+        exact = np.array([references.goehner_exact(c) for c in C])
+        left.plot(C, exact[:, 0], "k-", lw=1, label="Göhner's equation, solved")
+        left.plot(C, exact[:, 1], "k-", lw=1)
+        left.plot(C, references.goehner_series(C), "C2:", lw=1.6, label="Göhner 1930, series")
+        left.plot(C, references.wahl_factor(C), "C1--", lw=1, label="Wahl 1963")
+        for i, index in enumerate(sorted({r["index"] for r in results})):
+            meshes = sorted((r for r in results if r["index"] == index), key=lambda r: r["unknowns"])
+            label = "solid, finest mesh" if i == 0 else None
+            left.plot([index] * 2, [meshes[-1]["inside"], meshes[-1]["outside"]], "C0o", ms=5, label=label)
+            error = [abs(r["inside"] / references.goehner_exact(index)[0] - 1) for r in meshes]
+            right.loglog([r["unknowns"] for r in meshes], error, "o-", ms=4, lw=1, label=f"D/d = {index:g}")
+        left.text(9, 1.22, "inside of the coil")
+        left.text(7, 0.80, "outside")
+        left.set(xlabel="spring index D/d", ylabel="shear stress over 8 F D / (π d³)", title="Elastic coil, shear factors")
+        right.axhline(0.02, color="0.5", lw=0.8, ls="--")
+        right.set(xlabel="unknowns", ylabel="error of the factor inside", title="Against Göhner's equation; dashed: 2 %")
+        for axes in (left, right):
+            axes.grid(lw=0.3)
+            axes.legend(fontsize=8)
+        save(figure, path)
+    return path
+
+
+def characteristic(path, case, solid, rod):
+    """Axial force and torque over travel, up and down."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(8.6, 3.8), layout="constrained")
+        left, right = figure.subplots(1, 2)
+        for axes, name, unit in ((left, "force", "axial force in N"), (right, "torque", "torque about the axis in N mm")):
+            axes.plot(rod["travel"], rod[name], "C1-", lw=1.4, label="rod")
+            axes.plot(solid["travel"], solid[name], "C0o", ms=4, mfc="none", label=f"solid, {solid['unknowns']} unknowns")
+            axes.set(xlabel="travel in mm", ylabel=unit)
+            axes.grid(lw=0.3)
+            axes.legend(fontsize=8)
+        figure.suptitle(
+            f"One turn of Ck 15, D/d = {case.index:g}, clamped: set {solid['set']:.3f} mm (solid), {rod['set']:.3f} mm (rod)"
+        )
+        save(figure, path)
+    return path
+
+
+def sections(path, case, solid, rod):
+    """Shear stress over the mid-section of solid and rod at full travel and after release, and on the diameter."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(10.5, 6.4), layout="constrained")
+        axes = figure.subplots(2, 3)
+        for row, (moment, when) in enumerate((("full", "full travel"), ("end", "released"))):
+            limit = max(np.abs(np.array(r[moment]["stress"])[:, 2]).max() for r in (solid, rod))
+            for column, (result, name) in enumerate(((solid, "solid"), (rod, "rod"))):
+                shown = _disk(axes[row, column], result[moment], limit)
+                axes[row, column].set(title=f"{name}, {when}", xlabel="outward in mm", ylabel="t × outward in mm")
+            figure.colorbar(shown, ax=axes[row, 1], label="τ along the coil's axis in MPa", shrink=0.85)
+            radius = 0.5 * pressing.WIRE
+            for result, style, name in ((solid, "C0-", "solid"), (rod, "C1--", "rod")):
+                reach = radius if result is solid else np.hypot(rod[moment]["y"], rod[moment]["z"]).max()
+                y = np.linspace(-reach, reach, 81)
+                axes[row, 2].plot(y, [study.shear_at(result, moment, place) for place in y], style, lw=1.3, label=name)
+            axes[row, 2].set(xlabel="outward from the wire's centre in mm", ylabel="τ in MPa", title=f"diameter, {when}")
+            axes[row, 2].grid(lw=0.3)
+            axes[row, 2].legend(fontsize=8)
+        figure.suptitle(f"Shear stress in mid-section, Ck 15, D/d = {case.index:g} (left of the centre: inside of the coil)")
+        save(figure, path)
+    return path
+
+
+def _disk(axes, looked_at, limit):
+    y, z = np.array(looked_at["y"]), np.array(looked_at["z"])
+    levels = np.linspace(-limit, limit, 25)
+    shown = axes.tricontourf(y, z, np.array(looked_at["stress"])[:, 2], levels=levels, cmap="RdBu_r")
+    angle = np.linspace(0, 2 * np.pi, 181)
+    radius = 0.5 * pressing.WIRE
+    axes.plot(radius * np.cos(angle), radius * np.sin(angle), "k-", lw=0.8)
+    axes.set(aspect="equal")
+    return shown
+
+
+def deviations(path, pressed):
+    """The rod's deviation in force and set over the spring index, and the solid's change with the mesh and the steps."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(8.6, 3.8), layout="constrained")
+        left, right = figure.subplots(1, 2)
+        by_index = {}
+        for case, solid, rod in sorted(pressed, key=lambda f: f[1]["unknowns"]):
+            if case.steps == 12:
+                by_index[case.index] = study.numbers(case, solid, rod)
+        for name, style in (("force at full travel", "C0o-"), ("set", "C1s-"), ("torque at full travel", "C2^-")):
+            values = [100 * (by_index[C][name][1] / by_index[C][name][0] - 1) for C in sorted(by_index)]
+            left.plot(sorted(by_index), values, style, ms=5, lw=1, label=name)
+        left.axhline(0, color="k", lw=0.6)
+        left.set(xlabel="spring index D/d", ylabel="rod over solid − 1, in %", title="What the rod misses")
+        meshes = sorted((f for f in pressed if f[0].index == 8 and f[0].steps == 12), key=lambda f: f[1]["unknowns"])
+        best = meshes[-1][1]
+        i = meshes[-1][0].steps
+        for label, style, pick in (("force at full travel", "C0o-", lambda s: s["force"][i]), ("set", "C1s-", lambda s: s["set"])):
+            change = [abs(pick(s) / pick(best) - 1) for _, s, _ in meshes[:-1]]
+            right.loglog([s["unknowns"] for _, s, _ in meshes[:-1]], change, style, ms=5, lw=1, label=label)
+        right.set(xlabel="unknowns of the solid", ylabel="change to the finest mesh", title="Solid over mesh size, D/d = 8")
+        for axes in (left, right):
+            axes.grid(lw=0.3)
+            axes.legend(fontsize=8)
+        save(figure, path)
+    return path
