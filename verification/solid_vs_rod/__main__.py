@@ -5,14 +5,17 @@ import sys
 from mpi4py import MPI
 from rich.console import Console
 
-from coilset.verification.solid_vs_rod import study
+from coilset.verification.solid_vs_rod import figures, study
 from coilset.verification.solid_vs_rod.store import Store
 
 
 def main(folder, extent="standard"):
-    """Run the standard or the whole study and print its records and its table."""
+    """Run the standard or the whole study and print its records and its table; figures go to the folder."""
     console = Console(highlight=False, quiet=MPI.COMM_WORLD.rank != 0)
-    found = study.run(Store(folder, MPI.COMM_WORLD, console.print), {"standard": study.STANDARD, "whole": study.WHOLE}[extent])
+    cases = {"standard": study.STANDARD, "whole": study.WHOLE}[extent]
+    found = study.run(Store(folder, MPI.COMM_WORLD, console.print), cases)
+    if MPI.COMM_WORLD.rank == 0:
+        figures.draw(folder, found)
     for record in study.records(found):
         deviation = record["ours"] / record["reference"] - 1
         console.print(f"{record['quantity']}: {record['ours']:.5g}, {record['source']} {record['reference']:.5g}, "

@@ -39,21 +39,20 @@ def factors(path, results):
         left, right = figure.subplots(1, 2)
         C = np.linspace(3.5, 13, 60)
         exact = np.array([references.goehner_exact(c) for c in C])
-        left.plot(C, exact[:, 0], "k-", lw=1, label="Göhner's equation, solved")
-        left.plot(C, exact[:, 1], "k-", lw=1)
+        left.plot(C, exact, "k-", lw=1, label=["Göhner's equation, solved", None])
         left.plot(C, references.goehner_series(C), "C2:", lw=1.6, label="Göhner 1930, series")
         left.plot(C, references.wahl_factor(C), "C1--", lw=1, label="Wahl 1963")
         for i, index in enumerate(sorted({r["index"] for r in results})):
             meshes = sorted((r for r in results if r["index"] == index), key=lambda r: r["unknowns"])
-            label = "solid, finest mesh" if i == 0 else None
-            left.plot([index] * 2, [meshes[-1]["inside"], meshes[-1]["outside"]], "C0o", ms=5, label=label)
+            best = meshes[-1]
+            left.plot([index] * 2, [best["inside"], best["outside"]], "C0o", label=None if i else "solid, finest mesh")
             error = [abs(r["inside"] / references.goehner_exact(index)[0] - 1) for r in meshes]
             right.loglog([r["unknowns"] for r in meshes], error, "o-", ms=4, lw=1, label=f"D/d = {index:g}")
         left.text(9, 1.22, "inside of the coil")
         left.text(7, 0.80, "outside")
-        left.set(xlabel="spring index D/d", ylabel="shear stress over 8 F D / (π d³)", title="Elastic coil, shear factors")
+        left.set(xlabel="spring index D/d", ylabel="shear stress over 8 F D / (π d³)", title="Elastic coil")
         right.axhline(0.02, color="0.5", lw=0.8, ls="--")
-        right.set(xlabel="unknowns", ylabel="error of the factor inside", title="Against Göhner's equation; dashed: 2 %")
+        right.set(xlabel="unknowns", ylabel="error of the factor inside", title="Against Göhner's equation (- -: 2 %)")
         for axes in (left, right):
             axes.grid(lw=0.3)
             axes.legend(fontsize=8)
@@ -66,15 +65,15 @@ def characteristic(path, case, solid, rod):
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.6, 3.8), layout="constrained")
         left, right = figure.subplots(1, 2)
-        for axes, name, unit in ((left, "force", "axial force in N"), (right, "torque", "torque about the axis in N mm")):
+        label = f"solid, {solid['unknowns']} unknowns"
+        for axes, name, unit in ((left, "force", "axial force in N"), (right, "torque", "torque about the coil in N mm")):
             axes.plot(rod["travel"], rod[name], "C1-", lw=1.4, label="rod")
-            axes.plot(solid["travel"], solid[name], "C0o", ms=4, mfc="none", label=f"solid, {solid['unknowns']} unknowns")
+            axes.plot(solid["travel"], solid[name], "C0o", ms=4, mfc="none", label=label)
             axes.set(xlabel="travel in mm", ylabel=unit)
             axes.grid(lw=0.3)
             axes.legend(fontsize=8)
-        figure.suptitle(
-            f"One turn of Ck 15, D/d = {case.index:g}, clamped: set {solid['set']:.3f} mm (solid), {rod['set']:.3f} mm (rod)"
-        )
+        sets = f"set {solid['set']:.3f} mm (solid), {rod['set']:.3f} mm (rod)"
+        figure.suptitle(f"One turn of Ck 15 between clamped heads, D/d = {case.index:g}: {sets}")
         save(figure, path)
     return path
 
@@ -90,15 +89,12 @@ def sections(path, case, solid, rod):
                 shown = _disk(axes[row, column], result[moment], limit)
                 axes[row, column].set(title=f"{name}, {when}", xlabel="outward in mm", ylabel="t × outward in mm")
             figure.colorbar(shown, ax=axes[row, 1], label="τ along the coil's axis in MPa", shrink=0.85)
-            radius = 0.5 * pressing.WIRE
-            for result, style, name in ((solid, "C0-", "solid"), (rod, "C1--", "rod")):
-                reach = radius if result is solid else np.hypot(rod[moment]["y"], rod[moment]["z"]).max()
-                y = np.linspace(-reach, reach, 81)
-                axes[row, 2].plot(y, [study.shear_at(result, moment, place) for place in y], style, lw=1.3, label=name)
+            for result, style, name in ((solid, "C0.-", "solid"), (rod, "C1.--", "rod")):
+                axes[row, 2].plot(*study.diameter(result, moment), style, ms=4, lw=1.3, label=name)
             axes[row, 2].set(xlabel="outward from the wire's centre in mm", ylabel="τ in MPa", title=f"diameter, {when}")
             axes[row, 2].grid(lw=0.3)
             axes[row, 2].legend(fontsize=8)
-        figure.suptitle(f"Shear stress in mid-section, Ck 15, D/d = {case.index:g} (left of the centre: inside of the coil)")
+        figure.suptitle(f"Shear stress in mid-section, Ck 15, D/d = {case.index:g}; left is the inside of the coil")
         save(figure, path)
     return path
 
@@ -115,7 +111,7 @@ def _disk(axes, looked_at, limit):
 
 
 def deviations(path, pressed):
-    """The rod's deviation in force and set over the spring index, and the solid's change with the mesh and the steps."""
+    """The rod's deviation in force and set over the spring index, and the solid's change with the mesh."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.6, 3.8), layout="constrained")
         left, right = figure.subplots(1, 2)
@@ -131,10 +127,12 @@ def deviations(path, pressed):
         meshes = sorted((f for f in pressed if f[0].index == 8 and f[0].steps == 12), key=lambda f: f[1]["unknowns"])
         best = meshes[-1][1]
         i = meshes[-1][0].steps
-        for label, style, pick in (("force at full travel", "C0o-", lambda s: s["force"][i]), ("set", "C1s-", lambda s: s["set"])):
-            change = [abs(pick(s) / pick(best) - 1) for _, s, _ in meshes[:-1]]
-            right.loglog([s["unknowns"] for _, s, _ in meshes[:-1]], change, style, ms=5, lw=1, label=label)
-        right.set(xlabel="unknowns of the solid", ylabel="change to the finest mesh", title="Solid over mesh size, D/d = 8")
+        unknowns = [solid["unknowns"] for _, solid, _ in meshes[:-1]]
+        forces = [abs(solid["force"][i] / best["force"][i] - 1) for _, solid, _ in meshes[:-1]]
+        sets = [abs(solid["set"] / best["set"] - 1) for _, solid, _ in meshes[:-1]]
+        right.loglog(unknowns, forces, "C0o-", ms=5, lw=1, label="force at full travel")
+        right.loglog(unknowns, sets, "C1s-", ms=5, lw=1, label="set")
+        right.set(xlabel="unknowns of the solid", ylabel="change to the finest mesh", title="Solid, D/d = 8")
         for axes in (left, right):
             axes.grid(lw=0.3)
             axes.legend(fontsize=8)

@@ -42,42 +42,44 @@ def run(store, cases=STANDARD, solver="auto"):
     return found
 
 
-def shear_at(result, moment, y):
-    """Shear stress τ13 on the diameter through the coil's axis at y (outward), MPa.
+def diameter(result, moment):
+    """Shear stress τ13 along the diameter that points to the coil's axis.
 
     Args:
         result: of `run_solid` or `run_rod`.
         moment: ``full`` or ``end``.
-        y: place, mm; linear interpolation of the points of the polar grid, at constant distance from the centre.
+
+    Returns:
+        Places y, ascending, negative towards the inside of the coil, mm; τ13 there, MPa. A ring without a point on the
+        diameter gives the mean of the two points beside it.
     """
     places = np.array([result[moment]["y"], result[moment]["z"]])
-    radius, angle = np.hypot(*places), np.arctan2(places[1], places[0])
-    around = np.array(result[moment]["stress"])[:, 2]
-    wanted = 0.0 if y > 0 else np.pi
-    rings, values = [], []
-    for ring in np.unique(np.round(radius, 9)):
-        on = np.abs(radius - ring) < 1e-6
-        off = np.abs(np.angle(np.exp(1j * (angle[on] - wanted))))
-        nearest = np.argsort(off)[:2]  # on the diameter itself, or the two beside it
-        chosen = nearest[:1] if off[nearest[0]] < 1e-9 else nearest
-        rings.append(ring)
-        values.append(float(np.mean(around[on][chosen])))
-    return float(np.interp(abs(y), rings, values))
+    radius, angle = np.round(np.hypot(*places), 9), np.arctan2(places[1], places[0])
+    shear = np.array(result[moment]["stress"])[:, 2]
+    found = {}
+    for ring in np.unique(radius):
+        for side, wanted in ((1.0, 0.0), (-1.0, np.pi)):
+            off = np.abs(np.angle(np.exp(1j * (angle - wanted))))
+            nearest = radius == ring
+            nearest &= off < off[nearest].min() + 1e-6
+            found[side * ring] = float(shear[nearest].mean())
+    y = np.array(sorted(found))
+    return y, np.array([found[place] for place in y])
 
 
 def numbers(case, solid, rod):
     """What is compared for one pressed section: name → (solid, rod); N, N mm, mm, MPa."""
     i = case.steps
-    r = 0.5 * pressing.WIRE
-    at = 0.9 * r  # the rod's outermost ring of points lies at 0.99 r
+    at = 0.45 * pressing.WIRE  # 0.9 of the radius; the rod's outermost ring of points lies at 0.99
     out = {
         "force at full travel": (solid["force"][i], rod["force"][i]),
         "torque at full travel": (solid["torque"][i], rod["torque"][i]),
         "set": (solid["set"], rod["set"]),
     }
     for moment, when in (("full", "at full travel"), ("end", "after release")):
-        out[f"shear inside {when}"] = tuple(shear_at(result, moment, -at) for result in (solid, rod))
-        out[f"shear outside {when}"] = tuple(shear_at(result, moment, at) for result in (solid, rod))
+        lines = [diameter(result, moment) for result in (solid, rod)]
+        for place, y in (("inside", -at), ("outside", at)):
+            out[f"shear {place} {when}"] = tuple(float(np.interp(y, *line)) for line in lines)
     return out
 
 
