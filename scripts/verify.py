@@ -1,6 +1,7 @@
 """`coilset verify`: run cases of verification, print and keep what they found."""
 
 import os
+import sys
 import time
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from coilset.model.errors import CoilsetError, InputError
 from coilset.verification import registry
 from coilset.verification.study import Study
 
+WIDTH = 140  # columns where the output goes to a file
 
 def verify(names, out, fast):
     """Run the named cases, all if none is named; returns 1 if a value is off, else 0.
@@ -24,7 +26,7 @@ def verify(names, out, fast):
     cases = [registry.load(name) for name in names or registry.names()]
     if fast:
         cases = [case for case in cases if case.fast]
-    console = Console(highlight=False)
+    console = Console(highlight=False, width=None if sys.stdout.isatty() else WIDTH)
     off = [case.name for case in cases if not _run(case, Path(out) / case.name, console)]
     console.print(f"[red]off: {', '.join(off)}[/]" if off else f"[green]{len(cases)} case(s), all within tolerance[/]")
     return 1 if off else 0

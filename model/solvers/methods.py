@@ -35,8 +35,8 @@ METHODS = {
     },
     "broyden": {
         "snes_type": "qn", "snes_qn_type": "broyden", "snes_qn_m": 5, "snes_qn_restart_type": "periodic",
-        "snes_linesearch_type": "basic", "snes_max_it": 100, "snes_npc_side": "left",
-        **PRECONDITIONED, "npc_snes_lag_jacobian": 5,
+        "snes_linesearch_type": "cp", "snes_max_it": 100, "snes_npc_side": "left",
+        "snes_function_type": "unpreconditioned", **PRECONDITIONED, "npc_snes_lag_jacobian": 5,
     },
     # the share of the load as one more unknown: goes past limit points within a step
     "arc-length": {"snes_type": "newtonal", "snes_max_it": 30, **DIRECT},

@@ -1,0 +1,78 @@
+"""Small frames of rods, driven step by step: what the thesis's tables are computed with."""
+
+import numpy as np
+from mpi4py import MPI
+
+from coilset.meshes.frame import frame_mesh
+from coilset.model.problem.system import System
+from coilset.model.rod.rod import Rod
+from coilset.model.solvers.solver import Solver
+
+KEEP = {"snes_lag_jacobian": 1_000_000}  # the matrix is kept over the whole step, as in the thesis (4.4.5)
+
+
+class Frame:
+    """Rods between nodes, with held dofs, driven by displacements or forces.
+
+    Args:
+        nodes: shape (n, 3), mm.
+        pairs: node numbers of the elements, shape (m, 2).
+        radius: of all rods, mm.
+        law: material law.
+        rule: DiskRule.
+        held: (node, components) pairs that stay where they are; components are 0-2 for x, y, z, 3-5 for turns.
+        method, options: as for Solver; its tolerance is the thesis's 1e-7.
+        contacts: kinds of contact.
+    """
+
+    def __init__(self, nodes, pairs, radius, law, rule, held, method="newton", options=None, contacts=()):
+        line = frame_mesh(nodes, pairs, MPI.COMM_SELF)
+        self.rod = Rod(line, np.full(len(pairs), float(radius)), law, rule)
+        self.system = System(self.rod, contacts)
+        self.solver = Solver(self.system, method, 1e-7, options)
+        self.held = {int(dof): 0.0 for dof in self.system.seat_dofs}
+        self.held |= {self.dof(node, component): 0.0 for node, components in held for component in components}
+        self._last = None
+
+    def dof(self, node, component):
+        """Number of a node's dof in the system."""
+        return int(self.system.station_dofs[node, component])
+
+    def step(self, moves=None, forces=None, share=None):
+        """One load step.
+
+        Args:
+            moves: dof → displacement added in this step, mm or rad.
+            forces: dof → force at the end of the step, N or N mm.
+            share: this step's size over the last one's, to start from the last step's increments; None: from rest.
+
+        Returns:
+            Outcome; where it has not converged, the frame is back at the last equilibrium.
+        """
+        self.system.fixed, self.system.forces = self.held | (moves or {}), forces or {}
+        guess = None
+        if share is not None and self._last is not None:
+            guess = self._last.copy()
+            guess.scale(share)
+        outcome = self.solver.solve(guess)
+        if outcome.converged:
+            self._last = self.solver.X.copy()
+            self.system.commit()
+        else:
+            self.system.restore()
+        return outcome
+
+    def moved(self, node):
+        """Displacement of a node since the start, mm."""
+        return self.system.gather(self.rod.x)[node] - self.rod.line.stations[node]
+
+    def force(self, dof):
+        """Internal force at a dof, N or N mm; a support's reaction has the same sign."""
+        return self.system.value(self.system.internal, dof)
+
+    @property
+    def resultants(self):
+        """N, Q2, Q3, Mt, M2, M3 at both Gauss sections in the order of the elements, shape (m, 2, 6), N and N mm."""
+        out = np.empty_like(self.rod.s.values)
+        out[self.rod.line.element] = self.rod.s.values
+        return out
