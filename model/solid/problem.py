@@ -1,6 +1,7 @@
 """The solid between its two rigid heads as a SNES problem: steps, cut where one does not converge."""
 
 import itertools
+import time
 from dataclasses import astuple, dataclass
 
 import numpy as np
@@ -46,6 +47,7 @@ class SolidProblem:
         bottom, top: Head.
         unknowns: number of degrees of freedom, those of the heads included.
         forces: internal forces at the last evaluation, shape (owned blocks, 3), N.
+        seconds: time spent at the points (``points``), in assembling the tangent (``assembly``), in all (``all``).
     """
 
     def __init__(self, wire, points, solver="auto", precision=1e-7, options=None):
@@ -60,6 +62,7 @@ class SolidProblem:
         self._multigrid = None
         self._prescribed = fem.Function(solid.V)  # increment of the heads in the step
         self._conditions = [fem.dirichletbc(self._prescribed, held)]
+        self.seconds = dict.fromkeys(("points", "assembly", "all"), 0.0)
         self._create_snes({**chosen, **(options or {})}, held)
         self.forces = solid.internal_forces()
         self._start = self.forces.copy()
@@ -73,15 +76,13 @@ class SolidProblem:
         self.snes.setOptionsPrefix(prefix)
         database = PETSc.Options(prefix)
         for key, value in options.items():
-            database[key] = value
+            database[key] = value  # stays there: the coarse levels read theirs when they are first set up
         self.snes.setFunction(self._residual, self._f)
         self.snes.setJacobian(self._tangent, self._A)
         self.snes.setConvergenceTest(self._converged)
         if self.solver.startswith("multigrid"):
             self._multigrid = VertexMultigrid(self.solid.configuration, held, self.snes.getKSP().getPC())
         self.snes.setFromOptions()
-        for key in options:
-            database.delValue(key)
 
     # ---- callbacks of SNES -----------------------------------------------------------------------------------------
 
@@ -90,9 +91,11 @@ class SolidProblem:
         u = self.solid.forms.u
         u.x.array[: 3 * self.solid.configuration.owned] = X.getArray(readonly=True)
         u.x.scatter_forward()
+        began = time.perf_counter()
         good = self.solid.update()
         if good:
             self.forces = self.solid.internal_forces()
+        self.seconds["points"] += time.perf_counter() - began
         return good
 
     def _residual(self, snes, X, F):
@@ -110,7 +113,9 @@ class SolidProblem:
         self._assemble()
 
     def _assemble(self):
+        began = time.perf_counter()
         self.solid.assemble_tangent(self._A, self._conditions)
+        self.seconds["assembly"] += time.perf_counter() - began
         diagonal = self._A.getDiagonal()
         diagonal.array[:] *= 0.5 * np.finfo(float).eps * self.solid.x[: self.solid.configuration.owned].ravel()
         self._rounding = diagonal.norm()
@@ -120,7 +125,7 @@ class SolidProblem:
     def _converged(self, snes, iteration, norms):
         """(6.3.1): out-of-balance forces against the change of the heads' forces since the step's start.
 
-        A tiny step cannot ask for more than arithmetic gives: what rounding the positions does to the forces is allowed.
+        A tiny step cannot ask for more than arithmetic gives: what rounding positions does to the forces is allowed.
         """
         norm = norms[2]
         if not np.isfinite(norm):
@@ -148,7 +153,7 @@ class SolidProblem:
         """
         targets = (self.bottom.motion if bottom is None else bottom, top)
         origin = (self.bottom.motion, self.top.motion)
-        done, part, effort, cuts = 0.0, 1.0, Step(0, 0), 0
+        done, part, effort, cuts, began = 0.0, 1.0, Step(0, 0), 0, time.perf_counter()
         while done < 1.0:
             motions = [a.between(b, min(done + part, 1.0)) for a, b in zip(origin, targets, strict=True)]
             effort += self._attempt(*motions)
@@ -163,6 +168,7 @@ class SolidProblem:
             part, cuts = 0.5 * part, cuts + 1
             if cuts > MAX_CUTS:
                 raise SolveError(f"no equilibrium of the solid within {part:g} of the step towards {top}")
+        self.seconds["all"] += time.perf_counter() - began
         return effort + Step(0, 0, cuts)
 
     def _attempt(self, bottom, top):

@@ -20,6 +20,7 @@ _MULTIGRID = {
     "mg_coarse_pc_gamg_reuse_interpolation": False,
     # a lone node in an aggregate has no six modes: Jacobi and a pseudo-inverse pass over the zero rows that leaves
     "mg_coarse_mg_levels_pc_type": "jacobi",
+    "mg_coarse_mg_levels_ksp_max_it": 4,
     "mg_coarse_mg_coarse_pc_type": "redundant",
     "mg_coarse_mg_coarse_redundant_pc_type": "svd",
 }

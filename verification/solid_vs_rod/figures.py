@@ -66,7 +66,7 @@ def characteristic(path, case, solid, rod):
         figure = Figure(figsize=(8.6, 3.8), layout="constrained")
         left, right = figure.subplots(1, 2)
         label = f"solid, {solid['unknowns']} unknowns"
-        for axes, name, unit in ((left, "force", "axial force in N"), (right, "torque", "torque about the coil in N mm")):
+        for axes, name, unit in ((left, "force", "axial force in N"), (right, "torque", "torque about the axis, N mm")):
             axes.plot(rod["travel"], rod[name], "C1-", lw=1.4, label="rod")
             axes.plot(solid["travel"], solid[name], "C0o", ms=4, mfc="none", label=label)
             axes.set(xlabel="travel in mm", ylabel=unit)
@@ -91,7 +91,7 @@ def sections(path, case, solid, rod):
             figure.colorbar(shown, ax=axes[row, 1], label="τ along the coil's axis in MPa", shrink=0.85)
             for result, style, name in ((solid, "C0.-", "solid"), (rod, "C1.--", "rod")):
                 axes[row, 2].plot(*study.diameter(result, moment), style, ms=4, lw=1.3, label=name)
-            axes[row, 2].set(xlabel="outward from the wire's centre in mm", ylabel="τ in MPa", title=f"diameter, {when}")
+            axes[row, 2].set(xlabel="outward from the wire's centre in mm", ylabel="τ in MPa", title=when)
             axes[row, 2].grid(lw=0.3)
             axes[row, 2].legend(fontsize=8)
         figure.suptitle(f"Shear stress in mid-section, Ck 15, D/d = {case.index:g}; left is the inside of the coil")
