@@ -54,18 +54,20 @@ def _onto_surface(p, y, w):
 
 
 @njit(**KERNEL)
-def _neutral_kappa(kappa, zeta, ca, cc, axial, rest, spin):
-    """The κ below the material's for which n:n does not change with λ = 0: spin + axial x_a + rest x_c = 0."""
-    a, c = zeta + ca, zeta + cc
+def _neutral_kappa(kappa, a, c, axial, rest, spin, half):
+    """The κ below the material's for which F = 0 stays with λ = 0: spin + (1 − κ half) (axial x_a + rest x_c) = 0.
+
+    Here a = ζ + c_a, c = ζ + c_c, x = 1/(1 + κ a) or 1/(1 + κ c), half = ½k²′.
+    """
     # Multiplied by (1 + κ a)(1 + κ c): a quadratic equation q2 κ² + q1 κ + q0 = 0.
-    q2, q1, q0 = spin * a * c, spin * (a + c) + axial * c + rest * a, spin + axial + rest
+    cross = axial * c + rest * a
+    q2, q1, q0 = spin * a * c - half * cross, spin * (a + c) + cross - half * (axial + rest), spin + axial + rest
     root = q1 * q1 - 4.0 * q2 * q0
     if root < 0.0:
         return kappa
     q = -0.5 * (q1 + math.copysign(math.sqrt(root), q1))
-    first, second = q / q2 if q2 != 0.0 else math.inf, q0 / q
     found = kappa
-    for candidate in (first, second):
+    for candidate in (q / q2 if q2 != 0.0 else math.inf, q0 / q):
         if 0.0 <= candidate < found:
             found = candidate
     return found
@@ -121,10 +123,11 @@ def _rates(p, y, w, d, volume, heating, mode, rate):
     half = (0.5 * dk2 - thermal) / (1.0 - kappa * thermal)
     mu = (spin + xe * (1.0 - kappa * half)) / (cxnn + xnn * half)
     work = (kappa * xe + mu * xnn) / (1.0 - kappa * thermal)
-    if mode == BY_LOADING and (mu < 0.0 or work < 0.0):  # neutral loading, see `local`
-        kappa = _neutral_kappa(kappa, zeta, ca, cc, axial, rest, spin)
+    work = max(work, 0.0)  # with spin, on the edge of the cone of `local`, it may be negative by a trifle
+    if mode == BY_LOADING and mu < 0.0:  # neutral loading, see `local`
+        kappa = _neutral_kappa(kappa, zeta + ca, zeta + cc, axial, rest, spin, 0.5 * dk2)
         xa, xc = 1.0 / (1.0 + kappa * (zeta + ca)), 1.0 / (1.0 + kappa * (zeta + cc))
-        mu = work = 0.0
+        mu, work = 0.0, max(kappa * (xa * axial + xc * rest), 0.0)
     for i in range(m):
         c, x = (ca, xa) if i == 0 else (cc, xc)
         e = c * d[i] + (warm * work if i == 0 else 0.0)
@@ -188,11 +191,11 @@ def _integrate(p, y, w, d, volume, heating):
     """Advance y over the strain increment `d` in sub-steps.
 
     Returns:
-        Number of sub-steps (-1: too many), and whether the last one was plastic.
+        Number of sub-steps (-1: too many; 0: all of it elastic), and whether the last one was plastic.
     """
     work = np.empty((4, y.shape[0]))
     m = w.shape[0]
-    done, h, steps, plastic = 0.0, 1.0, 0, False
+    done, h, steps, plastic, yielded = 0.0, 1.0, 0, False, False
     while done < 1.0:
         steps += 1
         if steps > MAX_SUBSTEPS:
@@ -210,12 +213,13 @@ def _integrate(p, y, w, d, volume, heating):
             if error > 1.0:
                 continue
             _onto_surface(p, work[2], w)
+            yielded = True
         else:
             step = _elastic_part(p, y, w, d, volume, heating, rest, work)
         for i in range(y.shape[0]):
             y[i] = work[2, i]
         done = 1.0 if step == rest else done + step
-    return steps, plastic
+    return steps if yielded else 0, plastic
 
 
 @njit(**KERNEL)
@@ -236,7 +240,6 @@ def rod_heun(p, old, de11, dg12, dg13, new, C):
     y[0] = old[0] / 1.5
     y[1:7] = old[1:7]
     y[7] = old[7] if thermal else p[TEMPERATURE]
-    start = y[6]
     steps, plastic = _integrate(p, y, w, d, 0.0, heating)
     new[:] = old
     if steps >= 0:
@@ -250,7 +253,7 @@ def rod_heun(p, old, de11, dg12, dg13, new, C):
         d[j] = 1.0 if j == 0 else 0.5
         _rates(p, y, w, d, 0.0, heating, PLASTIC if plastic else ELASTIC, rate)
         C[0, j], C[1, j], C[2, j] = 1.5 * rate[0], rate[1], rate[2]
-    return 0 if steps >= 0 and y[6] == start else steps
+    return steps
 
 
 @njit(**KERNEL)
@@ -266,7 +269,6 @@ def solid_heun(p, old, dD, new, C):
     y[6:13] = old[6:13]
     y[13] = old[13] if thermal else p[TEMPERATURE]
     y[14] = mean
-    start = y[12]
     d = np.empty(6)
     steps, plastic = _integrate(p, y, w, d, _split(dD, d), heating)
     new[:] = old
@@ -284,7 +286,7 @@ def solid_heun(p, old, dD, new, C):
         _rates(p, y, w, d, _split(unit, d), heating, PLASTIC if plastic else ELASTIC, rate)
         for i in range(6):
             C[i, j] = rate[i] + (rate[14] if i < 3 else 0.0)
-    return 0 if steps >= 0 and y[12] == start else steps
+    return steps
 
 
 @njit(**KERNEL)

@@ -74,15 +74,15 @@ def _group(c, zeta, dzeta, kappa, dkappa):
 
 
 @njit(**INLINE)
-def _multiplier(qa, sa, qc, sc, k2, start):
-    """Root Λ of qa/(1 + sa Λ)² + qc/(1 + sc Λ)² = k² to `COARSE`, and both 1/(1 + s Λ); qa, qc: squared norms."""
+def _multiplier(qa, sa, qc, sc, k2, start, precision):
+    """Root Λ of qa/(1 + sa Λ)² + qc/(1 + sc Λ)² = k², and both 1/(1 + s Λ); qa, qc: squared norms."""
     lowest = -1.0 / max(sa, sc)
     multiplier = max(start, 0.5 * lowest)
     for _ in range(MAX_ITERATIONS):
         ua, uc = 1.0 / (1.0 + sa * multiplier), 1.0 / (1.0 + sc * multiplier)
         ya, yc = qa * ua * ua, qc * uc * uc
         y = ya + yc
-        if abs(y - k2) < 2.0 * COARSE * k2:
+        if abs(y - k2) < 2.0 * precision * k2:
             break
         step = y * (math.sqrt(y / k2) - 1.0) / (ya * sa * ua + yc * sc * uc)  # Newton for 1/|n| = 1/k
         multiplier = max(multiplier + step, 0.5 * (multiplier + lowest))
@@ -112,7 +112,7 @@ def _equations(start, k_start, values, ga, gc, b, multiplier):
     qqc = start.nn + gc.x * (2.0 * start.ne + gc.x * start.ee)
     ua = uc = 1.0
     if b > start.b:
-        multiplier, ua, uc = _multiplier(qqa, ga.s, qqc, gc.s, k2, multiplier)
+        multiplier, ua, uc = _multiplier(qqa, ga.s, qqc, gc.s, k2, multiplier, COARSE)
     nna, nnab, nnal, wa, wab, wal = _group_terms(
         ga, start.ca, zeta, dzeta, multiplier, ua, qqa, 3.0 * qa * dqa, 1.5 * qa * ta, 1.5 * (dqa * ta + qa * start.dea)
     )
@@ -170,6 +170,17 @@ def _neutral(p, start, values):
     return _failed(start)
 
 
+@njit(**KERNEL)
+def _frozen(start, values, a, c):
+    """On the edge of the cone the rod's spin can make n:p negative by a trifle: b* is kept, only n:n = k² solved."""
+    qa = start.na + a.x * start.ea
+    qqa, qqc = 1.5 * qa * qa, start.nn + c.x * (2.0 * start.ne + c.x * start.ee)
+    multiplier, ua, uc = _multiplier(qqa, a.s, qqc, c.s, values[0], 0.0, 1e-15)
+    slope = -2.0 * (qqa * a.s * ua * ua * ua + qqc * c.s * uc * uc * uc)
+    a, c = Group(a.s, 0.0, a.x, 0.0), Group(c.s, 0.0, c.x, 0.0)
+    return Local(1, False, start.b, multiplier, 1.0, values[2], 0.0, a, c, 0.0, 0.0, -1.0 / slope, 0.0)
+
+
 @njit(**INLINE)
 def _failed(start):
     nothing = Group(0.0, 0.0, 0.0, 0.0)
@@ -192,12 +203,11 @@ def solve(p, start, values):
     # max over n of n:(n_trial − n) is |n_trial|²/4; twice that leaves room for thermal strain.
     high = low + 0.5 * (1.5 * (start.na + start.ea) ** 2 / start.ca + (start.nn + 2.0 * start.ne + start.ee) / start.cc)
     k_start = math.sqrt(values[0])
-    b, multiplier, last, share = low, 0.0, math.inf, 1.0
+    b, multiplier, last = low, 0.0, math.inf
     for iteration in range(1, MAX_ITERATIONS):
         k2, _, zeta, dzeta, kappa, dkappa = values
         if not k2 > 0.0:
             break
-        kappa, dkappa = share * kappa, share * dkappa
         ga = _group(start.ca, zeta, dzeta, kappa, dkappa)
         gc = _group(start.cc, zeta, dzeta, kappa, dkappa)
         r1, r2, r1b, r1l, r2b, r2l, multiplier, work, mean = _equations(start, k_start, values, ga, gc, b, multiplier)
@@ -207,9 +217,8 @@ def solve(p, start, values):
         follow = (r2b * r1 - r1b * r2) * inverse
         if iteration == 1 and r1 < 0.0:
             return _neutral(p, start, values)
-        if iteration == 1 and g > 0.0:  # see _neutral: on the edge of the cone the spin can make n:p negative
-            share = 0.0
-            continue
+        if iteration == 1 and g > 0.0:
+            return _frozen(start, values, ga, gc)
         # The second term is the rounding of b* and of n:(n_trial − n).
         if abs(g) <= FINE * work + 1e-15 * (b + k2 / start.cc) and abs(r1) <= FINE * k2 and inverse > 0.0:
             # The last Newton step is taken in everything: what it leaves is of the order FINE².
