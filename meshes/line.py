@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import gmsh
 import numpy as np
-from coilset.model.compat import mesh_from_gmsh
 from dolfinx import mesh as dmesh
+
+from coilset.model.compat import mesh_from_gmsh
 
 
 @dataclass

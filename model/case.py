@@ -4,19 +4,22 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import yaml
+from pydantic import Field, ValidationError
+
 from coilset.meshes.spring import SpringEntry
 from coilset.meshes.stations import ElementsPerTurn
 from coilset.model.errors import InputError
 from coilset.model.loading.program import Phase, Strict
 from coilset.model.section import rules
 from coilset.model.solvers.methods import METHODS
-from pydantic import Field, ValidationError
 
 
 class SectionSpec(Strict):
     """Quadrature of the wire's cross-section."""
 
-    rule: Annotated[Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")] = "polar"
+    rule: Annotated[
+        Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")
+    ] = "polar"
     radial: Annotated[int, Field(ge=1, le=64, description="rings of the polar rule")] = 4
     angular: Annotated[int, Field(ge=3, le=256, description="angles of the polar rule")] = 12
 
@@ -85,7 +88,8 @@ class _Loader(yaml.SafeLoader):
             if not isinstance(key, yaml.ScalarNode):
                 raise yaml.MarkedYAMLError(problem="an entry's name must be a word", problem_mark=key.start_mark)
             if key.value in seen:
-                raise yaml.MarkedYAMLError(problem=f"the entry '{key.value}' is given twice", problem_mark=key.start_mark)
+                problem = f"the entry '{key.value}' is given twice"
+                raise yaml.MarkedYAMLError(problem=problem, problem_mark=key.start_mark)
             seen.add(key.value)
         return super().construct_mapping(node, deep)
 

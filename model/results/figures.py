@@ -55,7 +55,8 @@ def cross_section(path, analysis, snapshot):
     around = (state[:, 2] * points[:, 0] - state[:, 1] * points[:, 1]) / np.where(distance > 0, distance, 1.0)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.2, 3.9), layout="constrained")
-        for place, (values, name) in enumerate(((around, "shear about the wire's axis"), (state[:, 0], "normal stress"))):
+        panels = ((around, "shear about the wire's axis"), (state[:, 0], "normal stress"))
+        for place, (values, name) in enumerate(panels):
             axes = figure.add_subplot(1, 2, place + 1)
             limit = max(float(np.abs(values).max()), 1e-9)
             levels = np.linspace(-limit, limit, 25)
@@ -65,5 +66,6 @@ def cross_section(path, analysis, snapshot):
             axes.plot(radius * np.cos(angle), radius * np.sin(angle), "k-", lw=0.8)
             axes.set(aspect="equal", xlabel="towards the coil's axis, mm", ylabel="along the spring, mm", title=name)
             figure.colorbar(shown, ax=axes, label="MPa", shrink=0.85)
-        figure.suptitle(f"Cross-section at mid height, {snapshot.name} (F = {abs(snapshot.force):.1f} N); dots: section points")
+        force = f"F = {abs(snapshot.force):.1f} N"
+        figure.suptitle(f"Cross-section at mid height, {snapshot.name} ({force}); dots: section points")
         save(figure, path)

@@ -6,6 +6,10 @@ import pyvista as pv
 from coilset.model.results.folder import whole
 
 POINTS_PER_ELEMENT = 6
+BAR = {
+    "color": "black", "n_labels": 5, "fmt": "%.0f", "title_font_size": 17, "label_font_size": 16,
+    "position_x": 0.3, "width": 0.4, "position_y": 0.02, "height": 0.13,
+}  # fmt: skip
 
 
 def tube(x, radius, values, name):
@@ -35,11 +39,10 @@ def springs(path, snapshots, wire_radius):
     for place, shot in enumerate(snapshots):
         stress = shot.shear.max(axis=(1, 2))
         values = 0.5 * (np.append(stress, stress[-1]) + np.append(stress[0], stress))
-        mesh = tube(shot.x + [place * width, 0.0, 0.0], radius, values, name)
+        mesh = tube(shot.x + np.array([place * width, 0.0, 0.0]), radius, values, name)
         plotter.add_mesh(
             mesh, scalars=name, clim=(0.0, max(greatest, 1e-9)), cmap="viridis", smooth_shading=True,
-            scalar_bar_args={"color": "black", "n_labels": 5, "fmt": "%.0f", "title_font_size": 18, "label_font_size": 16,
-                             "position_x": 0.3, "width": 0.4, "position_y": 0.02, "height": 0.09},
+            scalar_bar_args=BAR,
         )  # fmt: skip
         label = f"{shot.name}\n{shot.height:.2f} mm, {abs(shot.force):.0f} N"
         foot = [place * width, 0.0, float(snapshots[0].x[:, 2].max()) + 2.2 * radius.max()]

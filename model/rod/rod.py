@@ -23,7 +23,7 @@ class CellField:
         self.function = fem.Function(fem.functionspace(mesh, element))
         dofs = self.function.function_space.dofmap.list[:cells]
         if not np.array_equal(dofs.ravel(), np.arange(dofs.size)):
-            raise RuntimeError("DOLFINx numbers the values of cells out of their order; CellField expects them in order")
+            raise RuntimeError("DOLFINx numbers the values of cells out of their order; CellField needs them in order")
         size = int(np.prod(shape))
         self.values = self.function.x.array[: cells * size].reshape(cells, *shape)
 
@@ -121,10 +121,11 @@ class Rod:
         )  # fmt: skip
         self.T.values[:] = self.chart[self.cells]
         y, z = np.ascontiguousarray(self.rule.points.T)
-        return 0 == update_sections(
+        status = update_sections(
             self.parameters, y, z, self.rule.weights, self.radius, self.strain - start["strain"],
             self.placement, self.stretch, start["history"], self.history, self.s.values, self.D.values,
         )  # fmt: skip
+        return status == 0
 
     def commit(self):
         """Make the trial state the equilibrium and set the increments to zero."""

@@ -21,6 +21,7 @@ class Configuration:
         mesh: the mesh that moves.
         V: vector displacement space of second order.
         x: coefficients of the position at the last equilibrium, shape (blocks with ghosts, 3), mm.
+        start: positions of the geometry's nodes at the start, shape (nodes, 3), mm.
         quadrature_degree: of the points that carry the state.
     """
 
@@ -35,6 +36,7 @@ class Configuration:
         position.interpolate(lambda x: x)
         self.x = position.x.array.reshape(-1, 3).copy()
         self.move(self.x)
+        self.start = mesh.geometry.x.copy()
 
     @property
     def owned(self):

@@ -23,7 +23,8 @@ KILLS = 4  # twenty were made once, see docs/restart.md; each costs a start of P
 
 def command(example, *more):
     settings = [part for setting in SETTINGS for part in ("--set", setting)]
-    return [sys.executable, "-m", "coilset.scripts", "solve", str(example), "--out", "out", "--no-pictures", *settings, *more]
+    solve = [sys.executable, "-m", "coilset.scripts", "solve", str(example), "--out", "out", "--no-pictures"]
+    return [*solve, *settings, *more]
 
 
 def final(folder):

@@ -15,9 +15,8 @@ SHORT = ["--set", "loading=[{to: {travel: 6}, steps: 3}, {to: {force: 0}, steps:
 
 
 def coilset(*arguments, cwd):
-    return subprocess.run(
-        [sys.executable, "-m", "coilset.scripts", *map(str, arguments)], cwd=cwd, capture_output=True, text=True, check=False
-    )
+    command = [sys.executable, "-m", "coilset.scripts", *map(str, arguments)]
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False)
 
 
 def test_solve_writes_what_the_readme_says(example, tmp_path):
@@ -27,7 +26,8 @@ def test_solve_writes_what_the_readme_says(example, tmp_path):
     rows = list(csv.DictReader((tmp_path / "here" / "history.csv").read_text().splitlines()))
     assert [float(row["travel_mm"]) for row in rows[:3]] == pytest.approx([2, 4, 6], abs=1e-9)
     assert {"seat_height_mm", "travel_mm", "force_N", "iterations", "contacts"} <= set(rows[0])
-    assert summary["set_mm"] == pytest.approx(summary["free_length_before_mm"] - summary["free_length_after_mm"], abs=1e-12)
+    shorter = summary["free_length_before_mm"] - summary["free_length_after_mm"]
+    assert summary["set_mm"] == pytest.approx(shorter, abs=1e-12)
     assert summary["force_max_N"] == pytest.approx(max(float(row["force_N"]) for row in rows), rel=1e-12)
     assert summary["block_height_mm"] == pytest.approx(17.5, rel=1e-12)  # (2.5 + 1) wires of 5 mm
     assert summary["complete"]

@@ -132,7 +132,7 @@ class Reference:
         return self.rates(y, D, None)
 
     def _elastic(self, y, D, k2, marks):
-    XX
+        """Elastic piece up to the yield surface; in short steps, lest a small elastic chord be missed."""
 
         def leave(_, y, D):
             return self.excess(y) - 1e-12 * k2

@@ -157,7 +157,7 @@ def test_newton_contracts_at_turned_states(rod):
 
 
 def test_increments_do_not_depend_on_the_number_of_steps(make_rod):
-    """A turn of 1 rad of a whole elastic rod with a little twist in it, in one step and in five: the same resultants."""
+    """A turn of 1 rad of a whole elastic rod with a little twist in it, in one step and in five."""
     results = []
     for steps in (1, 5):
         rod = make_rod([[0.0, 0.0, 0.0], [LENGTH, 0.0, 0.0]])

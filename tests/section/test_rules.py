@@ -2,7 +2,6 @@
 
 from math import gamma, pi
 
-import numpy as np
 import pytest
 
 from coilset.model.section.rules import abramowitz9, polar
@@ -15,7 +14,10 @@ def moment(a, b):
     return 2 * gamma((a + 1) / 2) * gamma((b + 1) / 2) / gamma((a + b) / 2 + 1) / (a + b + 2) / pi
 
 
-@pytest.mark.parametrize(("rule", "degree"), [(abramowitz9(), 5), (polar(1, 4), 3), (polar(2, 8), 7), (polar(4, 12), 11)])
+RULES = [(abramowitz9(), 5), (polar(1, 4), 3), (polar(2, 8), 7), (polar(4, 12), 11)]
+
+
+@pytest.mark.parametrize(("rule", "degree"), RULES)
 def test_moments_are_exact_up_to_the_rules_degree(rule, degree):
     y, z = rule.points.T
     for a in range(degree + 1):
