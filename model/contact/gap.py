@@ -33,4 +33,5 @@ class Gaps:
         force = -pressure[:, None] * n
         nn = n[:, :, None] * n[:, None, :]
         k = c[:, None, None] * nn - (pressure / length)[:, None, None] * (np.eye(3) - nn)
-        return Contribution(self.dofs, np.hstack([-force, force]), np.block([[k, -k], [-k, k]]), pressure, self.free_length - length)
+        forces, stiffness = np.hstack([-force, force]), np.block([[k, -k], [-k, k]])
+        return Contribution(self.dofs, forces, stiffness, pressure, self.free_length - length)
