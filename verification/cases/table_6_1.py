@@ -1,0 +1,137 @@
+"""Table 6.1: cantilever bent far beyond yield, by displacement and by load: force and iterations
+
+The thesis's drawing is lost. What stands in for it was found by a search over slenderness, number of elements, scale
+and direction of the load: a straight cantilever of length l, round wire of radius R = 0.59 l, two equal elements,
+transverse end load of fixed direction, Ck 15, F in units of σF πR² with σF = 181.5 N/mm², ε = 1e-7 of (6.3.1).
+
+Values: 20 equal steps a row; tolerance 3 % of F up to w/l = 0.35, what the reconstruction can carry. With 60 steps a
+row F changes by up to 0.06 %, and the row 0.35 goes from 2.96 to 3.01 %. Under load control F is compared at the
+table's w, where its three decimals say more than 3 %, that is from w/l = 0.018 on.
+
+Iterations: one step a row; a step starts from the last one's increments in proportion. All methods search for the zero
+of the out-of-balance work along their direction (`cp`): the residual's norm, which `bt` watches, mixes forces with
+moments, and in a rod so stocky the moments drown the forces. MNR keeps its matrix over the step. Under load, NR with
+the consistent tangent needs at most 6 where the thesis needed up to 16; under displacement it needs more than it in
+the large steps beyond w/l = 0.2: their start, the last step's increments in proportion, turns elements half as long as
+they are thick by 0.1 rad and stretches them far beyond yield. A tangent by finite differences saves one or two of 12.
+
+The last three rows, in which the thesis's force falls, are not met and not explained. Ours rises on, by 8, 15 and 29 %
+above the thesis's, with 1 to 16 elements (0.90 to 1.01 at w/l = 0.5), both section rules, with and without spin, one to
+60 steps a row; linear strain increments in the frame of the last equilibrium, as (4.2.8) has them, give 0.91 to 0.95.
+"""
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+from scipy.interpolate import PchipInterpolator
+
+from coilset.model.material import library
+from coilset.model.results.figures import STYLE
+from coilset.model.section.rules import abramowitz9
+from coilset.verification import figures
+from coilset.verification.frame import KEEP, Frame
+
+FAST = True
+LENGTH, SLENDERNESS, ELEMENTS = 100.0, 0.59, 2  # mm, R/l
+UNIT = 181.5 * np.pi * (SLENDERNESS * LENGTH) ** 2  # σF A0, N
+STEPS = 20  # a row, for the values
+REACH = 0.35  # w/l up to which the reconstruction holds
+BOUND = "set bound; Table 6.1 has up to 16"
+FIRST = 0.018  # first w/l whose printed digits say enough
+# w/l, F/(σF A0), iterations of NR, MNR, BFGS
+BY_DISPLACEMENT = [
+    (0.003, 0.295, 1, 1, 1), (0.005, 0.329, 3, 11, 3), (0.010, 0.365, 2, 6, 3), (0.020, 0.402, 2, 5, 3),
+    (0.030, 0.443, 3, 5, 3), (0.040, 0.484, 2, 5, 3), (0.050, 0.516, 4, 8, 4), (0.075, 0.572, 4, 35, 5),
+    (0.100, 0.631, 4, 42, 6), (0.150, 0.690, 5, 21, 4), (0.200, 0.742, 4, 26, 5), (0.250, 0.779, 5, 23, 5),
+    (0.300, 0.805, 4, 22, 5), (0.350, 0.823, 6, 15, 7), (0.400, 0.818, 6, 16, 6), (0.450, 0.796, 3, 13, 5),
+    (0.500, 0.733, 4, 12, 5),
+]  # fmt: skip
+BY_LOAD = [
+    (0.001, 0.1, 1, 1, 1), (0.002, 0.2, 2, 3, 3), (0.003, 0.3, 4, 12, 4), (0.018, 0.4, 7, 55, 9),
+    (0.045, 0.5, 10, 21, 11), (0.085, 0.6, 16, 64, 16), (0.162, 0.7, 15, 72, 17), (0.282, 0.8, 15, 68, 16),
+]  # fmt: skip
+CP = {"snes_linesearch_type": "cp"}
+METHODS = [("NR", "newton", CP), ("MNR", "modified-newton", CP | KEEP | {"snes_max_it": 300}), ("BFGS", "bfgs", {})]
+
+
+def drive(table, by_load, method, options, steps):
+    """Walk through a table's rows in `steps` steps a row.
+
+    Returns:
+        w/l and F/(σF A0) after each step, shape (n, 2), the start included; greatest number of iterations of a step of
+        each row, None where it diverged.
+    """
+    nodes = np.linspace([0, 0, 0], [LENGTH, 0, 0], ELEMENTS + 1)
+    pairs = [(k, k + 1) for k in range(ELEMENTS)]
+    clamp, law = [(0, range(6))], library.load("ck15")
+    frame = Frame(nodes, pairs, SLENDERNESS * LENGTH, law, abramowitz9(), clamp, method, options)
+    tip = frame.dof(ELEMENTS, 1)
+    path, counts, begin, last = [(0.0, 0.0)], [], 0.0, None
+    for row in table:
+        size = (row[1 if by_load else 0] - begin) / steps
+        most = 0
+        for k in range(1, steps + 1):
+            share = None if last is None else size / last
+            if by_load:
+                outcome = frame.step(forces={tip: (begin + k * size) * UNIT}, share=share)
+            else:
+                outcome = frame.step(moves={tip: size * LENGTH}, share=share)
+            if not outcome.converged:
+                return np.array(path), counts + [None] * (len(table) - len(counts))
+            most, last = max(most, outcome.iterations), size
+            path.append((frame.moved(ELEMENTS)[1] / LENGTH, frame.force(tip) / UNIT))
+        counts.append(most)
+        begin += steps * size
+    return np.array(path), counts
+
+
+def run(study):
+    """Values and iterations of both halves of the table."""
+    paths, counts = {}, {}
+    for name, table, by_load in (("displacement", BY_DISPLACEMENT, False), ("load", BY_LOAD, True)):
+        paths[name] = path = drive(table, by_load, "newton", CP, STEPS)[0]
+        counts[name] = {method: drive(table, by_load, *how, 1)[1] for method, *how in METHODS}
+        force = PchipInterpolator(*path.T)(np.array([row[0] for row in table])) if by_load else path[STEPS::STEPS, 1]
+        rows = []
+        for number, (printed, ours) in enumerate(zip(table, force, strict=True)):
+            found = [counts[name][method][number] for method, *_ in METHODS]
+            pairs = [f"{'div.' if a is None else a} / {b}" for a, b in zip(found, printed[2:], strict=True)]
+            rows.append([printed[0], printed[1], float(ours), 100 * (ours / printed[1] - 1), *pairs])
+            if printed[0] <= REACH and (printed[0] >= FIRST or not by_load):
+                study.check(f"F/(σF A0) at w/l = {printed[0]}, by {name}", ours, printed[1], "Table 6.1", 0.03)
+            if by_load:
+                study.check(f"NR iterations at F/(σF A0) = {printed[1]}", found[0], 6, BOUND, kind="at_most")
+        columns = ["w/l", "F/σF A0, table", "ours", "%", *(f"{m[0]} ours / table" for m in METHODS)]
+        study.table(f"by {name}", columns, rows)
+    inside = [row[3] for row in study.tables[0]["rows"] if row[0] <= REACH]
+    mean = np.sqrt(np.mean(np.square(inside)))
+    study.note(f"By displacement up to w/l = {REACH}: root mean square deviation {mean:.2f} %.")
+    study.note("Below yield, by load, the table's w/l = 0.001 and 0.002 are about twice ours, 0.0005 and 0.0011.")
+    draw(study, paths, counts)
+
+
+def draw(study, paths, counts):
+    """Characteristic, and iterations of both halves."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(10.5, 8.2), layout="constrained")
+        axes = figure.subplots(2, 2)
+        place = axes[0, 0]
+        for (name, path), line in zip(paths.items(), ("-", "--"), strict=True):
+            place.plot(*path.T, line, label=f"coilset, by {name}")
+        for table, marker, name in ((BY_DISPLACEMENT, "o", "displacement"), (BY_LOAD, "s", "load")):
+            place.plot(*np.array(table)[:, :2].T, marker, mfc="none", color="k", label=f"Table 6.1, by {name}")
+        place.axvspan(REACH, 0.5, color="0.9", label="not met, not explained")
+        place.set(xlabel="w/l", ylabel="F/(σF A0)", title="Cantilever of Ck 15, R/l = 0.59, two elements")
+        place.legend(fontsize=8)
+        place.grid(lw=0.3)
+        for place, name, table in ((axes[1, 0], "displacement", BY_DISPLACEMENT), (axes[0, 1], "load", BY_LOAD)):
+            labels = [f"{row[1 if name == 'load' else 0]:g}" for row in table]
+            columns = [(method, colour, counts[name][method], [row[column] for row in table])
+                       for method, colour, column in (("NR", "C0", 2), ("BFGS", "C3", 4))]  # fmt: skip
+            figures.iterations(place, labels, columns, f"NR and BFGS, by {name}")
+            place.set_xlabel("F/(σF A0)" if name == "load" else "w/l")
+        tables = BY_DISPLACEMENT + BY_LOAD
+        labels = [f"w {row[0]:g}" for row in BY_DISPLACEMENT] + [f"F {row[1]:g}" for row in BY_LOAD]
+        ours = counts["displacement"]["MNR"] + counts["load"]["MNR"]
+        figures.iterations(axes[1, 1], labels, [("MNR", "C1", ours, [row[3] for row in tables])], "MNR, both")
+    study.figure("table_6_1", figure)
