@@ -1,0 +1,109 @@
+"""The solid's fields for ParaView, and pictures of them."""
+
+from pathlib import Path
+
+import basix
+import dolfinx.plot
+import numpy as np
+import pyvista
+
+from coilset.model.results.folder import whole
+
+BAR = {
+    "color": "black", "n_labels": 5, "fmt": "%.3g", "title_font_size": 16, "label_font_size": 15,
+    "position_x": 0.2, "width": 0.6, "position_y": 0.03, "height": 0.14,
+}  # fmt: skip
+
+
+def mises(stress):
+    """von Mises stress of six components, shape (..., 6) → (...)."""
+    n, t = stress[..., :3], stress[..., 3:]
+    spread = (n[..., 0] - n[..., 1]) ** 2 + (n[..., 1] - n[..., 2]) ** 2 + (n[..., 2] - n[..., 0]) ** 2
+    return np.sqrt(0.5 * spread + 3 * np.sum(t * t, axis=-1))
+
+
+def at_nodes(solid, values):
+    """Carry values of the integration points to the geometry's nodes of this rank, averaged over its cells.
+
+    A cell's values stay within those of its points: beyond, no yield condition holds.
+
+    Args:
+        solid: Solid.
+        values: shape (owned cells, points, …).
+
+    Returns:
+        Shape (nodes, …).
+    """
+    mesh = solid.wire.mesh
+    linear = basix.create_element(basix.ElementFamily.P, mesh.basix_cell(), 1)
+    nodes = mesh.ufl_domain().ufl_coordinate_element().basix_element.points
+    to_points, to_nodes = (linear.tabulate(0, at)[0, :, :, 0] for at in (solid.forms.points, nodes))
+    carried = np.einsum("nq,cq...->cn...", to_nodes @ np.linalg.inv(to_points), values)
+    carried = np.clip(carried, values.min(axis=1, keepdims=True), values.max(axis=1, keepdims=True))
+    dofs = mesh.geometry.dofmap[: solid.n_cells]
+    total = np.zeros((len(mesh.geometry.x), *values.shape[2:]))
+    np.add.at(total, dofs, carried)
+    count = np.bincount(dofs.ravel(), minlength=len(total))
+    return total / np.maximum(count, 1).reshape(-1, *[1] * (values.ndim - 2))
+
+
+def grid(solid):
+    """The deformed body with its fields, as a pyvista grid on the first rank and None on the others.
+
+    Fields at the nodes: `displacement` (mm), `stress` (11, 22, 33, 12, 13, 23, MPa, axes of space), `von Mises stress`
+    (MPa), `plastic work` b* (N/mm²).
+    """
+    mesh = solid.wire.mesh
+    cells, kinds, x = dolfinx.plot.vtk_mesh(mesh)
+    data = {
+        "displacement": mesh.geometry.x - solid.configuration.start,
+        "stress": at_nodes(solid, solid.state[..., :6]),
+        "von Mises stress": at_nodes(solid, mises(solid.state[..., :6])),
+        "plastic work": at_nodes(solid, solid.state[..., 12]),
+    }  # fmt: skip
+    parts = solid.comm.gather((cells, kinds, x.copy(), data))
+    if parts is None:
+        return None
+    pieces = []
+    for cells, kinds, x, data in parts:
+        piece = pyvista.UnstructuredGrid(cells, kinds, x)
+        for name, values in data.items():
+            piece.point_data[name] = values
+        pieces.append(piece)
+    return pieces[0] if len(pieces) == 1 else pyvista.merge(pieces)
+
+
+def write_fields(path, solid):
+    """Write the fields of `grid` to a .vtu file for ParaView; collective."""
+    body = grid(solid)
+    if body is not None:
+        with whole(path) as part:
+            body.save(part)
+
+
+def picture(path, bodies, field, unit):
+    """Draw the far halves (y > 0) of bodies beside each other, coloured by a field; the cut shows their sections.
+
+    Needs a display, see `coilset.model.results.display`.
+
+    Args:
+        path: PNG file.
+        bodies: name → grid of `grid`.
+        field, unit: name of the field, and its unit for the colour bar.
+    """
+    greatest = max(float(body.point_data[field].max()) for body in bodies.values())
+    size = 760 * len(bodies), 560
+    plotter = pyvista.Plotter(off_screen=True, shape=(1, len(bodies)), window_size=size, border=False)
+    plotter.set_background("white")
+    for column, (name, body) in enumerate(bodies.items()):
+        plotter.subplot(0, column)
+        half = body.tessellate(max_n_subdivide=2).clip(normal=(0, -1, 0), origin=(0, 1e-3, 0))
+        bar = {"title": f"{field} in {unit}", **BAR}
+        plotter.add_mesh(half, scalars=field, clim=(0.0, greatest), cmap="viridis", ambient=0.45, scalar_bar_args=bar)
+        plotter.add_text(name, position="upper_left", font_size=11, color="black")
+        plotter.camera.parallel_projection = True
+        plotter.view_vector((0.1, -1.0, 0.6), viewup=(0, 0, 1))
+        plotter.camera.zoom(1.25)
+    with whole(Path(path)) as part:
+        plotter.screenshot(str(part))
+    plotter.close()
