@@ -1,10 +1,12 @@
 """Run the study: `scripts/coilset python -m coilset.verification.solid_vs_rod FOLDER [whole]`; it resumes by itself."""
 
 import sys
+from pathlib import Path
 
 from mpi4py import MPI
 from rich.console import Console
 
+from coilset.model.results.figures import save
 from coilset.verification.solid_vs_rod import figures, study
 from coilset.verification.solid_vs_rod.store import Store
 
@@ -15,7 +17,8 @@ def main(folder, extent="standard"):
     cases = {"standard": study.STANDARD, "whole": study.WHOLE}[extent]
     found = study.run(Store(folder, MPI.COMM_WORLD, console.print), cases)
     if MPI.COMM_WORLD.rank == 0:
-        figures.draw(folder, found)
+        for name, figure in figures.draw(found).items():
+            save(figure, Path(folder) / f"{name}.png")
     for record in study.records(found):
         deviation = record["ours"] / record["reference"] - 1
         console.print(f"{record['quantity']}: {record['ours']:.5g}, {record['source']} {record['reference']:.5g}, "

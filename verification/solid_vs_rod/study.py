@@ -83,15 +83,18 @@ def numbers(case, solid, rod):
     return out
 
 
-def _size(result):
-    return result[1]["unknowns"], -abs(result[0].steps - PressedSection.steps)
+def finest(found):
+    """(PressedSection, solid, rod) of each index's finest mesh, by index; of equal meshes the one with 12 steps."""
+    best = {}
+    for result in sorted(found["pressed"], key=lambda r: (r[1]["unknowns"], -abs(r[0].steps - PressedSection.steps))):
+        best[result[0].index] = result
+    return [best[index] for index in sorted(best)]
 
 
 def records(found):
     """Comparison records of each index's finest mesh: quantity, ours, reference, source, tolerance (relative)."""
     out = elastic.records(found["elastic"])
-    finest = {case.index: (case, solid, rod) for case, solid, rod in sorted(found["pressed"], key=_size)}
-    for case, solid, rod in finest.values():
+    for case, solid, rod in finest(found):
         label = f"D/d = {case.index:g}, {{}} (rod; solid of {solid['unknowns']} unknowns)"
         compared = numbers(case, solid, rod)
         for name, tolerance in (("force at full travel", 0.02), ("set", 0.03)):
