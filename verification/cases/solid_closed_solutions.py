@@ -2,8 +2,8 @@
 
 A straight wire of 5 mm between rigid heads. Elastic torsion: the field lies in the elements' space, only their
 parabolic outline errs, with the fourth power of the element's size or better. Ideal plastic torsion has Nadai's torque
-(2π/3) τ_y R³ (1 − ¼ (θ_y/θ)³). At the limit moment 4/3 σ_y R³ elements that lock do not come to rest: the same ones with
-full integration go on rising, by 1.5 % from 8 to 16 times the curvature of first yield.
+(2π/3) τ_y R³ (1 − ¼ (θ_y/θ)³). At the limit moment 4/3 σ_y R³ elements that lock do not come to rest: the same ones
+with full integration go on rising, by 1.5 % from 8 to 16 times the curvature of first yield.
 """
 
 import matplotlib as mpl

@@ -7,8 +7,8 @@ elastic turn without pitch gives the shear factor at the inside of the coil for 
 What the rod misses is the coil's curvature where the wire is elastic: its rate is 11/16 (d/D)² too low (3/16 that
 Göhner's curved wire is stiffer, 1/2 that the rod's shear makes it softer), and its shear stress lacks 3/4 (d/D) at the
 inside. Flow levels the force; the set comes out smaller by what springs back too far, and the residual stress at the
-inside too small. All indices and meshes: `python -m coilset.verification.solid_vs_rod FOLDER whole`; what came out is in
-docs/solid.md.
+inside too small. All indices and meshes: `python -m coilset.verification.solid_vs_rod FOLDER whole`; what came out is
+in docs/solid.md.
 """
 
 import shutil
