@@ -5,8 +5,7 @@ import time
 from dataclasses import astuple, dataclass
 
 import numpy as np
-from dolfinx import fem
-from dolfinx.fem.petsc import apply_lifting, create_vector, set_bc
+from dolfinx import fem, la
 from petsc4py import PETSc
 
 from coilset.model.errors import SolveError
@@ -181,18 +180,18 @@ class SolidProblem:
 
     def _predict(self):
         """Start from the linear answer to the heads' motion g, which tears no end element: K_ff u = −K_fh g − r."""
-        ksp = self.snes.getKSP()
+        ksp, owned = self.snes.getKSP(), self.solid.configuration.owned
         self._assemble()
-        b = create_vector(self.solid.forms.residual)
-        apply_lifting(b, [self.solid.forms.tangent], bcs=[self._conditions])
-        b.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
-        b.array[:] -= self.forces.ravel()
-        set_bc(b, self._conditions)
+        b = la.vector(self.solid.V.dofmap.index_map, 3)
+        fem.apply_lifting(b.array, [self.solid.forms.tangent], [self._conditions])  # −K_fh g
+        b.scatter_reverse(la.InsertMode.add)
+        increment = self._prescribed.x.array.reshape(-1, 3)[self._held]
+        rest = b.array.reshape(-1, 3)[:owned] - self.forces
+        rest[self._held] = increment
+        self._f.setArray(rest.ravel())
         ksp.setOperators(self._A)
-        ksp.solve(b, self._x)
-        # the heads exactly, also if the linear solve is iterative
-        self._x.array.reshape(-1, 3)[self._held] = self._prescribed.x.array.reshape(-1, 3)[self._held]
-        b.destroy()
+        ksp.solve(self._f, self._x)
+        self._x.array.reshape(-1, 3)[self._held] = increment  # exactly, also if the linear solve is iterative
         return ksp.getIterationNumber()
 
     def reactions(self, point):

@@ -28,8 +28,8 @@ def moments(curvatures, cell="hexahedron"):
 
 
 def test_limit_moment():
-    # From 8 to 16 times the curvature of first yield, M / M_limit of a long wire goes from 0.9924 to 0.9981. Between rigid
-    # heads a little more is borne; 1 % is the mesh's.
+    # From 8 to 16 times the curvature of first yield, M / M_limit of a long wire goes from 0.9924 to 0.9981. Between
+    # rigid heads a little more is borne; 1 % is the mesh's.
     at_8, at_16 = moments([1, 2, 4, 8, 16])[-2:]
     assert at_16 == pytest.approx(1.0, abs=0.01)
     assert abs(at_16 - at_8) < 2e-3

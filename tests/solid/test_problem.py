@@ -130,6 +130,6 @@ def test_an_impossible_step_leaves_the_last_equilibrium(monkeypatch):
 
 
 def test_an_unknown_solver_is_refused():
+    wire = straight_wire(d, L, 1, MPI.COMM_SELF, SectionGrid(1, 1))
     with pytest.raises(InputError, match="solver"):
-        straight_problem = straight_wire(d, L, 1, MPI.COMM_SELF, SectionGrid(1, 1))
-        SolidProblem(straight_problem, Elastic(), "magic")
+        SolidProblem(wire, Elastic(), "magic")
