@@ -127,7 +127,7 @@ def gap_derivatives(c, q, e, inverse, growth):
     """
     m = len(q)
     along = np.concatenate([np.ones((m, 1)), -c[:, 0]], axis=1)
-    length = np.linalg.norm(q, axis=1)
+    length = np.maximum(np.linalg.norm(q, axis=1), np.finfo(float).tiny)  # a line search may lay one point on another
     d_u = (along[:, :, None] * q[:, None, :]).reshape(m, 15) / length[:, None]
     D_uu = np.einsum("ma,mb,kl->makbl", along, along, np.eye(3)).reshape(m, 15, 15)
     slope = np.concatenate([np.zeros((m, 1)), c[:, 1]], axis=1)

@@ -46,11 +46,9 @@ class System:
         self._evaluated = None
         # rows of prescribed values are weighted by an axial stiffness, so that norms of the residual are of one kind
         E, r, l = rod.law.E, rod.radius, rod.l0
-        axial, bending = E * np.pi * r**2 / l, 3.0 * E * np.pi * r**4 / l**3  # E A/l, 12 E I/l³
-        self.weight = comm_max(self.comm, axial.max(initial=0.0))
+        self.weight = comm_max(self.comm, (E * np.pi * r**2 / l).max(initial=0.0))
         self.largest_radius = comm_max(self.comm, r.max(initial=0.0))
         self.axial_force = E * np.pi * self.largest_radius**2  # E A
-        self.stiffest = comm_max(self.comm, np.maximum(axial, bending).max(initial=0.0))
 
     # ---- numbering -------------------------------------------------------------------------------------------------
 
@@ -70,10 +68,10 @@ class System:
         self.seat_dofs = self.size_rod + np.arange(SEATS, dtype=PETSc.IntType)
         self.contact_dofs = np.concatenate([self.station_dofs[:, :3].ravel(), self.seat_dofs])
         self._nodes = nodes
-        shear = index_map.local_to_global(self.rod.shear_dofs.ravel().astype(np.int32)).reshape(-1, 2)
+        bow = index_map.local_to_global(self.rod.bow_dofs.ravel().astype(np.int32)).reshape(-1, 2)
         element = np.concatenate(comm.allgather(line.element[: line.owned_cells]))
         self.element_dofs = np.empty((len(element), 2), dtype=PETSc.IntType)
-        self.element_dofs[element] = np.concatenate(comm.allgather(shear))
+        self.element_dofs[element] = np.concatenate(comm.allgather(bow))
         self._all_dofs = np.concatenate([self.station_dofs.ravel(), self.element_dofs.ravel(), self.seat_dofs])
 
     def to_order(self, vector):
@@ -99,7 +97,7 @@ class System:
         A.setType(PETSc.Mat.Type.AIJ)
         ghosts = np.concatenate([np.arange(*index_map.local_range), index_map.ghosts]).astype(PETSc.IntType)
         A.setLGMap(PETSc.LGMap().create(ghosts, comm=self.comm), PETSc.LGMap().create(ghosts, comm=self.comm))
-        # a node couples with two neighbours and two pairs of shear angles (22 entries), and with touching stations
+        # a node couples with two neighbours and two pairs of bows (22 entries), and with touching stations
         A.setPreallocationNNZ((40, 40) if self.comm.size > 1 else 40)
         A.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
         A.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
@@ -200,11 +198,11 @@ class System:
     def rounding(self, X):
         """Norm of the out-of-balance forces that rounding leaves, N.
 
-        That of the increments, times the stiffest of axial and bending stiffness; and the force that strains the
-        wire by 1e-14, so that a step without any change of load is at rest too.
+        That of the increments, times the axial stiffness of the shortest element; and the force that strains the wire
+        by 1e-14, so that a step without any change of load is at rest too.
         """
         greatest = comm_max(self.comm, np.abs(X.getArray(readonly=True)).max(initial=0.0))
-        increments = np.finfo(float).eps * greatest * self.stiffest * np.sqrt(X.getSize())
+        increments = np.finfo(float).eps * greatest * self.weight * np.sqrt(X.getSize())
         return max(increments, 1e-14 * self.axial_force)
 
     def bring_to(self, X):

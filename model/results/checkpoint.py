@@ -13,7 +13,7 @@ from coilset.model.errors import InputError
 from coilset.model.loading.stepper import Step, Walk
 from coilset.model.results.folder import whole
 
-NODAL, CELLWISE = ("x", "R"), ("chord", "shear", "strain", "history")
+NODAL, CELLWISE = ("x", "R"), ("chord", "bow", "strain", "history")
 SPRING_ENTRIES = ("spring", "material", "ends", "mesh", "contact")  # what must be the same to go on
 
 

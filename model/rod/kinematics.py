@@ -39,7 +39,7 @@ def mean_triad(R1, R2, E0, chord, E, A, B, v):
 
 
 @njit(cache=True)
-def section_strains(cells, chords, R, E0, l0, shear, xi, E, P, e):
+def section_strains(cells, chords, R, E0, l0, bow, xi, E, P, e):
     """Section strains of all elements at their two Gauss sections, from (5.2.4) in the element's moving triad.
 
     The nodes' turns θ are measured against the triad of the current configuration, so no restriction to small turns
@@ -50,7 +50,7 @@ def section_strains(cells, chords, R, E0, l0, shear, xi, E, P, e):
         chords: current chords from node 1 to node 2, shape (cells, 3), mm.
         R: turns of the nodes since the stress-free state, shape (nodes, 3, 3).
         E0: triads of the stress-free state, shape (cells, 3, 3), l0: chord lengths there, shape (cells,).
-        shear: shear angles u13, u14, shape (cells, 2).
+        bow: b13, b14, the shear angles and the means of the turns, see coilset.model.rod.forms, shape (cells, 2).
         xi: Gauss abscissae on the chord, shape (2,).
         E: written, current triads (columns), shape (cells, 3, 3).
         P: written, rate of the turns θ against the triad for a relative spin, shape (cells, 2, 3, 3).
@@ -74,12 +74,12 @@ def section_strains(cells, chords, R, E0, l0, shear, xi, E, P, e):
             multiply(A, E0[c], B)
             logarithm(B, t)
             inverse_chart_tangent(t, P[c, a])
-        u13, u14 = shear[c, 0], shear[c, 1]
+        b13, b14 = bow[c, 0], bow[c, 1]
         for g in range(2):
-            H2, H4 = (6.0 * xi[g] - 4.0) / l, (6.0 * xi[g] - 2.0) / l  # second derivatives
+            H = 12.0 * xi[g] - 6.0  # H2″ + H4″, times l
             e[c, g, 0] = math.log(l / l0[c])
-            e[c, g, 1] = u14
-            e[c, g, 2] = -u13
+            e[c, g, 1] = b14 - 0.5 * (t1[2] + t2[2])
+            e[c, g, 2] = 0.5 * (t1[1] + t2[1]) - b13
             e[c, g, 3] = (t2[0] - t1[0]) / l
-            e[c, g, 4] = H2 * (t1[1] + u13) + H4 * (t2[1] + u13)
-            e[c, g, 5] = H2 * (t1[2] + u14) + H4 * (t2[2] + u14)
+            e[c, g, 4] = (t2[1] - t1[1] + H * b13) / l
+            e[c, g, 5] = (t2[2] - t1[2] + H * b14) / l

@@ -40,7 +40,7 @@ class Rod:
             (elements, 2, 6, 6) and (elements, 2); None for straight rods.
 
     Attributes:
-        x, chord, R, shear, strain, history: trial state of the local nodes and owned cells; x in mm, strain shape
+        x, chord, R, bow, strain, history: trial state of the local nodes and owned cells; x in mm, strain shape
             (cells, 2, 6), history shape (cells, 2, points, n_state).
         equilibrium: the same at the last equilibrium, a dict.
     """
@@ -78,14 +78,14 @@ class Rod:
         self._start(x)
 
     def _number_dofs(self):
-        """Local dofs of the nodes' displacements and turns, shape (nodes, 3), and of the cells' shear angles."""
+        """Local dofs of the nodes' displacements and turns, shape (nodes, 3), and of the cells' bows."""
         geometry = self.mesh.geometry
         self.u_dofs, self.turn_dofs = np.empty((2, len(geometry.x), 3), dtype=np.int32)
-        nodal, shear = self.V.sub(0), self.V.sub(1)
+        nodal, bow = self.V.sub(0), self.V.sub(1)
         for i in range(3):
             self.u_dofs[geometry.dofmap, i] = nodal.sub(i).dofmap.list
             self.turn_dofs[geometry.dofmap, i] = nodal.sub(i + 3).dofmap.list
-        self.shear_dofs = np.stack([shear.sub(i).dofmap.list[: self.line.owned_cells, 0] for i in range(2)], axis=1)
+        self.bow_dofs = np.stack([bow.sub(i).dofmap.list[: self.line.owned_cells, 0] for i in range(2)], axis=1)
 
     def _start(self, x):
         """The stress-free state."""
@@ -94,7 +94,7 @@ class Rod:
         self.chord = x[self.cells[:, 1]] - x[self.cells[:, 0]]
         self.R = np.tile(np.eye(3), (len(x), 1, 1))
         self.chart = np.tile(np.eye(3), (len(x), 1, 1))
-        self.shear = np.zeros((n, 2))
+        self.bow = np.zeros((n, 2))
         self.strain = np.zeros((n, 2, 6))
         self.history = np.zeros((n, 2, points, self.law.n_state))
         self.equilibrium = {}
@@ -108,15 +108,14 @@ class Rod:
             True, or False if the law found no solution at some section point of this rank.
         """
         increment, start = self.increment.x.array, self.equilibrium
-        # Chords are carried on by differences of the increments: those of the positions would lose so many digits that
-        # the bending of short elements, 12 E I/l³, could not come to rest.
+        # Chords are carried on by differences of the increments: those of the positions would lose digits in l/L.
         moved = increment[self.u_dofs]
         np.add(start["x"], moved, out=self.x)
         self.chord = start["chord"] + (moved[self.cells[:, 1]] - moved[self.cells[:, 0]])
         turn_nodes(increment[self.turn_dofs], start["R"], self.R, self.chart)
-        self.shear = start["shear"] + increment[self.shear_dofs]
+        self.bow = start["bow"] + increment[self.bow_dofs]
         section_strains(
-            self.cells, self.chord, self.R, self.E0, self.l0, self.shear, GAUSS,
+            self.cells, self.chord, self.R, self.E0, self.l0, self.bow, GAUSS,
             self.E.values, self.P.values, self.strain,
         )  # fmt: skip
         self.T.values[:] = self.chart[self.cells]
@@ -129,7 +128,7 @@ class Rod:
 
     def commit(self):
         """Make the trial state the equilibrium and set the increments to zero."""
-        for name in ("x", "chord", "R", "shear", "strain", "history"):
+        for name in ("x", "chord", "R", "bow", "strain", "history"):
             self.equilibrium[name] = getattr(self, name).copy()
         self.increment.x.array[:] = 0.0
 

@@ -20,7 +20,11 @@ PRECONDITIONED = {f"npc_{key}": value for key, value in (ONE_STEP | KEPT).items(
 
 METHODS = {
     # Newton-Raphson (4.4.4)
-    "newton": {"snes_type": "newtonls", "snes_linesearch_type": "bt", "snes_max_it": 30, **DIRECT},
+    # a step that the line search cuts below 1e-2 leads nowhere: a smaller load step is cheaper
+    "newton": {
+        "snes_type": "newtonls", "snes_linesearch_type": "bt", "snes_linesearch_minlambda": 1e-2, "snes_max_it": 30,
+        **DIRECT,
+    },
     # (4.4.5), with a line search for the zero of the out-of-balance work along the direction
     "modified-newton": {
         "snes_type": "newtonls", "snes_linesearch_type": "cp", "snes_lag_jacobian": RENEWAL, "snes_max_it": 100,
@@ -63,7 +67,8 @@ def options(method, ranks, extra=None):
         InputError: if there is no such method.
     """
     check_method(method)
-    chosen = dict(METHODS[method])
+    # a line search that finds nothing must not pass for a small step: stol = 0
+    chosen = {"snes_stol": 0.0} | METHODS[method]
     prefix = "npc_" if "npc_pc_type" in chosen else ""
     if ranks > 1:
         chosen[f"{prefix}pc_factor_mat_solver_type"] = "mumps"
