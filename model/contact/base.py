@@ -1,14 +1,17 @@
 """What every kind of contact gives to the problem: forces and stiffness on named degrees of freedom.
 
 Degrees of freedom are numbered independently of the partition: 3 i + k is the displacement k of station i; after
-those of the n stations come the axial positions of the seats, 3 n + j. Positions of all stations are known on every
-rank (they are small), every rank evaluates all contacts, and each row of the system is added where it lives.
+those of the n stations come level and two tilts of the bottom and of the top seat, 3 n + j. Positions of all stations
+are known on every rank (they are small), every rank evaluates all contacts, and each row is added where it lives.
 """
 
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+
+SEAT_DOFS = 3  # level z, tilts θx and θy
+TOUCH = 1e-6  # N
 
 
 @dataclass
@@ -21,6 +24,7 @@ class Contribution:
         stiffness: shape (m, k, k), N/mm.
         pressure: compressive force of each element, positive when closed, shape (m,), N.
         penetration: how far the bodies overlap, shape (m,), mm; negative where they do not.
+        point: number of each element's point or pair in its kind of contact, shape (m,).
     """
 
     dofs: np.ndarray
@@ -28,11 +32,12 @@ class Contribution:
     stiffness: np.ndarray
     pressure: np.ndarray
     penetration: np.ndarray
+    point: np.ndarray
 
     @property
     def closed(self):
-        """Number of closed elements."""
-        return int(np.count_nonzero(self.pressure > 0.0))
+        """Number of closed elements; what presses by less than TOUCH does so by rounding."""
+        return int(np.count_nonzero(self.pressure > TOUCH))
 
 
 def one_sided(g, c, onset):
@@ -58,6 +63,10 @@ class Contact(Protocol):
 
     name: str
 
+    def depth(self, x: np.ndarray, seats: np.ndarray) -> float:
+        """Greatest penetration, mm; 0 where nothing touches, or for a kind that may be pressed in at will."""
+        ...
+
     def evaluate(self, x: np.ndarray, seats: np.ndarray) -> Contribution:
-        """Forces and stiffness at station positions `x`, shape (n, 3), and seat positions, shape (2,), mm."""
+        """Forces and stiffness at station positions `x`, shape (n, 3), mm, and seats, shape (6,), mm and rad."""
         ...

@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from coilset.model.contact.centreline import CentreLine
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.gap import Gaps
-from coilset.model.contact.seat import ABSCISSAE, Seats
+from coilset.model.contact.seat import Seat
 
 SOFTNESS = 40.0  # default bedding is E/40: a wire of steel sinks in by some thousandths of its diameter at block
 ONSET = 1e-3  # way over which contact sets in, in wire diameters
@@ -25,26 +26,23 @@ def build_contacts(spec, ends, spring, turns, stations, E):
         List of Contacts.
     """
     bedding = spec.bedding or E / SOFTNESS
-    lengths = np.linalg.norm(np.diff(stations, axis=0), axis=1)
-    share = bedding * 0.5 * (np.append(lengths, 0.0) + np.append(0.0, lengths))  # of each station
-    radius = 0.5 * spring.wire_diameter(turns)
+    radius, lengths = 0.5 * spring.wire_diameter(turns), np.diff(spring.arc_length(turns))
     onset = ONSET * 2.0 * float(radius.min())
+    points = CentreLine(turns, radius, lengths).points()
     if spec.coils == "closest":
-        contacts = [Coils(turns, radius, share, onset)]
+        contacts = [Coils(points, stations, bedding, onset)]
     else:
-        contacts = [gaps_one_turn_apart(turns, radius, share, onset)]
+        contacts = [gaps_one_turn_apart(turns, radius, lengths, bedding, onset)]
     if ends == "seats":
-        inside = turns[:-1, None] + np.diff(turns)[:, None] * ABSCISSAE
-        tips, along = (
-            np.stack([spring.seat_distance(where, end) for end in ("bottom", "top")])
-            for where in (turns[[0, -1]], inside)
-        )
-        contacts.append(Seats(lengths, (np.diagonal(tips).copy(), along), bedding, 2.0 * float(radius.min()), onset))
+        for end, level in (("bottom", 0.0), ("top", spring.free_length)):
+            reach = spring.seat_distance(points.turns, end)
+            contacts.append(Seat(end, points, reach, stations, level, bedding, onset))
     return contacts
 
 
-def gaps_one_turn_apart(turns, radius, share, onset):
+def gaps_one_turn_apart(turns, radius, lengths, bedding, onset):
     """The thesis's gap elements between stations that lie above each other."""
+    share = bedding * 0.5 * (np.append(lengths, 0.0) + np.append(0.0, lengths))  # of each station
     lower = np.flatnonzero(turns <= turns[-1] - 1.0 + 1e-9)
     upper = np.searchsorted(turns, turns[lower] + 1.0 - 1e-9)
     return Gaps(np.stack([lower, upper], axis=1), radius[lower] + radius[upper], share[lower], onset)

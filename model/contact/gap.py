@@ -24,6 +24,10 @@ class Gaps:
         self.onset = onset
         self.dofs = (3 * self.pairs[:, :, None] + np.arange(3)).reshape(-1, 6)
 
+    def depth(self, x, seats):
+        """Gap elements are few: they close and open by the iteration alone, as in the thesis."""
+        return 0.0
+
     def evaluate(self, x, seats):
         """Gap g = |x2 − x1| − free length; the force acts along the connection, with its exact derivative."""
         d = x[self.pairs[:, 1]] - x[self.pairs[:, 0]]
@@ -33,5 +37,6 @@ class Gaps:
         force = -pressure[:, None] * n
         nn = n[:, :, None] * n[:, None, :]
         k = c[:, None, None] * nn - (pressure / length)[:, None, None] * (np.eye(3) - nn)
-        forces, stiffness = np.hstack([-force, force]), np.block([[k, -k], [-k, k]])
-        return Contribution(self.dofs, forces, stiffness, pressure, self.free_length - length)
+        penetration = self.free_length - length
+        return Contribution(self.dofs, np.hstack([-force, force]), np.block([[k, -k], [-k, k]]), pressure, penetration,
+                            np.arange(len(length)))  # fmt: skip

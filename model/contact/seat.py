@@ -1,70 +1,109 @@
-"""Wire against two flat seats across the axis z, bedded along its underside (7.1.1, Bettung)."""
+"""Wire against a seat: its underside bedded along the wire, touching where it is (7.1.1, Bettung).
+
+A seat has three degrees of freedom: its level z and small tilts θx, θy about the coil's axis. Over the point (x, y) its
+surface lies at z + θx y − θy x, and rises outwards with tan β on a cone.
+"""
 
 import numpy as np
 
-from coilset.model.contact.base import Contribution, one_sided
+from coilset.model.contact.base import SEAT_DOFS, Contribution, one_sided
+from coilset.model.contact.centreline import STENCIL
 
-CORD = 1e-3  # stiffness of the tips' cords as a share of the tips' bedding
-ABSCISSAE = 0.5 + np.array([-0.5, 0.0, 0.5]) * np.sqrt(0.6)  # Gauss points of an element
-WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
-SIDE = np.array([[1.0], [-1.0]])  # the wire lies above the bottom seat, below the top seat
+CORD = 1e-3  # stiffness of the tip's cord: this share of the bedding of a wire diameter
 
 
-class Seats:
-    """Bottom and top seat: where the underside sinks into the seat it is pushed out in proportion to the penetration.
+class Seat:
+    """The bottom or the top seat: where the underside sinks in, it is pushed out in proportion to the penetration.
 
-    The bedding is integrated along the elements, so that a coil that lies down does so evenly. The two tips are points
-    of their own; they bear from the first touch, and hang on cords: a tip that lifts off is pulled back with a
-    thousandth of its stiffness, so that "zero force" is the one position in which both tips just touch, and the spring
-    cannot float between the seats.
+    The wire's tip bears from its first touch, and hangs on a cord: where it lifts off it is pulled back softly, so that
+    "zero force" is the one position in which both tips just touch, and the spring cannot float between the seats.
 
     Args:
-        lengths: of the elements, shape (n - 1,), mm.
-        reach: distance from the centre line to the underside at both seats, at the tips and at the elements' Gauss
-            points: shape (2,) and (2, n - 1, 3), mm.
+        end: `bottom` or `top`.
+        points: WirePoints.
+        reach: distance from the centre line to the surface that meets the seat, at the points, shape (m,), mm.
+        stations: stress-free positions, shape (n, 3), mm.
+        level: of the seat that just touches the stress-free spring, mm.
         bedding: force per length of wire and penetration, N/mm per mm.
-        tip: length of wire that bears with the tip, mm.
         onset: way over which contact sets in, mm.
+        slope: tan β of a conical seat that rises outwards, 0 for a flat one.
+        stepped: turns from the tip over which the seat follows the wire's underside; beyond it goes on level.
+        tilts: may the seat tilt?
     """
 
-    name = "seats"
+    def __init__(self, end, points, reach, stations, level, bedding, onset, slope=0.0, stepped=0.0, tilts=False):
+        self.name, self.points, self.onset, self.slope = f"{end} seat", points, onset, slope
+        self.number, self.side = (0, 1.0) if end == "bottom" else (1, -1.0)  # the wire lies above the bottom seat
+        self.tip = 0 if end == "bottom" else len(points) - 1
+        self.stiffness = bedding * points.length
+        self.cord = CORD * bedding * 2.0 * points.radius[self.tip]
+        self.reach = np.array(reach, dtype=float)
+        start = np.zeros(2 * SEAT_DOFS)
+        start[SEAT_DOFS * self.number] = level
+        gap = self.gaps(points.at(stations), start)
+        if stepped:
+            away = np.abs(points.turns - points.turns[self.tip])
+            on_step = away <= stepped + 1e-9
+            last = np.flatnonzero(on_step)[-1 if self.side > 0 else 0]
+            self.reach += np.where(on_step, gap, gap[last])
+        else:
+            self.reach += gap.min()  # zero on a flat seat; a cone is moved until it touches
+        seat = np.arange(SEAT_DOFS * self.number, SEAT_DOFS * (self.number + 1))
+        self.dofs = np.hstack([points.dofs, np.tile(3 * len(stations) + seat, (len(points), 1))])
+        # on a flat seat that cannot tilt, only z of wire and seat take part
+        self.variables = np.arange(3 * STENCIL + SEAT_DOFS)
+        if not (tilts or slope):
+            self.variables = np.append(np.arange(2, 3 * STENCIL, 3), 3 * STENCIL)
 
-    def __init__(self, lengths, reach, bedding, tip, onset):
-        n, self.onset = len(lengths) + 1, onset
-        self.first = np.concatenate([np.repeat(np.arange(n - 1), 3), [0, n - 2]])
-        self.xi = np.concatenate([np.tile(ABSCISSAE, n - 1), [0.0, 1.0]])
-        share = bedding * np.concatenate([(lengths[:, None] * WEIGHTS).ravel(), [tip, tip]])
-        tips, along = reach
-        m = len(self.first)
-        self.reach = np.concatenate([along.reshape(2, -1), np.repeat(tips[:, None], 2, axis=1)], axis=1)
-        self.cord = np.zeros((2, m))
-        self.stiffness = np.tile(share, (2, 1))
-        for seat in range(2):  # each seat has its own tip only
-            self.cord[seat, m - 2 + seat] = CORD * bedding * tip
-            self.stiffness[seat, m - 1 - seat] = 0.0
-        z = np.stack([3 * self.first + 2, 3 * self.first + 5], axis=1)
-        self.dofs = np.concatenate([np.column_stack([z, np.full(m, 3 * n + seat)]) for seat in range(2)])
-        self.length = np.concatenate([(lengths[:, None] * WEIGHTS).ravel(), [0.0, 0.0]])
+    def gaps(self, p, seats):
+        """Gap of the underside at the points `p`, shape (m, 3), negative where it sinks in, shape (m,), mm."""
+        z, θx, θy = seats[SEAT_DOFS * self.number : SEAT_DOFS * (self.number + 1)]
+        above = self.side * (p[:, 2] - z - θx * p[:, 1] + θy * p[:, 0])
+        if self.slope:
+            above = (above - self.slope * np.hypot(p[:, 0], p[:, 1])) / np.hypot(1.0, self.slope)
+        return above - self.reach
 
-    def points(self, x):
-        """Positions of the centre line at the bedded points, shape (m, 3), mm."""
-        return (1.0 - self.xi)[:, None] * x[self.first] + self.xi[:, None] * x[self.first + 1]
-
-    def laws(self, x, seats):
-        """Gap, compressive force and stiffness of every point at both seats, each of shape (2, m)."""
-        g = SIDE * (self.points(x)[:, 2] - seats[:, None]) - self.reach
-        pressure, c = one_sided(g, self.stiffness, self.onset)
-        tip, closed = self.cord > 0.0, g <= 0.0
-        pressure = np.where(tip, np.where(closed, -self.stiffness * g, 0.0), pressure)
-        return g, pressure, np.where(tip, np.where(closed, self.stiffness, self.cord), c)
+    def depth(self, x, seats):
+        """Greatest penetration, mm."""
+        return -self.gaps(self.points.at(x), seats).min(initial=0.0)
 
     def evaluate(self, x, seats):
-        """Gap g of the underside, g < 0 where it sinks in; the force acts along the axis."""
-        g, pressure, c = self.laws(x, seats)
-        force = SIDE * (self.cord * np.maximum(g, 0.0) - pressure)
-        bearing = np.flatnonzero(c > 0.0)
-        shape = np.column_stack([1.0 - self.xi, self.xi, -np.ones(len(self.xi))])  # of the height over the seat
-        shape = np.concatenate([shape, shape])[bearing]
-        k = c.ravel()[bearing, None, None] * shape[:, :, None] * shape[:, None, :]
-        forces = force.ravel()[bearing, None] * shape
-        return Contribution(self.dofs[bearing], forces, k, pressure.ravel()[bearing], -g.ravel()[bearing])
+        """Forces across the seat's surface, for the points that touch, and for the tip on its cord."""
+        p = self.points.at(x)
+        gap = self.gaps(p, seats)
+        bearing = np.flatnonzero((gap < 0.0) | (np.arange(len(gap)) == self.tip))
+        gap, p = gap[bearing], p[bearing]
+        pressure, c = one_sided(gap, self.stiffness[bearing], self.onset)
+        force, tip = pressure.copy(), np.flatnonzero(bearing == self.tip)
+        c[tip] = np.where(gap[tip] > 0.0, self.cord, self.stiffness[self.tip])
+        force[tip] = -c[tip] * gap[tip]
+        pressure[tip] = np.maximum(force[tip], 0.0)
+        grad, hessian = self._derivatives(p, seats, self.points.weights[bearing])
+        k = c[:, None, None] * grad[:, :, None] * grad[:, None, :] - force[:, None, None] * hessian
+        pick = self.variables
+        return Contribution(
+            self.dofs[np.ix_(bearing, pick)], -force[:, None] * grad[:, pick], k[np.ix_(np.arange(len(k)), pick, pick)],
+            pressure, -gap, bearing,
+        )  # fmt: skip
+
+    def _derivatives(self, p, seats, weights):
+        """Gradient and second derivative of the gaps by four stations and the seat, shapes (m, 15) and (m, 15, 15)."""
+        θx, θy = seats[SEAT_DOFS * self.number + 1 : SEAT_DOFS * self.number + 3]
+        m, x, y = len(p), p[:, 0], p[:, 1]
+        one = np.ones(m)
+        # by x, y, z of the point, then level and tilts of the seat
+        grad = self.side * np.stack([θy * one, -θx * one, one, -one, -y, x], axis=1)
+        hessian = np.zeros((m, 6, 6))
+        hessian[:, 1, 4] = hessian[:, 4, 1] = -self.side
+        hessian[:, 0, 5] = hessian[:, 5, 0] = self.side
+        if self.slope:
+            ρ = np.hypot(x, y)
+            e = p[:, :2] / ρ[:, None]
+            grad[:, :2] -= self.slope * e
+            hessian[:, :2, :2] -= self.slope * (np.eye(2) - e[:, :, None] * e[:, None, :]) / ρ[:, None, None]
+            grad, hessian = grad / np.hypot(1.0, self.slope), hessian / np.hypot(1.0, self.slope)
+        spread = np.zeros((m, 3 * STENCIL + SEAT_DOFS, 6))  # from the point's variables to those of its stations
+        for k in range(3):
+            spread[:, k : 3 * STENCIL : 3, k] = weights
+            spread[:, 3 * STENCIL + k, 3 + k] = 1.0
+        return (spread @ grad[:, :, None])[..., 0], spread @ hessian @ np.swapaxes(spread, 1, 2)

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from coilset.model.contact.seat import Seats
+from coilset.model.contact.base import SEAT_DOFS
+from coilset.model.contact.seat import Seat
 
 
 class Drive:
@@ -22,8 +23,8 @@ class Drive:
             self.axial = int(top[2])
             held = [*bottom, *np.delete(top, 2), *system.seat_dofs]
         else:
-            self.axial = int(system.seat_dofs[1])
-            held = [*np.delete(bottom, 2), *np.delete(top, 2), system.seat_dofs[0]]
+            self.axial = int(system.seat_dofs[SEAT_DOFS])
+            held = [*np.delete(bottom, 2), *np.delete(top, 2), *np.delete(system.seat_dofs, SEAT_DOFS)]
         self.held = {int(dof): 0.0 for dof in held}
         self.height = free_length
         self.force = 0.0
@@ -54,4 +55,4 @@ class Drive:
     @property
     def has_seats(self):
         """Does the spring stand between one-sided seats?"""
-        return any(isinstance(contact, Seats) for contact in self.system.contacts)
+        return any(isinstance(contact, Seat) for contact in self.system.contacts)

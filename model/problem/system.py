@@ -1,6 +1,6 @@
-"""One vector for PETSc: the rod's increments and the axial positions of the seats, with constraints and loads.
+"""One vector for PETSc: the rod's increments, levels and tilts of the seats, with constraints and loads.
 
-The rod's unknowns keep DOLFINx's numbering; the seats' positions follow as the last entries of the last rank, so that
+The rod's unknowns keep DOLFINx's numbering; those of the seats follow as the last entries of the last rank, so that
 DOLFINx assembles into the enlarged matrix as it stands.
 """
 
@@ -10,7 +10,12 @@ from dolfinx.fem import petsc as _  # noqa: F401  (registers the PETSc assembly)
 from mpi4py import MPI
 from petsc4py import PETSc
 
-SEATS = 2
+from coilset.model.contact.base import SEAT_DOFS
+
+SEATS = 2 * SEAT_DOFS  # unknowns of bottom and top seat: level and two tilts each
+DEEP = 0.02  # penetration in wire diameters that no correction need avoid; at rest it is some tenths of that
+GROWTH = 1.5
+LEAST_WAY = 0.02  # share of a correction that is always gone
 
 
 def comm_max(comm, value):
@@ -24,9 +29,10 @@ class System:
     Args:
         rod: Rod.
         contacts: kinds of contact, see coilset.model.contact.base.
-        seats: start positions of bottom and top seat, mm.
+        seats: levels of bottom and top seat at the start, mm.
 
     Attributes:
+        seats: level and tilts θx, θy of the bottom seat, then those of the top seat, shape (6,), mm and rad.
         fixed: system dof → increment prescribed in this step; set by the load program before each solve.
         forces: system dof → external force, N or N mm.
         failed: True if the last evaluation found no stress at some point.
@@ -35,7 +41,8 @@ class System:
 
     def __init__(self, rod, contacts=(), seats=(0.0, 0.0)):
         self.rod, self.contacts, self.comm = rod, list(contacts), rod.mesh.comm
-        self.seats_start = np.array(seats, dtype=float)
+        self.seats_start = np.zeros(SEATS)
+        self.seats_start[::SEAT_DOFS] = seats
         self.seats = self.seats_start.copy()
         self.fixed, self.forces, self.failed = {}, {}, False
         self._number()
@@ -138,11 +145,13 @@ class System:
     def commit(self):
         """Make the trial state the equilibrium."""
         self.internal.copy(self.reaction_start)
+        self._evaluated = None
         self.rod.commit()
         self.seats_start = self.seats.copy()
 
     def restore(self):
         """Go back to the last equilibrium."""
+        self._evaluated = None
         self.seats = self.seats_start.copy()
         self.rod.restore()
 
@@ -167,8 +176,7 @@ class System:
 
     def residual(self, snes, X, F):
         """SNES callback: internal minus external forces; increment minus prescribed increment where it is fixed."""
-        self.set_increments(X)
-        self.assemble_internal()
+        self.bring_to(X)
         self.balance(X, F)
 
     def balance(self, X, F):
@@ -218,6 +226,36 @@ class System:
         off = [abs(x[dof - start] - value) for dof, value in self.fixed.items() if start <= dof < stop]
         scale = max((abs(value) for value in self.fixed.values()), default=0.0)
         return comm_max(self.comm, max(off, default=0.0)) > 1e-12 * scale
+
+    def free_way(self, X, Y, sign=1.0):
+        """Greatest λ ≤ 1 up to which the increments X + λ · sign · Y do not press coils or seats far into each other.
+
+        Penetrations up to DEEP wire diameters are free; from deeper ones it goes on as long as they less than double.
+        """
+        if not self.contacts:
+            return 1.0
+        n, start = len(self.station_dofs), self.gather(self.rod.equilibrium["x"])
+        (x, seats), (u, moved) = ((values[: 6 * n].reshape(n, 6)[:, :3], values[-SEATS:])
+                                  for values in (self.to_order(X), sign * self.to_order(Y)))  # fmt: skip
+        x, seats = start + x, self.seats_start + seats
+
+        def depth(share):
+            return max(contact.depth(x + share * u, seats + share * moved) for contact in self.contacts)
+
+        allowed = max(DEEP * 2.0 * self.largest_radius, GROWTH * depth(0.0))
+        if depth(1.0) <= allowed:
+            return 1.0
+        low, high = LEAST_WAY, 1.0
+        for _attempt in range(6):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if depth(middle) <= allowed else (low, middle)
+        return low
+
+    def clear_fixed(self, vector):
+        """Zero the entries of a vector that belong to prescribed values."""
+        start, stop = vector.getOwnershipRange()
+        values = vector.getArray()
+        values[[dof - start for dof in self.fixed if start <= dof < stop]] = 0.0
 
     def imbalance(self, F):
         """How far the trial state with residual `F` is from equilibrium.

@@ -8,6 +8,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from coilset.model.errors import InputError
+from coilset.model.solvers.damping import Damping
 from coilset.model.solvers.methods import ONE_STEP, check_method, options
 
 Reason = PETSc.SNES.ConvergedReason
@@ -94,9 +95,23 @@ class Solver:
         if self.snes is not None:
             self.snes.destroy()
         self.snes = self._build("", self._settings)
+        if self.damped:
+            self.snes.setLineSearchPreCheck(Damping(self.system, self.F))
         if "snes_convergence_test" not in self.extra:
             me = weakref.proxy(self)  # PETSc keeps its callbacks out of Python's sight: no cycle through them
             self.snes.setConvergenceTest(lambda *arguments: me._test(*arguments))
+
+    @property
+    def damped(self):
+        """Are corrections scaled by Damping? They are not where the user names a line search of his own."""
+        return self.method == "newton" and "snes_linesearch_type" not in self.extra
+
+    def _start_at_rest(self, guess):
+        """Go along the guess only as far as the contacts allow."""
+        self.X.set(0.0)
+        share = self.system.free_way(self.X, guess)
+        guess.copy(self.X)
+        self.X.scale(share)
 
     def _set_load(self):
         """What the step adds to loads and prescribed values: minus the residual at its start."""
@@ -173,6 +188,8 @@ class Solver:
             self.X.set(0.0)
         else:
             guess.copy(self.X)
+            if self.damped:
+                self._start_at_rest(guess)
         if kind not in FORGETFUL:
             self._renew()
         if kind == ARC:

@@ -1,0 +1,168 @@
+"""Where a wire comes near itself: for points of the wire the closest places of the other coils, in linear time."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+APART = 0.5  # turns between two places of the wire that may touch, at least
+CELLS = 16  # cells of the grid per station, at most
+
+
+@njit(cache=True)
+def grid(x, size):
+    """Sort stations into cubes: box corner, cubes per axis, cube size, first station of a cube, next of a station."""
+    n = len(x)
+    low, high = x[0].copy(), x[0].copy()
+    for i in range(n):
+        for k in range(3):
+            low[k], high[k] = min(low[k], x[i, k]), max(high[k], x[i, k])
+    count = np.empty(3, np.int64)
+    size = max(size, 1e-4 * max(high[0] - low[0], high[1] - low[1], high[2] - low[2]))
+    while True:
+        for k in range(3):
+            count[k] = int((high[k] - low[k]) / size) + 1
+        if count[0] * count[1] * count[2] <= CELLS * n:
+            break
+        size *= 1.3
+    head, after = np.full(count[0] * count[1] * count[2], -1), np.empty(n, np.int64)
+    for i in range(n):
+        cube = 0
+        for k in range(3):
+            cube = cube * count[k] + int((x[i, k] - low[k]) / size)
+        after[i], head[cube] = head[cube], i
+    return low, count, size, head, after
+
+
+@njit(cache=True)
+def distance2(p, x, j):
+    """Square of the distance of the point `p` from station `j`."""
+    return (p[0] - x[j, 0]) ** 2 + (p[1] - x[j, 1]) ** 2 + (p[2] - x[j, 2]) ** 2
+
+
+@njit(cache=True)
+def place(y, first, cubic, e, xi, c, order):
+    """Write into `c` the curve's place and radius (order 0) or their derivatives by ξ (1, 2) on element `e`."""
+    for k in range(4):
+        c[k] = 0.0
+    for m in range(min(4, len(y))):
+        a = cubic[e, m]
+        if order == 0:
+            w = a[0] + xi * (a[1] + xi * (a[2] + xi * a[3]))
+        elif order == 1:
+            w = a[1] + xi * (2.0 * a[2] + xi * 3.0 * a[3])
+        else:
+            w = 2.0 * a[2] + 6.0 * a[3] * xi
+        for k in range(4):
+            c[k] += w * y[first[e] + m, k]
+
+
+@njit(cache=True, error_model="numpy")
+def slope_and_curvature(p, y, first, cubic, e, xi, work):
+    """First and second derivative by ξ of the gap |p − c(ξ)| − r(ξ) on element `e`."""
+    c, dc, ddc = work[0], work[1], work[2]
+    place(y, first, cubic, e, xi, c, 0)
+    place(y, first, cubic, e, xi, dc, 1)
+    place(y, first, cubic, e, xi, ddc, 2)
+    d = math.sqrt((p[0] - c[0]) ** 2 + (p[1] - c[1]) ** 2 + (p[2] - c[2]) ** 2)
+    along = speed2 = bend = 0.0
+    for k in range(3):
+        n = (p[k] - c[k]) / d
+        along += n * dc[k]
+        speed2 += dc[k] ** 2
+        bend += n * ddc[k]
+    return -along - dc[3], (speed2 - along**2) / d - bend - ddc[3]
+
+
+@njit(cache=True, error_model="numpy")
+def closest(p, y, first, cubic, j, work):
+    """Closest place to `p` along the wire, sought from station `j`: element, ξ, and whether it is inside the wire."""
+    elements = len(first)
+    e, xi = (j, 0.0) if j < elements else (j - 1, 1.0)
+    slope, _ = slope_and_curvature(p, y, first, cubic, e, xi, work)
+    direction = -1 if slope > 0.0 else 1
+    if direction < 0 and xi == 0.0:
+        e, xi = e - 1, 1.0
+    while 0 <= e < elements:  # from the element's near end, where the gap falls, to its far end
+        far = 1.0 if direction > 0 else 0.0
+        if slope_and_curvature(p, y, first, cubic, e, far, work)[0] * direction < 0.0:
+            e, xi = e + direction, 1.0 - far
+            continue
+        low, high = 0.0, 1.0
+        xi = 0.5
+        for _ in range(60):  # Newton, kept between bounds where the slope changes its sign
+            slope, curvature = slope_and_curvature(p, y, first, cubic, e, xi, work)
+            if slope > 0.0:
+                high = xi
+            else:
+                low = xi
+            step = -slope / curvature if curvature > 0.0 else math.inf
+            new = xi + step
+            if not low <= new <= high:
+                new = 0.5 * (low + high)
+            moved, xi = abs(new - xi), new
+            if moved < 1e-14:
+                break
+        return e, xi, True
+    if e < 0:
+        return 0, 0.0, False
+    return elements - 1, 1.0, False
+
+
+@njit(cache=True, error_model="numpy")
+def near_places(p, radius, turns, y, station_turns, first, cubic, overlap, margin, pair, where):
+    """All places where a point of the wire and another coil are nearer than `margin`.
+
+    Args:
+        p: points, shape (m, 3), with radius and turn, shape (m,).
+        y: stations with their radii, shape (n, 4); station_turns: shape (n,).
+        first, cubic: of the CentreLine.
+        overlap: what counts as touching though the bodies overlap, for the coil before and after, shape (m, 2), mm.
+        margin: greatest gap, mm.
+        pair: written, point, element and whether the place is inside the wire, shape (capacity, 3).
+        where: written, ξ and gap, shape (capacity, 2).
+
+    Returns:
+        Number of places; more than `capacity` if the arrays were too short.
+    """
+    n, widest, longest = len(y), 0.0, 0.0
+    for i in range(n):
+        widest = max(widest, y[i, 3])
+        if i:
+            longest = max(longest, distance2(y[i], y, i - 1))
+    # the station nearest to a place is at most half an element from it
+    reach = 2.0 * widest + margin + 0.6 * math.sqrt(longest)
+    low, count, size, head, after = grid(y[:, :3], reach)
+    work, cube, found = np.empty((3, 4)), np.empty(3, np.int64), 0
+    for i in range(len(p)):
+        for k in range(3):
+            cube[k] = math.floor((p[i, k] - low[k]) / size)
+        for a in range(max(cube[0] - 1, 0), min(cube[0] + 2, count[0])):
+            for b in range(max(cube[1] - 1, 0), min(cube[1] + 2, count[1])):
+                for c in range(max(cube[2] - 1, 0), min(cube[2] + 2, count[2])):
+                    j = head[(a * count[1] + b) * count[2] + c]
+                    while j >= 0:
+                        here, now = distance2(p[i], y, j), j
+                        j = after[j]
+                        if here > reach**2 or abs(station_turns[now] - turns[i]) < APART:
+                            continue
+                        if now > 0 and distance2(p[i], y, now - 1) < here:
+                            continue
+                        if now + 1 < n and distance2(p[i], y, now + 1) <= here:
+                            continue
+                        e, xi, inside = closest(p[i], y, first, cubic, now, work)
+                        turn = station_turns[e] + xi * (station_turns[e + 1] - station_turns[e])
+                        if abs(turn - turns[i]) < APART:
+                            continue
+                        place(y, first, cubic, e, xi, work[0], 0)
+                        gap = 0.0
+                        for k in range(3):
+                            gap += (p[i, k] - work[0, k]) ** 2
+                        gap = math.sqrt(gap) - radius[i] - work[0, 3] - overlap[i, 1 if turn > turns[i] else 0]
+                        if gap >= margin:
+                            continue
+                        if found < len(pair):
+                            pair[found, 0], pair[found, 1], pair[found, 2] = i, e, inside
+                            where[found, 0], where[found, 1] = xi, gap
+                        found += 1
+    return found
