@@ -36,7 +36,9 @@ class Seat:
         self.number, self.side = (0, 1.0) if end == "bottom" else (1, -1.0)  # the wire lies above the bottom seat
         self.tip = 0 if end == "bottom" else len(points) - 1
         self.stiffness = bedding * points.length
-        self.cord = CORD * bedding * 2.0 * points.radius[self.tip]
+        # a wire that stands on its tip bears by its end face, whatever the mesh
+        self.stiffness[self.tip] = bedding * 2.0 * points.radius[self.tip]
+        self.cord = CORD * self.stiffness[self.tip]
         self.reach = np.array(reach, dtype=float)
         start = np.zeros(2 * SEAT_DOFS)
         start[SEAT_DOFS * self.number] = level
