@@ -15,11 +15,12 @@ INLINE = KERNEL | {"forceinline": True}
 
 # Head of the parameter array.
 SPIN = 0  # 1: with the spin terms (5.2.33), 0: without
-TEMPERATURE = 1  # K, of points whose history row holds none
+TEMPERATURE = 1  # K, of points whose history row holds none, at the end of the increment
 HEATING = 2  # K mm²/N: rise of temperature per plastic work b*; 0: isothermal
 TOLERANCE = 3  # relative error of stress that the Heun integrator allows in a sub-step; inf: one step
-N_ROWS = 4  # number of temperatures
-ROWS_START = 5
+CHANGE = 4  # K: prescribed change of temperature over the increment; 0: isothermal or adiabatic
+N_ROWS = 5  # number of temperatures
+ROWS_START = 6
 
 # A row: temperature, elastic constants, then the constants of 6.2.2 by their names there; KAPPA is a/(2G).
 ROW_T, YOUNG, SHEAR, ALPHA, K0, A1, A2, A3, B1, K1, KINF, A4, A5, A6, A7, KAPPA = range(16)
@@ -50,7 +51,7 @@ def row_functions(p, o, b):
 
 @njit(**INLINE)
 def table_place(p, temperature):
-    """Row below `temperature` (its offset in `p`) and the weight of the row above; the end intervals go on outside."""
+    """Row below `temperature` (its offset in `p`) and the weight of the row above; see `inside_table`."""
     last = int(p[N_ROWS]) - 2
     row = 0
     while row < last and temperature > p[ROWS_START + (row + 1) * ROW_LENGTH]:
@@ -73,6 +74,8 @@ def functions(p, b, temperature):
         return row_functions(p, ROWS_START, b)
     o, w = table_place(p, temperature)
     k2, dk2, zeta, dzeta, kappa, dkappa = row_functions(p, o, b)
+    if k2 == math.inf:
+        return k2, dk2, zeta, dzeta, kappa, dkappa
     k2_up, dk2_up, zeta_up, dzeta_up, kappa_up, dkappa_up = row_functions(p, o + ROW_LENGTH, b)
     slope = p[HEATING] / (p[o + ROW_LENGTH] - p[o])
     return (
@@ -83,6 +86,23 @@ def functions(p, b, temperature):
         kappa + w * (kappa_up - kappa),
         dkappa + w * (dkappa_up - dkappa) + slope * (kappa_up - kappa),
     )
+
+
+@njit(**INLINE)
+def inside_table(p, temperature):
+    """Whether the material's table reaches to `temperature`."""
+    last = ROWS_START + (int(p[N_ROWS]) - 1) * ROW_LENGTH
+    return p[ROWS_START] <= temperature <= p[last]
+
+
+@njit(**INLINE)
+def thermal_slope(p, b, temperature):
+    """∂k²/∂T at fixed b*, N²/(mm⁴ K)."""
+    if p[N_ROWS] == 1.0:
+        return 0.0
+    o, _ = table_place(p, temperature)
+    u = o + ROW_LENGTH
+    return (row_functions(p, u, b)[0] - row_functions(p, o, b)[0]) / (p[u] - p[o])
 
 
 @njit(**KERNEL)

@@ -17,6 +17,7 @@ import numpy as np
 from numba import njit
 
 from coilset.model.material.functions import (
+    CHANGE,
     HEATING,
     KERNEL,
     SPIN,
@@ -24,10 +25,13 @@ from coilset.model.material.functions import (
     TOLERANCE,
     elasticity,
     functions,
+    inside_table,
+    thermal_slope,
 )
-from coilset.model.material.local import yield_crossing
+from coilset.model.material.local import TOO_HOT, yield_crossing
 
 MAX_SUBSTEPS = 20000
+MAX_CUTS = 8
 ROD_METRIC = (1.5, 2.0, 2.0)
 SOLID_METRIC = (1.0, 1.0, 1.0, 2.0, 2.0, 2.0)
 ELASTIC, PLASTIC, BY_LOADING = 0, 1, 2
@@ -74,8 +78,10 @@ def _neutral_kappa(kappa, a, c, axial, rest, spin, half):
 
 
 @njit(**KERNEL)
-def _rates(p, y, w, d, volume, heating, mode, rate):
+def _rates(p, y, w, d, volume, warming, mode, rate):
     """Rates of y for the strain rate `d` (tensor components, deviatoric in the solid) and the rate of volume strain.
+
+    `warming` is the pair of the rise of temperature per plastic work and of its prescribed rate.
 
     Returns:
         Whether the point loads plastically.
@@ -85,6 +91,7 @@ def _rates(p, y, w, d, volume, heating, mode, rate):
     E, G, alpha = elasticity(p, y[2 * m + 1])
     cc = 2.0 * G
     ca = E / 1.5 if rod else cc
+    heating, change = warming
     _, dk2, zeta, _, kappa, _ = functions(p, y[2 * m], y[2 * m + 1])
     for i in range(2 * m + 2):
         rate[i] = 0.0
@@ -105,6 +112,9 @@ def _rates(p, y, w, d, volume, heating, mode, rate):
             rest += w[i] * n * cc * d[i]
             rest_nn += w[i] * n * n
         rate[i] += (ca if i == 0 else cc) * d[i]
+    if change != 0.0:  # the yield surface itself moves: n:ṅ = ½ (k²′ ḃ* + ∂k²/∂T Ṫ)
+        rate[2 * m + 1] = change
+        spin -= 0.5 * change * thermal_slope(p, y[2 * m], y[2 * m + 1])
     bulk = E * G / (3.0 * (3.0 * G - E))
     rate[2 * m + 2] = bulk * volume
     loading = (2.0 - kappa * dk2) * (axial + rest + spin) > 0.0  # (5.2.41)
@@ -135,13 +145,13 @@ def _rates(p, y, w, d, volume, heating, mode, rate):
         rate[i] += e - c * d[i] - c * plastic
         rate[m + i] += zeta * plastic  # (3.1.8)
     rate[2 * m] = work  # (3.1.7)
-    rate[2 * m + 1] = heating * work
+    rate[2 * m + 1] += heating * work
     rate[2 * m + 2] -= 3.0 * bulk * alpha * heating * work
     return True
 
 
 @njit(**KERNEL)
-def _heun(p, y, w, d, volume, heating, h, mode, work):
+def _heun(p, y, w, d, volume, warming, h, mode, work):
     """One Heun step of size `h` from y to work[2]; work[0] becomes the rate at y, work[1] the Euler result.
 
     Returns:
@@ -153,7 +163,7 @@ def _heun(p, y, w, d, volume, heating, h, mode, work):
         work[1, i] = y[i]
         work[2, i] = y[i]
     for stage in range(2):
-        loads = _rates(p, work[1], w, d, volume, heating, mode, work[3])
+        loads = _rates(p, work[1], w, d, volume, warming, mode, work[3])
         if stage == 0:
             plastic = loads
             mode = mode if plastic else ELASTIC
@@ -166,32 +176,36 @@ def _heun(p, y, w, d, volume, heating, h, mode, work):
 
 
 @njit(**KERNEL)
-def _elastic_part(p, y, w, d, volume, heating, h, work):
+def _elastic_part(p, y, w, d, volume, warming, h, work):
     """Largest elastic step up to `h` that does not leave the yield surface; its end is left in work[2]."""
     m = w.shape[0]
-    for cut in range(2):
-        _heun(p, y, w, d, volume, heating, h, ELASTIC, work)
-        if cut == 1:
-            _onto_surface(p, work[2], w)  # the spin bends the path a little
-        elif _yield_excess(p, work[2], w) <= 1e-12:
+    k2 = functions(p, y[2 * m], y[2 * m + 1])[0]
+    for _ in range(MAX_CUTS):
+        _heun(p, y, w, d, volume, warming, h, ELASTIC, work)
+        if _yield_excess(p, work[2], w) <= 1e-12:
             break
-        else:
-            nn = ne = ee = 0.0
-            for i in range(m):
-                n, e = y[i] - y[m + i], h * (work[0, i] - work[0, m + i])
-                nn += w[i] * n * n
-                ne += w[i] * n * e
-                ee += w[i] * e * e
-            h *= max(yield_crossing(nn, ne, ee, functions(p, y[2 * m], y[2 * m + 1])[0]), 1e-6)
+        # |n + β e|² = k² + β Δk². The spin and the temperature bend the path a little, hence the repetition.
+        nn = ne = ee = 0.0
+        for i in range(m):
+            n = y[i] - y[m + i]
+            e = work[2, i] - work[2, m + i] - n
+            nn += w[i] * n * n
+            ne += w[i] * n * e
+            ee += w[i] * e * e
+        change = functions(p, y[2 * m], work[2, 2 * m + 1])[0] - k2
+        h *= max(yield_crossing(nn, ne - 0.5 * change, ee, k2), 1e-6)
+    if _yield_excess(p, work[2], w) > -1e-9:
+        _onto_surface(p, work[2], w)
     return h
 
 
 @njit(**KERNEL)
-def _integrate(p, y, w, d, volume, heating):
+def _integrate(p, y, w, d, volume, warming):
     """Advance y over the strain increment `d` in sub-steps.
 
     Returns:
-        Number of sub-steps (-1: too many; 0: all of it elastic), and whether the last one was plastic.
+        Number of sub-steps (-1: too many; -2: too hot for the table; 0: all of it elastic), and whether the last one
+        was plastic.
     """
     work = np.empty((4, y.shape[0]))
     m = w.shape[0]
@@ -202,7 +216,7 @@ def _integrate(p, y, w, d, volume, heating):
             return -1, plastic
         rest = 1.0 - done
         step = min(h, rest)
-        plastic = _yield_excess(p, y, w) > -1e-12 and _heun(p, y, w, d, volume, heating, step, BY_LOADING, work)
+        plastic = _yield_excess(p, y, w) > -1e-12 and _heun(p, y, w, d, volume, warming, step, BY_LOADING, work)
         if plastic:
             error = 0.0
             for i in range(m):
@@ -215,10 +229,12 @@ def _integrate(p, y, w, d, volume, heating):
             _onto_surface(p, work[2], w)
             yielded = True
         else:
-            step = _elastic_part(p, y, w, d, volume, heating, rest, work)
+            step = _elastic_part(p, y, w, d, volume, warming, rest, work)
         for i in range(y.shape[0]):
             y[i] = work[2, i]
         done = 1.0 if step == rest else done + step
+    if warming[0] > 0.0 and not inside_table(p, y[2 * m + 1]):
+        return TOO_HOT, plastic
     return steps if yielded else 0, plastic
 
 
@@ -230,17 +246,17 @@ def rod_heun(p, old, de11, dg12, dg13, new, C):
     part of the increment is one step. C is the tangent of the rate equations at the end (3.2.4).
 
     Returns:
-        Number of sub-steps, 0 for an elastic increment, -1 if there were too many.
+        Number of sub-steps, 0 for an elastic increment, -1 if there were too many, -2 if too hot for the table.
     """
     w = np.array(ROD_METRIC)
     d = np.array((de11, 0.5 * dg12, 0.5 * dg13))
     y = np.zeros(9)
     thermal = old.shape[0] > 7
-    heating = p[HEATING] if thermal else 0.0
+    warming = (p[HEATING], 0.0) if thermal else (0.0, p[CHANGE])
     y[0] = old[0] / 1.5
     y[1:7] = old[1:7]
-    y[7] = old[7] if thermal else p[TEMPERATURE]
-    steps, plastic = _integrate(p, y, w, d, 0.0, heating)
+    y[7] = old[7] if thermal else p[TEMPERATURE] - p[CHANGE]
+    steps, plastic = _integrate(p, y, w, d, 0.0, warming)
     new[:] = old
     if steps >= 0:
         new[0] = 1.5 * y[0]
@@ -251,7 +267,7 @@ def rod_heun(p, old, de11, dg12, dg13, new, C):
     for j in range(3):
         d[:] = 0.0
         d[j] = 1.0 if j == 0 else 0.5
-        _rates(p, y, w, d, 0.0, heating, PLASTIC if plastic else ELASTIC, rate)
+        _rates(p, y, w, d, 0.0, (warming[0], 0.0), PLASTIC if plastic else ELASTIC, rate)
         C[0, j], C[1, j], C[2, j] = 1.5 * rate[0], rate[1], rate[2]
     return steps
 
@@ -261,16 +277,16 @@ def solid_heun(p, old, dD, new, C):
     """The thesis's integrator for the full stress state: arguments of `solid.return_map`, the rest as in `rod_heun`."""
     w = np.array(SOLID_METRIC)
     thermal = old.shape[0] > 13
-    heating = p[HEATING] if thermal else 0.0
+    warming = (p[HEATING], 0.0) if thermal else (0.0, p[CHANGE])
     y = np.zeros(15)
     mean = (old[0] + old[1] + old[2]) / 3.0
     for i in range(6):
         y[i] = old[i] - (mean if i < 3 else 0.0)
     y[6:13] = old[6:13]
-    y[13] = old[13] if thermal else p[TEMPERATURE]
+    y[13] = old[13] if thermal else p[TEMPERATURE] - p[CHANGE]
     y[14] = mean
     d = np.empty(6)
-    steps, plastic = _integrate(p, y, w, d, _split(dD, d), heating)
+    steps, plastic = _integrate(p, y, w, d, _split(dD, d), warming)
     new[:] = old
     if steps >= 0:
         for i in range(6):
@@ -283,7 +299,7 @@ def solid_heun(p, old, dD, new, C):
     for j in range(6):
         unit[:] = 0.0
         unit[j] = 1.0
-        _rates(p, y, w, d, _split(unit, d), heating, PLASTIC if plastic else ELASTIC, rate)
+        _rates(p, y, w, d, _split(unit, d), (warming[0], 0.0), PLASTIC if plastic else ELASTIC, rate)
         for i in range(6):
             C[i, j] = rate[i] + (rate[14] if i < 3 else 0.0)
     return steps

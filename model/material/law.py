@@ -124,6 +124,10 @@ class Law:
         self._rows = np.array([self._row(i, at) for i, at in enumerate(data.temperatures)])
         if np.any(np.diff(self._temperatures) <= 0):
             self._fail("temperatures", f"{self._temperatures.tolist()} K do not ascend; sort the entries, none twice")
+        if data.heating and len(self._rows) == 1:
+            self._fail("heating", "plastic work warms the material; give its constants at two temperatures at least")
+        if len({at.isotropic == "none" for at in data.temperatures}) == 2:
+            self._fail("temperatures", "isotropic is 'none' at some temperatures only; give it at all or at none")
         self._check_functions()
 
     name = property(lambda self: self.data.name)
@@ -169,11 +173,7 @@ class Law:
         Raises:
             InputError: if the temperature lies outside the material's table.
         """
-        temperature = self.reference_temperature if temperature is None else float(temperature)
-        low, high = self.temperature_range
-        if not low <= temperature <= high:
-            known = f"only for {low:g} K" if low == high else f"for {low:g} to {high:g} K"
-            self._fail("temperature", f"{temperature:g} K is outside the table of '{self.name}', known {known}")
+        temperature = self.reference_temperature if temperature is None else self.known(temperature)
         head = np.zeros(fn.ROWS_START)
         head[fn.SPIN] = self.spin
         head[fn.TEMPERATURE] = temperature
@@ -181,6 +181,23 @@ class Law:
         head[fn.TOLERANCE] = self.heun_tolerance
         head[fn.N_ROWS] = len(self._rows)
         return np.concatenate([head, self._rows.ravel()])
+
+    def known(self, temperature):
+        """The temperature, K, as a number.
+
+        Raises:
+            InputError: if it lies outside the material's table.
+        """
+        low, high = self.temperature_range
+        if not low <= temperature <= high:
+            known = f"only for {low:g} K" if low == high else f"for {low:g} to {high:g} K"
+            self._fail("temperature", f"{temperature:g} K is outside the table of '{self.name}', known {known}")
+        return float(temperature)
+
+    def thermal_strain(self, start, end):
+        """Thermal strain α ΔT (3.1.2) from one temperature to another, K, with the mean α of both."""
+        alphas = np.interp([self.known(start), self.known(end)], self._temperatures, self._rows[:, fn.ALPHA])
+        return float(alphas.mean()) * (end - start)
 
     def initial_state(self, points):
         """History rows of unstressed points of the rod, shape (points, n_state)."""
@@ -238,24 +255,26 @@ class Law:
 
     def _check_functions(self):
         """k² > 0, 2ζ + k²′ ≥ 0 and κ k²′ < 2 over the range of validity: else (3.1.9) is not positive."""
+        work = np.linspace(0, self.validity.plastic_work, 2001)
         for i, row in enumerate(self._rows):
-            if math.isinf(row[fn.K0]):
-                continue
-            places = np.linspace(0, self.validity.plastic_work, 2001)
-            for b, (k2, dk2, zeta, _, kappa, _) in zip(places, self.functions(places, row[fn.ROW_T]).T, strict=True):
-                where = f"at b* = {b:g} N/mm² (b* is checked up to validity.plastic_work)"
-                if not k2 > 0:
-                    self._fail(f"temperatures.{i}.isotropic", f"k² = {k2:.4g} N²/mm⁴ {where}; it must be positive")
-                if 2 * zeta + dk2 < 0:
-                    self._fail(
-                        f"temperatures.{i}.isotropic",
-                        f"2ζ + k²′ = {2 * zeta + dk2:.4g} N/mm² {where}; it must not be negative",
-                    )
-                if kappa * dk2 >= 2:
-                    self._fail(
-                        f"temperatures.{i}.non_normality.a",
-                        f"κ k²′ = {kappa * dk2:.4g} {where}; it must stay below 2, or (3.1.9) is not positive definite",
-                    )
+            above = self._rows[min(i + 1, len(self._rows) - 1), fn.ROW_T]
+            # Between two temperatures, too: of κ and k²′, each interpolated, the product may be greater than at both.
+            for temperature in np.unique(np.linspace(row[fn.ROW_T], above, 5)):
+                if math.isinf(row[fn.K0]):
+                    continue
+                k2, dk2, zeta, _, kappa, _ = self.functions(work, temperature)
+                place = f"temperatures.{i}."
+                for entry, name, unit, values, broken, rule in (
+                    ("isotropic", "k²", " N²/mm⁴", k2, ~(k2 > 0), "must be positive"),
+                    ("isotropic", "2ζ + k²′", " N/mm²", 2 * zeta + dk2, 2 * zeta + dk2 < 0, "must not be negative"),
+                    ("non_normality.a", "κ k²′", "", kappa * dk2, kappa * dk2 >= 2,
+                     "must stay below 2, or (3.1.9) is not positive definite"),
+                ):  # fmt: skip
+                    if broken.any():
+                        at = int(np.argmax(broken))
+                        where = f"at b* = {work[at]:g} N/mm² and {temperature:g} K"
+                        self._fail(place + entry, f"{name} = {values[at]:.4g}{unit} {where}; it {rule}"
+                                   " (checked up to validity.plastic_work)")  # fmt: skip
 
 
 UNITS = {

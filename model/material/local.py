@@ -36,9 +36,10 @@ from collections import namedtuple
 
 from numba import njit
 
-from coilset.model.material.functions import INLINE, KERNEL, functions
+from coilset.model.material.functions import CHANGE, INLINE, KERNEL, functions, inside_table
 
 MAX_ITERATIONS = 60
+FAILED, TOO_HOT = -1, -2  # in the place of a number of iterations; TOO_HOT: heated out of the material's table
 FINE = 1e-7  # relative residual below which one more Newton step ends the iteration
 COARSE = 1e-3  # relative error of |n| to which Λ is brought before the two equations are solved together
 
@@ -50,6 +51,19 @@ Group = namedtuple("Group", "s ds x dx")
 # The solution, and the Jacobian of the two equations (r1: n:n − k², r2: b* − b*₀ − f n:p) in (b*, Λ), or in (b*, κ) if
 # neutral, divided by its determinant; mean is f.
 Local = namedtuple("Local", "iterations neutral b multiplier mean zeta dzeta a c r1b r1l r2b r2l")
+
+
+@njit(**INLINE)
+def surface(p, b, temperature, k2):
+    """k² at the start of the increment, and its change until the end, where it is `k2`, by the prescribed temperature.
+
+    With it `yield_crossing` keeps the elastic fraction of an increment from the surface at zero, although the surface
+    has moved away until the end.
+    """
+    if p[CHANGE] == 0.0:
+        return k2, 0.0
+    start = functions(p, b, temperature - p[CHANGE])[0]
+    return start, k2 - start
 
 
 @njit(**INLINE)
@@ -153,9 +167,9 @@ def _neutral(p, start, values):
             a, c = Group((start.ca + zeta) * xa, 0.0, xa, 0.0), Group((start.cc + zeta) * xc, 0.0, xc, 0.0)
             inverse = 1.0 / (dk2 * db - 2.0 * qdxe)
             return Local(
-                iteration, True, b, 0.0, 1.0, zeta, 0.0, a, c, -dk2 * inverse, 2.0 * qdxe * inverse, inverse, -db *
-                inverse
-            )
+                iteration, True, b, 0.0, 1.0, zeta, 0.0, a, c,
+                -dk2 * inverse, 2.0 * qdxe * inverse, inverse, -db * inverse,
+            )  # fmt: skip
         if r1 > 0.0:
             low = kappa
         else:
@@ -182,9 +196,9 @@ def _frozen(start, values, a, c):
 
 
 @njit(**INLINE)
-def _failed(start):
+def _failed(start, why=FAILED):
     nothing = Group(0.0, 0.0, 0.0, 0.0)
-    return Local(-1, False, start.b, 0.0, 1.0, 0.0, 0.0, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
+    return Local(why, False, start.b, 0.0, 1.0, 0.0, 0.0, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit(**INLINE)
@@ -197,7 +211,7 @@ def solve(p, start, values):
         values: `functions` where it starts.
 
     Returns:
-        A `Local`; its `iterations` are -1 if there was no convergence.
+        A `Local`; its `iterations` are -1 if there was no convergence, -2 if the temperature left the table.
     """
     low = start.b
     # max over n of n:(n_trial − n) is |n_trial|²/4; twice that leaves room for thermal strain.
@@ -221,6 +235,8 @@ def solve(p, start, values):
             return _frozen(start, values, ga, gc)
         # The second term is the rounding of b* and of n:(n_trial − n).
         if abs(g) <= FINE * work + 1e-15 * (b + k2 / start.cc) and abs(r1) <= FINE * k2 and inverse > 0.0:
+            if start.heating > 0.0 and not inside_table(p, start.temperature + start.heating * (b - start.b)):
+                return _failed(start, TOO_HOT)
             # The last Newton step is taken in everything: what it leaves is of the order FINE².
             return Local(
                 iteration, False, b + step, multiplier + follow, mean, zeta + dzeta * step, dzeta,

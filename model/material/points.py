@@ -5,9 +5,10 @@ import math
 import numpy as np
 from numba import njit
 
-from coilset.model.errors import SolveError
-from coilset.model.material.functions import KERNEL, TOLERANCE
+from coilset.model.errors import InputError, SolveError
+from coilset.model.material.functions import CHANGE, KERNEL, TOLERANCE
 from coilset.model.material.heun import rod_heun, solid_heun
+from coilset.model.material.local import FAILED, TOO_HOT
 from coilset.model.material.rod import return_map as rod_return_map
 from coilset.model.material.solid import return_map as solid_return_map
 
@@ -50,20 +51,21 @@ _LOOPS = {
 }
 
 
-def initial_state(law, points, components=3):
-    """History rows of unstressed points at the reference temperature.
+def initial_state(law, points, components=3, temperature=None):
+    """History rows of unstressed points.
 
     Args:
         law: a `Law`.
         points: their number.
         components: 3 for the rod, 6 for the full stress state.
+        temperature: K, where the rows hold one (adiabatic heating); default is the reference temperature.
 
     Returns:
         Shape (points, 7) or (points, 13), one column more (the temperature) with adiabatic heating.
     """
     columns = 2 * components + 1
     state = np.zeros((points, columns + law.is_adiabatic))
-    state[:, columns:] = law.reference_temperature
+    state[:, columns:] = law.reference_temperature if temperature is None else law.known(temperature)
     return state
 
 
@@ -73,10 +75,11 @@ def update(law, state, increments, integrator="return_mapping", temperature=None
     Args:
         law: a `Law`.
         state: history rows, shape (points, 7 or 8) as in `rod`, or (points, 13 or 14) as in `solid`.
-        increments: ε11, γ12, γ13, shape (points, 3), or ε11, ε22, ε33, γ12, γ13, γ23, shape (points, 6); without
-            thermal strain.
+        increments: ε11, γ12, γ13, shape (points, 3), or ε11, ε22, ε33, γ12, γ13, γ23, shape (points, 6).
         integrator: "return_mapping" (backward Euler, consistent tangent) or "heun" (the thesis's, the rates' tangent).
-        temperature: of all points, K, where the state holds none; default is the reference temperature.
+        temperature: of all points, K, where the state holds none; default is the reference temperature. A pair is the
+            temperature at the start and at the end: thermal strain is then part of `increments`, and the return mapping
+            takes the functions at the end, as it does with b*.
         tolerance: error of stress, relative to the yield stress, allowed in a sub-step. None: the return mapping makes
             one step of each increment, Heun takes the law's tolerance. With a number the return mapping, too, divides
             the increments where the direction of loading turns; the tangent is then that of the last sub-step.
@@ -87,8 +90,9 @@ def update(law, state, increments, integrator="return_mapping", temperature=None
 
     Raises:
         SolveError: if a point did not converge.
-        InputError: if the temperature lies outside the material's table.
-        ValueError: if shapes do not fit, or there is no such integrator.
+        InputError: if the temperature lies outside the material's table, or plastic work heats a point out of it.
+        ValueError: if shapes do not fit, there is no such integrator, or a changing temperature is given for a material
+            that heats itself or together with `tolerance` for the return mapping.
     """
     state, increments = np.ascontiguousarray(state, float), np.ascontiguousarray(increments, float)
     points, components = increments.shape
@@ -96,15 +100,28 @@ def update(law, state, increments, integrator="return_mapping", temperature=None
         raise ValueError(f"integrator '{integrator}' is none of {', '.join(INTEGRATORS)}")
     if components not in (3, 6) or state.shape != (points, 2 * components + 1 + law.is_adiabatic):
         raise ValueError(f"state of shape {state.shape} does not fit strain increments of shape {increments.shape}")
-    p = law.parameters(temperature)
     loop = _LOOPS[components, integrator]
-    if tolerance is not None and integrator == "return_mapping":
+    divided = tolerance is not None and integrator == "return_mapping"
+    start, end = temperature if isinstance(temperature, tuple) else (temperature, temperature)
+    p = law.parameters(end)
+    if start != end:
+        if law.is_adiabatic or divided:
+            raise ValueError(
+                "temperature changes neither with adiabatic heating nor with the return mapping's tolerance"
+            )
+        p[CHANGE] = end - start
+        increments = increments - law.thermal_strain(start, end) * (np.arange(components) < _normals(components))
+    if divided:
         return _divided(loop, p, law, state, increments, tolerance)
     if tolerance is not None:
         p[TOLERANCE] = tolerance
     new, tangent, count = _advance(loop, p, state, increments)
-    _refuse(count < 0)
+    _refuse(law, count)
     return new, tangent, count
+
+
+def _normals(components):
+    return 1 if components == 3 else 3
 
 
 def _advance(loop, p, state, increments):
@@ -115,25 +132,31 @@ def _advance(loop, p, state, increments):
     return new, tangent, count
 
 
-def _refuse(failed):
-    if failed.any():
-        raise SolveError(f"{failed.sum()} of {failed.size} material points did not converge; use smaller increments")
+def _refuse(law, count):
+    if (count == TOO_HOT).any():
+        low, high = law.temperature_range
+        many = f"{(count == TOO_HOT).sum()} of {count.size} points" if count.size > 1 else "the point"
+        problem = f"plastic work heats {many} out of the table of {low:g} to {high:g} K; give constants beyond it"
+        raise InputError(problem, "temperatures", law.file)
+    if (count < 0).any():
+        raise SolveError(f"{(count < 0).sum()} of {count.size} points did not converge; use smaller increments")
 
 
 def _divided(loop, p, law, state, increments, tolerance):
     """Sub-steps by step doubling: one step against two half ones estimates the error of the first-order method."""
     points, components = increments.shape
-    weight = np.where(np.arange(components) < (1 if components == 3 else 3), 1.0, 2.0)
+    weight = np.where(np.arange(components) < _normals(components), 1.0, 2.0)
     row, tangent = state.copy(), np.empty((points, components, components))
     done, size, count = np.zeros(points), np.ones(points), np.zeros(points, dtype=np.int64)
     while (open_ := np.flatnonzero(done < 1.0)).size:
-        _refuse(size < SMALLEST_SUBSTEP)
         h = np.minimum(size[open_], 1.0 - done[open_])
         part = 0.5 * h[:, None] * increments[open_]
         one, _, plain = _advance(loop, p, row[open_], 2.0 * part)
         half, _, first = _advance(loop, p, row[open_], part)
         two, C, second = _advance(loop, p, half, part)
-        lost = (plain < 0) | (first < 0) | (second < 0)
+        worst = np.minimum(np.minimum(plain, first), second)
+        lost = worst < 0
+        _refuse(law, np.where(size[open_] < SMALLEST_SUBSTEP, np.where(lost, worst, FAILED), 0))
         difference = ((one - two)[:, :components] ** 2 * weight).sum(axis=1)
         error = np.sqrt(difference / law.k_squared(two[:, 2 * components])) / tolerance
         error = np.where(lost, math.inf, error)

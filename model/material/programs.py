@@ -14,7 +14,6 @@ import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from coilset.model.errors import InputError, SolveError
-from coilset.model.material import functions as fn
 from coilset.model.material.law import first_problem
 from coilset.model.material.points import initial_state, update
 
@@ -51,6 +50,7 @@ class Program(_Section):
     description: str = ""
     source: str = ""
     form: Literal["rod", "solid"] = "rod"
+    temperature: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None  # K, at the start
     steps: Annotated[tuple[Step, ...], Field(min_length=1)]
 
 
@@ -128,20 +128,20 @@ def run(law, program, integrator="return_mapping"):
         InputError: if a temperature lies outside the material's table, or is prescribed for a material that heats
         itself. SolveError: if an increment cannot be solved, for instance because the material cannot carry a stress.
     """
-    point = _Point(law, program.form, integrator)
+    _check_temperatures(law, program)
+    point = _Point(law, program.form, integrator, program.temperature)
     rows = [point.row(0)]
     for index, step in enumerate(program.steps):
-        if step.temperature is not None and law.is_adiabatic:
-            place = f"steps.{index}.temperature"
-            raise InputError(f"'{law.name}' has adiabatic heating and finds its own temperature", place)
         start = point.drive(step.to)
         end = start.copy()
         for i, names in enumerate(zip(STRAINS[program.form], STRESSES[program.form], strict=True)):
             end[i] = next((step.to[name] for name in names if name in step.to), end[i])
-        heat = 0.0 if step.temperature is None else (step.temperature - point.temperature) / step.increments
+        hot = point.temperature if step.temperature is None else step.temperature
+        targets = np.linspace(start, end, step.increments + 1)
+        temperatures = np.linspace(point.temperature, hot, step.increments + 1)
         for k in range(1, step.increments + 1):
             try:
-                point.advance(start + (end - start) * k / step.increments, heat)
+                point.advance(targets[k], temperatures[k])
             except SolveError as error:
                 where = f"step {index + 1} of the program ({step.name or 'unnamed'}), increment {k}"
                 raise SolveError(f"{where}: {error}") from error
@@ -149,17 +149,36 @@ def run(law, program, integrator="return_mapping"):
     return History(program.form, *(np.array(column) for column in zip(*rows, strict=True)))
 
 
+def _check_temperatures(law, program):
+    named = {"temperature": program.temperature}
+    named |= {f"steps.{index}.temperature": step.temperature for index, step in enumerate(program.steps)}
+    for place, temperature in named.items():
+        if temperature is None:
+            continue
+        if law.is_adiabatic and place != "temperature":
+            raise InputError(f"'{law.name}' has adiabatic heating and finds its own temperature", place)
+        try:
+            law.known(temperature)
+        except InputError as error:
+            raise InputError(error.problem, place) from None
+
+
 class _Point:
     """The point under the machine: state, total strain, and which components are driven by strain."""
 
-    def __init__(self, law, form, integrator):
+    def __init__(self, law, form, integrator, temperature):
         self.law, self.form, self.integrator = law, form, integrator
         self.n = len(STRAINS[form])
-        self.state = initial_state(law, 1, self.n)[0]
+        self.temperature = law.reference_temperature if temperature is None else temperature
+        self.state = initial_state(law, 1, self.n, self.temperature)[0]
         self.strain = np.zeros(self.n)
         self.by_strain = np.zeros(self.n, dtype=bool)
-        self.temperature = law.reference_temperature
-        self.tangent = update(law, self.state[None], np.zeros((1, self.n)))[1][0]
+        _, tangent, _ = update(law, self.state[None], np.zeros((1, self.n)), temperature=self._at(self.temperature))
+        self.tangent = tangent[0]
+
+    def _at(self, end):
+        """What `update` is told of the temperature."""
+        return None if self.law.is_adiabatic else (self.temperature, end)
 
     def drive(self, targets):
         """Take over which components are driven by strain; returns the present values of what drives them."""
@@ -173,26 +192,23 @@ class _Point:
         temperature = s[2 * n + 1] if self.law.is_adiabatic else self.temperature
         return self.strain.copy(), s[:n].copy(), s[n : 2 * n].copy(), s[2 * n], temperature, index
 
-    def advance(self, target, heat, halvings=0):
-        """One increment to `target`; where Newton does not find it, two of half the size."""
+    def advance(self, target, temperature, halvings=0):
+        """One increment to `target` and `temperature`; where Newton does not find it, two of half the size."""
         now = np.where(self.by_strain, self.strain, self.state[: self.n])
-        if self._newton(target, heat):
+        if self._newton(target, temperature):
             return
         if halvings == MAX_HALVINGS:
             raise SolveError("no strain was found that gives the prescribed stress; can the material carry it?")
-        self.advance(0.5 * (now + target), 0.5 * heat, halvings + 1)
-        self.advance(target, 0.5 * heat, halvings + 1)
+        self.advance(0.5 * (now + target), 0.5 * (self.temperature + temperature), halvings + 1)
+        self.advance(target, temperature, halvings + 1)
 
-    def _newton(self, target, heat):
+    def _newton(self, target, temperature):
         held, free = self.by_strain, ~self.by_strain
-        temperature = self.temperature + heat
-        at = None if self.law.is_adiabatic else temperature
-        thermal = self._thermal_strain(self.temperature, temperature) if heat else np.zeros(self.n)
         increment = np.where(held, target - self.strain, 0.0)
         tangent, stress = self.tangent, self.state[: self.n]
         scale = max(1.0, float(np.abs(stress).max()), float(np.abs(target[free]).max(initial=0.0)))
         # The free components follow the last tangent first.
-        residual = target[free] - stress[free] - tangent[np.ix_(free, held)] @ (increment - thermal)[held]
+        residual = target[free] - stress[free] - tangent[np.ix_(free, held)] @ increment[held]
         for _ in range(MAX_ITERATIONS):
             if free.any():
                 try:
@@ -200,7 +216,9 @@ class _Point:
                 except np.linalg.LinAlgError:
                     return False
             try:
-                new, tangents, _ = update(self.law, self.state[None], (increment - thermal)[None], self.integrator, at)
+                new, tangents, _ = update(
+                    self.law, self.state[None], increment[None], self.integrator, self._at(temperature)
+                )
             except SolveError:
                 return False
             tangent = tangents[0]
@@ -212,10 +230,3 @@ class _Point:
             if not np.abs(increment).max() < 1.0:
                 return False
         return False
-
-    def _thermal_strain(self, start, end):
-        """α ΔT of the normal components, α as the mean of both ends."""
-        alpha = [fn.elasticity(self.law.parameters(at), at)[2] for at in (start, end)]
-        normal = np.zeros(self.n)
-        normal[: 1 if self.form == "rod" else 3] = 1.0
-        return 0.5 * sum(alpha) * (end - start) * normal

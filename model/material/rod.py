@@ -9,12 +9,12 @@ from collections import namedtuple
 from numba import njit
 
 from coilset.model.material.functions import HEATING, INLINE, KERNEL, SPIN, TEMPERATURE, elasticity, functions
-from coilset.model.material.local import Start, solve, yield_crossing
+from coilset.model.material.local import Start, solve, surface, yield_crossing
 
 # Tuples of three are the components 11, 12, 13.
 Point = namedtuple("Point", "stress back spin_stress spin_back")
-# The plastic part of an increment: elastic fraction before it, n₀:e where it starts, e of the whole increment and of
-# the plastic part, n at its end, p, and by component u = 1/(1 + sΛ), m = 1/(c + ζ), x.
+# The plastic part of an increment: elastic fraction before it, n₀:e − ½Δk² where it starts, e of the whole increment
+# and of the plastic part, n at its end, p, and by component u = 1/(1 + sΛ), m = 1/(c + ζ), x.
 Plastic = namedtuple("Plastic", "local beta crossing n0 whole e n p u m x heating dea")
 # Derivatives of b* (bn, be) and of Λ (ln, le) by n₀ and e, as factors of the inner product, and ∂n/∂b*, ∂n/∂Λ.
 Gradients = namedtuple("Gradients", "bn be ln le db dl")
@@ -72,8 +72,8 @@ def return_map(p, old, de11, dg12, dg13, new, C):
         C: d(σ11, τ12, τ13)/d(ε11, γ12, γ13), shape (3, 3), N/mm²; written.
 
     Returns:
-        Number of local iterations, 0 for an elastic increment, -1 if there was no convergence (then `new` is `old`, C
-        elastic).
+        Number of local iterations, 0 for an elastic increment, -1 if there was no convergence, -2 if the point heated
+        itself out of the material's table (then `new` is `old`, C elastic).
     """
     temperature = old[7] if old.shape[0] > 7 else p[TEMPERATURE]
     heating = p[HEATING] if old.shape[0] > 7 else 0.0
@@ -93,7 +93,7 @@ def return_map(p, old, de11, dg12, dg13, new, C):
     if local.iterations < 0:
         for i in range(new.shape[0]):
             new[i] = old[i]
-        return -1
+        return local.iterations
     pl = plastic.p
     rise = plastic.heating * (local.b - old[6])
     new[0] = s[0] - E * (pl[0] + alpha * rise)
@@ -127,11 +127,12 @@ def _elastic(old, s, point, E, G, new, C):
 @njit(**INLINE)
 def _plastic(p, b, temperature, heating, alpha, E, G, n0, e, values):
     """Solve the plastic part: n and p at its end, from n₀ where it starts (n0 + β e) with e reduced to it."""
-    ne = _inner(n0, e)
+    k2, growth = surface(p, b, temperature, values[0])
+    ne = _inner(n0, e) - 0.5 * growth
     ee = _inner(e, e)
-    beta = yield_crossing(_inner(n0, n0), ne, ee, values[0])
+    beta = yield_crossing(_inner(n0, n0), ne, ee, k2)
     n0 = (n0[0] + beta * e[0], n0[1] + beta * e[1], n0[2] + beta * e[2])
-    crossing = _inner(n0, e)
+    crossing = _inner(n0, e) - 0.5 * growth
     rest = 1.0 - beta
     ca = E / 1.5
     cc = 2.0 * G
@@ -215,7 +216,7 @@ def _sensitivity(plastic, g, dn, de):
     trial = _add(dn, de)
     if plastic.beta > 0.0 and plastic.crossing > 0.0:
         dn = _add(dn, _scaled(de, plastic.beta))
-        dbeta = -_inner(plastic.n0, dn) / plastic.crossing  # of |n₀ + β e|² = k²
+        dbeta = -_inner(plastic.n0, dn) / plastic.crossing  # of |n₀ + β e|² = k² + β Δk²
         dn = _add(dn, _scaled(plastic.whole, dbeta))
         de = _add(trial, _scaled(dn, -1.0))
     b = _inner(g.bn, dn) + _inner(g.be, de)

@@ -11,7 +11,7 @@ Either the caller works in such a frame, or it turns the history row by the incr
 from numba import njit
 
 from coilset.model.material.functions import HEATING, INLINE, KERNEL, TEMPERATURE, elasticity, functions
-from coilset.model.material.local import Start, solve, yield_crossing
+from coilset.model.material.local import Start, solve, surface, yield_crossing
 
 COMPONENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 PLACES = ((0, 3, 4), (3, 1, 5), (4, 5, 2))  # where the component (i, j) is stored
@@ -81,8 +81,8 @@ def return_map(p, old, dD, new, C):
         C: dσ/dε, shape (6, 6), N/mm²; written.
 
     Returns:
-        Number of local iterations, 0 for an elastic increment, -1 if there was no convergence (then `new` is `old`, C
-        elastic).
+        Number of local iterations, 0 for an elastic increment, -1 if there was no convergence, -2 if the point heated
+        itself out of the material's table (then `new` is `old`, C elastic).
     """
     thermal = old.shape[0] > 13
     temperature = old[13] if thermal else p[TEMPERATURE]
@@ -96,7 +96,8 @@ def return_map(p, old, dD, new, C):
         return 0
 
     ne, ee = _inner(n0, e), _inner(e, e)
-    beta = yield_crossing(_inner(n0, n0), ne, ee, values[0])
+    k2, growth = surface(p, old[12], temperature, values[0])
+    beta = yield_crossing(_inner(n0, n0), ne - 0.5 * growth, ee, k2)
     rest = 1.0 - beta
     n0 = _combined(1.0, n0, beta, e)
     nn, ne = _inner(n0, n0), _inner(n0, e)
@@ -106,7 +107,7 @@ def return_map(p, old, dD, new, C):
     if local.iterations < 0:
         for i in range(new.shape[0]):
             new[i] = old[i]
-        return -1
+        return local.iterations
     if local.neutral:
         heating = 0.0
     u, m = 1.0 / (1.0 + local.c.s * local.multiplier), 1.0 / (c + local.zeta)
@@ -119,7 +120,7 @@ def return_map(p, old, dD, new, C):
     new[12] = local.b
     if thermal:
         new[13] = temperature + heating * (local.b - old[12])
-    _tangent(local, n0, e, beta, (ne, ee), u, m, c, expansion, C)
+    _tangent(local, n0, e, beta, (ne, ee, ne - 0.5 * growth), u, m, c, expansion, C)
     return local.iterations
 
 
@@ -134,7 +135,7 @@ def _tangent(local, n0, e, beta, products, u, m, c, expansion, C):
 
     Every vector here is a combination of n₀ and of the increment's e and is written as the pair of its two factors.
     """
-    ne, ee = products
+    ne, ee, crossing = products
     g, f, rest, x = local.c, local.mean, 1.0 - beta, local.c.x
     n = (u, u * x * rest)
     pl = (m * (1.0 - u), m * rest * (1.0 - u * x))
@@ -143,10 +144,10 @@ def _tangent(local, n0, e, beta, products, u, m, c, expansion, C):
     r1e, r2e = _pair(x, r1n, 0.0, n), _pair(f * u * x, pl, f * m * (1.0 - u * x), n)
     bn, be = _pair(-local.r1l, r2n, -local.r2l, r1n), _pair(-local.r1l, r2e, -local.r2l, r1e)
     ln, le = _pair(local.r1b, r2n, local.r2b, r1n), _pair(local.r1b, r2e, local.r2b, r1e)
-    # The elastic fraction β follows e, too: |n₀ + β e|² = k².
+    # The elastic fraction β follows e, too: |n₀ + β e|² = k² + β Δk².
     gb, gl, gbeta = _pair(beta, bn, rest, be), _pair(beta, ln, rest, le), (0.0, 0.0)
-    if beta > 0.0 and ne > 0.0:
-        gbeta = (-beta / ne, 0.0)
+    if beta > 0.0 and crossing > 0.0:
+        gbeta = (-beta / crossing, 0.0)
         gb = _pair(1.0, gb, (bn[0] - be[0]) * ne + (bn[1] - be[1]) * ee, gbeta)
         gl = _pair(1.0, gl, (ln[0] - le[0]) * ne + (ln[1] - le[1]) * ee, gbeta)
     if local.neutral:  # κ is the unknown in the place of Λ

@@ -129,7 +129,7 @@ def test_neutral_loading(reference):
     material = reference.ck15()
     ref, law = reference.Reference(material), library.load("ck15", spin=False)
     row = follow(law, [(0.06, 0.12, 0)], "heun", 1e-3)[-1]
-    y = np.zeros(13)
+    y = np.zeros(14)
     y[[0, 3, 4, 6, 9, 10, 12]], y[[7, 8]] = row, -row[3] / 2
     n1, n2 = row[0] / 1.5 - row[3], row[1] - row[4]
     # n:T° = n11 E ε11 x_a + 2 n12 G γ12 x_c, with x = 1 in the elastic case; x_a/x_c is `ratio`.
