@@ -59,12 +59,13 @@ def one_sided(g, c, onset):
 
 
 class Contact(Protocol):
-    """A kind of contact."""
+    """A kind of contact; no correction presses a guarded one in deep, and only such a one needs `depth`."""
 
     name: str
+    guarded: bool
 
     def depth(self, x: np.ndarray, seats: np.ndarray) -> float:
-        """Greatest penetration, mm; 0 where nothing touches, or for a kind that may be pressed in at will."""
+        """Greatest penetration, mm; 0 where nothing touches."""
         ...
 
     def evaluate(self, x: np.ndarray, seats: np.ndarray) -> Contribution:

@@ -80,6 +80,7 @@ class Coils:
     """
 
     name = "coils"
+    guarded = True
 
     def __init__(self, points, stations, bedding, onset):
         self.points, self.onset = points, onset

@@ -16,6 +16,7 @@ class Gaps:
     """
 
     name = "gap"
+    guarded = False  # gap elements are few: they close and open by the iteration alone, as in the thesis
 
     def __init__(self, pairs, free_length, stiffness, onset):
         self.pairs = np.asarray(pairs, dtype=np.int64).reshape(-1, 2)
@@ -23,10 +24,6 @@ class Gaps:
         self.stiffness = np.broadcast_to(stiffness, len(self.pairs))
         self.onset = onset
         self.dofs = (3 * self.pairs[:, :, None] + np.arange(3)).reshape(-1, 6)
-
-    def depth(self, x, seats):
-        """Gap elements are few: they close and open by the iteration alone, as in the thesis."""
-        return 0.0
 
     def evaluate(self, x, seats):
         """Gap g = |x2 − x1| − free length; the force acts along the connection, with its exact derivative."""

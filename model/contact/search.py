@@ -7,6 +7,7 @@ from numba import njit
 
 APART = 0.5  # turns between two places of the wire that may touch, at least
 CELLS = 16  # cells of the grid per station, at most
+POST = 0.5  # distance of the stations that are sorted, in wire radii, at least
 
 
 @njit(cache=True)
@@ -75,38 +76,46 @@ def slope_and_curvature(p, y, first, cubic, e, xi, work):
 
 
 @njit(cache=True, error_model="numpy")
+def station_slope(p, y, first, cubic, j, work):
+    """First derivative by ξ of the gap at station `j`."""
+    e = min(j, len(first) - 1)
+    return slope_and_curvature(p, y, first, cubic, e, float(j - e), work)[0]
+
+
+@njit(cache=True, error_model="numpy")
 def closest(p, y, first, cubic, j, work):
     """Closest place to `p` along the wire, sought from station `j`: element, ξ, and whether it is inside the wire."""
-    elements = len(first)
-    e, xi = (j, 0.0) if j < elements else (j - 1, 1.0)
-    slope, _ = slope_and_curvature(p, y, first, cubic, e, xi, work)
-    direction = -1 if slope > 0.0 else 1
-    if direction < 0 and xi == 0.0:
-        e, xi = e - 1, 1.0
-    while 0 <= e < elements:  # from the element's near end, where the gap falls, to its far end
-        far = 1.0 if direction > 0 else 0.0
-        if slope_and_curvature(p, y, first, cubic, e, far, work)[0] * direction < 0.0:
-            e, xi = e + direction, 1.0 - far
-            continue
-        low, high = 0.0, 1.0
-        xi = 0.5
-        for _ in range(60):  # Newton, kept between bounds where the slope changes its sign
-            slope, curvature = slope_and_curvature(p, y, first, cubic, e, xi, work)
-            if slope > 0.0:
-                high = xi
-            else:
-                low = xi
-            step = -slope / curvature if curvature > 0.0 else math.inf
-            new = xi + step
-            if not low <= new <= high:
-                new = 0.5 * (low + high)
-            moved, xi = abs(new - xi), new
-            if moved < 1e-14:
-                break
-        return e, xi, True
-    if e < 0:
-        return 0, 0.0, False
-    return elements - 1, 1.0, False
+    last = len(first)
+    direction = -1 if station_slope(p, y, first, cubic, j, work) > 0.0 else 1
+    near, stride = j, 1
+    while True:  # in growing steps to where the gap no longer falls
+        far = min(max(near + direction * stride, 0), last)
+        if far == near:
+            return (0, 0.0, False) if near == 0 else (last - 1, 1.0, False)
+        if station_slope(p, y, first, cubic, far, work) * direction >= 0.0:
+            break
+        near, stride = far, 2 * stride
+    while abs(far - near) > 1:
+        middle = (near + far) // 2
+        if station_slope(p, y, first, cubic, middle, work) * direction < 0.0:
+            near = middle
+        else:
+            far = middle
+    e, xi, low, high = min(near, far), 0.5, 0.0, 1.0
+    for _ in range(60):  # Newton, kept between bounds where the slope changes its sign
+        slope, curvature = slope_and_curvature(p, y, first, cubic, e, xi, work)
+        if slope > 0.0:
+            high = xi
+        else:
+            low = xi
+        step = -slope / curvature if curvature > 0.0 else math.inf
+        new = xi + step
+        if not low <= new <= high:
+            new = 0.5 * (low + high)
+        moved, xi = abs(new - xi), new
+        if moved < 1e-14:
+            break
+    return e, xi, True
 
 
 @njit(cache=True, error_model="numpy")
@@ -130,9 +139,15 @@ def near_places(p, radius, turns, y, station_turns, first, cubic, overlap, margi
         widest = max(widest, y[i, 3])
         if i:
             longest = max(longest, distance2(y[i], y, i - 1))
-    # the station nearest to a place is at most half an element from it
-    reach = 2.0 * widest + margin + 0.6 * math.sqrt(longest)
-    low, count, size, head, after = grid(y[:, :3], reach)
+    # where elements are much shorter than the wire is thick, only every so many stations are sorted: the posts
+    stride = max(1, int(POST * widest / math.sqrt(longest)))
+    posts = np.empty((n - 2) // stride + 2, np.int64)
+    for k in range(len(posts)):
+        posts[k] = min(k * stride, n - 1)
+    x = y[posts]
+    # the post nearest to a place is at most half a stride from it
+    reach = 2.0 * widest + margin + 0.6 * stride * math.sqrt(longest)
+    low, count, size, head, after = grid(x[:, :3], reach)
     work, cube, found = np.empty((3, 4)), np.empty(3, np.int64), 0
     for i in range(len(p)):
         for k in range(3):
@@ -142,15 +157,15 @@ def near_places(p, radius, turns, y, station_turns, first, cubic, overlap, margi
                 for c in range(max(cube[2] - 1, 0), min(cube[2] + 2, count[2])):
                     j = head[(a * count[1] + b) * count[2] + c]
                     while j >= 0:
-                        here, now = distance2(p[i], y, j), j
+                        here, now = distance2(p[i], x, j), j
                         j = after[j]
-                        if here > reach**2 or abs(station_turns[now] - turns[i]) < APART:
+                        if here > reach**2 or abs(station_turns[posts[now]] - turns[i]) < APART:
                             continue
-                        if now > 0 and distance2(p[i], y, now - 1) < here:
+                        if now > 0 and distance2(p[i], x, now - 1) < here:
                             continue
-                        if now + 1 < n and distance2(p[i], y, now + 1) <= here:
+                        if now + 1 < len(posts) and distance2(p[i], x, now + 1) <= here:
                             continue
-                        e, xi, inside = closest(p[i], y, first, cubic, now, work)
+                        e, xi, inside = closest(p[i], y, first, cubic, posts[now], work)
                         turn = station_turns[e] + xi * (station_turns[e + 1] - station_turns[e])
                         if abs(turn - turns[i]) < APART:
                             continue

@@ -31,6 +31,8 @@ class Seat:
         tilts: may the seat tilt?
     """
 
+    guarded = True
+
     def __init__(self, end, points, reach, stations, level, bedding, onset, slope=0.0, stepped=0.0, tilts=False):
         self.name, self.points, self.onset, self.slope = f"{end} seat", points, onset, slope
         self.number, self.side = (0, 1.0) if end == "bottom" else (1, -1.0)  # the wire lies above the bottom seat

@@ -227,12 +227,25 @@ class System:
         scale = max((abs(value) for value in self.fixed.values()), default=0.0)
         return comm_max(self.comm, max(off, default=0.0)) > 1e-12 * scale
 
+    @property
+    def depth(self):
+        """Greatest penetration of coils and seats at the trial state, mm; infinite where no stress was found."""
+        if self.failed:
+            return np.inf
+        parts = zip(self.contacts, self.contributions, strict=False)
+        return max((part.penetration.max(initial=0.0) for contact, part in parts if contact.guarded), default=0.0)
+
+    def allowed_depth(self, depth):
+        """Penetration up to which a correction may press, from a state with the penetration `depth`, mm."""
+        return max(DEEP * 2.0 * self.largest_radius, GROWTH * depth)
+
     def free_way(self, X, Y, sign=1.0):
         """Greatest λ ≤ 1 up to which the increments X + λ · sign · Y do not press coils or seats far into each other.
 
         Penetrations up to DEEP wire diameters are free; from deeper ones it goes on as long as they less than double.
         """
-        if not self.contacts:
+        guarded = [contact for contact in self.contacts if contact.guarded]
+        if not guarded:
             return 1.0
         n, start = len(self.station_dofs), self.gather(self.rod.equilibrium["x"])
         (x, seats), (u, moved) = ((values[: 6 * n].reshape(n, 6)[:, :3], values[-SEATS:])
@@ -240,9 +253,9 @@ class System:
         x, seats = start + x, self.seats_start + seats
 
         def depth(share):
-            return max(contact.depth(x + share * u, seats + share * moved) for contact in self.contacts)
+            return max(contact.depth(x + share * u, seats + share * moved) for contact in guarded)
 
-        allowed = max(DEEP * 2.0 * self.largest_radius, GROWTH * depth(0.0))
+        allowed = self.allowed_depth(depth(0.0))
         if depth(1.0) <= allowed:
             return 1.0
         low, high = LEAST_WAY, 1.0

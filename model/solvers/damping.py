@@ -33,12 +33,17 @@ class Damping:
     def __call__(self, x, y):
         """Scale the correction `y`, by which SNES goes from `x` to x − y."""
         system = self.system
-        y.scale(system.free_way(x, y, -1.0))
+        system.bring_to(x)
+        allowed = system.allowed_depth(system.depth)
         pending = system.misses(x)
         y.copy(self.free)
         system.clear_fixed(self.free)
-        work, norm = self.F.dot(self.free), self._free_norm(self.F)
         share, (s, n) = 1.0, self._at(x, y, 1.0)
+        if system.depth > allowed and (way := system.free_way(x, y, -1.0)) < 1.0:
+            y.scale(way)
+            self.free.scale(way)
+            s, n = self._at(x, y, 1.0)
+        work, norm = self.F.dot(self.free), self._free_norm(self.F)
         while s is None and share > LEAST:
             share *= QUARTER
             s, n = self._at(x, y, share)

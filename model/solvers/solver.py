@@ -108,10 +108,13 @@ class Solver:
 
     def _start_at_rest(self, guess):
         """Go along the guess only as far as the contacts allow."""
-        self.X.set(0.0)
-        share = self.system.free_way(self.X, guess)
         guess.copy(self.X)
-        self.X.scale(share)
+        self.system.bring_to(self.X)
+        if self.system.depth > self.system.allowed_depth(0.0):
+            self.X.set(0.0)
+            share = self.system.free_way(self.X, guess)
+            guess.copy(self.X)
+            self.X.scale(share)
 
     def _set_load(self):
         """What the step adds to loads and prescribed values: minus the residual at its start."""
