@@ -14,6 +14,7 @@ from coilset.model.loading.driver import Drive
 from coilset.model.loading.stepper import Step, Stepper
 from coilset.model.material import library
 from coilset.model.problem.system import System
+from coilset.model.results.seats import Resultants, observe
 from coilset.model.rod.kinematics import GAUSS
 from coilset.model.rod.rod import Rod
 from coilset.model.solvers.solver import Solver
@@ -50,10 +51,14 @@ class Snapshot:
 
 @dataclass
 class Result:
-    """What a run has found; `complete` is False if it ended before its program did."""
+    """What a run has found; `complete` is False if it ended before its program did.
+
+    `seats` has what both ends bear after each of the `steps`.
+    """
 
     steps: list[Step] = field(default_factory=list)
     snapshots: list[Snapshot] = field(default_factory=list)
+    seats: list[Resultants] = field(default_factory=list)
     rate: float = float("nan")
     complete: bool = False
 
@@ -104,6 +109,7 @@ class Analysis:
         result, save = self.result, checkpoint.save if checkpoint else lambda analysis: None
 
         def record(step):
+            result.seats.append(observe(self, step))
             result.steps.append(step)
             save(self)
             report(step)

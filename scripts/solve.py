@@ -14,6 +14,7 @@ from coilset.model.case import read_case
 from coilset.model.errors import CoilsetError, InputError, SolveError
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.folder import prepare, write_history, write_summary
+from coilset.model.results.seats import write_seats
 from coilset.model.results.summary import summarise
 from coilset.scripts.interactive import Prompt
 from coilset.scripts.interrupt import Interrupt
@@ -128,6 +129,7 @@ def _write(out, analysis, result, summary):
     from coilset.model.results import dataset
 
     write_history(out, result.steps)
+    write_seats(out, result.seats)
     dataset.write_points(out, dataset.point_state(analysis, result.snapshots))
     dataset.write_fields(out, analysis, result.snapshots)
     write_summary(out, summary)

@@ -10,6 +10,9 @@ from typing import Protocol
 
 import numpy as np
 
+from coilset.model.contact.centreline import WirePoints
+
+ENDS = ("bottom", "top")
 SEAT_DOFS = 3  # level z, tilts θx and θy
 TOUCH = 1e-6  # N
 
@@ -59,10 +62,20 @@ def one_sided(g, c, onset):
 
 
 class Contact(Protocol):
-    """A kind of contact; no correction presses a guarded one in deep, and only such a one needs `depth`."""
+    """A kind of contact; no correction presses a guarded one in deep, and only such a one needs `depth`.
+
+    Attributes:
+        name: for labels.
+        guarded: see above.
+        end: `bottom` or `top` if its forces are those of a seat, else None.
+        points: the WirePoints that `Contribution.point` counts, or None; `lengths`, shape (m,), mm, is the wire over
+            which each of them bears.
+    """
 
     name: str
     guarded: bool
+    end: str | None
+    points: WirePoints | None
 
     def depth(self, x: np.ndarray, seats: np.ndarray) -> float:
         """Greatest penetration, mm; 0 where nothing touches."""

@@ -79,12 +79,12 @@ class Coils:
         onset: way over which contact sets in, mm.
     """
 
-    name = "coils"
+    name, end = "coils", None
     guarded = True
 
     def __init__(self, points, stations, bedding, onset):
         self.points, self.onset = points, onset
-        self.stiffness = 0.5 * bedding * points.length
+        self.stiffness, self.lengths = 0.5 * bedding * points.length, points.length
         self.overlap = np.zeros((len(points), 2))
         pair, where, _ = self.near(stations)
         i, turn = pair[:, 0], points.line.turns[pair[:, 1]]

@@ -15,7 +15,7 @@ class Gaps:
         onset: way over which contact sets in, mm.
     """
 
-    name = "gap"
+    name, end, points = "gap", None, None
     guarded = False  # gap elements are few: they close and open by the iteration alone, as in the thesis
 
     def __init__(self, pairs, free_length, stiffness, onset):

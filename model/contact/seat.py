@@ -34,12 +34,13 @@ class Seat:
     guarded = True
 
     def __init__(self, end, points, reach, stations, level, bedding, onset, slope=0.0, stepped=0.0, tilts=False):
-        self.name, self.points, self.onset, self.slope = f"{end} seat", points, onset, slope
+        self.name, self.end, self.points, self.onset, self.slope = f"{end} seat", end, points, onset, slope
         self.number, self.side = (0, 1.0) if end == "bottom" else (1, -1.0)  # the wire lies above the bottom seat
         self.tip = 0 if end == "bottom" else len(points) - 1
         self.stiffness = bedding * points.length
         # a wire that stands on its tip bears by its end face, whatever the mesh
         self.stiffness[self.tip] = bedding * 2.0 * points.radius[self.tip]
+        self.lengths = self.stiffness / bedding
         self.cord = CORD * self.stiffness[self.tip]
         self.reach = np.array(reach, dtype=float)
         start = np.zeros(2 * SEAT_DOFS)

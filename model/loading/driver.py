@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coilset.model.contact.base import SEAT_DOFS
+from coilset.model.contact.base import ENDS, SEAT_DOFS
 from coilset.model.contact.seat import Seat
 
 
@@ -14,6 +14,9 @@ class Drive:
         ends: `clamped`: the end nodes belong to rigid heads that move along the axis only; `seats`: the wire's tips
             are held sideways and against turning, as by the pockets of a seat, and rest on it one-sidedly.
         free_length: height of the unloaded spring, mm.
+
+    Attributes:
+        tips: station of each end and those of its six components that are held or driven, so that they bear reactions.
     """
 
     def __init__(self, system, ends, free_length):
@@ -21,11 +24,13 @@ class Drive:
         bottom, top = system.station_dofs[0], system.station_dofs[-1]
         if ends == "clamped":
             self.axial = int(top[2])
-            held = [*bottom, *np.delete(top, 2), *system.seat_dofs]
+            held, components = [*bottom, *np.delete(top, 2), *system.seat_dofs], np.arange(6)
         else:
+            components = np.delete(np.arange(6), 2)
             self.axial = int(system.seat_dofs[SEAT_DOFS])
             held = [*np.delete(bottom, 2), *np.delete(top, 2), *np.delete(system.seat_dofs, SEAT_DOFS)]
         self.held = {int(dof): 0.0 for dof in held}
+        self.tips = {"bottom": (0, components), "top": (len(system.station_dofs) - 1, components)}
         self.height = free_length
         self.force = 0.0
 
@@ -42,6 +47,12 @@ class Drive:
     def read(self, X):
         """Height (mm) and force (N) at the trial state with increments `X`."""
         return self.height + self.system.value(X, self.axial), -self.system.value(self.system.internal, self.axial)
+
+    def centre(self, end, x):
+        """Where the spring's axis meets the seat or head at the station positions `x`, shape (3,), mm."""
+        station = self.tips[end][0]
+        level = x[station, 2] if self.ends == "clamped" else self.system.seats[SEAT_DOFS * ENDS.index(end)]
+        return np.array([0.0, 0.0, level])
 
     def accept(self, height, force):
         """The trial state has become the equilibrium."""

@@ -203,6 +203,14 @@ class System:
         mine = vector.getArray(readonly=True)[dof - start] if start <= dof < stop else 0.0
         return self.comm.allreduce(mine) if self.comm.size > 1 else float(mine)
 
+    def values(self, vector, dofs):
+        """Entries of a vector of the system at `dofs`, in their shape, on every rank."""
+        start, stop = vector.getOwnershipRange()
+        dofs = np.asarray(dofs)
+        mine, out = (dofs >= start) & (dofs < stop), np.zeros(dofs.shape)
+        out[mine] = vector.getArray(readonly=True)[dofs[mine] - start]
+        return self.comm.allreduce(out) if self.comm.size > 1 else out
+
     def rounding(self, X):
         """Norm of the out-of-balance forces that rounding leaves, N.
 

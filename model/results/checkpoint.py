@@ -12,6 +12,7 @@ import numpy as np
 from coilset.model.errors import InputError
 from coilset.model.loading.stepper import Step, Walk
 from coilset.model.results.folder import whole
+from coilset.model.results.seats import Resultants
 
 NODAL, CELLWISE = ("x", "R"), ("chord", "bow", "strain", "history")
 SPRING_ENTRIES = ("spring", "material", "ends", "mesh", "contact")  # what must be the same to go on
@@ -41,6 +42,8 @@ class Checkpoint:
             return
         state["seats"] = system.seats_start
         result = analysis.result
+        state["pressure"] = np.concatenate([np.empty((0, 3)), *(one.pressure for one in result.seats)])
+        state["bearing_points"] = np.array([len(one.pressure) for one in result.seats], dtype=int)
         steps = [asdict(step) for step in result.steps]
         about = {
             "case": self.case,
@@ -49,6 +52,7 @@ class Checkpoint:
             "force": analysis.drive.force,
             "rate": result.rate,
             "steps": steps,
+            "seats": [one.row() for one in result.seats],
             "snapshots": len(result.snapshots),
         }
         self.folder.mkdir(exist_ok=True)
@@ -101,6 +105,8 @@ class Checkpoint:
         drive.accept(about["height"], about["force"])
         stepper.walk, stepper.number = Walk(**about["walk"]), len(about["steps"])
         analysis.result.steps = [Step(**step) for step in about["steps"]]
+        parts = np.split(loaded["pressure"], np.cumsum(loaded["bearing_points"])[:-1])
+        analysis.result.seats = [Resultants.from_row(*pair) for pair in zip(about["seats"], parts, strict=True)]
         analysis.result.rate = about["rate"]
         analysis.result.snapshots = [self._snapshot(number, comm.rank) for number in range(about["snapshots"])]
 

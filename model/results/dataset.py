@@ -43,7 +43,29 @@ def point_state(analysis, snapshots):
         },
         attrs={"title": "section points of the rod", "material": analysis.law.name, "section_rule": rule.name},
     )  # fmt: skip
-    return data
+    return data.merge(pressure_along_wire(analysis))
+
+
+def pressure_along_wire(analysis):
+    """Force per length of wire of each kind of contact in every step, at the points of the wire that ever bear."""
+    resultants, kinds = analysis.result.seats, analysis.system.contacts
+    points = next((kind.points for kind in kinds if kind.points is not None), None)
+    if points is None or not resultants:
+        return xr.Dataset()
+    rows = np.concatenate([one.pressure for one in resultants])
+    bearing, place = np.unique(rows[:, 1].astype(int), return_inverse=True)
+    values = np.zeros((len(resultants), len(kinds), len(bearing)))
+    step = np.repeat(np.arange(len(resultants)), [len(one.pressure) for one in resultants])
+    values[step, rows[:, 0].astype(int), place] = rows[:, 2]
+    about = "bedding pressure, force per length of wire"
+    return xr.Dataset(
+        {"pressure": (("step", "contact", "wire_point"), values, {"units": "N/mm", "about": about})},
+        coords={
+            "step": [one.step for one in resultants],
+            "contact": [kind.name for kind in kinds],
+            "wire_turn": ("wire_point", points.turns[bearing], {"units": "1"}),
+        },
+    )
 
 
 def write_points(folder, data):

@@ -1,0 +1,54 @@
+"""What acts on the wire from outside: forces of the contacts, gathered to wrenches, and where their resultant goes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+def station_forces(parts, stations):
+    """Forces of contacts on the wire.
+
+    Args:
+        parts: Contributions.
+        stations: number of stations n.
+
+    Returns:
+        shape (n, 3), N.
+    """
+    force = np.zeros(3 * stations)
+    for part in parts:
+        on_wire = part.dofs < 3 * stations
+        np.subtract.at(force, part.dofs[on_wire], part.forces[on_wire])
+    return force.reshape(-1, 3)
+
+
+@dataclass(frozen=True)
+class Wrench:
+    """Force, shape (3,), N, and its moment about the origin, shape (3,), N mm."""
+
+    force: np.ndarray
+    moment: np.ndarray
+
+    @classmethod
+    def of(cls, forces, x, moments=0.0):
+        """The resultant of `forces` and `moments`, shape (n, 3), at the points `x`, shape (n, 3), mm."""
+        turning = np.broadcast_to(moments, np.shape(forces))
+        return cls(np.sum(forces, axis=0), np.sum(np.cross(x, forces) + turning, axis=0))
+
+    def __add__(self, other):
+        return Wrench(self.force + other.force, self.moment + other.moment)
+
+    def about(self, point):
+        """Moment about another point, shape (3,), N mm."""
+        return self.moment - np.cross(point, self.force)
+
+    def crossing(self, point):
+        """Where the resultant crosses the plane z = const through `point`, relative to it.
+
+        There its moments about x and y vanish: ex = −My/Fz, ey = Mx/Fz.
+
+        Returns:
+            ex, ey, shape (2,), mm.
+        """
+        mx, my, _ = self.about(point)
+        return np.array([-my, mx]) / self.force[2]

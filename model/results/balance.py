@@ -1,0 +1,52 @@
+"""Global balance: at every cut the force and moment in the wire carry what acts on it from outside before the cut."""
+
+import numpy as np
+
+from coilset.model.contact.resultants import station_forces
+
+
+def section_wrenches(x, triads, resultants):
+    """What the wire behind a cut does to the wire before it, for a cut through each element.
+
+    Between two nodes nothing acts on an element; so the force is the mean of its two Gauss sections, and the moment at
+    its first node follows from the virtual work of the strains (5.2.4): E (Mt, M2 − Q3 l/2, M3 + Q2 l/2).
+
+    Args:
+        x: station positions, shape (n + 1, 3), mm.
+        triads: of the elements (columns), shape (n, 3, 3).
+        resultants: N, Q2, Q3, Mt, M2, M3 at the Gauss sections, shape (n, 2, 6), N and N mm.
+
+    Returns:
+        Forces and moments about the origin, shape (n, 3) each, N and N mm.
+    """
+    l = np.linalg.norm(np.diff(x, axis=0), axis=1)
+    N, Q2, Q3, Mt, M2, M3 = resultants.mean(axis=1).T
+    force = np.einsum("nij,jn->ni", triads, [N, Q2, Q3])
+    moment = np.einsum("nij,jn->ni", triads, [Mt, M2 - 0.5 * Q3 * l, M3 + 0.5 * Q2 * l])
+    return force, moment + np.cross(x[:-1], force)
+
+
+def imbalance(analysis):
+    """How far seats, contacts and section forces are from balance; collective, whole on rank 0.
+
+    Args:
+        analysis: Analysis at an equilibrium.
+
+    Returns:
+        Greatest lack of force over all cuts, N, and of moment about the origin, N mm; the last cut is behind the whole
+        wire, so that both seats' wrenches are judged too.
+    """
+    shot, system, drive = analysis.snapshot("balance"), analysis.system, analysis.drive
+    x = shot.x
+    forces, moments = station_forces(system.contributions, len(x)), np.zeros_like(x)
+    for station, components in drive.tips.values():
+        reaction = np.zeros(6)
+        reaction[components] = system.values(system.internal, system.station_dofs[station, components])
+        forces[station] += reaction[:3]
+        moments[station] += reaction[3:]
+    if analysis.comm.rank:
+        return np.nan, np.nan
+    before = np.cumsum(forces, axis=0), np.cumsum(np.cross(x, forces) + moments, axis=0)
+    behind = section_wrenches(x, shot.triads, shot.resultants)
+    behind = [np.vstack([part, np.zeros(3)]) for part in behind]
+    return tuple(float(np.linalg.norm(a + b, axis=1).max()) for a, b in zip(before, behind, strict=True))
