@@ -171,27 +171,35 @@ class SolidProblem:
         return effort + Step(0, 0, cuts)
 
     def _attempt(self, bottom, top):
-        increment = self._prescribed.x.array.reshape(-1, 3)
-        for head, motion in ((self.bottom, bottom), (self.top, top)):
-            increment[head.blocks] = head.positions(motion) - self.solid.configuration.x[head.blocks]
-        predictor = self._predict()
+        predictor = self.predict(top, bottom)
         self.snes.solve(None, self._x)
         return Step(1 + self.snes.getIterationNumber(), predictor + self.snes.getLinearSolveIterations())
 
-    def _predict(self):
-        """Start from the linear answer to the heads' motion g, which tears no end element: K_ff u = −K_fh g − r."""
+    def predict(self, top, bottom=None):
+        """Solve for the linear answer to the heads' motion g, K_ff u = −K_fh g − r: where Newton's method begins.
+
+        It tears no end element, and the body stays at the last equilibrium.
+
+        Args:
+            top, bottom: as in `step`.
+
+        Returns:
+            Iterations of the linear solver.
+        """
+        increment = self._prescribed.x.array.reshape(-1, 3)
+        for head, motion in ((self.bottom, bottom or self.bottom.motion), (self.top, top)):
+            increment[head.blocks] = head.positions(motion) - self.solid.configuration.x[head.blocks]
         ksp, owned = self.snes.getKSP(), self.solid.configuration.owned
         self._assemble()
         b = la.vector(self.solid.V.dofmap.index_map, 3)
         fem.apply_lifting(b.array, [self.solid.forms.tangent], [self._conditions])  # −K_fh g
         b.scatter_reverse(la.InsertMode.add)
-        increment = self._prescribed.x.array.reshape(-1, 3)[self._held]
         rest = b.array.reshape(-1, 3)[:owned] - self.forces
-        rest[self._held] = increment
+        rest[self._held] = increment[self._held]
         self._f.setArray(rest.ravel())
         ksp.setOperators(self._A)
         ksp.solve(self._f, self._x)
-        self._x.array.reshape(-1, 3)[self._held] = increment  # exactly, also if the linear solve is iterative
+        self._x.array.reshape(-1, 3)[self._held] = increment[self._held]  # exactly, also if the solve is iterative
         return ksp.getIterationNumber()
 
     def reactions(self, point):

@@ -1,9 +1,17 @@
-"""Iterations of the multigrid over the number of unknowns, and time over the number of ranks.
+"""How the solid's solver scales: multigrid iterations over the number of unknowns, and time over the number of ranks.
 
-`scripts/coilset -n RANKS python -m coilset.verification.solid_vs_rod.scaling FOLDER [SIZE ...]`
+Iterations, on any number of ranks; it goes on where it was:
+
+    scripts/coilset python -m coilset.verification.solid_vs_rod.scaling FOLDER
+
+Time of one linearised step of 200,000 unknowns, five times; first on one rank, then on two, which prints the ratio too:
+
+    scripts/coilset [-n 2] python -m coilset.verification.solid_vs_rod.scaling FOLDER time
 """
 
+import os
 import sys
+import time
 
 from mpi4py import MPI
 
@@ -17,44 +25,101 @@ from coilset.verification.solid_vs_rod.store import Store
 
 # elements along the core's side and of rings, and along the wire: name → 20,000 to 500,000 unknowns
 SIZES = {"20k": (3, 32), "50k": (4, 48), "120k": (5, 72), "200k": (6, 86), "500k": (8, 122)}
+TIMED = "200k"
+REPETITIONS = 5
+STAGES = ("points", "assembly", "solve")
 
 
-def measure(size, comm, solver="multigrid"):
-    """One elastic and one plastic step of the pressed section of D/d = 8.
-
-    The first step stays elastic; the second goes to a travel at which nearly all of the wire's section flows.
-
-    Returns:
-        Dict: unknowns, ranks, and for each step (`elastic`, `plastic`) its linear solves, iterations of the linear
-        solver in one solve on average, and seconds at the points, in assembly, and in solving.
-    """
+def pressed(size, comm, solver="multigrid"):
+    """The section of D/d = 8 after a first small step, which compiles and plans."""
     grid, layers = SIZES[size]
     case = PressedSection()
     wire = coil_section(WIRE, case.mean_diameter, case.pitch, 360.0, layers, comm, SectionGrid(grid, grid))
     problem = SolidProblem(wire, MaterialPoints(library.load(case.material)), solver)
-    problem.step(Motion((0.0, 0.0, -1e-4)))  # compiles and plans; not counted
-    out = {"size": size, "unknowns": problem.unknowns, "ranks": comm.size}
+    problem.step(Motion((0.0, 0.0, -1e-4)))
+    return problem
+
+
+def iterations(size, comm):
+    """One elastic step, and one to a travel at which nearly all of the wire's section flows.
+
+    Returns:
+        Dict: unknowns, ranks, and for each step (`elastic`, `plastic`) its linear solves, iterations of the linear
+        solver in one of them on average, and seconds.
+    """
+    problem = pressed(size, comm)
+    out = {"unknowns": problem.unknowns, "ranks": comm.size}
     for name, travel in (("elastic", 0.5), ("plastic", 2.5)):
-        problem.seconds.update(dict.fromkeys(problem.seconds, 0.0))
+        began = time.perf_counter()
         effort = problem.step(Motion((0.0, 0.0, -travel)))
-        spent = comm.allreduce(problem.seconds["all"], op=MPI.MAX)
-        points, assembly = (comm.allreduce(problem.seconds[k]) / comm.size for k in ("points", "assembly"))
-        out[name] = {
-            "solves": effort.iterations, "iterations": effort.linear_iterations / effort.iterations,
-            "points": points, "assembly": assembly, "solving": spent - points - assembly, "all": spent,
-        }  # fmt: skip
+        seconds = comm.allreduce(time.perf_counter() - began, op=MPI.MAX)
+        out[name] = {"solves": effort.iterations, "iterations": effort.linear_iterations / effort.iterations,
+                     "seconds": seconds}  # fmt: skip
     return out
 
 
-def main(folder, *sizes):
-    """Measure and print a table."""
-    comm = MPI.COMM_WORLD
-    store = Store(folder, comm, print)
+def timed(size, comm):
+    """Repeat a linearised step: stresses and moduli at the points and their forces, tangent and coarse one, solution.
+
+    Returns:
+        Dict: unknowns, ranks, and a list of repetitions: seconds of the three stages (the slowest rank's), and `share`,
+        the processor's time over the wall's (the least of the ranks); what is below 1 went to other programs.
+    """
+    problem = pressed(size, comm)
+    repetitions = [_repetition(problem, comm) for _ in range(REPETITIONS)]
+    return {"unknowns": problem.unknowns, "ranks": comm.size, "repetitions": repetitions}
+
+
+def _repetition(problem, comm):
+    comm.barrier()
+    assembled, cpu, wall = problem.seconds["assembly"], time.process_time(), [time.perf_counter()]
+    problem.solid.update()
+    problem.solid.internal_forces()
+    wall.append(time.perf_counter())
+    linear = problem.predict(Motion((0.0, 0.0, -0.5)))
+    wall.append(time.perf_counter())
+    share = (time.process_time() - cpu) / (wall[2] - wall[0])
+    assembly = problem.seconds["assembly"] - assembled
+    spent = wall[1] - wall[0], assembly, wall[2] - wall[1] - assembly
+    out = dict(zip(STAGES, (comm.allreduce(t, op=MPI.MAX) for t in spent), strict=True))
+    return {**out, "iterations": linear, "share": comm.allreduce(share, op=MPI.MIN)}
+
+
+def best(result):
+    """Each stage's least time of the repetitions, and that of all together."""
+    out = {stage: min(r[stage] for r in result["repetitions"]) for stage in STAGES}
+    return {**out, "all": min(sum(r[stage] for stage in STAGES) for r in result["repetitions"])}
+
+
+def _report_iterations(store, sizes):
     for size in sizes or SIZES:
-        result = store.get(f"scaling-{size}-{comm.size}", lambda size=size: measure(size, comm))
+        result = store.get(f"iterations-{size}", lambda size=size: iterations(size, store.comm))
         for name in ("elastic", "plastic"):
-            store.report(f"{result['unknowns']:8d} unknowns, {result['ranks']} ranks, {name}: " + ", ".join(
-                f"{key} {value:.3g}" for key, value in result[name].items()))  # fmt: skip
+            step = result[name]
+            store.report(f"{result['unknowns']:8d} unknowns, {name}: {step['iterations']:.1f} iterations a solve, "
+                         f"{step['solves']} solves, {step['seconds']:.0f} s on {result['ranks']} rank(s)")  # fmt: skip
+
+
+def _report_times(store):
+    result = store.put(f"time-{store.comm.size}", timed(TIMED, store.comm))
+    store.report(f"{result['unknowns']} unknowns on {result['ranks']} rank(s), load {os.getloadavg()[0]:.1f}; seconds")
+    for r in result["repetitions"]:
+        store.report(", ".join(f"{stage} {r[stage]:.2f}" for stage in STAGES)
+                     + f"; {r['iterations']} iterations, share of the processor {r['share']:.2f}")  # fmt: skip
+    one = store.read("time-1")
+    if result["ranks"] > 1 and one:
+        one, more = best(one), best(result)
+        store.report("best of one rank over best of these: "
+                     + ", ".join(f"{name} {one[name] / more[name]:.2f}" for name in more))  # fmt: skip
+
+
+def main(folder, *what):
+    """Measure and print."""
+    store = Store(folder, MPI.COMM_WORLD, print)
+    if what == ("time",):
+        _report_times(store)
+    else:
+        _report_iterations(store, what)
 
 
 if __name__ == "__main__":

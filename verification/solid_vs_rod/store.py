@@ -28,16 +28,23 @@ class Store:
             name: of the case; a file name without its ending.
             compute: function without arguments that returns plain data, called on all ranks.
         """
-        path, known = self.folder / f"{name}.json", None
-        if self.comm.rank == 0 and path.exists():
-            known = json.loads(path.read_text(encoding="utf-8"))
-        known = self.comm.bcast(known)
+        known = self.read(name)
         if known is not None:
             self.report(f"{name}: known")
             return known
         self.report(f"{name}: begun")
-        result = compute()
+        return self.put(name, compute())
+
+    def read(self, name):
+        """The case's result on all ranks, None if it is not there."""
+        path, known = self.folder / f"{name}.json", None
+        if self.comm.rank == 0 and path.exists():
+            known = json.loads(path.read_text(encoding="utf-8"))
+        return self.comm.bcast(known)
+
+    def put(self, name, result):
+        """Write the case's result, plain data, in place of what is there, and return it."""
         if self.comm.rank == 0:
-            with whole(path) as part:
+            with whole(self.folder / f"{name}.json") as part:
                 part.write_text(json.dumps(result, indent=1), encoding="utf-8")
         return result
