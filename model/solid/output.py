@@ -10,8 +10,8 @@ import pyvista
 from coilset.model.results.folder import whole
 
 BAR = {
-    "color": "black", "n_labels": 5, "fmt": "%.3g", "title_font_size": 16, "label_font_size": 15,
-    "position_x": 0.2, "width": 0.6, "position_y": 0.03, "height": 0.14,
+    "color": "black", "n_labels": 5, "fmt": "%.3g", "title_font_size": 22, "label_font_size": 18,
+    "position_x": 0.2, "width": 0.6, "position_y": 0.02, "height": 0.16,
 }  # fmt: skip
 
 
@@ -92,18 +92,19 @@ def picture(path, bodies, field, unit):
         field, unit: name of the field, and its unit for the colour bar.
     """
     greatest = max(float(body.point_data[field].max()) for body in bodies.values())
-    size = 760 * len(bodies), 560
+    size = 720 * len(bodies), 470
     plotter = pyvista.Plotter(off_screen=True, shape=(1, len(bodies)), window_size=size, border=False)
     plotter.set_background("white")
     for column, (name, body) in enumerate(bodies.items()):
         plotter.subplot(0, column)
         half = body.tessellate(max_n_subdivide=2).clip(normal=(0, -1, 0), origin=(0, 1e-3, 0))
-        bar = {"title": f"{field} in {unit}", **BAR}
-        plotter.add_mesh(half, scalars=field, clim=(0.0, greatest), cmap="viridis", ambient=0.45, scalar_bar_args=bar)
-        plotter.add_text(name, position="upper_left", font_size=11, color="black")
+        half = half.connectivity("largest")  # without what a turn's second end has on this side
+        bar = {"title": f"{field} in {unit}\n", **BAR}
+        plotter.add_mesh(half, scalars=field, clim=(0.0, greatest), cmap="viridis", ambient=0.3, scalar_bar_args=bar)
+        plotter.add_text(name, position=(0.42, 0.9), viewport=True, font_size=13, color="black")
         plotter.camera.parallel_projection = True
         plotter.view_vector((0.1, -1.0, 0.6), viewup=(0, 0, 1))
-        plotter.camera.zoom(1.25)
+        plotter.camera.zoom(1.6)
     with whole(Path(path)) as part:
         plotter.screenshot(str(part))
     plotter.close()
