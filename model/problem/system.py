@@ -35,6 +35,7 @@ class System:
         seats: level and tilts θx, θy of the bottom seat, then those of the top seat, shape (6,), mm and rad.
         fixed: system dof → increment prescribed in this step; set by the load program before each solve.
         forces: system dof → external force, N or N mm.
+        share: of the step's increments and change of forces that is asked for at present; 1 but for a solve in parts.
         failed: True if the last evaluation found no stress at some point.
         reaction_start: internal forces at the last equilibrium, to measure the change of the reactions by.
     """
@@ -44,7 +45,7 @@ class System:
         self.seats_start = np.zeros(SEATS)
         self.seats_start[::SEAT_DOFS] = seats
         self.seats = self.seats_start.copy()
-        self.fixed, self.forces, self.failed = {}, {}, False
+        self.fixed, self.forces, self.share, self.failed = {}, {}, 1.0, False
         self._number()
         self.contributions = []
         self._local = la.vector(rod.V.dofmap.index_map, rod.V.dofmap.index_map_bs)
@@ -183,13 +184,13 @@ class System:
         """The residual at the state of the last evaluation, `X`, into F."""
         self.internal.copy(F)
         start, stop = F.getOwnershipRange()
-        values, x = F.getArray(), X.getArray(readonly=True)
+        values, x, before = F.getArray(), X.getArray(readonly=True), self.reaction_start.getArray(readonly=True)
         for dof, force in self.forces.items():
             if start <= dof < stop:
-                values[dof - start] -= force
+                values[dof - start] -= self.share * force + (1.0 - self.share) * before[dof - start]
         for dof, target in self.fixed.items():
             if start <= dof < stop:
-                values[dof - start] = self.weight * (x[dof - start] - target)
+                values[dof - start] = self.weight * (x[dof - start] - self.share * target)
         if self.failed:
             F.set(np.inf)  # SNES sees a domain error; the step is cut
 
@@ -231,7 +232,7 @@ class System:
         """Do the increments `X` miss a prescribed value by more than rounding?"""
         start, stop = X.getOwnershipRange()
         x = X.getArray(readonly=True)
-        off = [abs(x[dof - start] - value) for dof, value in self.fixed.items() if start <= dof < stop]
+        off = [abs(x[dof - start] - self.share * value) for dof, value in self.fixed.items() if start <= dof < stop]
         scale = max((abs(value) for value in self.fixed.values()), default=0.0)
         return comm_max(self.comm, max(off, default=0.0)) > 1e-12 * scale
 
@@ -246,6 +247,11 @@ class System:
     def allowed_depth(self, depth):
         """Penetration up to which a correction may press, from a state with the penetration `depth`, mm."""
         return max(DEEP * 2.0 * self.largest_radius, GROWTH * depth)
+
+    def reached(self, X):
+        """Share of the prescribed increments in the increments `X`: that of the greatest one."""
+        dof = max(self.fixed, key=lambda dof: abs(self.fixed[dof]))
+        return self.value(X, dof) / self.fixed[dof]
 
     def free_way(self, X, Y, sign=1.0):
         """Greatest λ ≤ 1 up to which the increments X + λ · sign · Y do not press coils or seats far into each other.

@@ -5,7 +5,8 @@ search for a smaller norm (PETSc's `bt`) then creeps. Measured instead is the ou
 s(λ) = y · F(x − λ y), as with Matthies and Strang: s falls from s(0) > 0 through zero where the energy is least.
 
 A correction that presses coils far into each other is of no use either, since the wire yields in it: it goes only as
-far as the contacts allow, and the next one sees them closed.
+far as the contacts allow, and the next one sees them closed. If it was the one that meets the prescribed increments,
+balance is sought there before it goes on (`System.share`).
 """
 
 import numpy as np
@@ -38,7 +39,7 @@ class Damping:
         pending = system.misses(x)
         y.copy(self.free)
         system.clear_fixed(self.free)
-        share, (s, n) = 1.0, self._at(x, y, 1.0)
+        way, share, (s, n) = 1.0, 1.0, self._at(x, y, 1.0)
         if system.depth > allowed and (way := system.free_way(x, y, -1.0)) < 1.0:
             y.scale(way)
             self.free.scale(way)
@@ -51,6 +52,9 @@ class Damping:
             share = self._zero(x, y, work, share, s) if work > 0.0 > s else self._back(x, y, norm, share, n)
         if share != 1.0:
             y.scale(share)
+        if pending and way * share < 1.0:
+            self.trial.waxpy(-1.0, y, x)
+            system.share = system.reached(self.trial)
 
     def _at(self, x, y, share):
         """Work s and norm of the forces on the free unknowns at x − share · y; None where the law finds no stress."""

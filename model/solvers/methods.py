@@ -21,7 +21,7 @@ PRECONDITIONED = {f"npc_{key}": value for key, value in (ONE_STEP | KEPT).items(
 METHODS = {
     # Newton-Raphson (4.4.4)
     # its corrections are scaled by coilset.model.solvers.damping
-    "newton": {"snes_type": "newtonls", "snes_linesearch_type": "basic", "snes_max_it": 60, **DIRECT},
+    "newton": {"snes_type": "newtonls", "snes_linesearch_type": "basic", "snes_max_it": 30, **DIRECT},
     # (4.4.5), with a line search for the zero of the out-of-balance work along the direction
     "modified-newton": {
         "snes_type": "newtonls", "snes_linesearch_type": "cp", "snes_lag_jacobian": RENEWAL, "snes_max_it": 100,
