@@ -76,10 +76,10 @@ class System:
         self.seat_dofs = self.size_rod + np.arange(SEATS, dtype=PETSc.IntType)
         self.contact_dofs = np.concatenate([self.station_dofs[:, :3].ravel(), self.seat_dofs])
         self._nodes = nodes
-        bow = index_map.local_to_global(self.rod.bow_dofs.ravel().astype(np.int32)).reshape(-1, 2)
+        shear = index_map.local_to_global(self.rod.shear_dofs.ravel().astype(np.int32)).reshape(-1, 2)
         element = np.concatenate(comm.allgather(line.element[: line.owned_cells]))
         self.element_dofs = np.empty((len(element), 2), dtype=PETSc.IntType)
-        self.element_dofs[element] = np.concatenate(comm.allgather(bow))
+        self.element_dofs[element] = np.concatenate(comm.allgather(shear))
         self._all_dofs = np.concatenate([self.station_dofs.ravel(), self.element_dofs.ravel(), self.seat_dofs])
 
     def to_order(self, vector):
@@ -105,7 +105,7 @@ class System:
         A.setType(PETSc.Mat.Type.AIJ)
         ghosts = np.concatenate([np.arange(*index_map.local_range), index_map.ghosts]).astype(PETSc.IntType)
         A.setLGMap(PETSc.LGMap().create(ghosts, comm=self.comm), PETSc.LGMap().create(ghosts, comm=self.comm))
-        # a node couples with two neighbours and two pairs of bows (22 entries), and with touching stations
+        # a node couples with two neighbours and two pairs of shear angles (22 entries), and with touching stations
         A.setPreallocationNNZ((40, 40) if self.comm.size > 1 else 40)
         A.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
         A.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)

@@ -14,7 +14,7 @@ from coilset.model.loading.stepper import Step, Walk
 from coilset.model.results.folder import whole
 from coilset.model.results.seats import Resultants
 
-NODAL, CELLWISE = ("x", "R"), ("chord", "bow", "strain", "history")
+NODAL, CELLWISE = ("x", "R"), ("chord", "shear", "strain", "history")
 SPRING_ENTRIES = ("spring", "material", "ends", "mesh", "contact")  # what must be the same to go on
 
 

@@ -16,19 +16,19 @@ QUADRATURE = {"quadrature_degree": 3, "quadrature_rule": "default"}  # two Gauss
 
 @dataclass
 class Increment:
-    """A linear increment of one element in the global frame: chord difference, nodal turns, bows."""
+    """A linear increment of one element in the global frame: chord difference, nodal turns, excess shear angles."""
 
     d: ufl.core.expr.Expr
     turn1: ufl.core.expr.Expr
     turn2: ufl.core.expr.Expr
-    bow: ufl.core.expr.Expr
+    shear: ufl.core.expr.Expr
 
 
 def rod_element():
-    """Two nodes with displacement and rotation vector (P1, 6 values) and two bows per element (DG0)."""
+    """Two nodes with displacement and rotation vector (P1, 6 values) and two excess shear angles per element (DG0)."""
     nodal = basix.ufl.element("Lagrange", "interval", 1, shape=(6,))
-    bow = basix.ufl.element("DG", "interval", 0, shape=(2,))
-    return basix.ufl.mixed_element([nodal, bow])
+    shear = basix.ufl.element("DG", "interval", 0, shape=(2,))
+    return basix.ufl.mixed_element([nodal, shear])
 
 
 def section_element(shape):
@@ -48,7 +48,7 @@ def matrices(coefficient):
 
 def increment(mesh, function, xi, T):
     """The increment of a test or trial function; `T` holds the charts' tangents of the two nodes, shape (2, 3, 3)."""
-    f, bow = ufl.split(function)
+    f, shear = ufl.split(function)
     d = dot(grad(f), ufl.Jacobian(mesh)[:, 0])  # f,ξ
     f1 = f - xi * d
     f2 = f1 + d
@@ -57,45 +57,47 @@ def increment(mesh, function, xi, T):
         as_vector([d[i] for i in range(3)]),
         chart1 * as_vector([f1[i] for i in range(3, 6)]),
         chart2 * as_vector([f2[i] for i in range(3, 6)]),
-        bow,
+        shear,
     )
 
 
-def section_strains(increment, E, l, xi, P=None):
+def section_strains(increment, E, l, xi, share, P=None, spin=0):
     """ε, γ12, γ13, φ′, −w″, v″ of an increment in the triad E (columns), from (5.2.4).
 
-    Turns count against the triad, whose transverse spin is the chord's. `P`, shape (2, 3, 3), makes of the relative
-    spins the exact rates of the turns; without it the turns are small, as in the thesis.
+    Turns count against the triad, whose transverse spin is the chord's and whose spin about the chord is `spin`. `P`,
+    shape (2, 3, 3), makes of the relative spins the exact rates of the turns; without it the turns are small, as in the
+    thesis.
 
-    The element's own unknowns are the bows b = u + (t1 + t2)/2 in the place of the shear angles u13, u14: the chord's
-    curve is H1 … H4 with the same b at both ends and ±(t2 − t1)/2 besides. The solution is the same, but a finite turn
-    within an iteration then ends as a small shear angle, not as a curvature 6/l times as large, which would ask for
-    more iterations the shorter the elements are, and the matrix has no entries 12 E I/l³ that cancel.
+    The element's own unknowns are the shear angles in excess of those that its turns ask of an elastic element,
+    u = shear − c ½ (t1 + t2), c = Φ/(1 + Φ), Φ = 12 E I/(G A l²); `share` is c. The chord's curve is H1 … H4 with the
+    same bow b = u + ½ (t1 + t2) at both ends and ±(t2 − t1)/2 besides. The solution does not depend on c, but a finite
+    turn within an iteration leaves an error of second order: with c = 0 in the curvature, 6/l times as large, which
+    asks for more iterations the shorter the elements are; with c = 1 in the shear angle, which does so the longer they
+    are. With Timoshenko's c it does least, and the matrix has no entries 12 E I/l³ that cancel.
     """
     d = E.T * increment.d
-    chord = as_vector([0, -d[2] / l, d[1] / l])
-    t1, t2 = E.T * increment.turn1 - chord, E.T * increment.turn2 - chord
+    frame = as_vector([spin, -d[2] / l, d[1] / l])
+    t1, t2 = E.T * increment.turn1 - frame, E.T * increment.turn2 - frame
     if P is not None:
-        mean = as_vector([0.5 * (t1[0] + t2[0]), 0, 0])
         P1, P2 = matrices(P)
-        t1, t2 = P1 * (t1 - mean), P2 * (t2 - mean)
-    b13, b14 = increment.bow[0], increment.bow[1]
-    u13, u14 = b13 - (t1[1] + t2[1]) / 2, b14 - (t1[2] + t2[2]) / 2
+        t1, t2 = P1 * t1, P2 * t2
+    m13, m14 = (t1[1] + t2[1]) / 2, (t1[2] + t2[2]) / 2
+    u13, u14 = increment.shear[0] - share * m13, increment.shear[1] - share * m14
+    b13, b14 = u13 + m13, u14 + m14
     H = (12 * xi - 6) / l  # H2″ + H4″, times l
     return as_vector(
         [d[0] / l, u14, -u13, (t2[0] - t1[0]) / l, (t2[1] - t1[1]) / l + H * b13, (t2[2] - t1[2]) / l + H * b14]
     )
 
 
-def frame_spin(increment, E, l):
-    """Spin of the element's triad: that of the chord, and the mean of the nodes' about it."""
-    e1 = E[:, 0]
-    return cross(e1, increment.d) / l + 0.5 * dot(e1, increment.turn1 + increment.turn2) * e1
+def axial_spin(increment, W):
+    """Spin of the element's triad about its chord; `W`, shape (3, 3), from coilset.model.rod.kinematics.mean_triad."""
+    return sum(dot(W[k, :], rate) for k, rate in enumerate((increment.d, increment.turn1, increment.turn2)))
 
 
 def spun(increment, spin):
     """The virtual increment as seen when the triad turns under it: δu → −spin × δu in the fixed frame."""
-    return Increment(*(-cross(spin, v) for v in (increment.d, increment.turn1, increment.turn2)), 0 * increment.bow)
+    return Increment(*(-cross(spin, v) for v in (increment.d, increment.turn1, increment.turn2)), 0 * increment.shear)
 
 
 class RodForms:
@@ -104,19 +106,23 @@ class RodForms:
     Args:
         mesh: the current configuration.
         V: space of rod_element.
-        xi, E, T, P, s, D: abscissa, triad, chart tangents, rates of the turns, section resultants, section tangent.
+        xi, E, T, P, W, s, D: abscissa, triad, chart tangents, rates of the turns, axial spin of the triad, section
+            strains, section resultants, section tangent.
     """
 
-    def __init__(self, mesh, V, xi, E, T, P, s, D):
+    def __init__(self, mesh, V, xi, share, E, T, P, W, e, s, D):
         self.test = increment(mesh, ufl.TestFunction(V), xi, T)
         self.trial = increment(mesh, ufl.TrialFunction(V), xi, T)
         J = ufl.Jacobian(mesh)[:, 0]
-        self.xi, self.E, self.P, self.l, self.s, self.D = xi, E, P, sqrt(dot(J, J)), s, D
+        self.xi, self.share, self.E, self.P, self.e, self.s, self.D = xi, share, E, P, e, s, D
+        self.l = sqrt(dot(J, J))
+        self.stretch = dot(E[:, 0], self.trial.d) / self.l
+        self.spin = axial_spin(self.trial, W)
         self.dx = ufl.dx(domain=mesh, metadata=QUADRATURE)
 
-    def strains(self, increment, P=None):
-        """Section strains of an increment in the current triad."""
-        return section_strains(increment, self.E, self.l, self.xi, P)
+    def strains(self, increment):
+        """Section strains of an increment in the current triad, for small turns against it."""
+        return section_strains(increment, self.E, self.l, self.xi, self.share)
 
     @property
     def residual(self):
@@ -126,16 +132,22 @@ class RodForms:
     @property
     def material_stiffness(self):
         """K_l = ∫ δe · D Δe."""
-        return inner(self.strains(self.test), self.D * self.strains(self.trial, self.P)) * self.dx
+        rates = section_strains(self.trial, self.E, self.l, self.xi, self.share, self.P, self.spin)
+        curvature = as_vector([0, 0, 0, self.e[3], self.e[4], self.e[5]])  # falls as the chord grows
+        return inner(self.strains(self.test), self.D * (rates - self.stretch * curvature)) * self.dx
 
     @property
     def frame_stiffness(self):
         """Change of the internal forces as the element's triad turns and its chord changes length under the forces.
 
-        With K_l it is the derivative of the residual, but for products of a turn against the triad and a strain.
+        With K_l it is the derivative of the residual, but for the charts' curvature, which goes with the out-of-balance
+        moments.
         """
-        turned = spun(self.test, frame_spin(self.trial, self.E, self.l))
-        stretch = dot(self.E[:, 0], self.trial.d) / self.l
-        still = self.strains(Increment(0 * self.test.d, self.test.turn1, self.test.turn2, self.test.bow))
-        lengthened = self.s[1] * still[1] + self.s[2] * still[2]
-        return (inner(self.s, self.strains(turned)) + stretch * lengthened) * self.dx
+        e1 = self.E[:, 0]
+        turned = spun(self.test, cross(e1, self.trial.d) / self.l + self.spin * e1)
+        # l δe by the length l: turns and excess shear angles enter it in γ with l, the chord in w″, v″ with 1/l
+        test, nothing = self.test, 0 * self.test.d
+        still = self.strains(Increment(nothing, test.turn1, test.turn2, test.shear))
+        moved = self.strains(Increment(test.d, nothing, nothing, 0 * test.shear))
+        lengthened = sum(self.s[k] * still[k] for k in (1, 2)) - sum(self.s[k] * moved[k] for k in (4, 5))
+        return (inner(self.s, self.strains(turned)) + self.stretch * lengthened) * self.dx

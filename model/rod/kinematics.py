@@ -17,13 +17,26 @@ GAUSS = np.array([0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0)])  # ab
 
 
 @njit(cache=True)
-def mean_triad(R1, R2, E0, chord, E, A, B, v):
+def mean_triad(R1, R2, E0, chord, l, E, W, A, B, v):
     """Write into `E` the element's triad: the mean of the two turned node triads, swung onto the chord (5.2.11).
+
+    With the relative turn φ = φ n of the nodes, the first axis t of their mean triad and the chord's direction c, the
+    triad spins about its chord by
+
+        W1 · d + W2 · ω1 + W3 · ω2,   W1 = c × t / (l (1 + t·c)),   W2, W3 = ½ (w ± tan(φ/4) w × n),   w = (t + c)/(1 + t·c),
+
+    where d is the rate of the chord and ω1, ω2 are the nodes' spins: the mean turn spins by ½ (ω1 + ω2) −
+    ½ tan(φ/4) n × (ω2 − ω1), and the swing from t to c is the half turn about t followed by that about t + c.
 
     A, B are 3×3 and v is a 3-vector of work space.
     """
     multiply_transposed(R1, R2, A)
     logarithm(A, v)
+    angle2 = v[0] ** 2 + v[1] ** 2 + v[2] ** 2
+    angle = math.sqrt(angle2)
+    quarter = 0.25 + angle2 / 192.0 if angle < 1e-3 else math.tan(0.25 * angle) / angle  # tan(φ/4)/φ
+    for k in range(3):
+        W[2, k] = quarter * (R1[k, 0] * v[0] + R1[k, 1] * v[1] + R1[k, 2] * v[2])  # tan(φ/4) n
     for i in range(3):
         v[i] *= 0.5
     exponential(v, A)
@@ -36,10 +49,17 @@ def mean_triad(R1, R2, E0, chord, E, A, B, v):
             E[i, j] = A[i, j] - projection * (A[i, 0] + chord[i]) / (1.0 + cosine)
     for i in range(3):
         E[i, 0] = chord[i]
+        v[i] = (A[i, 0] + chord[i]) / (1.0 + cosine)  # w
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        W[0, i] = (chord[j] * A[k, 0] - chord[k] * A[j, 0]) / (l * (1.0 + cosine))
+        W[1, i] = 0.5 * (v[i] + v[j] * W[2, k] - v[k] * W[2, j])
+    for i in range(3):
+        W[2, i] = v[i] - W[1, i]
 
 
 @njit(cache=True)
-def section_strains(cells, chords, R, E0, l0, bow, xi, E, P, e):
+def section_strains(cells, chords, R, E0, l0, shear, share, xi, E, P, W, e):
     """Section strains of all elements at their two Gauss sections, from (5.2.4) in the element's moving triad.
 
     The nodes' turns θ are measured against the triad of the current configuration, so no restriction to small turns
@@ -50,10 +70,12 @@ def section_strains(cells, chords, R, E0, l0, bow, xi, E, P, e):
         chords: current chords from node 1 to node 2, shape (cells, 3), mm.
         R: turns of the nodes since the stress-free state, shape (nodes, 3, 3).
         E0: triads of the stress-free state, shape (cells, 3, 3), l0: chord lengths there, shape (cells,).
-        bow: b13, b14, the shear angles and the means of the turns, see coilset.model.rod.forms, shape (cells, 2).
+        shear: excess shear angles, shape (cells, 2), share: of the turns in the shear angles, shape (cells,), see
+            coilset.model.rod.forms.
         xi: Gauss abscissae on the chord, shape (2,).
         E: written, current triads (columns), shape (cells, 3, 3).
         P: written, rate of the turns θ against the triad for a relative spin, shape (cells, 2, 3, 3).
+        W: written, what makes the triad's spin about its chord, see mean_triad, shape (cells, 3, 3).
         e: written, ε, γ12, γ13, φ′, −w″, v″ of the chord axis, shape (cells, 2, 6); ε is logarithmic.
     """
     chord = np.empty(3)
@@ -68,18 +90,19 @@ def section_strains(cells, chords, R, E0, l0, bow, xi, E, P, e):
         l = math.sqrt(chord[0] ** 2 + chord[1] ** 2 + chord[2] ** 2)
         for k in range(3):
             chord[k] /= l
-        mean_triad(R[i], R[j], E0[c], chord, E[c], A, B, t1)
+        mean_triad(R[i], R[j], E0[c], chord, l, E[c], W[c], A, B, t1)
         for a, node, t in ((0, i, t1), (1, j, t2)):  # θ = log(Eᵀ R E0)
             multiply_transposed(E[c], R[node], A)
             multiply(A, E0[c], B)
             logarithm(B, t)
             inverse_chart_tangent(t, P[c, a])
-        b13, b14 = bow[c, 0], bow[c, 1]
+        m13, m14 = 0.5 * (t1[1] + t2[1]), 0.5 * (t1[2] + t2[2])
+        u13, u14 = shear[c, 0] - share[c] * m13, shear[c, 1] - share[c] * m14
         for g in range(2):
             H = 12.0 * xi[g] - 6.0  # H2″ + H4″, times l
             e[c, g, 0] = math.log(l / l0[c])
-            e[c, g, 1] = b14 - 0.5 * (t1[2] + t2[2])
-            e[c, g, 2] = 0.5 * (t1[1] + t2[1]) - b13
+            e[c, g, 1] = u14
+            e[c, g, 2] = -u13
             e[c, g, 3] = (t2[0] - t1[0]) / l
-            e[c, g, 4] = (t2[1] - t1[1] + H * b13) / l
-            e[c, g, 5] = (t2[2] - t1[2] + H * b14) / l
+            e[c, g, 4] = (t2[1] - t1[1] + H * (u13 + m13)) / l
+            e[c, g, 5] = (t2[2] - t1[2] + H * (u14 + m14)) / l

@@ -40,7 +40,7 @@ class Rod:
             (elements, 2, 6, 6) and (elements, 2); None for straight rods.
 
     Attributes:
-        x, chord, R, bow, strain, history: trial state of the local nodes and owned cells; x in mm, strain shape
+        x, chord, R, shear, strain, history: trial state of the local nodes and owned cells; x in mm, strain shape
             (cells, 2, 6), history shape (cells, 2, points, n_state).
         equilibrium: the same at the last equilibrium, a dict.
     """
@@ -65,27 +65,32 @@ class Rod:
 
         self.xi = CellField(mesh, forms.section_element(()), (2,), n)
         self.xi.values[:] = GAUSS
+        self.share = CellField(mesh, forms.cell_element(()), (1,), n)
+        Φ = 3.0 * law.E * self.radius**2 / (law.G * self.l0**2)  # 12 E I/(G A l²)
+        self.share.values[:, 0] = Φ / (1.0 + Φ)
         self.E = CellField(mesh, forms.cell_element((3, 3)), (3, 3), n)
         self.T = CellField(mesh, forms.cell_element((2, 3, 3)), (2, 3, 3), n)
         self.P = CellField(mesh, forms.cell_element((2, 3, 3)), (2, 3, 3), n)
+        self.W = CellField(mesh, forms.cell_element((3, 3)), (3, 3), n)
+        self.e = CellField(mesh, forms.section_element((6,)), (2, 6), n)
         self.s = CellField(mesh, forms.section_element((6,)), (2, 6), n)
         self.D = CellField(mesh, forms.section_element((6, 6)), (2, 6, 6), n)
         self.forms = forms.RodForms(
-            mesh, self.V, *(field.function for field in (self.xi, self.E, self.T, self.P, self.s, self.D))
+            mesh, self.V, *(field.function for field in (self.xi, self.share, self.E, self.T, self.P, self.W, self.e, self.s, self.D))
         )
         self._residual = fem.form(self.forms.residual)
         self._tangent = fem.form(self.forms.material_stiffness + self.forms.frame_stiffness)
         self._start(x)
 
     def _number_dofs(self):
-        """Local dofs of the nodes' displacements and turns, shape (nodes, 3), and of the cells' bows."""
+        """Local dofs of the nodes' displacements and turns, shape (nodes, 3), and of the cells' shear angles."""
         geometry = self.mesh.geometry
         self.u_dofs, self.turn_dofs = np.empty((2, len(geometry.x), 3), dtype=np.int32)
-        nodal, bow = self.V.sub(0), self.V.sub(1)
+        nodal, shear = self.V.sub(0), self.V.sub(1)
         for i in range(3):
             self.u_dofs[geometry.dofmap, i] = nodal.sub(i).dofmap.list
             self.turn_dofs[geometry.dofmap, i] = nodal.sub(i + 3).dofmap.list
-        self.bow_dofs = np.stack([bow.sub(i).dofmap.list[: self.line.owned_cells, 0] for i in range(2)], axis=1)
+        self.shear_dofs = np.stack([shear.sub(i).dofmap.list[: self.line.owned_cells, 0] for i in range(2)], axis=1)
 
     def _start(self, x):
         """The stress-free state."""
@@ -94,8 +99,8 @@ class Rod:
         self.chord = x[self.cells[:, 1]] - x[self.cells[:, 0]]
         self.R = np.tile(np.eye(3), (len(x), 1, 1))
         self.chart = np.tile(np.eye(3), (len(x), 1, 1))
-        self.bow = np.zeros((n, 2))
-        self.strain = np.zeros((n, 2, 6))
+        self.shear = np.zeros((n, 2))
+        self.strain = self.e.values
         self.history = np.zeros((n, 2, points, self.law.n_state))
         self.equilibrium = {}
         self.commit()
@@ -113,10 +118,10 @@ class Rod:
         np.add(start["x"], moved, out=self.x)
         self.chord = start["chord"] + (moved[self.cells[:, 1]] - moved[self.cells[:, 0]])
         turn_nodes(increment[self.turn_dofs], start["R"], self.R, self.chart)
-        self.bow = start["bow"] + increment[self.bow_dofs]
+        self.shear = start["shear"] + increment[self.shear_dofs]
         section_strains(
-            self.cells, self.chord, self.R, self.E0, self.l0, self.bow, GAUSS,
-            self.E.values, self.P.values, self.strain,
+            self.cells, self.chord, self.R, self.E0, self.l0, self.shear, self.share.values[:, 0], GAUSS,
+            self.E.values, self.P.values, self.W.values, self.strain,
         )  # fmt: skip
         self.T.values[:] = self.chart[self.cells]
         y, z = np.ascontiguousarray(self.rule.points.T)
@@ -128,7 +133,7 @@ class Rod:
 
     def commit(self):
         """Make the trial state the equilibrium and set the increments to zero."""
-        for name in ("x", "chord", "R", "bow", "strain", "history"):
+        for name in ("x", "chord", "R", "shear", "strain", "history"):
             self.equilibrium[name] = getattr(self, name).copy()
         self.increment.x.array[:] = 0.0
 

@@ -11,8 +11,8 @@ balance is sought there before it goes on (`System.share`).
 
 import numpy as np
 
-GOOD = 0.8  # |s(λ)/s(0)| up to which a full correction is taken though the norm grows
-AIM = 0.5  # |s(λ)/s(0)| to which a zero of s is sought
+GOOD = 0.3  # |s(λ)/s(0)| up to which a full correction is taken though the norm grows
+AIM = 0.3  # |s(λ)/s(0)| to which a zero of s is sought
 TRIES = 6
 NARROW = 0.1  # share of the bracket that a try keeps away from its ends
 BACK, LEAST = 0.4, 1e-3  # steps back where there is no zero of s, and where they end
