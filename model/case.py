@@ -60,7 +60,7 @@ class SolverSpec(Strict):
     """How equilibrium is found."""
 
     method: Annotated[Literal[tuple(METHODS)], Field(description="iteration method")] = "newton"
-    tolerance: Annotated[float, Field(gt=0, lt=1, description="ε of (6.3.1)")] = 1e-8
+    tolerance: Annotated[float, Field(gt=0, lt=1, description="ε of (6.3.1)")] = 1e-9
     options: Annotated[
         dict[Annotated[str, Field(pattern="^[a-z]\\w*$")], bool | int | float | str | None],
         Field(default_factory=dict, description="any PETSc options, without the leading hyphen; they win"),

@@ -23,7 +23,7 @@ def mean_triad(R1, R2, E0, chord, l, E, W, A, B, v):
     With the relative turn φ = φ n of the nodes, the first axis t of their mean triad and the chord's direction c, the
     triad spins about its chord by
 
-        W1 · d + W2 · ω1 + W3 · ω2,   W1 = c × t / (l (1 + t·c)),   W2, W3 = ½ (w ± tan(φ/4) w × n),   w = (t + c)/(1 + t·c),
+        W1 · d + W2 · ω1 + W3 · ω2,  W1 = c × t/(l (1 + t·c)),  W2, W3 = ½ (w ± tan(φ/4) w × n),  w = (t + c)/(1 + t·c),
 
     where d is the rate of the chord and ω1, ω2 are the nodes' spins: the mean turn spins by ½ (ω1 + ω2) −
     ½ tan(φ/4) n × (ω2 − ω1), and the swing from t to c is the half turn about t followed by that about t + c.

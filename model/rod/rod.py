@@ -75,9 +75,8 @@ class Rod:
         self.e = CellField(mesh, forms.section_element((6,)), (2, 6), n)
         self.s = CellField(mesh, forms.section_element((6,)), (2, 6), n)
         self.D = CellField(mesh, forms.section_element((6, 6)), (2, 6, 6), n)
-        self.forms = forms.RodForms(
-            mesh, self.V, *(field.function for field in (self.xi, self.share, self.E, self.T, self.P, self.W, self.e, self.s, self.D))
-        )
+        fields = (self.xi, self.share, self.E, self.T, self.P, self.W, self.e, self.s, self.D)
+        self.forms = forms.RodForms(mesh, self.V, *(field.function for field in fields))
         self._residual = fem.form(self.forms.residual)
         self._tangent = fem.form(self.forms.material_stiffness + self.forms.frame_stiffness)
         self._start(x)

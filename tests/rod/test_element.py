@@ -103,7 +103,7 @@ def test_element_matrix_equals_table_5_2(rod, ck15):
             B = table_5_2(l, x, y, z)
             K += 0.5 * l * np.pi * R**2 * w * B.T @ np.diag([ck15.E, ck15.G, ck15.G]) @ B
     c = 1 / (1 + ck15.G * AREA * l**2 / (12 * ck15.E * INERTIA))  # Timoshenko's Φ/(1 + Φ)
-    shears = np.eye(14)  # u13 = excess − ½ c (t1y + t2y), u14 = excess − ½ c (t1z + t2z), with turns t against the chord
+    shears = np.eye(14)  # u13 = excess − ½ c (t1y + t2y), u14 = excess − ½ c (t1z + t2z), t against the chord
     shears[12, [2, 4, 8, 10]] = c / l, -0.5 * c, -c / l, -0.5 * c
     shears[13, [1, 5, 7, 11]] = -c / l, -0.5 * c, c / l, -0.5 * c
     K = shears.T @ K @ shears
