@@ -95,7 +95,7 @@ def test_active_turns_are_those_of_the_standard():
 
 
 def test_active_turns_make_the_rate():
-    """A long slender spring between clamped heads: R = G d⁴/(64 r³ n) within 1 %: the torque of a flat spring is F r."""
+    """A long slender spring between clamped heads: R = G d⁴/(64 r³ n) within 1 %; a flat spring's torque is F r."""
     spring = {"wire_diameter": 3.0, "mean_diameter": 36.0, "turns": 12.0, "pitch": 4.5}
     analysis = Analysis(
         check({"spring": spring, "material": "elastic", "ends": "clamped",
