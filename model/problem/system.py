@@ -9,6 +9,7 @@ from dolfinx import la
 from dolfinx.fem import petsc as _  # noqa: F401  (registers the PETSc assembly)
 from mpi4py import MPI
 from petsc4py import PETSc
+from scipy import sparse
 
 from coilset.model.contact.base import SEAT_DOFS
 
@@ -37,6 +38,7 @@ class System:
         forces: system dof → external force, N or N mm.
         share: of the step's increments and change of forces that is asked for at present; 1 but for a solve in parts.
         failed: True if the last evaluation found no stress at some point.
+        patterns: how often the rows of a matrix were allocated; factors from before are of no use.
         reaction_start: internal forces at the last equilibrium, to measure the change of the reactions by.
     """
 
@@ -45,7 +47,7 @@ class System:
         self.seats_start = np.zeros(SEATS)
         self.seats_start[::SEAT_DOFS] = seats
         self.seats = self.seats_start.copy()
-        self.fixed, self.forces, self.share, self.failed = {}, {}, 1.0, False
+        self.fixed, self.forces, self.share, self.failed, self.patterns = {}, {}, 1.0, False, 0
         self._number()
         self.contributions = []
         self._local = la.vector(rod.V.dofmap.index_map, rod.V.dofmap.index_map_bs)
@@ -105,11 +107,29 @@ class System:
         A.setType(PETSc.Mat.Type.AIJ)
         ghosts = np.concatenate([np.arange(*index_map.local_range), index_map.ghosts]).astype(PETSc.IntType)
         A.setLGMap(PETSc.LGMap().create(ghosts, comm=self.comm), PETSc.LGMap().create(ghosts, comm=self.comm))
-        # a node couples with two neighbours and two pairs of shear angles (22 entries), and with touching stations
-        A.setPreallocationNNZ((40, 40) if self.comm.size > 1 else 40)
-        A.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
         A.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
+        self._make_room(A)
         return A
+
+    def _make_room(self, A):
+        """Allocate the rows of `A` anew: a node couples with two neighbours and two pairs of shear angles, and in contacts."""
+        entries = np.full(self.size_local, 22, dtype=PETSc.IntType)
+        entries[self.rod.shear_dofs] = 14
+        for part in self.contributions:
+            dofs = self.contact_dofs[part.dofs]
+            rows, columns = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
+            pattern = sparse.coo_array((np.ones(rows.size, np.int8), (rows.ravel(), columns.ravel())), A.getSize())
+            entries += np.diff(pattern.tocsr().indptr)[slice(*A.getOwnershipRange())].astype(PETSc.IntType)
+        here = np.minimum(entries, self.size_local)  # in columns of this rank
+        A.setPreallocationNNZ((here, np.minimum(entries, A.getSize()[1] - self.size_local)) if self.comm.size > 1 else here)
+        A.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
+        self._places = self._contact_places()
+        self.patterns += 1
+
+    def _contact_places(self):
+        """A number for each contact element by its first and last dof, which tell between what it acts."""
+        places = [part.dofs[:, 0] * len(self.contact_dofs) + part.dofs[:, -1] for part in self.contributions]
+        return np.concatenate(places) if places else np.empty(0, dtype=np.int64)
 
     # ---- state -----------------------------------------------------------------------------------------------------
 
@@ -310,7 +330,10 @@ class System:
         """SNES callback: derivative of the residual at the state of the last evaluation."""
         if not self._is_evaluated(X):
             self.set_increments(X)
-        P.zeroEntries()
+        if np.isin(self._contact_places(), self._places).all():
+            P.zeroEntries()
+        else:  # a row that is full would be moved at each new entry, and the whole matrix with it
+            self._make_room(P)
         self.rod.assemble_tangent(P)
         start, stop = P.getOwnershipRange()
         for part in self.contributions:

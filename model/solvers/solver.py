@@ -153,7 +153,12 @@ class Solver:
 
     def _tangent(self, snes, X, J, P):
         self.factorisations += 1
-        return self.system.tangent(snes, X, J, P)
+        patterns = self.system.patterns
+        done = self.system.tangent(snes, X, J, P)
+        if self.system.patterns != patterns:  # PETSc may take the new matrix for one with the old pattern
+            for each in (self.snes, self._first, *([self.snes.getNPC()] if self.snes.hasNPC() else [])):
+                each.ksp.reset()
+        return done
 
     def _test(self, snes, iteration, norms):
         """|r − f| / |²R − ²F(step start)| ≤ ε (6.3.1): the change of loads and reactions is the measure."""

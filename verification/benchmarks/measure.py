@@ -1,0 +1,239 @@
+"""One measurement, in a process of its own so that its memory is its own: prints one line of JSON.
+
+    python -m coilset.verification.benchmarks.measure example [REPEATS]
+    mpirun -n RANKS python -m coilset.verification.benchmarks.measure press ELEMENTS [REPEATS]
+    python -m coilset.verification.benchmarks.measure cases COUNT
+
+The stages: `law` brings all section points up to date (strains of the sections, material law, resultants, tangents);
+`assemble` the forces and the matrix; `contact` finds and evaluates coils and seats; `factorise` and `solve` are
+PETSc's, from its own log; `other` is what is left of the iteration. `set-up` is what an analysis does before its first step,
+without the `mesh`.
+"""
+
+import json
+import resource
+import sys
+import tempfile
+from pathlib import Path
+
+from coilset.verification.benchmarks.stopwatch import Stopwatch
+
+EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
+TURNS = 2.5  # of the example's spring
+TRAVEL = 10.0  # mm, in one step: three times the travel at which the wire begins to yield
+STAGES = ("mesh", "set-up", "law", "contact", "assemble", "factorise", "solve", "other")
+FACTORISE, SOLVE = ("MatLUFactorSym", "MatLUFactorNum"), ("MatSolve",)  # PETSc's events
+
+
+def watch_analysis(watch, analysis):
+    """Make the stages of a solve count."""
+    watch.watch(analysis.rod, "update", "law")
+    for owner, function in ((analysis.rod, "assemble_tangent"), (analysis.system, "assemble_internal"),
+                            (analysis.system, "tangent")):  # fmt: skip
+        watch.watch(owner, function, "assemble")
+    for contact in analysis.system.contacts:
+        watch.watch(contact, "evaluate", "contact")
+    watch.watch(analysis.system, "free_way", "contact")
+
+
+def petsc_seconds(events):
+    """Seconds that PETSc's log holds for these events, of the clock."""
+    from petsc4py import PETSc
+
+    return sum(PETSc.Log.Event(event).getPerfInfo()["time"] for event in events)
+
+
+class Logged:
+    """Charges what PETSc's log says was factorised and solved, and leaves the rest in `other`."""
+
+    def __init__(self, watch):
+        from petsc4py import PETSc
+
+        PETSc.Log.begin()
+        self.watch, self.before = watch, self._read()
+
+    def _read(self):
+        return {"factorise": petsc_seconds(FACTORISE), "solve": petsc_seconds(SOLVE)}
+
+    def charge(self):
+        """Move what has been logged since the last call out of `other`."""
+        now = self._read()
+        self.watch.split("other", {name: now[name] - self.before[name] for name in now})
+        self.before = now
+
+
+def read_example(settings=()):
+    """The example's Case."""
+    from coilset.model.case import read_case
+
+    return read_case(EXAMPLES / "ck15_presetting.yaml", settings)
+
+
+def build(watch, case, comm):
+    """An Analysis whose stages are watched."""
+    from coilset.model.analysis import Analysis
+
+    with watch.stage("set-up"):
+        analysis = Analysis(case, comm)
+    watch_analysis(watch, analysis)
+    return analysis
+
+
+def watch_meshing():
+    """The Stopwatch whose stage `mesh` is what the analysis has made in `meshes`."""
+    from coilset.model import analysis as module
+
+    watch = Stopwatch()
+    for function in ("line_mesh", "section_placement"):
+        watch.watch(module, function, "mesh")
+    return watch
+
+
+def example(repeats=5):
+    """The example, 40 elements, 12 steps down and up with contact, several times in one process.
+
+    Returns:
+        Dict: `import`; `first`: the first analysis, which loads or compiles the kernels and forms; `stages`: seconds of
+        the following analyses, the least of all repeats for each stage; `analysis`: the least of their sums; `output`
+        and `pictures`; all as pairs of wall and CPU seconds. And counts.
+    """
+    start = Stopwatch()
+    with start.stage("import"):
+        from mpi4py import MPI
+
+        import coilset.model.analysis  # noqa: F401
+    watch, runs = watch_meshing(), []
+    logged = Logged(watch)
+    for _ in range(int(repeats) + 1):
+        watch.wall.clear()
+        watch.cpu.clear()
+        analysis = build(watch, read_example(), MPI.COMM_SELF)
+        with watch.stage("other"):
+            result = analysis.run()
+        logged.charge()
+        runs.append({stage: (watch.wall[stage], watch.cpu[stage]) for stage in STAGES})
+    first, warm = runs[0], runs[1:]
+    write(start, analysis)
+    sums = [tuple(sum(run[stage][kind] for stage in STAGES) for kind in range(2)) for run in warm]
+    return {
+        "import": pair(start, "import"),
+        "first": [sum(first[stage][kind] for stage in STAGES) for kind in range(2)],
+        "stages": {stage: [min(run[stage][kind] for run in warm) for kind in range(2)] for stage in STAGES},
+        "analysis": [min(total[kind] for total in sums) for kind in range(2)],
+        "output": pair(start, "output"),
+        "pictures": pair(start, "pictures"),
+        "elements": len(analysis.turns) - 1,
+        "section_points": len(analysis.rod.rule),
+        "steps": len(result.steps),
+        "iterations": sum(step.iterations for step in result.steps),
+        "memory_GiB": peak_memory(),
+    }
+
+
+def pair(watch, stage):
+    """Wall and CPU seconds of a stage."""
+    return [watch.wall[stage], watch.cpu[stage]]
+
+
+def write(watch, analysis):
+    """Everything that `coilset solve` writes, into a folder that is thrown away."""
+    from coilset.model.results import dataset, display, figures, scene
+    from coilset.model.results.folder import write_history, write_summary
+    from coilset.model.results.summary import summarise
+
+    result = analysis.result
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        summary = summarise(analysis, result)
+        with watch.stage("output"):
+            write_history(folder, result.steps)
+            dataset.write_points(folder, dataset.point_state(analysis, result.snapshots))
+            dataset.write_fields(folder, analysis, result.snapshots)
+            write_summary(folder, summary)
+        with watch.stage("pictures"):
+            figures.characteristic(folder / "characteristic.png", analysis, result, summary)
+            figures.cross_section(folder / "cross_section.png", analysis, result.snapshots[-1])
+            if display.ensure():
+                scene.springs(folder / "springs.png", result.snapshots, analysis.wire_radius)
+
+
+def press(elements, repeats=1):
+    """The example's spring between clamped heads, in many elements, pressed far into the plastic range in one step.
+
+    Returns:
+        Dict of counts, the force, the share of plastic points, peak memory of a rank, and `stages`: wall and CPU
+        seconds, the greatest of the ranks, the least of the repeats.
+    """
+    from mpi4py import MPI
+
+    comm, watch, runs = MPI.COMM_WORLD, watch_meshing(), []
+    logged = Logged(watch)
+    settings = ["ends=clamped", f"mesh.elements_per_turn={float(elements) / TURNS}",
+                f"loading=[{{to: {{travel: {TRAVEL}}}, steps: 1}}]"]  # fmt: skip
+    for _ in range(int(repeats)):
+        watch.wall.clear()
+        watch.cpu.clear()
+        analysis, steps = build(watch, read_example(settings), comm), []
+        with watch.stage("other"):
+            analysis.stepper.run_phase(analysis.case.loading[0], steps.append)
+        logged.charge()
+        ranks = comm.allgather({stage: pair(watch, stage) for stage in STAGES})
+        runs.append({stage: [max(rank[stage][kind] for rank in ranks) for kind in range(2)] for stage in STAGES})
+    plastic = analysis.rod.history[..., 6] > 0.0
+    return {
+        "elements": len(analysis.turns) - 1,
+        "ranks": comm.size,
+        "unknowns": analysis.solver.X.getSize(),
+        "force_N": steps[-1].force_N,
+        "iterations": sum(step.iterations for step in steps),
+        "cuts": sum(step.cuts for step in steps),
+        "evaluations": analysis.solver.evaluations,
+        "plastic": comm.allreduce(int(plastic.sum())) / comm.allreduce(plastic.size),
+        "memory_GiB": max(comm.allgather(peak_memory())),
+        "stages": {stage: [min(run[stage][kind] for run in runs) for kind in range(2)] for stage in STAGES},
+    }
+
+
+def cases(count):
+    """Cases of the sweep over manufacturing tolerances, one after the other, as a worker of a sweep runs them.
+
+    Returns:
+        Dict: number of cases, how many failed, wall and CPU seconds for each on average without the first.
+    """
+    from mpi4py import MPI
+
+    from coilset.model.sweep.evaluate import evaluate
+    from coilset.model.sweep.plan import Plan
+
+    plan, watch = Plan(EXAMPLES / "sweeps" / "tolerances.yaml"), Stopwatch()
+    count = min(int(count), len(plan.rows) - 1)
+    records = [evaluate(**plan.task(plan.rows[0]), comm=MPI.COMM_SELF)]
+    with watch.stage("cases"):
+        records += [evaluate(**plan.task(row), comm=MPI.COMM_SELF) for row in plan.rows[1 : count + 1]]
+    return {
+        "cases": count,
+        "failed": sum(record["status"] == "failed" for record in records),
+        "seconds": [seconds / count for seconds in pair(watch, "cases")],
+        "memory_GiB": peak_memory(),
+    }
+
+
+def peak_memory():
+    """Greatest resident memory of this process so far, GiB."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
+
+
+JOBS = {"example": example, "press": press, "cases": cases}
+
+
+def main(job, *arguments):
+    """Run a job and print what it found."""
+    found = JOBS[job](*arguments)
+    from mpi4py import MPI
+
+    if MPI.COMM_WORLD.rank == 0:
+        print(json.dumps(found), flush=True)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
