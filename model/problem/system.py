@@ -112,7 +112,7 @@ class System:
         return A
 
     def _make_room(self, A):
-        """Allocate the rows of `A` anew: a node couples with two neighbours and two pairs of shear angles, and in contacts."""
+        """Allocate the rows of `A` anew: a node couples with its neighbours, their shear angles, and what it touches."""
         entries = np.full(self.size_local, 22, dtype=PETSc.IntType)
         entries[self.rod.shear_dofs] = 14
         for part in self.contributions:
@@ -121,7 +121,8 @@ class System:
             pattern = sparse.coo_array((np.ones(rows.size, np.int8), (rows.ravel(), columns.ravel())), A.getSize())
             entries += np.diff(pattern.tocsr().indptr)[slice(*A.getOwnershipRange())].astype(PETSc.IntType)
         here = np.minimum(entries, self.size_local)  # in columns of this rank
-        A.setPreallocationNNZ((here, np.minimum(entries, A.getSize()[1] - self.size_local)) if self.comm.size > 1 else here)
+        there = np.minimum(entries, A.getSize()[1] - self.size_local)
+        A.setPreallocationNNZ((here, there) if self.comm.size > 1 else here)
         A.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
         self._places = self._contact_places()
         self.patterns += 1

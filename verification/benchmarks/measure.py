@@ -6,8 +6,8 @@
 
 The stages: `law` brings all section points up to date (strains of the sections, material law, resultants, tangents);
 `assemble` the forces and the matrix; `contact` finds and evaluates coils and seats; `factorise` and `solve` are
-PETSc's, from its own log; `other` is what is left of the iteration. `set-up` is what an analysis does before its first step,
-without the `mesh`.
+PETSc's, from its own log; `other` is what is left of the iteration. `set-up` is what an analysis does before its first
+step, without the `mesh`.
 """
 
 import json
