@@ -86,10 +86,10 @@ class Analysis:
             placement = section_placement(self.spring, self.turns, triads(np.diff(line.stations, axis=0)), GAUSS)
         self.rod = Rod(line, self.wire_radius, self.law, case.mesh.section.build(), placement)
         top = self.spring.free_length
-        contacts = build_contacts(case.contact, case.ends, self.spring, self.turns, line.stations, self.law.E)
+        contacts = build_contacts(case, self.spring, self.turns, line.stations, self.law.E)
         self.system = System(self.rod, contacts, seats=(0.0, top))
         self.solver = Solver(self.system, case.solver.method, case.solver.tolerance, case.solver.options)
-        self.drive = Drive(self.system, case.ends, top)
+        self.drive = Drive(self.system, case.ends, top, case.seats)
         self.stepper = Stepper(self.drive, self.solver, self.spring.block_height)
         self.result = Result()
 

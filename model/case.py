@@ -4,10 +4,11 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 import yaml
-from pydantic import Field, ValidationError
+from pydantic import Field, ValidationError, model_validator
 
 from coilset.meshes.spring import SpringEntry
 from coilset.meshes.stations import ElementsPerTurn
+from coilset.model.contact.spec import SeatsSpec
 from coilset.model.errors import InputError
 from coilset.model.loading.program import Phase, Strict
 from coilset.model.section import rules
@@ -73,10 +74,20 @@ class Case(Strict):
     spring: SpringEntry
     material: Annotated[str, Field(description="name in the library, or path of a material file")] = "ck15"
     ends: Annotated[Literal["seats", "clamped"], Field(description="seats or clamped")] = "seats"
+    seats: SeatsSpec = SeatsSpec()
     mesh: MeshSpec = MeshSpec()
     contact: ContactSpec = ContactSpec()
     solver: SolverSpec = SolverSpec()
     loading: Annotated[list[Phase], Field(min_length=1, description="targets, one after the other")]
+
+    @model_validator(mode="after")
+    def _seats_belong(self):
+        if self.ends != "seats" and self.seats != SeatsSpec():
+            raise ValueError("there are no seats between clamped ends; leave the seats out, or give ends: seats")
+        shapes = {self.seats.bottom.shape, self.seats.top.shape} - {"flat"}
+        if shapes and any(phase.to == "block" for phase in self.loading):
+            raise ValueError(f"block is known for flat seats; with {shapes.pop()} ones give height, travel or force")
+        return self
 
 
 class _Loader(yaml.SafeLoader):

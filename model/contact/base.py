@@ -1,8 +1,8 @@
 """What every kind of contact gives to the problem: forces and stiffness on named degrees of freedom.
 
 Degrees of freedom are numbered independently of the partition: 3 i + k is the displacement k of station i; after
-those of the n stations come level and two tilts of the bottom and of the top seat, 3 n + j. Positions of all stations
-are known on every rank (they are small), every rank evaluates all contacts, and each row is added where it lives.
+those of the n stations come x, y, z and turns θx, θy, θz of the bottom and of the top seat, 3 n + j. Positions of all
+stations are known on every rank (they are small), every rank evaluates all contacts, and adds each row where it lives.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,8 @@ import numpy as np
 from coilset.model.contact.centreline import WirePoints
 
 ENDS = ("bottom", "top")
-SEAT_DOFS = 3  # level z, tilts θx and θy
+SEAT_DOFS = 6  # x, y, z, θx, θy, θz; see plate.py
+LEVEL = 2  # the one along the spring's axis
 TOUCH = 1e-6  # N
 
 
@@ -82,5 +83,5 @@ class Contact(Protocol):
         ...
 
     def evaluate(self, x: np.ndarray, seats: np.ndarray) -> Contribution:
-        """Forces and stiffness at station positions `x`, shape (n, 3), mm, and seats, shape (6,), mm and rad."""
+        """Forces and stiffness at station positions `x`, shape (n, 3), mm, and seats, shape (12,), mm and rad."""
         ...

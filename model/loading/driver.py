@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coilset.model.contact.base import ENDS, SEAT_DOFS
+from coilset.model.contact.base import ENDS, LEVEL, SEAT_DOFS
 from coilset.model.contact.seat import Seat
 
 
@@ -11,24 +11,28 @@ class Drive:
 
     Args:
         system: System.
-        ends: `clamped`: the end nodes belong to rigid heads that move along the axis only; `seats`: the wire's tips
-            are held sideways and against turning, as by the pockets of a seat, and rest on it one-sidedly.
+        ends: `clamped`: the end nodes belong to rigid heads that move along the axis only; `seats`: they stand on
+            seats that bear one-sidedly.
         free_length: height of the unloaded spring, mm.
+        seats: SeatsSpec. With `hold: tips` the wire's tips are held sideways and against turning, as by pockets;
+            else contacts alone hold the wire.
 
     Attributes:
         tips: station of each end and those of its six components that are held or driven, so that they bear reactions.
     """
 
-    def __init__(self, system, ends, free_length):
+    def __init__(self, system, ends, free_length, seats=None):
         self.system, self.ends, self.free_length = system, ends, free_length
         bottom, top = system.station_dofs[0], system.station_dofs[-1]
         if ends == "clamped":
             self.axial = int(top[2])
             held, components = [*bottom, *np.delete(top, 2), *system.seat_dofs], np.arange(6)
         else:
-            components = np.delete(np.arange(6), 2)
-            self.axial = int(system.seat_dofs[SEAT_DOFS])
-            held = [*np.delete(bottom, 2), *np.delete(top, 2), *np.delete(system.seat_dofs, SEAT_DOFS)]
+            components = np.delete(np.arange(6), 2) if seats.hold == "tips" else np.arange(0)
+            self.axial = int(system.seat_dofs[SEAT_DOFS + LEVEL])
+            held = [*bottom[components], *top[components], system.seat_dofs[LEVEL]]
+            for number, seat in enumerate((seats.bottom, seats.top)):
+                held += [system.seat_dofs[SEAT_DOFS * number + dof] for dof in seat.held()]
         self.held = {int(dof): 0.0 for dof in held}
         self.tips = {"bottom": (0, components), "top": (len(system.station_dofs) - 1, components)}
         self.height = free_length
@@ -49,10 +53,12 @@ class Drive:
         return self.height + self.system.value(X, self.axial), -self.system.value(self.system.internal, self.axial)
 
     def centre(self, end, x):
-        """Where the spring's axis meets the seat or head at the station positions `x`, shape (3,), mm."""
+        """Centre of the seat, or where the axis meets the head, at station positions `x`, shape (3,), mm."""
         station = self.tips[end][0]
-        level = x[station, 2] if self.ends == "clamped" else self.system.seats[SEAT_DOFS * ENDS.index(end)]
-        return np.array([0.0, 0.0, level])
+        if self.ends == "clamped":
+            return np.array([0.0, 0.0, x[station, 2]])
+        first = SEAT_DOFS * ENDS.index(end)
+        return self.system.seats[first : first + 3]
 
     def accept(self, height, force):
         """The trial state has become the equilibrium."""

@@ -1,4 +1,4 @@
-"""One vector for PETSc: the rod's increments, levels and tilts of the seats, with constraints and loads.
+"""One vector for PETSc: the rod's increments, places and turns of the seats, with constraints and loads.
 
 The rod's unknowns keep DOLFINx's numbering; those of the seats follow as the last entries of the last rank, so that
 DOLFINx assembles into the enlarged matrix as it stands.
@@ -11,9 +11,9 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from scipy import sparse
 
-from coilset.model.contact.base import SEAT_DOFS
+from coilset.model.contact.base import LEVEL, SEAT_DOFS
 
-SEATS = 2 * SEAT_DOFS  # unknowns of bottom and top seat: level and two tilts each
+SEATS = 2 * SEAT_DOFS  # unknowns of bottom and top seat
 DEEP = 0.02  # penetration in wire diameters that no correction need avoid; at rest it is some tenths of that
 GROWTH = 1.5
 LEAST_WAY = 0.02  # share of a correction that is always gone
@@ -33,7 +33,7 @@ class System:
         seats: levels of bottom and top seat at the start, mm.
 
     Attributes:
-        seats: level and tilts θx, θy of the bottom seat, then those of the top seat, shape (6,), mm and rad.
+        seats: x, y, z and turns of the bottom seat, then those of the top seat, shape (12,), mm and rad.
         fixed: system dof → increment prescribed in this step; set by the load program before each solve.
         forces: system dof → external force, N or N mm.
         share: of the step's increments and change of forces that is asked for at present; 1 but for a solve in parts.
@@ -45,7 +45,7 @@ class System:
     def __init__(self, rod, contacts=(), seats=(0.0, 0.0)):
         self.rod, self.contacts, self.comm = rod, list(contacts), rod.mesh.comm
         self.seats_start = np.zeros(SEATS)
-        self.seats_start[::SEAT_DOFS] = seats
+        self.seats_start[LEVEL::SEAT_DOFS] = seats
         self.seats = self.seats_start.copy()
         self.fixed, self.forces, self.share, self.failed, self.patterns = {}, {}, 1.0, False, 0
         self._number()

@@ -15,7 +15,7 @@ from coilset.model.results.folder import whole
 from coilset.model.results.seats import Resultants
 
 NODAL, CELLWISE = ("x", "R"), ("chord", "shear", "strain", "history")
-SPRING_ENTRIES = ("spring", "material", "ends", "mesh", "contact")  # what must be the same to go on
+SPRING_ENTRIES = ("spring", "material", "ends", "seats", "mesh", "contact")  # what must be the same to go on
 
 
 class Checkpoint:
@@ -136,7 +136,7 @@ class Checkpoint:
         """The spring must be the same; the phases that are behind too, and the rest may have changed."""
         old, new = about["case"], self.case
         for entry in SPRING_ENTRIES:
-            if old[entry] != new[entry]:
+            if old.get(entry) != new[entry]:
                 raise InputError("differs from that of the checkpoint; run it without --resume", entry, self.folder)
         walk = about["walk"]
         phase = walk["phase"]

@@ -5,7 +5,7 @@ import pytest
 
 from coilset.model.contact.coils import Coils
 
-SEATS = np.zeros(6)
+SEATS = np.zeros(12)
 
 
 @pytest.fixture
@@ -33,16 +33,16 @@ def test_forces_and_stiffness_are_derivatives_of_the_energy(make_coils, helix, d
     assert part.closed >= 40
     direction, h = np.random.default_rng(2).normal(size=x.shape), 1e-6
     slope = (energy(coils, x + h * direction) - energy(coils, x - h * direction)) / (2 * h)
-    assert slope == pytest.approx(f[:-6] @ direction.ravel(), rel=1e-6)
+    assert slope == pytest.approx(f[:-12] @ direction.ravel(), rel=1e-6)
     change = (dense(coils, x + h * direction, SEATS)[0] - dense(coils, x - h * direction, SEATS)[0]) / (2 * h)
-    np.testing.assert_allclose(K[:, :-6] @ direction.ravel(), change, rtol=0, atol=1e-6 * np.abs(change).max())
+    np.testing.assert_allclose(K[:, :-12] @ direction.ravel(), change, rtol=0, atol=1e-6 * np.abs(change).max())
     np.testing.assert_allclose(K, K.T, rtol=0, atol=1e-9 * np.abs(K).max())
 
 
 def test_forces_are_in_balance(make_coils, helix, dense):
     """Contact is an inner force: its sum and its moment vanish, but for rounding of sums of some hundred terms."""
     x = helix(4.85, taper=1.0, seed=3, noise=0.02)
-    f = dense(make_coils(), x, SEATS)[0][:-6].reshape(-1, 3)
+    f = dense(make_coils(), x, SEATS)[0][:-12].reshape(-1, 3)
     size = np.abs(f).max()
     assert size > 1.0
     np.testing.assert_allclose(f.sum(axis=0), 0.0, atol=1e-11 * size)
@@ -52,8 +52,8 @@ def test_forces_are_in_balance(make_coils, helix, dense):
 def test_coils_upside_down_press_the_same(make_coils, helix, dense):
     """Neither coil is the master: the mirrored spring, its stations counted from the other end, has mirrored forces."""
     x = helix(4.9, seed=4, noise=0.01)
-    f = dense(make_coils(), x, SEATS)[0][:-6].reshape(-1, 3)
-    mirrored = dense(make_coils(), (x * [1, 1, -1])[::-1], SEATS)[0][:-6].reshape(-1, 3)
+    f = dense(make_coils(), x, SEATS)[0][:-12].reshape(-1, 3)
+    mirrored = dense(make_coils(), (x * [1, 1, -1])[::-1], SEATS)[0][:-12].reshape(-1, 3)
     np.testing.assert_allclose(mirrored[::-1] * [1, 1, -1], f, rtol=0, atol=1e-9 * np.abs(f).max())
 
 

@@ -50,7 +50,7 @@ def test_seats_contacts_and_sections_are_in_balance_in_every_step(example_runs):
     for name, (analysis, lacks) in example_runs.items():
         force = max(step.force_N for step in analysis.result.steps)
         diameter = 2.0 * float(analysis.spring.mean_radius(0.5 * analysis.spring.turns))
-        assert len(lacks) == 10
+        assert len(lacks) >= 10
         assert lacks[:, 0].max() < 1e-8 * force, name
         assert lacks[:, 1].max() < 1e-8 * force * diameter, name
 
@@ -79,7 +79,7 @@ def test_pressure_adds_up_to_the_force(example_runs, tmp_path):
     assert data.wire_turn.values[bears].max() < 1.1  # the end coil of one turn
     write_seats(tmp_path, analysis.result.seats)
     rows = list(csv.DictReader((tmp_path / "seats.csv").read_text().splitlines()))
-    assert len(rows) == 10
+    assert len(rows) == len(analysis.result.steps)
     assert float(rows[3]["top_eccentricity_mm"]) == analysis.result.seats[3].top.eccentricity_mm
     again = Resultants.from_row(analysis.result.seats[3].row(), analysis.result.seats[3].pressure)
     assert again.row() == analysis.result.seats[3].row()

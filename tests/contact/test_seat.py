@@ -6,7 +6,8 @@ import pytest
 from coilset.model.contact.seat import Seat
 
 BEDDING, ONSET = 1e3, 0.005
-LEVEL, TILTED = np.array([0.0, 0, 0, 6.05, 0, 0]), np.array([0.0, 1e-3, 2e-3, 6.05, -1e-3, 3e-3])
+LEVEL = np.array([0.0, 0, 0, 0, 0, 0, 0, 0, 6.05, 0, 0, 0])
+TURNED = LEVEL + np.array([0.03, -0.02, 0, 1e-3, 2e-3, 5e-3, -0.04, 0.01, 0, -1e-3, 3e-3, -2e-3])
 
 
 @pytest.fixture
@@ -15,12 +16,13 @@ def make_seat(points, helix):
 
     def make(end, **kind):
         wire, x = points(), helix(9.0, lift=2.5)
-        return Seat(end, wire, wire.radius, x, 0.0 if end == "bottom" else 27.5, BEDDING, ONSET, **kind)
+        start = np.where(np.arange(12) == 8, 27.5, 0.0)
+        return Seat(end, wire, wire.radius, x, start, BEDDING, ONSET, **kind)
 
     return make
 
 
-KINDS = [{}, {"tilts": True}, {"slope": 0.2}, {"slope": -0.1, "tilts": True}, {"stepped": 0.7}]
+KINDS = [{}, {"moves": True}, {"slope": 0.2}, {"slope": -0.1, "moves": True}, {"stepped": 0.7}]
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=str)
@@ -29,14 +31,15 @@ def test_stiffness_is_the_derivative_of_the_forces(make_seat, helix, dense, end,
     """Within a long onset, so that no point comes to its end by the differences."""
     seat = make_seat(end, **kind)
     seat.onset = 0.5
-    seats = TILTED if kind.get("tilts") else LEVEL
+    seats = TURNED if kind.get("moves") else LEVEL
     x = helix(0.5, seed=1, noise=0.01, lift=2.4)
     f, K, part = dense(seat, x, seats)
     assert part.closed >= 2
     direction, h = np.random.default_rng(2).normal(size=f.shape), 1e-7
-    if not kind.get("tilts"):
-        direction[[-5, -4, -2, -1]] = 0.0  # the tilts are not variables of such a seat
-    moved = [dense(seat, x + s * h * direction[:-6].reshape(-1, 3), seats + s * h * direction[-6:])[0] for s in (1, -1)]
+    if not (kind.get("moves") or kind.get("slope")):
+        direction[-12:] *= np.arange(12) % 6 == 2  # only levels are variables of such a seat
+    u, v = h * direction[:-12].reshape(-1, 3), h * direction[-12:]
+    moved = [dense(seat, x + s * u, seats + s * v)[0] for s in (1, -1)]
     change = (moved[0] - moved[1]) / (2 * h)
     np.testing.assert_allclose(K @ direction, change, rtol=0, atol=1e-6 * np.abs(change).max())
     np.testing.assert_allclose(K, K.T, rtol=0, atol=1e-12 * np.abs(K).max())
@@ -70,7 +73,7 @@ def test_a_conical_seat_bears_across_its_surface(make_seat, helix, dense):
     x = helix(0.0, lift=2.48)
     f, _, part = dense(seat, x, LEVEL)
     assert part.closed == 81
-    force = f[:-6].reshape(-1, 3)
+    force = f[:-12].reshape(-1, 3)
     inner = slice(2, -2)
     e = x[inner, :2] / np.hypot(*x[inner, :2].T)[:, None]
     radial = (force[inner, :2] * e).sum(axis=1)
@@ -79,8 +82,8 @@ def test_a_conical_seat_bears_across_its_surface(make_seat, helix, dense):
 
 
 def test_moments_on_a_tilting_seat_are_those_of_its_pressure(make_seat, helix):
-    seat = make_seat("bottom", tilts=True)
+    seat = make_seat("bottom", moves=True)
     part = seat.evaluate(helix(0.0, lift=2.48), LEVEL)
     p = seat.points.at(helix(0.0))[part.point]
-    np.testing.assert_allclose(part.forces[:, -2], part.pressure * p[:, 1], rtol=1e-9, atol=1e-9)
-    np.testing.assert_allclose(part.forces[:, -1], -part.pressure * p[:, 0], rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(part.forces[:, -3], part.pressure * p[:, 1], rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(part.forces[:, -2], -part.pressure * p[:, 0], rtol=1e-9, atol=1e-9)

@@ -8,7 +8,7 @@ from coilset.model.material import library
 from coilset.model.problem.system import System
 
 LENGTH, RADIUS = 80.0, 2.5
-SEATS = np.zeros(6)
+SEATS = np.zeros(12)
 AREA, INERTIA = np.pi * RADIUS**2, np.pi * RADIUS**4 / 4
 AXIS = np.array([2.0, -1.0, 2.0]) / 3.0  # the rods of these tests lie across the global frame
 
@@ -166,7 +166,7 @@ def test_tangent_is_exact_at_turned_states(make_rod):
     rod.increment.x.array[:] = 0.1 * rng.normal(size=14)
     rod.update()
     rod.commit()
-    base, direction = np.zeros(20), np.append(rng.normal(size=14), SEATS)
+    base, direction = np.zeros(14 + len(SEATS)), np.append(rng.normal(size=14), SEATS)
     system = System(rod)
     X, A, h = system.vector(), system.matrix(), 1e-6
     f0 = forces(system, X, base)

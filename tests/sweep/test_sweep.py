@@ -66,7 +66,7 @@ def test_resume_runs_only_what_is_missing_and_retry_what_failed(write_sweep, tmp
     more = Plan(write_sweep("vary: {spring.wire_diameter: [4.0, 4.5, 39.0]}"))
     assert sweep(more, tmp_path) == [more.keys[1]]
     assert sweep(more, tmp_path, retry=True) == [more.keys[2]]
-    changed = Plan(write_sweep("change: {solver.tolerance: 1.0e-8}\nvary: {spring.wire_diameter: [4.0]}"))
+    changed = Plan(write_sweep("change: {solver.tolerance: 1.0e-10}\nvary: {spring.wire_diameter: [4.0]}"))
     assert sweep(changed, tmp_path) == changed.keys
 
 

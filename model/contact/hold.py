@@ -1,0 +1,81 @@
+"""How a seat holds the end coil sideways, and how it is itself held: linear springs without gaps."""
+
+import numpy as np
+
+from coilset.model.contact.base import Contribution
+from coilset.model.contact.plate import Plate, radial
+
+
+class Groove:
+    """The end coil lies in a smooth round groove of its seat, its tip against the groove's end.
+
+    Each point keeps its stress-free distance from the seat's axis by the potential ½ c (ρ − ρ0)², the tip its place
+    along the groove by ½ c (s − s0)². Both sides of the groove bear, whether the wire lies on its ground or not. Along
+    the groove and off the seat the wire is free, and it may roll and tilt: the seat takes no moment but that of forces.
+
+    Args:
+        end: `bottom` or `top`.
+        points: WirePoints.
+        turns: length of the groove from the tip, in turns.
+        stations: stress-free positions, shape (n, 3), mm.
+        bedding: force per length of wire and displacement, N/mm per mm.
+        seats: of both seats at the stress-free state, shape (12,).
+    """
+
+    guarded, points = False, None
+
+    def __init__(self, end, points, turns, stations, bedding, seats):
+        self.name, self.end, self.plate, self.wire = f"{end} groove", end, Plate(end, len(stations)), points
+        tip = 0 if end == "bottom" else len(points) - 1
+        inside = np.flatnonzero(np.abs(points.turns - points.turns[tip]) <= turns + 1e-9)
+        self.at, self.stop = np.append(inside, tip), len(inside)  # the last element is the groove's end
+        self.stiffness = bedding * np.append(points.length[inside], 2.0 * points.radius[tip])
+        self.dofs = self.plate.dofs_with(points)[self.at]
+        q = self.plate.sees(points.at(stations)[self.at], seats)
+        along = np.array([-q[-1, 1], q[-1, 0], 0.0])
+        self.along = along / np.linalg.norm(along)
+        self.start = np.append(np.hypot(*q[:-1, :2].T), q[-1] @ self.along)
+
+    def depth(self, x, seats):
+        """It may be pressed at will."""
+        return 0.0
+
+    def evaluate(self, x, seats):
+        """Forces across the groove, and along it at its end."""
+        p = self.wire.at(x)[self.at]
+        q = self.plate.sees(p, seats)
+        s, g, H = radial(q)
+        s[-1], g[-1], H[-1] = q[-1] @ self.along, self.along, 0.0
+        force = self.stiffness * (s - self.start)
+        grad, hessian = self.plate.derivatives(p, seats, self.wire.weights[self.at], g, H)
+        k = self.stiffness[:, None, None] * grad[:, :, None] * grad[:, None, :] + force[:, None, None] * hessian
+        none = np.zeros(len(force))
+        return Contribution(self.dofs, force[:, None] * grad, k, none, none, self.at)
+
+
+class Mount:
+    """A seat on linear springs; they press on the seat, not on the wire.
+
+    Args:
+        end: `bottom` or `top`.
+        stations: number of stations.
+        stiffness: of the seat's six degrees of freedom, shape (6,), N/mm and N mm/rad.
+        seats: of both seats, shape (12,), where the springs are slack.
+    """
+
+    guarded, points, end = False, None, None
+
+    def __init__(self, end, stations, stiffness, seats):
+        plate = Plate(end, stations)
+        self.name, self.own, self.dofs = f"{end} mount", plate.own, plate.dofs[None]
+        self.stiffness, self.slack = np.diag(stiffness)[None], np.array(seats[plate.own])
+
+    def depth(self, x, seats):
+        """Nothing is pressed in."""
+        return 0.0
+
+    def evaluate(self, x, seats):
+        """Forces of the springs."""
+        force = self.stiffness[0] @ (seats[self.own] - self.slack)
+        none = np.zeros(1)
+        return Contribution(self.dofs, force[None], self.stiffness, none, none, np.zeros(1, dtype=int))
