@@ -14,7 +14,7 @@ from coilset.model.results import display
 from coilset.model.solid import output
 from coilset.verification.solid_vs_rod.pressing import PressedSection, run_solid
 
-CASE = PressedSection(8.0, 3, 24)
+CASE = PressedSection()
 FIELDS = {"von Mises stress": "MPa", "plastic work": "N/mm²"}
 
 
