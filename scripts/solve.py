@@ -136,11 +136,14 @@ def _write(out, analysis, result, summary):
 
 
 def _draw(out, analysis, result, summary, console):
-    from coilset.model.results import display, figures, scene
+    from coilset.model.results import display, figures, scene, seat_figures
 
     last = result.snapshots[-1]
     figures.characteristic(out / "characteristic.png", analysis, result, summary)
     figures.cross_section(out / "cross_section.png", analysis, last)
+    if result.steps:
+        seat_figures.force_centre(out / "force_centre.png", analysis, result)
+        seat_figures.seat_pressure(out / "seat_pressure.png", analysis, result)
     if display.ensure():
         shots = result.snapshots if len(result.snapshots) <= 4 else [result.snapshots[0], *result.snapshots[-3:]]
         scene.springs(out / "springs.png", shots, analysis.wire_radius)

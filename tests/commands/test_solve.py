@@ -40,7 +40,7 @@ def test_solve_writes_what_the_readme_says(example, tmp_path):
 def test_pictures_are_drawn(example, tmp_path):
     done = coilset("solve", example, "--out", "here", *SHORT[:2], cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    for name in ("characteristic.png", "cross_section.png", "springs.png"):
+    for name in ("characteristic.png", "cross_section.png", "springs.png", "force_centre.png", "seat_pressure.png"):
         assert (tmp_path / "here" / name).read_bytes().startswith(b"\x89PNG")
 
 

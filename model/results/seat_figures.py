@@ -1,0 +1,137 @@
+"""Figures of where the force goes: path of the force centre, pressure along the end coils, turns that are active."""
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+
+from coilset.model.contact.base import ENDS
+from coilset.model.results.figures import STYLE, save
+
+COLOURS = {"bottom": "C0", "top": "C3"}
+DRAWN = {  # what both seats of a symmetric spring share stays to be seen
+    "bottom": {"color": "C0", "lw": 3.0, "alpha": 0.45, "ms": 5.0},
+    "top": {"color": "C3", "lw": 1.0, "ms": 2.5},
+}
+LINES = ("-", "--", ":", "-.")  # of the phases
+FAINT = 0.02  # share of the greatest force below which a force centre says little and is not drawn
+REACH = 1.3  # of the picture, in coil radii
+DECADES = 3  # of the pressure's colours
+
+
+def phases(result):
+    """Numbers of the steps of each phase, a dict by the phase's number."""
+    found = {}
+    for number, step in enumerate(result.steps):
+        found.setdefault(step.phase, []).append(number)
+    return found
+
+
+def column(result, end, name):
+    """One entry of an end's Bearings over the steps."""
+    return np.array([getattr(getattr(one, end), name) for one in result.seats])
+
+
+def force_centre(path, analysis, result):
+    """Path of the force centre on both seats, seen along the axis, and its distance from the axis over travel."""
+    travel = np.array([step.travel_mm for step in result.steps])
+    force = np.abs([step.force_N for step in result.steps])
+    strong = force > FAINT * force.max()
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(9.6, 4.3), layout="constrained")
+        plan, over = figure.subplots(1, 2, width_ratios=(1, 1.15))
+        for end in ENDS:
+            turns = np.linspace(0.0, min(1.0, analysis.spring.turns), 121)
+            turns = turns if end == "bottom" else analysis.spring.turns - turns
+            coil = analysis.spring.centre_line(turns)
+            plan.plot(*coil[:, :2].T, color=COLOURS[end], lw=0.6, alpha=0.6)
+            plan.plot(*coil[0, :2], "s", color=COLOURS[end], ms=5, label=f"wire's tip at the {end}")
+            x, y, distance, px, py = (
+                np.where(strong, column(result, end, f"{name}_mm"), np.nan)
+                for name in ("centre_x", "centre_y", "eccentricity", "pressure_x", "pressure_y")
+            )
+            plan.plot(px, py, "-", color=COLOURS[end], lw=3.5, alpha=0.25, label=f"centre of pressure, {end}")
+            for style, (index, steps) in zip(LINES * len(travel), phases(result).items(), strict=False):
+                joined = steps if index == 0 or steps[0] == 0 else [steps[0] - 1, *steps]
+                label = f"{end} seat, to {analysis.case.loading[index].label}"
+                plan.plot(x[joined], y[joined], style, marker="o", ms=2.5, lw=1.0, color=COLOURS[end])
+                over.plot(travel[joined], distance[joined], style, marker="o", **DRAWN[end], label=label)
+        radius = float(np.hypot(*analysis.spring.centre_line(np.array([0.0, analysis.spring.turns]))[:, :2].T).max())
+        plan.plot(0, 0, "k+", ms=9)
+        plan.set(aspect="equal", xlabel="x in mm", ylabel="y in mm", title="force centre, seen along the axis",
+                 xlim=(-REACH * radius, REACH * radius), ylim=(-REACH * radius, REACH * radius))  # fmt: skip
+        plan.legend(fontsize=6.5, loc="upper right")
+        over.axhline(radius, color="0.6", lw=0.8, ls="--", label="coil radius at the tip")
+        over.set(xlabel="travel in mm", ylabel="distance of the force centre from the axis in mm",
+                 ylim=(0.0, REACH * radius), title=f"at {100 * FAINT:g} % of the greatest force or more")  # fmt: skip
+        over.legend(fontsize=7)
+        for axes in (plan, over):
+            axes.grid(lw=0.3)
+        save(figure, path)
+
+
+def seat_pressure(path, analysis, result):
+    """Pressure along both end coils in every step, length of wire in contact, and active turns.
+
+    Returns:
+        False, and nothing is drawn, if there are no seats.
+    """
+    seats = {
+        contact.end: (kind, contact)
+        for kind, contact in enumerate(analysis.system.contacts)
+        if contact.end and contact.points is not None
+    }
+    if not seats or not result.seats:
+        return False
+    travel = np.array([step.travel_mm for step in result.steps])
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(9.6, 6.4), layout="constrained")
+        (*maps,), (lengths, turns) = figure.subplots(2, 2)
+        kinds = [kind for kind, _ in seats.values()]
+        rows = np.concatenate([one.pressure for one in result.seats])
+        greatest = rows[np.isin(rows[:, 0], kinds), 2].max(initial=1e-9)
+        shown = None
+        for axes, (end, (kind, contact)) in zip(maps, seats.items(), strict=False):
+            shown = draw_pressure(axes, result, kind, contact, greatest) or shown
+            axes.set_title(f"pressure on the {end} seat")
+        if shown is not None:
+            figure.colorbar(shown, ax=maps, label="force per length of wire in N/mm")
+        for style, (index, steps) in zip(LINES * len(travel), phases(result).items(), strict=False):
+            label = f"to {analysis.case.loading[index].label}"
+            for end in seats:
+                lengths.plot(travel[steps], column(result, end, "length_mm")[steps], style, marker="o", **DRAWN[end],
+                             label=f"{end} seat, {label}")  # fmt: skip
+            for name, colour, words in (("active_turns", "C2", "active"), ("free_turns", "0.5", "touching nothing")):
+                values = np.array([getattr(result.seats[k], name) for k in steps])
+                turns.plot(travel[steps], values, style, marker="o", ms=2.5, lw=1.0, color=colour,
+                           label=f"{words}, {label}")  # fmt: skip
+        lengths.set(xlabel="travel in mm", ylabel="wire in contact with the seat in mm")
+        turns.set(xlabel="travel in mm", ylabel="turns", ylim=(0.0, 1.05 * analysis.spring.turns))
+        for axes in (lengths, turns):
+            axes.legend(fontsize=7)
+            axes.grid(lw=0.3)
+        save(figure, path)
+    return True
+
+
+def draw_pressure(axes, result, kind, contact, greatest):
+    """Pressure of one kind of contact as colour over the place along the wire and the step; None if there is none."""
+    rows = [one.pressure[one.pressure[:, 0] == kind] for one in result.seats]
+    away = np.abs(contact.points.turns - contact.points.turns[contact.tip])
+    bearing = np.unique(np.concatenate(rows)[:, 1].astype(int))
+    if not len(bearing):
+        return None
+    points = np.flatnonzero(away <= away[bearing].max() + 1e-9)
+    points = points[np.argsort(away[points])]
+    values = np.zeros((len(rows), len(away)))
+    for number, one in enumerate(rows):
+        values[number, one[:, 1].astype(int)] = one[:, 2]
+    values = np.ma.masked_equal(values[:, points], 0.0)
+    norm = LogNorm(10.0**-DECADES * greatest, greatest)
+    number = [step.number for step in result.steps]
+    shown = axes.pcolormesh(away[points], number, values, norm=norm, cmap="viridis", shading="nearest")
+    places = np.unique(np.linspace(0, len(number) - 1, min(len(number), 9)).astype(int))
+    labels = [f"{result.steps[k].travel_mm:.1f} mm, {abs(result.steps[k].force_N):.0f} N" for k in places]
+    axes.set_yticks([number[k] for k in places], labels, fontsize=7)
+    axes.set(xlabel="turns from the wire's tip", ylabel="step" if kind == 1 else None)
+    return shown
