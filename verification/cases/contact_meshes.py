@@ -1,11 +1,11 @@
 """Cylinder, cone and barrel pressed to block and released: no step fails, and the meshes agree
 
 The three springs of `examples/springs` at 16, 32 and 64 elements a turn, with twelve equal steps down and up as with
-automatic ones. A failed step would be cut or solved again from rest; both are counted, and so is, in the table, how often
-Newton's method came to no end within a step and balanced a part of it first. The bedding, E/40, is the same for all
-meshes, so that finer ones come to one state. Judged are the set, which must change by less than 1 % from 32 to
-64 elements, and the characteristic at the heights of the equal steps, whose change from 32 to 64 must be below 1 % of
-the greatest force and less than from 16 to 32. The force at block hangs on the places of several hundred contacts
+automatic ones. A failed step would be cut or solved again from rest; both are counted, and so is, in the table, how
+often Newton's method came to no end within a step and balanced a part of it first. The bedding, E/40, is the same for
+all meshes, so that finer ones come to one state. Judged are the set, which must change by less than 1 % from 32 to 64
+elements, and the characteristic at the heights of the equal steps, whose change from 32 to 64 must be below 1 % of the
+greatest force and less than from 16 to 32. The force at block hangs on the places of several hundred contacts
 within some thousandths of a millimetre: it settles last.
 """
 
@@ -76,7 +76,7 @@ def run(study):
                              summary["set_mm"], summary["force_max_N"]])  # fmt: skip
                 curves[name, mesh, automatic] = analysis, summary
         compare(study, name, {mesh: curves[name, mesh, False] for mesh in MESHES})
-    columns = ["spring", "elements a turn", "steps", "steps done", "iterations", "in parts", "set, mm", "force at block, N"]
+    columns = ["spring", "rods a turn", "steps", "steps done", "iterations", "in parts", "set, mm", "block force, N"]
     study.table("to block and back", columns, rows)
     draw(study, curves)
 
