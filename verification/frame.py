@@ -17,7 +17,7 @@ class Frame:
     Args:
         nodes: shape (n, 3), mm.
         pairs: node numbers of the elements, shape (m, 2).
-        radius: of all rods, mm.
+        radius: of all rods, or of each, shape (m,), mm.
         law: material law.
         rule: DiskRule.
         held: (node, components) pairs that stay where they are; components are 0-2 for x, y, z, 3-5 for turns.
@@ -27,7 +27,7 @@ class Frame:
 
     def __init__(self, nodes, pairs, radius, law, rule, held, method="newton", options=None, contacts=()):
         line = frame_mesh(nodes, pairs, MPI.COMM_SELF)
-        self.rod = Rod(line, np.full(len(pairs), float(radius)), law, rule)
+        self.rod = Rod(line, np.broadcast_to(np.asarray(radius, float), len(pairs)), law, rule)
         self.system = System(self.rod, contacts)
         self.solver = Solver(self.system, method, 1e-7, options)
         self.held = {int(dof): 0.0 for dof in self.system.seat_dofs}
