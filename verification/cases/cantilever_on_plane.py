@@ -15,6 +15,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from coilset.model.contact.base import SEAT_DOFS
 from coilset.model.contact.seat import Seat
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
@@ -35,7 +36,7 @@ def press():
     along = np.linspace(LENGTH, 0.0, ELEMENTS + 1)  # from the tip to the clamp
     nodes = np.stack([along * np.cos(SLOPE), 0 * along, (LENGTH - along) * np.sin(SLOPE) + RADIUS], axis=1)
     points = wire_points(nodes, RADIUS)
-    seat = Seat("bottom", points, points.radius, nodes, 0.0, BEDDING, ONSET)
+    seat = Seat("bottom", points, points.radius, nodes, np.zeros(2 * SEAT_DOFS), BEDDING, ONSET)
     held = [(ELEMENTS, range(6)), *((node, (1, 3, 5)) for node in range(ELEMENTS))]
     pairs = [(k, k + 1) for k in range(ELEMENTS)]
     frame = Frame(nodes, pairs, RADIUS, law, polar(), held, contacts=[seat])

@@ -40,7 +40,7 @@ def contact(wires):
 
 
 def press():
-    """Forces on the ends of rod 1 and penetrations at TRAVEL, N and mm, the crossing's stiffness c, N/mm, and the law."""
+    """Forces on the ends of rod 1 and penetrations at TRAVEL, N and mm, stiffness c of the crossing, and the law."""
     law = library.load("elastic")
     directions = ((1.0, 0.0, 0.0), (np.cos(ANGLE), np.sin(ANGLE), 0.0))
     wires = [

@@ -24,6 +24,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 from scipy.special import beta
 
+from coilset.model.contact.base import LEVEL, SEAT_DOFS
 from coilset.model.contact.seat import Seat
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
@@ -60,12 +61,12 @@ def press():
     angle = np.pi * np.linspace(0.0, 1.0, ELEMENTS + 1)
     nodes = np.stack([RING * np.cos(angle), 0 * angle, RING * (np.sin(angle) - 1.0) - RADIUS], axis=1)
     points = wire_points(nodes, RADIUS)
-    seat = Seat("top", points, points.radius, nodes, 0.0, BEDDING, ONSET)
+    seat = Seat("top", points, points.radius, nodes, np.zeros(2 * SEAT_DOFS), BEDDING, ONSET)
     sides = [(node, (1, 2, 3, 4, 5)) for node in (0, ELEMENTS)]
     held = [*sides, (ELEMENTS // 2, (0, 1, 3, 5)), *((node, (1, 3, 5)) for node in range(1, ELEMENTS))]
     pairs = [(k, k + 1) for k in range(ELEMENTS)]
     frame = Frame(nodes, pairs, RADIUS, law, polar(), held, contacts=[seat])
-    level, rows = int(frame.system.seat_dofs[3]), []
+    level, rows = int(frame.system.seat_dofs[SEAT_DOFS + LEVEL]), []
     for step in np.diff(np.append(1.0, HEIGHTS)) * RING:
         if not frame.step(moves={level: step}).converged:
             raise RuntimeError(f"no equilibrium at step {len(rows) + 1}")
