@@ -88,6 +88,18 @@ def verify(
         raise typer.Exit(verification.verify(names, out, fast))
 
 
+@app.command()
+def bench(
+    out: str = typer.Option("results/bench", help="folder of the record and the figure; what is there is replaced"),
+    full: bool = typer.Option(False, "--full", help="up to 400,000 elements: 12 GiB, some half an hour"),
+    cold: bool = typer.Option(False, "--cold", help="also time the compilers, from nothing"),
+):
+    """Measure time by stage, over elements and ranks, and cases per hour."""
+    from coilset.scripts.bench import bench as run_benchmarks
+
+    run_benchmarks(out, full, cold)
+
+
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
 def test(context: typer.Context):
     """Run the tests, in serial and under MPI; further arguments go to pytest."""

@@ -112,7 +112,7 @@ class System:
         return A
 
     def _make_room(self, A):
-        """Allocate the rows of `A` anew: a node couples with its neighbours, their shear angles, and what it touches."""
+        """Allocate the rows of `A` anew: a node couples with neighbours, shear angles, and what it touches."""
         entries = np.full(self.size_local, 22, dtype=PETSc.IntType)
         entries[self.rod.shear_dofs] = 14
         for part in self.contributions:

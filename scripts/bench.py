@@ -1,0 +1,109 @@
+"""`coilset bench`: measure, print tables, keep a record and a figure."""
+
+import json
+import os
+import sys
+import time
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from coilset.model.results.folder import whole
+from coilset.verification.benchmarks.run import bench as measure_all
+from coilset.verification.benchmarks.target import ITERATION, per_element, seconds
+
+WIDTH = 140  # columns where the output goes to a file
+
+
+def bench(out, full, cold):
+    """Run the benchmarks; see `coilset bench --help`.
+
+    Raises:
+        CoilsetError: if a measurement failed.
+    """
+    environment = dict(os.environ)  # as it was before MPI
+    console = Console(highlight=False, width=None if sys.stdout.isatty() else WIDTH)
+    began, out = time.perf_counter(), Path(out)
+    with console.status("") as status:
+        record = measure_all(full, cold, environment, lambda name: status.update(f"measuring: {name}"))
+    from coilset.verification.benchmarks.figure import draw
+
+    out.mkdir(parents=True, exist_ok=True)
+    with whole(out / "bench.json") as path:
+        path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    draw(out / "bench.png", record)
+    for table in (_stages(record), _elements(record["elements"]), _ranks(record["ranks"]), _targets(record["targets"])):
+        console.print(table)
+    cases = record["cases"]
+    console.print(f"cases: {cases['cases']} one after the other, {cases['failed']} failed, {cases['seconds'][1]:.3f} s "
+                  f"each on the processor: {3600 / cases['seconds'][1]:,.0f} an hour and core "
+                  f"({3600 / cases['seconds'][0]:,.0f} as busy as the machine is)")  # fmt: skip
+    machine = record["machine"]
+    console.print(f"{machine['processor']}, {machine['cores']} cores, load {machine['load']:.1f} at the start, "
+                  f"{record['load_after']:.1f} at the end; {time.perf_counter() - began:.0f} s; "
+                  f"bench.json, bench.png in {out}{os.sep}")  # fmt: skip
+
+
+def _new(title, *columns):
+    table = Table(title=title, title_justify="left", box=None, padding=(0, 2), header_style="bold")
+    for column in columns:
+        table.add_column(column, justify="left" if column == columns[0] else "right")
+    return table
+
+
+def _stages(record):
+    """Time by stage of the example, warm; compilers if asked."""
+    example = record["example"]
+    title = (f"example: {example['elements']} elements, {example['section_points']} points a section, "
+             f"{example['steps']} steps, {example['iterations']} iterations")  # fmt: skip
+    table = _new(title, "stage", "time, ms", "processor, ms")
+
+    def row(name, pair, style=""):
+        table.add_row(name, *(f"{1e3 * value:.1f}" for value in pair), style=style)
+
+    row("import", example["import"])
+    row("load compiled code", _more(example["first"], example["analysis"]))
+    if "cold" in record:
+        row("compile, from nothing", _more(record["cold"]["first"], example["analysis"]))
+    for stage, pair in example["stages"].items():
+        row(stage, pair)
+    row("analysis", example["analysis"], "bold")
+    row("output", example["output"])
+    row("pictures", example["pictures"])
+    return table
+
+
+def _more(first, warm):
+    """By how much the first analysis of a process takes longer than the others."""
+    return [one - other for one, other in zip(first, warm, strict=True)]
+
+
+def _elements(runs):
+    table = _new("one plastic step from rest, clamped heads; µs of the processor for an element in an iteration",
+                 "elements", "iterations", "plastic", "all, s", "memory, GiB", "µs", *ITERATION)  # fmt: skip
+    for run in runs:
+        table.add_row(f"{run['elements']:,}", str(run["iterations"]), f"{100 * run['plastic']:.0f} %",
+                      f"{seconds(run['stages']):.2f}", f"{run['memory_GiB']:.2f}", f"[bold]{per_element(run):.1f}[/]",
+                      *(f"{per_element(run, stage):.2f}" for stage in ITERATION))  # fmt: skip
+    return table
+
+
+def _ranks(runs):
+    first = runs[0]
+    table = _new(f"{first['elements']:,} elements on several ranks", "ranks", "time, s", "faster", "law, processor",
+                 "assemble, processor", "memory of a rank, GiB", "force against one rank")  # fmt: skip
+    for run in runs:
+        law, assemble = (f"{run['stages'][stage][1]:.2f} s" for stage in ("law", "assemble"))
+        table.add_row(str(run["ranks"]), f"{seconds(run['stages'], 0):.2f}",
+                      f"{seconds(first['stages'], 0) / seconds(run['stages'], 0):.2f}", law, assemble,
+                      f"{run['memory_GiB']:.2f}", f"{abs(run['force_N'] / first['force_N'] - 1):.1e}")  # fmt: skip
+    return table
+
+
+def _targets(rows):
+    table = _new("aimed at", "quantity", "measured", "at most")
+    for row in rows:
+        style = "" if row["value"] <= row["limit"] else "yellow"
+        table.add_row(row["name"], f"{row['value']:.3g} {row['unit']}", f"{row['limit']:g} {row['unit']}", style=style)
+    return table

@@ -1,0 +1,70 @@
+"""The picture of a bench: where the time goes, what an element costs, and what a second rank brings."""
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+
+from coilset.model.results.figures import STYLE, save
+from coilset.verification.benchmarks.measure import STAGES
+from coilset.verification.benchmarks.run import LARGE
+from coilset.verification.benchmarks.target import FLAT, ITERATION, per_element, seconds
+
+COLOURS = dict(zip(STAGES, mpl.colormaps["tab10"].colors, strict=False))
+
+
+def draw(path, record):
+    """Write the figure as PNG."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(11.0, 3.8), layout="constrained")
+        example, elements, ranks = figure.subplots(1, 3, width_ratios=(1.1, 1.3, 0.8))
+        _stages(example, record["example"])
+        _elements(elements, record["elements"])
+        _ranks(ranks, record["ranks"])
+        machine = record["machine"]
+        figure.suptitle(f"coilset bench, {machine['processor']}, {machine['cores']} cores, load {machine['load']:.1f} "
+                        "at the start")  # fmt: skip
+        save(figure, path)
+
+
+def _stages(axes, example):
+    spent = [1e3 * example["stages"][stage][1] for stage in STAGES]
+    axes.barh(STAGES, spent, color=[COLOURS[stage] for stage in STAGES])
+    for place, value in enumerate(spent):
+        axes.annotate(f" {value:.1f}", (value, place), va="center", fontsize=8)
+    axes.invert_yaxis()
+    axes.set(xlabel="processor time, ms", title=f"Example, {example['elements']} elements, {example['steps']} steps, "
+             f"{example['iterations']} iterations: {1e3 * example['analysis'][1]:.0f} ms")  # fmt: skip
+    axes.title.set_fontsize(9)
+    axes.margins(x=0.15)
+
+
+def _elements(axes, runs):
+    n = [run["elements"] for run in runs]
+    total = np.array([per_element(run) for run in runs])
+    axes.plot(n, total, "ko-", ms=4, label="all")
+    for stage in ITERATION:
+        axes.plot(n, [per_element(run, stage) for run in runs], "o-", ms=3, lw=1.0, color=COLOURS[stage], label=stage)
+    large = total[np.array(n) >= LARGE]
+    if len(large):
+        middle = np.sqrt(large.min() * large.max())
+        half = np.sqrt(1.0 + FLAT)
+        axes.fill_between([LARGE, max(n)], middle / half, middle * half, color="0.85", zorder=0, label="within 20 %")
+    axes.set(xscale="log", yscale="log", xlabel="elements", ylabel="processor time of an element\nin an iteration, µs",
+             title="Cost of an element, one plastic step")  # fmt: skip
+    axes.title.set_fontsize(9)
+    axes.set_ylim(max(axes.get_ylim()[0], 1e-3 * total.min()))
+    axes.legend(fontsize=7, ncols=2)
+    axes.grid(lw=0.3)
+
+
+def _ranks(axes, runs):
+    place, bottom = np.arange(len(runs)), np.zeros(len(runs))
+    for stage in STAGES:
+        height = np.array([run["stages"][stage][0] for run in runs])
+        axes.bar(place, height, 0.6, bottom=bottom, color=COLOURS[stage], label=stage)
+        bottom += height
+    axes.set_xticks(place, [f"{run['ranks']} rank{'s' if run['ranks'] > 1 else ''}" for run in runs])
+    speed = seconds(runs[0]["stages"], 0) / seconds(runs[-1]["stages"], 0)
+    axes.set(ylabel="time, s", title=f"{runs[0]['elements']:,} elements: {speed:.2f} times as fast")
+    axes.title.set_fontsize(9)
+    axes.legend(fontsize=7)

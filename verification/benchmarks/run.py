@@ -1,0 +1,91 @@
+"""Runs the measurements, each in a process of its own, and brings them together in one record."""
+
+import json
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+
+from coilset.model.errors import CoilsetError
+from coilset.verification.benchmarks.target import targets
+
+MODULE = "coilset.verification.benchmarks.measure"
+QUICK = ((40, 5), (400, 3), (4_000, 2), (16_000, 1))  # elements, and how often they are measured
+FULL = ((40, 5), (400, 5), (4_000, 3), (16_000, 2), (40_000, 1), (100_000, 1), (400_000, 1))
+SHARED = {"quick": 8_000, "full": 40_000}  # elements that one and two ranks are compared on
+RANKS = (1, 2)
+CASES = {"quick": 20, "full": 100}
+LARGE = 4_000  # elements from which on the cost of an element should not depend on their number
+
+
+def measure(environment, job, *arguments, ranks=1):
+    """One measurement.
+
+    Args:
+        environment: of the process, from before MPI.
+        job, arguments: see coilset.verification.benchmarks.measure.
+        ranks: under mpirun if there are more than one.
+
+    Raises:
+        CoilsetError: if the process failed.
+    """
+    command = [sys.executable, "-m", MODULE, job, *map(str, arguments)]
+    if ranks > 1:
+        command = ["mpirun", "--oversubscribe", "--mca", "btl", "self,sm", "-n", str(ranks), *command]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True)
+    if done.returncode:
+        reason = (done.stderr.strip() or "no message").splitlines()[-1]
+        raise CoilsetError(f"the measurement '{' '.join(map(str, (job, *arguments)))}' failed: {reason}")
+    return json.loads(done.stdout.strip().splitlines()[-1])
+
+
+def cold(environment):
+    """The example with nothing compiled yet: forms and kernels are built in a folder that is thrown away."""
+    with tempfile.TemporaryDirectory() as folder:
+        return measure(environment | {"XDG_CACHE_HOME": folder, "NUMBA_CACHE_DIR": folder}, "example", 1)
+
+
+def bench(full, with_cold, environment, report):
+    """All measurements.
+
+    Args:
+        full: up to 400,000 elements, which needs 12 GiB and the better part of an hour; else up to 16,000.
+        with_cold: also time the compilers.
+        environment: of the processes, from before MPI.
+        report: called with the name of each measurement before it begins.
+
+    Returns:
+        The record: plain data for JSON.
+    """
+    size = "full" if full else "quick"
+    record = {"machine": machine()}
+    report("example")
+    record["example"] = measure(environment, "example", 5)
+    if with_cold:
+        report("example, nothing compiled")
+        record["cold"] = cold(environment)
+    record["elements"] = []
+    for elements, repeats in FULL if full else QUICK:
+        report(f"{elements} elements")
+        record["elements"].append(measure(environment, "press", elements, repeats))
+    record["ranks"] = []
+    for ranks in RANKS:
+        report(f"{ranks} rank(s)")
+        record["ranks"].append(measure(environment, "press", SHARED[size], ranks=ranks))
+    report("cases")
+    record["cases"] = measure(environment, "cases", CASES[size])
+    record["load_after"] = os.getloadavg()[0]
+    record["targets"] = targets(record)
+    return record
+
+
+def machine():
+    """What it runs on, and how busy that is."""
+    model = platform.processor() or platform.machine()
+    try:
+        with open("/proc/cpuinfo", encoding="utf-8") as file:
+            model = next(line.split(":", 1)[1].strip() for line in file if line.startswith("model name"))
+    except (OSError, StopIteration):
+        pass
+    return {"processor": model, "cores": len(os.sched_getaffinity(0)), "load": os.getloadavg()[0]}

@@ -1,0 +1,37 @@
+"""What the measurements say: cost of an element in an iteration, its spread, and the numbers that were aimed at."""
+
+ITERATION = ("law", "contact", "assemble", "factorise", "solve", "other")  # stages of the equilibrium iteration
+FLAT = 0.2  # how much the cost of an element may differ above LARGE elements
+
+
+def seconds(stages, kind=1):
+    """Sum of all stages; kind 0: of the clock, 1: of the processor."""
+    return sum(pair[kind] for pair in stages.values())
+
+
+def per_element(run, stage=None):
+    """Processor time of an element in a Newton iteration, µs; of all stages of the iteration, or of one."""
+    spent = sum(run["stages"][name][1] for name in ITERATION) if stage is None else run["stages"][stage][1]
+    return 1e6 * spent / (run["elements"] * run["iterations"])
+
+
+def spread(runs, least):
+    """Greatest over least cost of an element, less one, from `least` elements on; None for fewer than two runs."""
+    costs = [per_element(run) for run in runs if run["elements"] >= least]
+    return max(costs) / min(costs) - 1.0 if len(costs) > 1 else None
+
+
+def targets(record):
+    """Rows of what was aimed at: name, value, limit, unit; processor time is that of one core."""
+    from coilset.verification.benchmarks.run import LARGE
+
+    rows = [("analysis of the example, warm, one core", record["example"]["analysis"][1], 0.3, "s")]
+    for run in record["elements"]:
+        if run["elements"] == 100_000:
+            rows += [("100,000 elements, one plastic step, one core", seconds(run["stages"]), 60.0, "s"),
+                     ("100,000 elements, memory", run["memory_GiB"], 3.0, "GiB")]  # fmt: skip
+    differs = spread(record["elements"], LARGE)
+    if differs is not None:
+        rows.append((f"spread of an element's cost from {LARGE:,} elements on", 100.0 * differs, 100.0 * FLAT, "%"))
+    rows.append(("1,000 cases on 2 cores", record["cases"]["seconds"][1] * 1000 / 2 / 60, 10.0, "minutes"))
+    return [{"name": name, "value": value, "limit": limit, "unit": unit} for name, value, limit, unit in rows]
