@@ -5,7 +5,7 @@ In the coordinates q of its plate (plate.py) a flat seat is the plane qz = 0; a 
 
 import numpy as np
 
-from coilset.model.contact.base import LEVEL, SEAT_DOFS, Contribution, one_sided
+from coilset.model.contact.base import LEVEL, Contribution, one_sided
 from coilset.model.contact.centreline import STENCIL
 from coilset.model.contact.plate import Plate, radial
 
@@ -38,6 +38,8 @@ class Seat:
         self.name, self.end, self.points, self.onset, self.slope = f"{end} seat", end, points, onset, slope
         self.side = 1.0 if end == "bottom" else -1.0  # the wire lies above the bottom seat
         self.plate = Plate(end, len(stations))
+        # on a flat seat that moves along the axis only, z of wire and seat take part, and the gap is linear in them
+        self.linear = not (moves or slope)
         self.tip = 0 if end == "bottom" else len(points) - 1
         self.stiffness = bedding * points.length
         # a wire that stands on its tip bears by its end face, whatever the mesh
@@ -55,13 +57,13 @@ class Seat:
             self.reach += gap.min()  # zero on a flat seat; a cone is moved until it touches
         self.slack = 0.0 if stepped else gap[self.tip] - gap.min()
         self.dofs = self.plate.dofs_with(points)
-        # on a flat seat that moves along the axis only, z of wire and seat take part
-        self.variables = np.arange(3 * STENCIL + SEAT_DOFS)
-        if not (moves or slope):
-            self.variables = np.append(np.arange(2, 3 * STENCIL, 3), 3 * STENCIL + LEVEL)
+        if self.linear:
+            self.dofs = self.dofs[:, np.append(np.arange(2, 3 * STENCIL, 3), 3 * STENCIL + LEVEL)]
 
     def gaps(self, p, seats):
         """Gap of the underside at the points `p`, shape (m, 3), negative where it sinks in, shape (m,), mm."""
+        if self.linear:
+            return self.side * (p[:, 2] - seats[self.plate.own][LEVEL]) - self.reach
         q = self.plate.sees(p, seats)
         above = self.side * q[:, 2]
         if self.slope:
@@ -93,11 +95,11 @@ class Seat:
         c[tip] = np.where(gap[tip] > 0.0, self.cord * (gap[tip] >= self.slack), self.stiffness[self.tip])
         force[tip] = -c[tip] * taut
         pressure[tip] = np.maximum(force[tip], 0.0)
-        derivatives = self._gap_derivatives(self.plate.sees(p, seats))
-        grad, hessian = self.plate.derivatives(p, seats, self.points.weights[bearing], *derivatives)
-        k = c[:, None, None] * grad[:, :, None] * grad[:, None, :] - force[:, None, None] * hessian
-        pick = self.variables
-        return Contribution(
-            self.dofs[np.ix_(bearing, pick)], -force[:, None] * grad[:, pick], k[np.ix_(np.arange(len(k)), pick, pick)],
-            pressure, -gap, bearing,
-        )  # fmt: skip
+        if self.linear:
+            grad = self.side * np.column_stack([self.points.weights[bearing], np.full(len(p), -1.0)])
+            k = c[:, None, None] * grad[:, :, None] * grad[:, None, :]
+        else:
+            derivatives = self._gap_derivatives(self.plate.sees(p, seats))
+            grad, hessian = self.plate.derivatives(p, seats, self.points.weights[bearing], *derivatives)
+            k = c[:, None, None] * grad[:, :, None] * grad[:, None, :] - force[:, None, None] * hessian
+        return Contribution(self.dofs[bearing], -force[:, None] * grad, k, pressure, -gap, bearing)
