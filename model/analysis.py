@@ -90,7 +90,8 @@ class Analysis:
         self.system = System(self.rod, contacts, seats=(0.0, top))
         self.solver = Solver(self.system, case.solver.method, case.solver.tolerance, case.solver.options)
         self.drive = Drive(self.system, case.ends, top, case.seats)
-        self.stepper = Stepper(self.drive, self.solver, self.spring.block_height)
+        deepest = case.contact.deepest * 2.0 * self.wire_radius.min()
+        self.stepper = Stepper(self.drive, self.solver, self.spring.block_height, deepest)
         self.result = Result()
 
     def run(self, report=lambda step: None, checkpoint=None):

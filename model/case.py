@@ -55,6 +55,9 @@ class ContactSpec(Strict):
     bedding: Annotated[
         float | None, Field(gt=0, description="force per length and penetration, N/mm per mm; default E/40")
     ] = None
+    deepest: Annotated[
+        float, Field(gt=0, description="penetration in wire diameters beyond which a step is no equilibrium")
+    ] = 0.02
 
 
 class SolverSpec(Strict):

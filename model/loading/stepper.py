@@ -1,6 +1,7 @@
 """Walk through a load program: stations hit exactly, steps cut on failure and grown on ease, every decision logged."""
 
 import logging
+import math
 from dataclasses import dataclass, replace
 
 from coilset.model.errors import SolveError
@@ -62,14 +63,16 @@ class Stepper:
         drive: Drive.
         solver: Solver.
         block_height: height that `to: block` means, mm.
+        deepest: penetration beyond which a step is no equilibrium, mm.
 
     Attributes:
         walk: Walk; replaced by a checkpoint's on resume, together with `guess`, the last step's increments.
         number: steps so far.
     """
 
-    def __init__(self, drive, solver, block_height):
-        self.drive, self.solver, self.system, self.block_height = drive, solver, drive.system, block_height
+    def __init__(self, drive, solver, block_height, deepest=math.inf):
+        self.drive, self.solver, self.system = drive, solver, drive.system
+        self.block_height, self.deepest = block_height, deepest
         self.number, self.walk, self.guess = 0, Walk(height=drive.height), drive.system.vector()
 
     def begin(self, index):
@@ -131,9 +134,16 @@ class Stepper:
             guess.scale(size / walk.last)
             outcome = self.solver.solve(guess)
             if outcome.converged:
-                return outcome, size
+                return self._judged(outcome), size
             log.info("step %d: no equilibrium from the last step's direction (%s)", self.number + 1, outcome.reason)
-        return self.solver.solve(None), size
+        return self._judged(self.solver.solve(None)), size
+
+    def _judged(self, outcome):
+        """An equilibrium in which bodies are pressed deep into each other counts as none."""
+        if outcome.converged and (depth := self.system.depth) > self.deepest:
+            reason = f"coils or seats would lie {depth:.4g} mm in each other, more than {self.deepest:.4g} mm"
+            return replace(outcome, converged=False, reason=reason)
+        return outcome
 
     def _cut(self, phase, outcome, size):
         self.system.restore()

@@ -115,13 +115,15 @@ class System:
         """Allocate the rows of `A` anew: a node couples with neighbours, shear angles, and what it touches."""
         entries = np.full(self.size_local, 22, dtype=PETSc.IntType)
         entries[self.rod.shear_dofs] = 14
+        size, start = len(self._all_dofs), self.rod.V.dofmap.index_map.local_range[0]
         for part in self.contributions:
             dofs = self.contact_dofs[part.dofs]
             rows, columns = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
-            pattern = sparse.coo_array((np.ones(rows.size, np.int8), (rows.ravel(), columns.ravel())), A.getSize())
-            entries += np.diff(pattern.tocsr().indptr)[slice(*A.getOwnershipRange())].astype(PETSc.IntType)
+            places = rows.ravel(), columns.ravel()
+            pattern = sparse.coo_array((np.ones(rows.size, np.int8), places), (size, size))
+            entries += np.diff(pattern.tocsr().indptr)[start : start + self.size_local].astype(PETSc.IntType)
         here = np.minimum(entries, self.size_local)  # in columns of this rank
-        there = np.minimum(entries, A.getSize()[1] - self.size_local)
+        there = np.minimum(entries, size - self.size_local)
         A.setPreallocationNNZ((here, there) if self.comm.size > 1 else here)
         A.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
         self._places = self._contact_places()
@@ -157,12 +159,15 @@ class System:
         good = self.rod.update()
         if self.comm.size > 1:
             good = self.comm.allreduce(int(good)) == self.comm.size
-        self.contributions = []
+        self._touch(good)
+        return good
+
+    def _touch(self, good):
+        """Evaluate the contacts at the rod's trial state, if stresses were found for it."""
+        self.contributions, self.failed = [], not good
         if self.contacts and good:
             x = self.gather(self.rod.x)
             self.contributions = [contact.evaluate(x, self.seats) for contact in self.contacts]
-        self.failed = not good
-        return good
 
     def commit(self):
         """Make the trial state the equilibrium."""
@@ -175,7 +180,7 @@ class System:
         """Go back to the last equilibrium."""
         self._evaluated = None
         self.seats = self.seats_start.copy()
-        self.rod.restore()
+        self._touch(self.rod.restore())
 
     # ---- residual and tangent --------------------------------------------------------------------------------------
 
