@@ -26,6 +26,7 @@ class Bearing:
         eccentricity_mm: its distance from the axis.
         pressure_x_mm, pressure_y_mm: centre of the seat's pressure alone, without what a held tip takes.
         length_mm: length of wire in contact with the seat, to the spacing of its points.
+        down_turns: turns from the wire's tip to the farthest place where it touches the seat.
     """
 
     force_N: float
@@ -40,6 +41,7 @@ class Bearing:
     pressure_x_mm: float
     pressure_y_mm: float
     length_mm: float
+    down_turns: float
 
 
 @dataclass(frozen=True)
@@ -115,16 +117,18 @@ def bearing(analysis, end, x, parts, faint):
     wrench, centre = end_wrench(analysis, end, x, parts), analysis.drive.centre(end, x)
     side = 1.0 if end == "bottom" else -1.0  # the bottom pushes up
     crossing = wrench.crossing(centre) if abs(wrench.force[2]) > faint else np.full(2, np.nan)
-    spot, length = np.full(2, np.nan), 0.0
+    spot, length, down = np.full(2, np.nan), 0.0, 0.0
     for contact, part in parts:
         if contact.end == end and contact.points is not None:
             bears = part.pressure > TOUCH
-            points = contact.points.at(x)[part.point[bears]]
-            length += float(contact.points.length[part.point[bears]].sum())
+            number, wire = part.point[bears], contact.points
+            points = wire.at(x)[number]
+            length += float(wire.length[number].sum())
+            down = float(np.abs(wire.turns[number] - wire.turns[contact.tip]).max(initial=down))
             if part.pressure.sum() > faint:
                 spot = part.pressure[bears] @ points[:, :2] / part.pressure[bears].sum()
     numbers = (side * wrench.force[2], *wrench.force[:2], *wrench.about(centre), *crossing, np.hypot(*crossing), *spot,
-               length)  # fmt: skip
+               length, down)  # fmt: skip
     return Bearing(*map(float, numbers))
 
 

@@ -8,7 +8,7 @@ from coilset.verification.study import Study
 
 
 @pytest.mark.parametrize(
-    "name", ["table-7-1", "yield-load", "cantilever-on-plane", "ring-between-plates", "crossed-rods"]
+    "name", ["force-centre", "table-7-1", "yield-load", "cantilever-on-plane", "ring-between-plates", "crossed-rods"]
 )
 def test_case_is_within_its_tolerances(name, tmp_path):
     study = Study(tmp_path)

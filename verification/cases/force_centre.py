@@ -1,0 +1,191 @@
+"""Where the force goes: from the wire's tip inwards as the end coils lie down, and back at lift-off
+
+Springs with open and with closed ends between flat guided seats without friction; short grooves hold their tips
+sideways and let them roll (docs/contact.md). What is known of them:
+
+- The end coils bear unevenly, so the resultant is off the axis, and wanders as they roll down on the seats (thesis,
+  7.1, figures 7.2 and 7.3, and 7.2.2, after Huhnen, Draht 17 and 18, 1966/67, and Grueber, 1981). While they lie down
+  the rate grows, and below a certain load of the release they lift off and it falls again (thesis, 7.2.2). The thesis
+  prints no numbers, and its figure 7.14 is lost.
+- Springs with closed ends that are not ground are not linear at first: their end coils are out of balance and let the
+  spring bend until it is stable (Cadet and others, Mechanics & Industry 22, 50, 2021: three slopes).
+
+Numbers come from closed formulas, by Castigliano with the flat coil's torque and bending moment only. A spring of n
+whole turns that bears on its tips alone is loaded along the line through them: at the angle φ the torque is
+F r (1 − cos φ) and the bending moment F r sin φ, so that it is softer than Wahl's by the factor 3/2 + G Ip/(2 E I).
+Lying down, R = G d⁴/(64 r³ n) with the active turns n = ∫ (Mt/F r)² dt. Tips that are held against turning give the
+force of a spring of n = k + ½ turns the distance e = 2 r/(π n (1 + G Ip/E I)) from the axis, across the line through
+the tips: the torque F r turns the ends by F r/(G Ip) ∫ t ds = 2 F r²/(G Ip), the moment F e turns them back.
+"""
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+from mpi4py import MPI
+
+from coilset.model.analysis import Analysis
+from coilset.model.case import check
+from coilset.model.results.figures import STYLE
+from coilset.model.results.seat_figures import draw_pressure
+
+FAST = True
+WIRE, RADIUS = 4.0, 16.0
+SPRINGS = {
+    "open": {"wire_diameter": WIRE, "mean_diameter": 2 * RADIUS, "turns": 5.0, "pitch": 9.0},
+    "closed": {"wire_diameter": WIRE, "mean_diameter": 2 * RADIUS, "turns": 7.0, "free_length": 60.0,
+               "end_coils": "closed"},
+}  # fmt: skip
+GROOVE = {"hold": "groove", "groove": 0.1}
+TRAVEL, STEPS = 18.0, 18
+PRESSED, DOWN, LOW, UP = 16.0, 12, 20.0, (12, 24)  # mm, steps, N, steps
+COLOURS = {"open": "C0", "closed": "C3"}
+
+
+def press(ends, material, loading, seats=None):
+    """Analysis of a spring after its program."""
+    spring = SPRINGS[ends] if isinstance(ends, str) else ends
+    analysis = Analysis(
+        check({"spring": spring, "material": material, "seats": seats or GROOVE, "loading": loading}), MPI.COMM_SELF
+    )
+    analysis.run()
+    return analysis
+
+
+def columns(analysis):
+    """Travel, force, tangent rate and, at the bottom, distances of pressure and force centre, wire in contact."""
+    steps, seats = analysis.result.steps, [one.bottom for one in analysis.result.seats]
+    travel, force = (np.array([getattr(step, name) for step in steps]) for name in ("travel_mm", "force_N"))
+    out = {"travel": travel, "force": force}
+    out["rate"] = np.diff(force, prepend=0.0) / np.diff(travel, prepend=0.0)
+    out["pressure"] = np.hypot([b.pressure_x_mm for b in seats], [b.pressure_y_mm for b in seats])
+    out["centre"] = np.array([b.eccentricity_mm for b in seats])
+    out["down"] = np.array([b.down_turns for b in seats])
+    out["active"] = np.array([one.active_turns for one in analysis.result.seats])
+    return out
+
+
+def run(study):
+    """Elastic springs pressed down, springs of Ck 15 released, and held tips."""
+    elastic = {ends: press(ends, "elastic", [{"to": {"travel": TRAVEL}, "steps": STEPS}]) for ends in SPRINGS}
+    program = [{"to": {"travel": PRESSED}, "steps": DOWN}, {"to": {"force": LOW}, "steps": UP[0]},
+               {"to": {"force": 0}, "steps": UP[1]}]  # fmt: skip
+    plastic = {ends: press(ends, "ck15", program) for ends in SPRINGS}
+    law = elastic["open"].law
+    bending = 1.0 / (1.0 + law.nu)  # G Ip / E I of a round wire
+    wahl = law.G * WIRE**4 / (64 * RADIUS**3)  # of one turn
+    tips = wahl / (5.0 * (1.5 + 0.5 * bending))
+    for ends, analysis in elastic.items():
+        judge_path(study, ends, columns(analysis), wahl)
+    first = columns(elastic["open"])["rate"][0]
+    study.check("open ends: first rate, on the tips alone, N/mm", first, tips, "Castigliano", 0.02)
+    for ends, analysis in plastic.items():
+        after = judge_release(study, ends, columns(analysis), wahl)
+        if ends == "open":
+            study.check("release, open ends: rate after lift-off, N/mm", after, tips, "Castigliano", 0.02)
+    held_tips(study, bending)
+    draw_paths(study, elastic)
+    draw_release(study, plastic, tips)
+
+
+def judge_path(study, ends, c, wahl):
+    """The centre of pressure begins at the tip and goes inwards as soon as the coil touches elsewhere."""
+    study.check(f"{ends} ends: first centre of pressure over r", c["pressure"][0] / RADIUS, 1.0,
+                "the tip alone touches", 0.005)  # fmt: skip
+    study.check(f"{ends} ends: first force centre over r", c["centre"][0] / RADIUS, 1.0, "the same", 0.02)
+    on_tip = int(np.argmax(c["pressure"] < 0.995 * RADIUS))
+    outwards = np.diff(c["pressure"][on_tip - 1 :]).max()
+    study.check(f"{ends} ends: greatest move outwards once the coil lies down, mm", outwards, 0.0, "thesis, 7.1",
+                kind="at_most")  # fmt: skip
+    study.check(f"{ends} ends: last centre of pressure over r", c["pressure"][-1] / RADIUS, 1 / 3, "thesis, 7.1",
+                kind="at_most")  # fmt: skip
+    study.check(f"{ends} ends: last rate, N/mm", c["rate"][-1], wahl / c["active"][-1],
+                "G d⁴/(64 r³ n), n active turns", 0.05)  # fmt: skip
+    shown = {"travel, mm": c["travel"], "force, N": c["force"], "rate, N/mm": c["rate"],
+             "pressure centre/r": c["pressure"] / RADIUS, "force centre/r": c["centre"] / RADIUS,
+             "turns down": c["down"], "active turns": c["active"]}  # fmt: skip
+    rows = np.round(np.transpose(list(shown.values())), 3)[1::2]
+    study.table(f"{ends} ends, elastic: bottom seat", list(shown), rows.tolist())
+
+
+def judge_release(study, ends, c, wahl):
+    """Lift-off on the release path: one place bears alone, r from the axis, and the rate falls; the rate after it."""
+    release = np.arange(DOWN, DOWN + sum(UP) - 1)  # at zero force nothing bears
+    alone = c["pressure"][release] > 0.99 * RADIUS
+    lying, alone = release[~alone], release[alone]
+    place, before, after = f"release, {ends} ends", c["rate"][lying[1]], c["rate"][alone[-1]]
+    study.check(f"{place}: rate with the coil down, N/mm", before, wahl / c["active"][lying[1]],
+                "G d⁴/(64 r³ n), n active turns", 0.05)  # fmt: skip
+    study.check(f"{place}: rate after lift-off over that before", after / before, 0.6, "it falls: thesis, 7.2.2",
+                kind="at_most")  # fmt: skip
+    where = "at the tip" if c["down"][alone[-1]] == 0.0 else f"{c['down'][alone[-1]]:.2f} turns from the tip"
+    study.note(f"{place}: lift-off between {c['force'][lying[-1]]:.1f} and {c['force'][alone[0]]:.1f} N; then the wire "
+               f"bears {where}.")  # fmt: skip
+    return after
+
+
+def held_tips(study, bending):
+    """Tips held against turning: force centre of springs of n + ½ turns at a small load."""
+    for n in (2.5, 4.5, 8.5):
+        spring = {"wire_diameter": 2.0, "mean_diameter": 2 * RADIUS, "turns": n, "pitch": 4.0}
+        analysis = press(spring, "elastic", [{"to": {"travel": 0.2}, "steps": 1}], {"hold": "tips"})
+        seat = analysis.result.seats[0].bottom
+        study.check(f"tips held, {n:g} turns: e/r", seat.centre_y_mm / RADIUS, 2 / (np.pi * n * (1 + bending)),
+                    "Castigliano", 0.02)  # fmt: skip
+
+
+def draw_paths(study, elastic):
+    """Paths in plan, distances over travel, and pressure along the end coil."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(10.4, 7.6), layout="constrained")
+        (plan, over), maps = figure.subplots(2, 2)
+        around = np.linspace(0, 2 * np.pi, 181)
+        plan.plot(np.cos(around), np.sin(around), color="0.7", lw=0.8)
+        plan.plot(1, 0, "ks", ms=6, label="wire's tip")
+        plan.plot(0, 0, "k+", ms=9)
+        for (ends, analysis), axes in zip(elastic.items(), maps, strict=True):
+            c, colour = columns(analysis), COLOURS[ends]
+            seats = [one.bottom for one in analysis.result.seats]
+            for x, y, style, words in (("pressure_x_mm", "pressure_y_mm", "o-", "centre of pressure"),
+                                       ("centre_x_mm", "centre_y_mm", "^:", "force centre")):  # fmt: skip
+                path = np.array([[getattr(b, x), getattr(b, y)] for b in seats]) / RADIUS
+                plan.plot(*path.T, style, color=colour, ms=3, lw=1.0, label=f"{words}, {ends} ends")
+            over.plot(c["travel"], c["pressure"] / RADIUS, "o-", color=colour, ms=3, lw=1.0,
+                      label=f"centre of pressure, {ends} ends")  # fmt: skip
+            over.plot(c["travel"], c["centre"] / RADIUS, "^:", color=colour, ms=3, lw=1.0,
+                      label=f"force centre, {ends} ends")  # fmt: skip
+            kind, contact = next(
+                (k, one) for k, one in enumerate(analysis.system.contacts) if one.end == "bottom" and one.points
+            )
+            rows = np.concatenate([one.pressure for one in analysis.result.seats])
+            shown = draw_pressure(axes, analysis.result, kind, contact, rows[rows[:, 0] == kind, 2].max())
+            axes.set_title(f"pressure on the bottom seat, {ends} ends")
+            figure.colorbar(shown, ax=axes, label="force per length of wire in N/mm")
+        plan.set(aspect="equal", xlabel="x/r", ylabel="y/r", title="bottom seat, seen along the axis")
+        over.set(xlabel="travel in mm", ylabel="distance from the axis over r", ylim=(0, 1.1),
+                 title="at first at the tip, then inwards")  # fmt: skip
+        for axes in (plan, over):
+            axes.grid(lw=0.3)
+            axes.legend(fontsize=7)
+        figure.suptitle("Elastic springs between flat guided seats, tips held sideways by short grooves")
+    study.figure("force_centre", figure)
+
+
+def draw_release(study, plastic, tips):
+    """Characteristic, rate, wire in contact and centre of pressure on the way down and back."""
+    panels = (("force", "force in N"), ("rate", "tangent rate in N/mm"), ("down", "turns of the bottom end down"),
+              ("pressure", "centre of pressure from the axis in mm"))  # fmt: skip
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(9.6, 6.8), layout="constrained")
+        for axes, (name, words) in zip(figure.subplots(2, 2).flat, panels, strict=True):
+            for ends, analysis in plastic.items():
+                c = columns(analysis)
+                for part, style, way in ((slice(0, DOWN), "o-", "down"), (slice(DOWN, None), "o--", "release")):
+                    axes.plot(c["travel"][part], c[name][part], style, ms=3, lw=1.0, color=COLOURS[ends],
+                              mfc="none" if way == "release" else None, label=f"{ends} ends, {way}")  # fmt: skip
+            axes.set(xlabel="travel in mm", ylabel=words)
+            axes.grid(lw=0.3)
+            if name == "rate":
+                axes.axhline(tips, color="k", lw=0.9, ls=":", label="open ends on their tips, Castigliano")
+            axes.legend(fontsize=7)
+        figure.suptitle("Springs of Ck 15, pressed 16 mm and released: lift-off from the seats")
+    study.figure("release", figure)
