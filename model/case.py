@@ -58,6 +58,9 @@ class ContactSpec(Strict):
     deepest: Annotated[
         float, Field(gt=0, description="penetration in wire diameters beyond which a step is no equilibrium")
     ] = 0.02
+    penetration: Annotated[
+        float | None, Field(gt=0, description="greatest penetration, mm, reached by augmented Lagrange; default: any")
+    ] = None
 
 
 class SolverSpec(Strict):

@@ -11,6 +11,7 @@ from typing import Protocol
 import numpy as np
 
 from coilset.model.contact.centreline import WirePoints
+from coilset.model.contact.memory import Memory
 
 ENDS = ("bottom", "top")
 SEAT_DOFS = 6  # x, y, z, θx, θy, θz; see plate.py
@@ -71,12 +72,15 @@ class Contact(Protocol):
         end: `bottom` or `top` if its forces are those of a seat, else None.
         points: the WirePoints that `Contribution.point` counts, or None; `lengths`, shape (m,), mm, is the wire over
             which each of them bears.
+        memory: what it carries from one equilibrium to the next, or None. A kind that has one can be augmented: the
+            array `lift` is a way by which each point is pressed although it has not sunk in by it.
     """
 
     name: str
     guarded: bool
     end: str | None
     points: WirePoints | None
+    memory: Memory | None
 
     def depth(self, x: np.ndarray, seats: np.ndarray) -> float:
         """Greatest penetration, mm; 0 where nothing touches."""
@@ -84,4 +88,8 @@ class Contact(Protocol):
 
     def evaluate(self, x: np.ndarray, seats: np.ndarray) -> Contribution:
         """Forces and stiffness at station positions `x`, shape (n, 3), mm, and seats, shape (12,), mm and rad."""
+        ...
+
+    def augment(self, x: np.ndarray, seats: np.ndarray) -> None:
+        """Lift each point by as much more as it has sunk in, so that the next equilibrium needs less penetration."""
         ...

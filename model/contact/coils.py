@@ -9,6 +9,7 @@ from numba import njit
 
 from coilset.model.contact.base import Contribution, one_sided
 from coilset.model.contact.centreline import STENCIL
+from coilset.model.contact.memory import Memory
 from coilset.model.contact.search import near_places, place
 
 PLACES = 4  # places of other coils that a point touches, in the mean, before the arrays are enlarged
@@ -87,8 +88,13 @@ class Coils:
         self.stiffness, self.lengths = 0.5 * bedding * points.length, points.length
         self.overlap = np.zeros((len(points), 2))
         pair, where, _ = self.near(stations)
-        i, turn = pair[:, 0], points.line.turns[pair[:, 1]]
-        np.minimum.at(self.overlap, (i, (turn > points.turns[i]).astype(int)), where[:, 1])
+        np.minimum.at(self.overlap, self.sides(pair), where[:, 1])
+        self.memory = Memory(lift=np.zeros_like(self.overlap))
+
+    def sides(self, pair):
+        """Indices of pairs into arrays of points and sides: the coil before a point, and the one after it."""
+        i = pair[:, 0]
+        return i, (self.points.line.turns[pair[:, 1]] > self.points.turns[i]).astype(int)
 
     def near(self, x, margin=0.0):
         """Pairs of points and places nearer than `margin`, see `near_places`, and the points' positions."""
@@ -109,13 +115,23 @@ class Coils:
     def evaluate(self, x, seats):
         """Forces along the connection of closest places, for the points that touch."""
         points, line = self.points, self.points.line
-        pair, where, p = self.near(x)
+        pair, where, p = self.near(x, self.memory["lift"].max())
+        lift = self.memory["lift"][self.sides(pair)]
+        pressed = where[:, 1] < lift
+        pair, where, lift = pair[pressed], where[pressed], lift[pressed]
         i, m = pair[:, 0], len(pair)
         size = 6 * STENCIL
         grad, hessian = np.empty((m, size)), np.empty((m, size, size))
         y = np.column_stack([x, line.radius])
         gap_derivatives(p, points.weights, y, line.first, line.cubic, pair, where[:, 0], grad, hessian)
-        pressure, c = one_sided(where[:, 1], self.stiffness[i], self.onset)
+        pressure, c = one_sided(where[:, 1] - lift, self.stiffness[i], self.onset)
         k = c[:, None, None] * grad[:, :, None] * grad[:, None, :] - pressure[:, None, None] * hessian
         dofs = np.hstack([points.dofs[i], line.dofs[pair[:, 1]]])
         return Contribution(dofs, -pressure[:, None] * grad, k, pressure, -where[:, 1], i)
+
+    def augment(self, x, seats):
+        """Press each point by as much more as it has sunk in."""
+        lift = self.memory["lift"]
+        pair, where, _ = self.near(x, lift.max())
+        sides, self.memory["lift"] = self.sides(pair), np.zeros_like(lift)
+        np.maximum.at(self.memory["lift"], sides, lift[sides] - where[:, 1])

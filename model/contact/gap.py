@@ -15,7 +15,7 @@ class Gaps:
         onset: way over which contact sets in, mm.
     """
 
-    name, end, points = "gap", None, None
+    name, end, points, memory = "gap", None, None, None
     guarded = False  # gap elements are few: they close and open by the iteration alone, as in the thesis
 
     def __init__(self, pairs, free_length, stiffness, onset):
@@ -50,7 +50,8 @@ class Stops:
         onset: way over which contact sets in, mm.
     """
 
-    name, guarded = "stop", False
+    name, end, points, memory = "stop", None, None, None
+    guarded = False
 
     def __init__(self, stations, normal, level, stiffness, onset):
         self.stations = np.asarray(stations, dtype=np.int64)

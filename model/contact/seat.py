@@ -7,6 +7,7 @@ import numpy as np
 
 from coilset.model.contact.base import LEVEL, Contribution, one_sided
 from coilset.model.contact.centreline import STENCIL
+from coilset.model.contact.memory import Memory
 from coilset.model.contact.plate import Plate, radial
 
 CORD = 1e-5  # stiffness of the tip's cord: this share of the bedding of a wire diameter
@@ -55,6 +56,7 @@ class Seat:
             self.reach += np.where(on_step, gap, gap[last])
         else:
             self.reach += gap.min()  # zero on a flat seat; a cone is moved until it touches
+        self.memory = Memory(lift=np.zeros(len(points)))
         self.slack = 0.0 if stepped else gap[self.tip] - gap.min()
         self.dofs = self.plate.dofs_with(points)
         if self.linear:
@@ -87,8 +89,9 @@ class Seat:
         """Forces across the seat's surface, for the points that touch, and for the tip on its cord."""
         p = self.points.at(x)
         gap = self.gaps(p, seats)
-        bearing = np.flatnonzero((gap < 0.0) | (np.arange(len(gap)) == self.tip))
-        gap, p = gap[bearing], p[bearing]
+        lift = self.memory["lift"]
+        bearing = np.flatnonzero((gap < lift) | (np.arange(len(gap)) == self.tip))
+        penetration, gap, p = -gap[bearing], (gap - lift)[bearing], p[bearing]
         pressure, c = one_sided(gap, self.stiffness[bearing], self.onset)
         force, tip = pressure.copy(), np.flatnonzero(bearing == self.tip)
         taut = np.where(gap[tip] > 0.0, np.maximum(gap[tip] - self.slack, 0.0), gap[tip])
@@ -102,4 +105,9 @@ class Seat:
             derivatives = self._gap_derivatives(self.plate.sees(p, seats))
             grad, hessian = self.plate.derivatives(p, seats, self.points.weights[bearing], *derivatives)
             k = c[:, None, None] * grad[:, :, None] * grad[:, None, :] - force[:, None, None] * hessian
-        return Contribution(self.dofs[bearing], -force[:, None] * grad, k, pressure, -gap, bearing)
+        return Contribution(self.dofs[bearing], -force[:, None] * grad, k, pressure, penetration, bearing)
+
+    def augment(self, x, seats):
+        """Press each point by as much more as it has sunk in."""
+        lift = self.memory["lift"]
+        self.memory["lift"] = np.maximum(lift - self.gaps(self.points.at(x), seats), 0.0)

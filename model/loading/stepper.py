@@ -28,6 +28,7 @@ class Step:
     iterations: int
     cuts: int
     contacts: int
+    penetration_mm: float
 
 
 @dataclass
@@ -169,4 +170,4 @@ class Stepper:
         log.info("step %d: %.6g mm, %.6g N, %d iterations, out of balance %.1e; next %.4g of a regular step",
                  self.number, height, force, outcome.iterations, outcome.ratio, following)  # fmt: skip
         report(Step(self.number, walk.phase, done / regular, height, drive.free_length - height, force,
-                    outcome.iterations, walk.cuts, drive.contacts))  # fmt: skip
+                    outcome.iterations, walk.cuts, drive.contacts, self.system.depth))  # fmt: skip

@@ -44,6 +44,7 @@ class System:
 
     def __init__(self, rod, contacts=(), seats=(0.0, 0.0)):
         self.rod, self.contacts, self.comm = rod, list(contacts), rod.mesh.comm
+        self.memories = [contact.memory for contact in self.contacts if contact.memory is not None]
         self.seats_start = np.zeros(SEATS)
         self.seats_start[LEVEL::SEAT_DOFS] = seats
         self.seats = self.seats_start.copy()
@@ -175,12 +176,29 @@ class System:
         self._evaluated = None
         self.rod.commit()
         self.seats_start = self.seats.copy()
+        for memory in self.memories:
+            memory.commit()
 
     def restore(self):
         """Go back to the last equilibrium."""
         self._evaluated = None
         self.seats = self.seats_start.copy()
+        self.forget()
         self._touch(self.rod.restore())
+
+    def forget(self):
+        """Go back to what the contacts remember of the last equilibrium."""
+        self._evaluated = None
+        for memory in self.memories:
+            memory.restore()
+
+    def augment(self):
+        """Press contacts harder where they have sunk in (augmented Lagrange), from the next evaluation on."""
+        self._evaluated = None
+        x = self.gather(self.rod.x)
+        for contact in self.contacts:
+            if contact.memory is not None:
+                contact.augment(x, self.seats)
 
     # ---- residual and tangent --------------------------------------------------------------------------------------
 

@@ -41,6 +41,8 @@ class Checkpoint:
         if analysis.comm.rank:
             return
         state["seats"] = system.seats_start
+        for k, memory in enumerate(system.memories):
+            state |= {f"contact_{k}_{name}": values for name, values in memory.committed.items()}
         result = analysis.result
         state["pressure"] = np.concatenate([np.empty((0, 3)), *(one.pressure for one in result.seats)])
         state["bearing_points"] = np.array([len(one.pressure) for one in result.seats], dtype=int)
@@ -99,6 +101,8 @@ class Checkpoint:
         for name in CELLWISE:
             rod.equilibrium[name] = loaded[name][rod.line.element[: rod.line.owned_cells]].copy()
         system.seats_start = loaded["seats"].copy()
+        for k, memory in enumerate(system.memories):
+            memory.committed = {name: loaded[f"contact_{k}_{name}"].copy() for name in memory.committed}
         system.from_order(loaded["guess"], stepper.guess)
         system.from_order(loaded["reactions"], system.reaction_start)
         system.restore()

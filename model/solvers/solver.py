@@ -3,7 +3,7 @@
 import itertools
 import logging
 import weakref
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from petsc4py import PETSc
@@ -29,6 +29,7 @@ WORDS = {
 }
 PATIENCE = 25  # iterations without a new least residual: that is stagnation
 ON_THE_WAY = 0.2  # ε of (6.3.1) for a part of a step
+AUGMENTATIONS = 40  # of a step, at most
 SMALLEST_PART = 0.2  # of a step; smaller ones are left to the step control
 FIRST = {**ONE_STEP, "snes_linesearch_type": "basic"}
 ARC = "newtonal"
@@ -56,6 +57,11 @@ class Outcome:
     factorisations: int
     evaluations: int
 
+    def __add__(self, following):
+        """The outcome of two solves, one after the other."""
+        counts = ("iterations", "factorisations", "evaluations")
+        return replace(following, **{name: getattr(self, name) + getattr(following, name) for name in counts})
+
 
 class Solver:
     """SNES for a System.
@@ -64,6 +70,8 @@ class Solver:
         system: System.
         method: a key of coilset.model.solvers.methods.METHODS.
         tolerance: ε of (6.3.1).
+        penetration: greatest penetration of guarded contacts, mm, that is let be; a greater one is worked off by
+            augmented Lagrange: contacts are pressed harder by what they have sunk in, and the step is solved on.
         extra: PETSc options of the user, without a leading hyphen; they win over the method's. With
             `snes_convergence_test` PETSc's own test takes the place of (6.3.1).
 
@@ -71,8 +79,9 @@ class Solver:
         InputError: if there is no such method, or PETSc refuses an option.
     """
 
-    def __init__(self, system, method="newton", tolerance=1e-7, extra=None):
+    def __init__(self, system, method="newton", tolerance=1e-7, extra=None, penetration=np.inf):
         self.system, self.tolerance, self.extra = system, tolerance, dict(extra or {})
+        self.penetration = penetration
         self.X, self.F, self.load, self._balance = (system.vector() for _ in range(4))
         self.A = system.matrix()
         self.prefix, self._keys, self.snes = f"coilset_{next(numbers)}_", set(), None
@@ -194,8 +203,19 @@ class Solver:
         """Solve one step from the increments `guess` (zero if None); the system is left at the last iterate.
 
         Returns:
-            Outcome.
+            Outcome; its counts are those of all solves where contacts are augmented.
         """
+        self.system.forget()
+        outcome = self._solve(guess)
+        for _attempt in range(AUGMENTATIONS):
+            if not outcome.converged or self.system.depth <= self.penetration:
+                return outcome
+            self.system.augment()
+            outcome = outcome + self._solve(self.X.copy())
+        reason = f"a penetration of {self.system.depth:.3g} mm is left after {AUGMENTATIONS} augmentations"
+        return replace(outcome, converged=False, reason=reason)
+
+    def _solve(self, guess):
         self.ratio, self.evaluations, self.factorisations, self.system.share = np.inf, 0, 0, 1.0
         kind, first, load = self.snes.getType(), 0, None
         if guess is None or kind == ARC:
