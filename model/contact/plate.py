@@ -1,11 +1,11 @@
 """A seat is a rigid plate: wire points seen from it, and the way back from functions of them to the unknowns.
 
-A plate has six degrees of freedom: its centre c = (x, y, z) and turns θ = (θx, θy, θz). It sees the point p at
+A plate has six degrees of freedom: its centre c = (x, y, z) and the rotation vector θ. It sees the point p at
 
-    q = A(θ) (p − c),   A = 1 − [θ] + ½ [θ]²,
+    q = A(θ) (p − c),   A = exp(−[θ]),   [θ] a = θ × a.
 
-with [θ] a = θ × a: the reverse of its turn up to third order in θ, 2e-5 for 0.05 rad. Every kind of seat is a function
-of q alone, so that the force on the wire and the force and moment on the plate come from one potential.
+Every kind of seat is a function of q alone, so that the force on the wire and the force and moment on the plate come
+from one potential. To θ belongs Jᵀ M with the moment M about c and J = 1 + ½ [θ] + …: both vanish together.
 """
 
 import numpy as np
@@ -20,8 +20,26 @@ def cross_matrix(v):
 
 
 AXES = np.array([cross_matrix(axis) for axis in np.eye(3)])
-# ∂²A/∂θk∂θl, shape (3, 3, 3, 3)
-SECOND = 0.5 * (np.einsum("kij,ljm->klim", AXES, AXES) + np.einsum("lij,kjm->klim", AXES, AXES))
+TERMS = 18  # of the exponential's series: 1e-16 for a turn by 1 rad, 1e-10 for 2 rad
+
+
+def turned_back(θ):
+    """exp(−[θ]) and its first and second derivatives by θ, from the series.
+
+    Args:
+        θ: shape (3,), rad.
+
+    Returns:
+        A, ∂A/∂θk and ∂²A/∂θk∂θl, shapes (3, 3), (3, 3, 3) and (3, 3, 3, 3).
+    """
+    T, E = -cross_matrix(θ), -AXES
+    P, D, S = np.eye(3), np.zeros((3, 3, 3)), np.zeros((3, 3, 3, 3))  # Tⁿ/n! and its derivatives
+    A, dA, ddA = P.copy(), D.copy(), S.copy()
+    for n in range(1, TERMS if θ.any() else 3):
+        cross = D[:, None] @ E
+        P, D, S = P @ T / n, (D @ T + P @ E) / n, (S @ T + cross + np.swapaxes(cross, 0, 1)) / n
+        A, dA, ddA = A + P, dA + D, ddA + S
+    return A, dA, ddA
 
 
 class Plate:
@@ -41,15 +59,10 @@ class Plate:
         """Degrees of freedom of wire points' stations and of the plate, shape (m, 18)."""
         return np.hstack([points.dofs, np.tile(self.dofs, (len(points.dofs), 1))])
 
-    def _turn(self, seats):
-        c, θ = np.split(seats[self.own], 2)
-        T = cross_matrix(θ)
-        return c, np.eye(3) - T + 0.5 * T @ T, -AXES + 0.5 * (AXES @ T + T @ AXES)
-
     def sees(self, p, seats):
         """The points `p` from the plate, q, shape (m, 3), mm."""
-        c, A, _ = self._turn(seats)
-        return (p - c) @ A.T
+        c, θ = np.split(seats[self.own], 2)
+        return (p - c) @ turned_back(θ)[0].T
 
     def derivatives(self, p, seats, weights, g, H):
         """Gradient and second derivative of functions φ(q) by stations and plate.
@@ -63,7 +76,8 @@ class Plate:
         Returns:
             Arrays of shape (m, 18) and (m, 18, 18): four stations, then the plate.
         """
-        c, A, dA = self._turn(seats)
+        c, θ = np.split(seats[self.own], 2)
+        A, dA, ddA = turned_back(θ)
         d, m = p - c, len(p)
         dq = np.empty((m, 3, 9))  # by p, c, θ
         dq[:, :, :3], dq[:, :, 3:6] = A, -A
@@ -74,7 +88,7 @@ class Plate:
         for rows, part in ((slice(0, 3), mixed), (slice(3, 6), -mixed)):
             second[:, rows, 6:] += part
             second[:, 6:, rows] += np.swapaxes(part, 1, 2)
-        second[:, 6:, 6:] += np.einsum("mi,klij,mj->mkl", g, SECOND, d)
+        second[:, 6:, 6:] += np.einsum("mi,klij,mj->mkl", g, ddA, d)
         spread = np.zeros((m, 3 * STENCIL + SEAT_DOFS, 9))  # from the points to their stations
         for k in range(3):
             spread[:, k : 3 * STENCIL : 3, k] = weights

@@ -3,6 +3,7 @@
 import numpy as np
 
 from coilset.model.contact.base import ENDS, LEVEL, SEAT_DOFS
+from coilset.model.contact.plate import turned_back
 from coilset.model.contact.seat import Seat
 
 
@@ -59,6 +60,11 @@ class Drive:
             return np.array([0.0, 0.0, x[station, 2]])
         first = SEAT_DOFS * ENDS.index(end)
         return self.system.seats[first : first + 3]
+
+    def tilt(self, end):
+        """Angle between the axes of a seat and of the spring, rad."""
+        turn = self.system.seats[SEAT_DOFS * ENDS.index(end) :][3:SEAT_DOFS]
+        return float(np.arccos(min(1.0, turned_back(turn)[0][2, 2])))
 
     def accept(self, height, force):
         """The trial state has become the equilibrium."""

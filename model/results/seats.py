@@ -27,6 +27,7 @@ class Bearing:
         pressure_x_mm, pressure_y_mm: centre of the seat's pressure alone, without what a held tip takes.
         length_mm: length of wire in contact with the seat, to the spacing of its points.
         down_turns: turns from the wire's tip to the farthest place where it touches the seat.
+        tilt_rad: angle between the seat's axis and the spring's.
     """
 
     force_N: float
@@ -42,6 +43,7 @@ class Bearing:
     pressure_y_mm: float
     length_mm: float
     down_turns: float
+    tilt_rad: float
 
 
 @dataclass(frozen=True)
@@ -128,7 +130,7 @@ def bearing(analysis, end, x, parts, faint):
             if part.pressure.sum() > faint:
                 spot = part.pressure[bears] @ points[:, :2] / part.pressure[bears].sum()
     numbers = (side * wrench.force[2], *wrench.force[:2], *wrench.about(centre), *crossing, np.hypot(*crossing), *spot,
-               length, down)  # fmt: skip
+               length, down, analysis.drive.tilt(end))  # fmt: skip
     return Bearing(*map(float, numbers))
 
 

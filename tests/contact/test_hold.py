@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from coilset.model.contact.hold import Groove, Mount
-from coilset.model.contact.plate import Plate
+from coilset.model.contact.plate import Plate, turned_back
 
 SEATS = np.array([0.03, -0.02, 0.1, 1e-2, 2e-2, 5e-2, -0.04, 0.01, 27.5, -1e-2, 3e-2, -2e-2])
 LEVEL = np.where(np.arange(12) == 8, 27.5, 0.0)
@@ -34,28 +34,43 @@ def test_groove_is_an_energy(points, helix, dense, end):
 
 
 def test_a_turned_plate_sees_a_turned_wire_unturned(helix):
-    """A(θ) undoes the turn by θ up to θ³/6 of the length: 1e-5 · 27 mm for 0.04 rad."""
+    """A(θ) undoes the turn by θ, to rounding of the series also for 1 rad."""
     plate, x = Plate("top", 41), helix(9.0)
-    θ = np.array([0.02, -0.03, 0.02])
+    θ = np.array([0.6, -0.7, 0.4])
     seats = np.concatenate([np.zeros(6), [1.0, 2.0, 3.0], θ])
     turned = Rotation.from_rotvec(θ).apply(x) + seats[6:9]
-    error = np.abs(plate.sees(turned, seats) - x).max()
-    assert error < np.linalg.norm(θ) ** 3 / 6 * np.linalg.norm(x, axis=1).max() * 1.01
+    np.testing.assert_allclose(plate.sees(turned, seats), x, atol=1e-13 * 27.0)
+
+
+def test_turned_back_has_the_derivatives_of_the_rotation():
+    """Central differences with h = 1e-4: the truncation is h²/6 = 2e-9, for the second derivatives h²/12 and rounding."""
+    θ, h, steps = np.array([0.3, -0.5, 0.2]), 1e-4, np.eye(3)
+    _, dA, ddA = turned_back(θ)
+
+    def A(vector):
+        return Rotation.from_rotvec(-vector).as_matrix()
+
+    for k in range(3):
+        np.testing.assert_allclose(dA[k], (A(θ + h * steps[k]) - A(θ - h * steps[k])) / (2 * h), atol=1e-8)
+        for l in range(3):
+            ends = [a * b * A(θ + h * (a * steps[k] + b * steps[l])) for a in (1, -1) for b in (1, -1)]
+            np.testing.assert_allclose(ddA[k, l], sum(ends) / (4 * h * h), atol=1e-7)
 
 
 def test_a_plate_in_a_rigid_motion_gets_balanced_forces(points, helix):
-    """What the groove does to the wire it does in reverse to its plate: forces, and moments M about the plate's centre.
-    To the turns θ belongs the moment M − ½ θ × M, up to the second order of θ."""
+    """What the groove does to the wire it does in reverse to its plate: forces, and moments M about its centre.
+    To the rotation vector belongs Jᵀ M, J = 1 + ½ [θ] + ⅙ [θ]² to the third order: 2e-5 for 0.05 rad."""
     groove = Groove("bottom", points(), 0.7, helix(9.0), 1e3, LEVEL)
     x = helix(8.8, seed=1, noise=0.02)
-    for seats, within in ((LEVEL, 1e-12), (SEATS, 2e-3)):
+    for seats, within in ((LEVEL, 1e-12), (SEATS, 2e-5)):
         part = groove.evaluate(x, seats)
         on_wire = -part.forces[:, :12].reshape(-1, 4, 3)
         at = x[part.dofs[:, :12:3] // 3]
         on_plate = -part.forces[:, 12:].sum(axis=0)
         np.testing.assert_allclose(on_wire.sum(axis=(0, 1)), -on_plate[:3], atol=1e-9 * np.abs(part.forces).max())
         moment = np.cross(at - seats[:3], on_wire).sum(axis=(0, 1))
-        moment -= 0.5 * np.cross(seats[3:6], moment)
+        turning = np.cross(moment, seats[3:6])  # [θ]ᵀ M
+        moment = moment + turning / 2 + np.cross(turning, seats[3:6]) / 6
         np.testing.assert_allclose(moment, -on_plate[3:], rtol=0, atol=within * np.abs(moment).max())
 
 

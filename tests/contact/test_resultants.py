@@ -108,8 +108,10 @@ def test_active_turns_make_the_rate():
 
 
 @pytest.mark.mpi
-def test_ranks_see_the_same_resultants(example):
-    case = read_case(example.parent / "springs" / "closed_and_ground.yaml", [*COARSE, "loading.1.steps=2"])
+@pytest.mark.parametrize("seats", ["{}", "{hold: groove, top: {tilt: free, sideways: 50.0}, bottom: {turn: free}}"])
+def test_ranks_see_the_same_resultants(example, seats):
+    settings = [*COARSE, "loading.1.steps=2", f"seats={seats}", "material=elastic", "loading.0.to={travel: 12}"]
+    case = read_case(example.parent / "springs" / "closed_and_ground.yaml", settings)
     together, alone = (Analysis(case, comm).run() for comm in (MPI.COMM_WORLD, MPI.COMM_SELF))
     for ours, reference in zip(together.seats, alone.seats, strict=True):
         for name, value in reference.row().items():
