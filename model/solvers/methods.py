@@ -39,8 +39,8 @@ METHODS = {
         "snes_linesearch_type": "cp", "snes_max_it": 100, "snes_npc_side": "left",
         "snes_function_type": "unpreconditioned", **PRECONDITIONED, "npc_snes_lag_jacobian": 5,
     },
-    # the share of the load as one more unknown: goes past limit points within a step
-    "arc-length": {"snes_type": "newtonal", "snes_max_it": 30, **DIRECT},
+    # the share of the load as one more unknown: goes past limit points within a step; the arc is one of displacements
+    "arc-length": {"snes_type": "newtonal", "snes_newtonal_psisq": 0.0, "snes_max_it": 30, **DIRECT},
 }  # fmt: skip
 
 

@@ -3,12 +3,16 @@
 import numpy as np
 import pytest
 from mpi4py import MPI
+from scipy.optimize import brentq
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.errors import InputError
 from coilset.model.solvers.methods import METHODS, options
+from coilset.model.material import library
+from coilset.model.section.rules import abramowitz9
 from coilset.model.solvers.solver import Solver
+from coilset.verification.frame import Frame
 
 PROGRAM = "loading=[{to: {travel: 12}, steps: 10}, {to: {force: 0}, steps: 4}]"
 COARSE = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", PROGRAM]
@@ -62,3 +66,24 @@ def test_a_residual_that_is_not_a_number_is_said(example, monkeypatch):
     outcome = analysis.solver.solve()
     assert not outcome.converged
     assert "not a number" in outcome.reason
+
+
+def test_arc_length_goes_past_a_limit_point():
+    """Mises's truss of half-span a and rise h snaps through under a force above its limit, in one step.
+
+    Two hinged bars of logarithmic strain bear P(w) = −2 E A ln(l/l0) (h − w)/l; ours are joined stiffly at the apex,
+    which with wires of 0.3 mm takes off 0.2 % of the way, an effect of the order (r/h)²; 0.5 % is allowed.
+    """
+    a, h, r, law = 100.0, 5.0, 0.3, library.load("elastic")
+
+    def force(w):
+        l0, l = np.hypot(a, h), np.hypot(a, h - w)
+        return -2.0 * law.E * np.pi * r**2 * np.log(l / l0) * (h - w) / l
+
+    limit = max(force(w) for w in np.linspace(0.0, h, 501))
+    hinges = [(0, (0, 1, 2, 3, 5)), (2, (0, 1, 2, 3, 5)), (1, (1, 3, 5))]
+    nodes, bars = [[-a, 0, 0], [0, 0, h], [a, 0, 0]], [(0, 1), (1, 2)]
+    frame = Frame(nodes, bars, r, law, abramowitz9(), hinges, "arc-length")
+    assert frame.step(forces={frame.dof(1, 2): -1.3 * limit}).converged
+    expected = brentq(lambda w: force(w) - 1.3 * limit, 2.0 * h, 4.0 * h)
+    assert -frame.moved(1)[2] == pytest.approx(expected, rel=5e-3)
