@@ -65,6 +65,7 @@ def fit(
     data: list[str] = DATA,
     shear_modulus: float = typer.Option(..., "--G", min=0.0, help="shear modulus, N/mm²"),
     poisson: float = typer.Option(..., "--nu", min=-1.0, max=0.5, help="Poisson's ratio"),
+    temperature: float = typer.Option(293.15, min=0.0, help="of the tests, K"),
     saturation: bool = typer.Option(True, help="whether k² has its second branch; tests must reach it"),
     name: str = typer.Option("fitted", help="name of the material"),
     out: str = OUT,
@@ -73,17 +74,18 @@ def fit(
     """Identify the constants of k², ζ and κ from tension, reversed torsion and tension-torsion tests."""
     import yaml
 
-    from coilset.model.material import figures
+    from coilset.model.material import experiments, figures
     from coilset.model.material import fit as fitting
     from coilset.model.results.folder import whole
 
     out = _folder(out, name)
     _refuse([out / f"{name}.yaml"], force)
-    result = fitting.fit([fitting.read_test(path) for path in data], shear_modulus, poisson, saturation)
+    tests = [experiments.read_test(path) for path in data]
+    result = fitting.fit(tests, shear_modulus, poisson, saturation, temperature)
     console = Console(highlight=False)
-    table = Table("constant", "value", "± 95 %", "unit", box=None, padding=(0, 2))
+    table = Table("constant", "value", "standard deviation", "± (95 %, all together)", "unit", box=None, padding=(0, 2))
     for key, value in result.constants.items():
-        table.add_row(key, f"{value:.6g}", f"{result.uncertainty[key]:.2g}", UNITS[key])
+        table.add_row(key, f"{value:.6g}", f"{result.standard[key]:.2g}", f"{result.uncertainty[key]:.2g}", UNITS[key])
     console.print(table)
     for test, scatter in zip(result.tests, result.scatter, strict=True):
         console.print(f"{test.name} ({test.kind}): rms residual {scatter:.3g} N/mm²")

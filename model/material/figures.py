@@ -91,7 +91,7 @@ def _stress_plane(axes, law, history):
 def fit(result, name):
     """Tests, the law fitted to them, and what is left; one column a test."""
     with mpl.rc_context(STYLE):
-        figure = _figure(3.6 * len(result.tests), 5.6)
+        figure = _figure(3.4 * len(result.tests), 5.6)
         axes = figure.subplots(2, len(result.tests), sharex="col", squeeze=False, height_ratios=(2, 1))
         for column, test, stress, scatter in zip(axes.T, result.tests, result.stress, result.scatter, strict=True):
             length = 100 * np.concatenate([[0.0], np.cumsum(np.abs(np.diff(test.strain, axis=0)).sum(axis=1))])

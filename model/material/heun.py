@@ -200,7 +200,7 @@ def _elastic_part(p, y, w, d, volume, warming, h, work):
 
 
 @njit(**KERNEL)
-def _integrate(p, y, w, d, volume, warming):
+def integrate(p, y, w, d, volume, warming):
     """Advance y over the strain increment `d` in sub-steps.
 
     Returns:
@@ -256,7 +256,7 @@ def rod_heun(p, old, de11, dg12, dg13, new, C):
     y[0] = old[0] / 1.5
     y[1:7] = old[1:7]
     y[7] = old[7] if thermal else p[TEMPERATURE] - p[CHANGE]
-    steps, plastic = _integrate(p, y, w, d, 0.0, warming)
+    steps, plastic = integrate(p, y, w, d, 0.0, warming)
     new[:] = old
     if steps >= 0:
         new[0] = 1.5 * y[0]
@@ -286,7 +286,7 @@ def solid_heun(p, old, dD, new, C):
     y[13] = old[13] if thermal else p[TEMPERATURE] - p[CHANGE]
     y[14] = mean
     d = np.empty(6)
-    steps, plastic = _integrate(p, y, w, d, _split(dD, d), warming)
+    steps, plastic = integrate(p, y, w, d, _split(dD, d), warming)
     new[:] = old
     if steps >= 0:
         for i in range(6):
