@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
+from coilset.model.material.functions import INLINE
 from coilset.model.material.rod import return_map
 
 
@@ -62,7 +63,7 @@ def update_sections(p, y, z, w, radius, de, placement, stretch, old, new, s, D):
     return 0
 
 
-@njit(cache=True)
+@njit(**INLINE)
 def integrate_point(p, y, z, dA, d, old, new, C, resultant, tangent):
     """Add one point's share to the section: ε11 = ε + κ2 z − κ3 y, γ12 = γ2 − φ′ z, γ13 = γ3 + φ′ y (5.2.4)."""
     e11, g12, g13 = d[0] + d[4] * z - d[5] * y, d[1] - d[3] * z, d[2] + d[3] * y

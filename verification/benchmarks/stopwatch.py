@@ -38,9 +38,9 @@ class Stopwatch:
         """Make calls of a function of `owner`, an object or a module, count as the stage `name`."""
         inner = getattr(owner, function)
 
-        def watched(*arguments):
+        def watched(*arguments, **named):
             with self.stage(name):
-                return inner(*arguments)
+                return inner(*arguments, **named)
 
         setattr(owner, function, watched)
 
