@@ -208,7 +208,8 @@ class _Point:
         tangent, stress = self.tangent, self.state[: self.n]
         scale = max(1.0, float(np.abs(stress).max()), float(np.abs(target[free]).max(initial=0.0)))
         # Heun's choice of sub-steps makes its stress jump, by its own error at most.
-        precision = 1e-10 if self.integrator == "return_mapping" else 0.1 * min(self.law.heun_tolerance, 1e-2)
+        jump = 0.0 if self.integrator == "return_mapping" else 0.1 * min(self.law.heun_tolerance, 1e-2) * scale
+        last = np.inf
         # The free components follow the last tangent first.
         residual = target[free] - stress[free] - tangent[np.ix_(free, held)] @ increment[held]
         for _ in range(MAX_ITERATIONS):
@@ -225,10 +226,12 @@ class _Point:
                 return False
             tangent = tangents[0]
             residual = target[free] - new[0, : self.n][free]
-            if np.abs(residual).max(initial=0.0) <= precision * scale:
+            off = np.abs(residual).max(initial=0.0)
+            if off <= 1e-10 * scale or 0.1 * last < off <= jump:
                 self.state, self.tangent, self.temperature = new[0], tangent, temperature
                 self.strain = self.strain + increment
                 return True
             if not np.abs(increment).max() < 1.0:
                 return False
+            last = off
         return False
