@@ -120,7 +120,7 @@ def _follow(start, rest, a7, plastic, stress, work, k2):
 
 
 def _hardening(model, tests, kinematic, starts, held=()):
-    """k² over the plastic work as the tests themselves have it, for given ζ, with `held` variables kept; and its reach."""
+    """k² over the plastic work as the tests themselves have it, for given ζ; `held` variables stay; and its reach."""
     moduli = np.array([2 * model.G * (1 + model.nu), model.G])
     points = []
     for test in tests:
