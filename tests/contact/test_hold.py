@@ -43,7 +43,7 @@ def test_a_turned_plate_sees_a_turned_wire_unturned(helix):
 
 
 def test_turned_back_has_the_derivatives_of_the_rotation():
-    """Central differences with h = 1e-4: the truncation is h²/6 = 2e-9, for the second derivatives h²/12 and rounding."""
+    """Central differences with h = 1e-4: truncation h²/6 = 2e-9, for second derivatives h²/12 and rounding."""
     θ, h, steps = np.array([0.3, -0.5, 0.2]), 1e-4, np.eye(3)
     _, dA, ddA = turned_back(θ)
 
