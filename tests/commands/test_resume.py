@@ -60,8 +60,9 @@ def test_killed_runs_resume_to_the_same_bits(example, tmp_path):
     undisturbed, resumed = final(tmp_path / "whole" / "out"), final(tmp_path / "killed" / "out")
     for name, values in undisturbed.items():
         np.testing.assert_array_equal(resumed[name], values, err_msg=name)
-    whole, killed = ((tmp_path / run / "out" / "history.csv").read_bytes() for run in ("whole", "killed"))
-    assert whole == killed
+    for table in ("history.csv", "seats.csv"):
+        whole, killed = ((tmp_path / run / "out" / table).read_bytes() for run in ("whole", "killed"))
+        assert whole == killed
 
 
 class Killed(Exception):
