@@ -40,7 +40,7 @@ from coilset.model.material.functions import CHANGE, INLINE, KERNEL, functions, 
 
 MAX_ITERATIONS = 60
 FAILED, TOO_HOT = -1, -2  # in the place of a number of iterations; TOO_HOT: heated out of the material's table
-FINE = 1e-7  # relative residual below which one more Newton step ends the iteration
+FINE = 1e-6  # relative residual below which one more Newton step ends the iteration
 COARSE = 1e-3  # relative error of |n| to which Λ is brought before the two equations are solved together
 
 # What the increment starts from. na, ea: n₀ and e of group a, with the metric's weight 3/2 to be applied; dea = de/db*,

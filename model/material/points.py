@@ -43,7 +43,7 @@ def _solid_heun(p, state, increments, new, tangent, count):
         count[i] = solid_heun(p, state[i], increments[i], new[i], tangent[i])
 
 
-_LOOPS = {
+LOOPS = {
     (3, "return_mapping"): _rod_return_map,
     (3, "heun"): _rod_heun,
     (6, "return_mapping"): _solid_return_map,
@@ -100,7 +100,7 @@ def update(law, state, increments, integrator="return_mapping", temperature=None
         raise ValueError(f"integrator '{integrator}' is none of {', '.join(INTEGRATORS)}")
     if components not in (3, 6) or state.shape != (points, 2 * components + 1 + law.is_adiabatic):
         raise ValueError(f"state of shape {state.shape} does not fit strain increments of shape {increments.shape}")
-    loop = _LOOPS[components, integrator]
+    loop = LOOPS[components, integrator]
     divided = tolerance is not None and integrator == "return_mapping"
     start, end = temperature if isinstance(temperature, tuple) else (temperature, temperature)
     p = law.parameters(end)
