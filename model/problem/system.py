@@ -38,6 +38,8 @@ class System:
         forces: system dof → external force, N or N mm.
         share: of the step's increments and change of forces that is asked for at present; 1 but for a solve in parts.
         failed: True if the last evaluation found no stress at some point.
+        fresh: is a solve about to begin? Its matrix has places for the contacts at its start and no others, so that the
+            rounding of a factorisation does not depend on how the spring came there.
         patterns: how often the rows of a matrix were allocated; factors from before are of no use.
         reaction_start: internal forces at the last equilibrium, to measure the change of the reactions by.
     """
@@ -48,7 +50,8 @@ class System:
         self.seats_start = np.zeros(SEATS)
         self.seats_start[LEVEL::SEAT_DOFS] = seats
         self.seats = self.seats_start.copy()
-        self.fixed, self.forces, self.share, self.failed, self.patterns = {}, {}, 1.0, False, 0
+        self.fixed, self.forces, self.share, self.failed = {}, {}, 1.0, False
+        self.fresh, self.patterns = True, 0
         self._number()
         self.contributions = []
         self._local = la.vector(rod.V.dofmap.index_map, rod.V.dofmap.index_map_bs)
@@ -354,10 +357,12 @@ class System:
         """SNES callback: derivative of the residual at the state of the last evaluation."""
         if not self._is_evaluated(X):
             self.set_increments(X)
-        if np.isin(self._contact_places(), self._places).all():
+        places = self._contact_places()
+        if np.array_equal(places, self._places) if self.fresh else np.isin(places, self._places).all():
             P.zeroEntries()
         else:  # a row that is full would be moved at each new entry, and the whole matrix with it
             self._make_room(P)
+        self.fresh = False
         self.rod.assemble_tangent(P)
         start, stop = P.getOwnershipRange()
         for part in self.contributions:

@@ -216,7 +216,8 @@ class Solver:
         return replace(outcome, converged=False, reason=reason)
 
     def _solve(self, guess):
-        self.ratio, self.evaluations, self.factorisations, self.system.share = np.inf, 0, 0, 1.0
+        self.ratio, self.evaluations, self.factorisations = np.inf, 0, 0
+        self.system.share, self.system.fresh = 1.0, True
         kind, first, load = self.snes.getType(), 0, None
         if guess is None or kind == ARC:
             self.X.set(0.0)

@@ -100,6 +100,26 @@ def test_any_number_of_ranks_goes_on(example, tmp_path_factory):
         np.testing.assert_allclose(ours, reference, rtol=0, atol=1e-10 * np.abs(reference).max())
 
 
+def test_every_step_can_be_the_last_one_before_a_crash(example, tmp_path):
+    """One chain of processes, each stopped after its next step: the same bits as without a stop.
+
+    Contacts close and open on the way, so that the matrices of run and chain differ in the places of their zeros.
+    """
+    case = read_case(example, [*SETTINGS, "mesh.elements_per_turn=12"])
+    whole, checkpoint = Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case)
+    whole.run()
+    for step in range(1, 41):
+        resumed = Analysis(case, MPI.COMM_SELF)
+        if step > 1:
+            checkpoint.resume(resumed)
+        if step < 40:
+            run_until(resumed, checkpoint, step)
+    resumed.run()
+    assert resumed.result.steps == whole.result.steps
+    np.testing.assert_array_equal(resumed.rod.x, whole.rod.x)
+    np.testing.assert_array_equal(resumed.rod.history, whole.rod.history)
+
+
 def test_a_kill_while_writing_leaves_the_checkpoint_before(example, tmp_path, monkeypatch):
     case = read_case(example, SETTINGS)
     analysis, checkpoint = Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case)
