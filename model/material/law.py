@@ -4,8 +4,9 @@ A material file gives, for one or more temperatures, the elastic constants and t
 """
 
 import math
+from difflib import get_close_matches
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 import numpy as np
 import yaml
@@ -17,6 +18,8 @@ from coilset.model.material import functions as fn
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
+
+Text = Annotated[str, Field(min_length=1)]
 
 
 class _Section(BaseModel):
@@ -90,15 +93,15 @@ class Validity(_Section):
     """Where the constants may be trusted."""
 
     plastic_work: Positive  # largest b*, N/mm²; the checks of the functions go up to it
-    remark: str
+    remark: Text
 
 
 class MaterialFile(_Section):
     """A whole material file."""
 
-    name: str
-    description: str
-    source: str
+    name: Text
+    description: Text
+    source: Text
     units: Literal["N, mm, K"]
     validity: Validity
     temperatures: Annotated[tuple[Constants, ...], Field(min_length=1)]
@@ -284,6 +287,23 @@ UNITS = {
 }  # fmt: skip
 
 
+HINTS = {
+    "name": "a name for the material",
+    "description": "a sentence that says what it is",
+    "source": "where the constants come from",
+    "units": "'N, mm, K', in which all numbers of the file are understood",
+    "validity": "plastic_work, the largest b* in N/mm², and a remark",
+    "plastic_work": "the largest b* up to which the constants are valid, N/mm²",
+    "remark": "where else the constants may be trusted",
+    "temperatures": "a list with the constants at one temperature at least",
+    "temperature": "the temperature of the constants, K",
+    "elasticity": "G and nu",
+    "isotropic": "its constants, or 'none' if the material has no such function",
+    "kinematic": "its constants, or 'none' if the material has no such function",
+    "non_normality": "its constants, or 'none' if the material has no such function",
+}
+
+
 def _entries(section):
     if isinstance(section, _Section):
         for name, value in section:
@@ -318,17 +338,35 @@ def read(path, **options):
     return Law(data, file=path, **options)
 
 
-def first_problem(error, path):
-    """The `InputError` of pydantic's first complaint, in place terms of the file."""
+def first_problem(error, path, kind="material"):
+    """The `InputError` of pydantic's first complaint, in place terms of a `kind` file."""
     first = error.errors()[0]
     inside = {"IsotropicHardening", "KinematicHardening", "NonNormality"}
-    place = ".".join(str(part) for part in first["loc"] if part not in inside and not str(part).startswith("literal["))
+    places = [str(part) for part in first["loc"] if part not in inside and not str(part).startswith("literal[")]
+    name, value, message = places[-1] if places else "", first["input"], first["msg"]
     if first["type"] == "missing":
         problem = "is missing"
-        if first["loc"][-1] in ("isotropic", "kinematic", "non_normality"):
-            problem += "; give its constants, or 'none' if the material has no such function"
+        if name in HINTS or name in UNITS:
+            problem += f"; give {HINTS.get(name) or 'a number in ' + (UNITS[name] or '1')}"
     elif first["type"] == "extra_forbidden":
-        problem = "is not an entry of a material file"
+        near = get_close_matches(name, ENTRIES, 1, 0.7) if kind == "material" else []
+        problem = f"is no entry of a {kind} file; " + (
+            f"is {near[0]} meant?" if near else "docs/material.md lists them"
+        )
+    elif name in HINTS:
+        problem = f"{value!r} is not what belongs here; give {HINTS[name]}"
     else:
-        problem = f"{first['input']!r}: {first['msg'].lower()}"
-    return InputError(problem, place, str(path))
+        unit = UNITS.get(name) if isinstance(value, (int, float)) else None
+        problem = f"{value!r}{' ' + unit if unit else ''}: {message[0].lower()}{message[1:]}"
+    return InputError(problem, ".".join(places), str(path))
+
+
+def _entry_names(model):
+    for name, field in model.model_fields.items():
+        yield name
+        for inner in (field.annotation, *get_args(field.annotation)):
+            if isinstance(inner, type) and issubclass(inner, BaseModel):
+                yield from _entry_names(inner)
+
+
+ENTRIES = sorted(set(_entry_names(MaterialFile)))

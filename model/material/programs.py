@@ -97,7 +97,7 @@ def read(path):
     except yaml.YAMLError as error:
         raise InputError(f"is not YAML: {' '.join(str(error).split())}", file=str(path)) from error
     except ValidationError as error:
-        raise first_problem(error, path) from error
+        raise first_problem(error, path, "program") from error
     for i, step in enumerate(program.steps):
         _check_targets(step, program.form, f"steps.{i}.to", str(path))
     return program
