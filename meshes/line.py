@@ -27,6 +27,23 @@ class LineMesh:
     element: np.ndarray
     owned_cells: int
 
+    def in_order(self, values):
+        """A copy of the owned cells' values in the order of the elements, on rank 0; elsewhere None; collective.
+
+        Args:
+            values: shape (owned cells, ...).
+        """
+        comm, element = self.mesh.comm, self.element[: self.owned_cells]
+        if comm.size == 1:
+            ordered = np.empty_like(values)
+            ordered[element] = values
+            return ordered
+        parts = comm.gather((element, values))
+        if comm.rank:
+            return None
+        order = np.argsort(np.concatenate([part[0] for part in parts]))
+        return np.concatenate([part[1] for part in parts])[order]
+
 
 def gmsh_line(stations, groups=None, name="wire"):
     """Put the polygon through the stations into the current gmsh model; the caller initialises and finalises gmsh.

@@ -147,15 +147,11 @@ class Analysis:
 
     def snapshot(self, name):
         """The spring as it stands, gathered on rank 0."""
-        rod, line = self.rod, self.rod.line
-        cells = line.element[: line.owned_cells]
-        parts = self.comm.gather((cells, rod.E.values, rod.s.values, rod.history), root=0)
-        x = self.system.gather(rod.x)
+        rod = self.rod
+        fields = [rod.line.in_order(values) for values in (rod.E.values, rod.s.values, rod.history)]
         if self.comm.rank:
-            return Snapshot(name, self.drive.height, self.drive.force, x, *(np.empty(0),) * 3)
-        order = np.argsort(np.concatenate([part[0] for part in parts]))
-        fields = [np.concatenate([part[k] for part in parts])[order] for k in (1, 2, 3)]
-        return Snapshot(name, self.drive.height, self.drive.force, x, *fields)
+            fields = [np.empty(0)] * 3
+        return Snapshot(name, self.drive.height, self.drive.force, self.system.gather(rod.x), *fields)
 
     def outer_length(self, x):
         """Height of the wire between two planes across the axis that just touch it, mm."""

@@ -36,7 +36,7 @@ class Checkpoint:
         """Write the state after a converged step; collective."""
         rod, system, stepper = analysis.rod, analysis.system, analysis.stepper
         state = {name: system.gather(rod.equilibrium[name]) for name in NODAL}
-        state |= {name: gather_cells(analysis, rod.equilibrium[name]) for name in CELLWISE}
+        state |= {name: rod.line.in_order(rod.equilibrium[name]) for name in CELLWISE}
         state |= {"guess": system.to_order(stepper.guess), "reactions": system.to_order(system.reaction_start)}
         if analysis.comm.rank:
             return
@@ -149,17 +149,3 @@ class Checkpoint:
         if old["loading"][phase : phase + 1] != new["loading"][phase : phase + 1]:
             # a changed target: begin its phase where the spring stands now
             about["walk"] = asdict(Walk(phase, height=about["height"], force=about["force"]))
-
-
-def gather_cells(analysis, values):
-    """Values of the owned cells in the order of the elements, on rank 0; elsewhere None."""
-    line, comm = analysis.rod.line, analysis.comm
-    if comm.size == 1:
-        out = np.empty_like(values)
-        out[line.element[: line.owned_cells]] = values
-        return out
-    parts = comm.gather((line.element[: line.owned_cells], values), root=0)
-    if comm.rank:
-        return None
-    order = np.argsort(np.concatenate([part[0] for part in parts]))
-    return np.concatenate([part[1] for part in parts])[order]
