@@ -45,6 +45,13 @@ class MeshSpec(Strict):
     section: SectionSpec = SectionSpec()
 
 
+class FrictionSpec(Strict):
+    """Coefficients of Coulomb friction; 0 is none."""
+
+    seats: Annotated[float, Field(ge=0, lt=2, description="of the wire on the seats")] = 0.0
+    coils: Annotated[float, Field(ge=0, lt=2, description="of coils on coils")] = 0.0
+
+
 class ContactSpec(Strict):
     """Stiffness of seats and coils against penetration."""
 
@@ -61,6 +68,13 @@ class ContactSpec(Strict):
     penetration: Annotated[
         float | None, Field(gt=0, description="greatest penetration, mm, reached by augmented Lagrange; default: any")
     ] = None
+    friction: FrictionSpec = FrictionSpec()
+
+    @model_validator(mode="after")
+    def _friction_belongs(self):
+        if self.coils == "gaps" and self.friction.coils:
+            raise ValueError("gap elements have no friction; give coils: closest, or leave friction.coils out")
+        return self
 
 
 class SolverSpec(Strict):
@@ -90,6 +104,8 @@ class Case(Strict):
     def _seats_belong(self):
         if self.ends != "seats" and self.seats != SeatsSpec():
             raise ValueError("there are no seats between clamped ends; leave the seats out, or give ends: seats")
+        if self.ends != "seats" and self.contact.friction.seats:
+            raise ValueError("there are no seats between clamped ends; leave contact.friction.seats out")
         shapes = {self.seats.bottom.shape, self.seats.top.shape} - {"flat"}
         if shapes and any(phase.to == "block" for phase in self.loading):
             raise ValueError(f"block is known for flat seats; with {shapes.pop()} ones give height, travel or force")

@@ -1,8 +1,9 @@
 """What every kind of contact gives to the problem: forces and stiffness on named degrees of freedom.
 
 Degrees of freedom are numbered independently of the partition: 3 i + k is the displacement k of station i; after
-those of the n stations come x, y, z and turns θx, θy, θz of the bottom and of the top seat, 3 n + j. Positions of all
-stations are known on every rank (they are small), every rank evaluates all contacts, and adds each row where it lives.
+those of the n stations come x, y, z and turns θx, θy, θz of the bottom and of the top seat, 3 n + j, and after these
+the stations' turns since the last equilibrium, 3 n + 12 + 3 i + k. Positions of all stations are known on every rank
+(they are small), every rank evaluates all contacts, and adds each row where it lives.
 """
 
 from dataclasses import dataclass
@@ -72,12 +73,14 @@ class Contact(Protocol):
         end: `bottom` or `top` if its forces are those of a seat, else None.
         points: the WirePoints that `Contribution.point` counts, or None; `lengths`, shape (m,), mm, is the wire over
             which each of them bears.
+        rolls: does it ask for the turns of the stations since the last equilibrium?
         memory: what it carries from one equilibrium to the next, or None. A kind that has one can be augmented: the
             array `lift` is a way by which each point is pressed although it has not sunk in by it.
     """
 
     name: str
     guarded: bool
+    rolls: bool
     end: str | None
     points: WirePoints | None
     memory: Memory | None
@@ -87,7 +90,10 @@ class Contact(Protocol):
         ...
 
     def evaluate(self, x: np.ndarray, seats: np.ndarray) -> Contribution:
-        """Forces and stiffness at station positions `x`, shape (n, 3), mm, and seats, shape (12,), mm and rad."""
+        """Forces and stiffness at station positions `x`, shape (n, 3), mm, and seats, shape (12,), mm and rad.
+
+        A kind that rolls is given the turns as a third argument, shape (n, 3), rad.
+        """
         ...
 
     def augment(self, x: np.ndarray, seats: np.ndarray) -> None:

@@ -5,6 +5,7 @@ import numpy as np
 from coilset.model.contact.base import ENDS, LEVEL, SEAT_DOFS
 from coilset.model.contact.centreline import CentreLine
 from coilset.model.contact.coils import Coils
+from coilset.model.contact.friction import CoilFriction, SeatFriction
 from coilset.model.contact.gap import Gaps
 from coilset.model.contact.hold import Groove, Mount
 from coilset.model.contact.seat import Seat
@@ -39,7 +40,25 @@ def build_contacts(case, spring, turns, stations, E):
     if case.ends == "seats":
         for end in ENDS:
             contacts += build_seat(end, getattr(case.seats, end), case.seats, spring, points, stations, bedding, onset)
-    return contacts
+    return contacts + frictions(spec.friction, contacts, stations, seats_at(spring.free_length))
+
+
+def seats_at(level):
+    """Both seats as they just touch the stress-free spring, shape (12,), mm and rad."""
+    start = np.zeros(2 * SEAT_DOFS)
+    start[SEAT_DOFS + LEVEL] = level
+    return start
+
+
+def frictions(spec, contacts, stations, seats):
+    """The frictions of contacts, where there are any."""
+    kinds = ((Seat, SeatFriction, spec.seats), (Coils, CoilFriction, spec.coils))
+    return [
+        friction(contact, mu, stations, seats)
+        for contact in contacts
+        for kind, friction, mu in kinds
+        if isinstance(contact, kind) and mu
+    ]
 
 
 def build_seat(end, one, both, spring, points, stations, bedding, onset):
@@ -57,8 +76,7 @@ def build_seat(end, one, both, spring, points, stations, bedding, onset):
     Raises:
         InputError: if its step is longer than the wire.
     """
-    start = np.zeros(2 * SEAT_DOFS)
-    start[SEAT_DOFS + LEVEL] = spring.free_length
+    start = seats_at(spring.free_length)
     for turns, place in ((one.turns, f"seats.{end}.turns"), (both.groove, "seats.groove")):
         if turns is not None and turns > spring.turns:
             raise InputError(f"{turns:g}: the spring has {spring.turns:g} turns only", place)

@@ -81,7 +81,7 @@ class Coils:
     """
 
     name, end = "coils", None
-    guarded = True
+    guarded, rolls = True, False
 
     def __init__(self, points, stations, bedding, onset):
         self.points, self.onset = points, onset
@@ -108,6 +108,13 @@ class Coils:
                 return pair[:found], where[:found], p
             capacity = found
 
+    def pressed(self, x):
+        """Pairs that bear, with places and gaps, their lifts, and the points' positions."""
+        pair, where, p = self.near(x, self.memory["lift"].max())
+        lift = self.memory["lift"][self.sides(pair)]
+        bears = where[:, 1] < lift
+        return pair[bears], where[bears], lift[bears], p
+
     def depth(self, x, seats):
         """Greatest penetration, mm."""
         return -self.near(x)[1][:, 1].min(initial=0.0)
@@ -115,10 +122,7 @@ class Coils:
     def evaluate(self, x, seats):
         """Forces along the connection of closest places, for the points that touch."""
         points, line = self.points, self.points.line
-        pair, where, p = self.near(x, self.memory["lift"].max())
-        lift = self.memory["lift"][self.sides(pair)]
-        pressed = where[:, 1] < lift
-        pair, where, lift = pair[pressed], where[pressed], lift[pressed]
+        pair, where, lift, p = self.pressed(x)
         i, m = pair[:, 0], len(pair)
         size = 6 * STENCIL
         grad, hessian = np.empty((m, size)), np.empty((m, size, size))

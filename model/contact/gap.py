@@ -16,7 +16,7 @@ class Gaps:
     """
 
     name, end, points, memory = "gap", None, None, None
-    guarded = False  # gap elements are few: they close and open by the iteration alone, as in the thesis
+    rolls = guarded = False  # gap elements are few: they close and open by the iteration alone, as in the thesis
 
     def __init__(self, pairs, free_length, stiffness, onset):
         self.pairs = np.asarray(pairs, dtype=np.int64).reshape(-1, 2)
@@ -51,7 +51,7 @@ class Stops:
     """
 
     name, end, points, memory = "stop", None, None, None
-    guarded = False
+    rolls = guarded = False
 
     def __init__(self, stations, normal, level, stiffness, onset):
         self.stations = np.asarray(stations, dtype=np.int64)

@@ -22,7 +22,7 @@ class Groove:
         seats: of both seats at the stress-free state, shape (12,).
     """
 
-    guarded, points, memory = False, None, None
+    rolls, guarded, points, memory = False, False, None, None
 
     def __init__(self, end, points, turns, stations, bedding, seats):
         self.name, self.end, self.plate, self.wire = f"{end} groove", end, Plate(end, len(stations)), points
@@ -63,7 +63,7 @@ class Mount:
         seats: of both seats, shape (12,), where the springs are slack.
     """
 
-    guarded, points, end, memory = False, None, None, None
+    rolls, guarded, points, end, memory = False, False, None, None, None
 
     def __init__(self, end, stations, stiffness, seats):
         plate = Plate(end, stations)

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from coilset.model.contact.base import SEAT_DOFS
+
 
 def station_forces(parts, stations):
     """Forces of contacts on the wire.
@@ -20,6 +22,24 @@ def station_forces(parts, stations):
         on_wire = part.dofs < 3 * stations
         np.subtract.at(force, part.dofs[on_wire], part.forces[on_wire])
     return force.reshape(-1, 3)
+
+
+def station_moments(parts, charts):
+    """Moments of friction on the wire's sections, which its work on their turns gives: M · δω = f · δv, δω = T δv.
+
+    Args:
+        parts: Contributions.
+        charts: T of the stations, shape (n, 3, 3).
+
+    Returns:
+        shape (n, 3), N mm.
+    """
+    n = len(charts)
+    moment, first = np.zeros(3 * n), 3 * n + 2 * SEAT_DOFS
+    for part in parts:
+        on_turns = part.dofs >= first
+        np.subtract.at(moment, part.dofs[on_turns] - first, part.forces[on_turns])
+    return np.linalg.solve(np.swapaxes(charts, 1, 2), moment.reshape(n, 3, 1))[..., 0]
 
 
 @dataclass(frozen=True)

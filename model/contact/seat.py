@@ -33,7 +33,7 @@ class Seat:
         moves: has the seat degrees of freedom besides its level?
     """
 
-    guarded = True
+    guarded, rolls = True, False
 
     def __init__(self, end, points, reach, stations, seats, bedding, onset, slope=0.0, stepped=0.0, moves=False):
         self.name, self.end, self.points, self.onset, self.slope = f"{end} seat", end, points, onset, slope
@@ -66,11 +66,22 @@ class Seat:
         """Gap of the underside at the points `p`, shape (m, 3), negative where it sinks in, shape (m,), mm."""
         if self.linear:
             return self.side * (p[:, 2] - seats[self.plate.own][LEVEL]) - self.reach
-        q = self.plate.sees(p, seats)
-        above = self.side * q[:, 2]
+        return self.surface(self.plate.sees(p, seats))[1] - self.reach
+
+    def surface(self, q):
+        """Normal of the surface under the places `q`, towards the wire, and their distance from it; also if complex."""
+        n, rise, above = np.zeros_like(q), np.sqrt(1.0 + self.slope**2), self.side * q[:, 2]
+        n[:, 2] = self.side / rise
         if self.slope:
-            above = (above - self.slope * np.hypot(q[:, 0], q[:, 1])) / np.hypot(1.0, self.slope)
-        return above - self.reach
+            ρ = np.sqrt(q[:, 0] ** 2 + q[:, 1] ** 2)
+            n[:, :2] = -self.slope / rise * q[:, :2] / ρ[:, None]
+            above = (above - self.slope * ρ) / rise
+        return n, above
+
+    def pressures(self, i, pressed):
+        """Forces on the points `i` that are pressed in by so much, mm, N; also if complex."""
+        tip = self.stiffness[self.tip] * np.where(pressed.real > 0.0, pressed, 0.0)
+        return np.where(i == self.tip, tip, one_sided(-pressed, self.stiffness[i], self.onset)[0])
 
     def _gap_derivatives(self, q):
         """∂g/∂q and ∂²g/∂q², shapes (m, 3) and (m, 3, 3)."""

@@ -62,6 +62,7 @@ class System:
         E, r, l = rod.law.E, rod.radius, rod.l0
         self.weight = comm_max(self.comm, (E * np.pi * r**2 / l).max(initial=0.0))
         self.largest_radius = comm_max(self.comm, r.max(initial=0.0))
+        self.extent = float(np.ptp(rod.line.stations, axis=0).max())
         self.axial_force = E * np.pi * self.largest_radius**2  # E A
 
     # ---- numbering -------------------------------------------------------------------------------------------------
@@ -80,7 +81,9 @@ class System:
         self._order = np.concatenate(comm.allgather(line.node[:nodes]))
         self.station_dofs[self._order] = np.concatenate(comm.allgather(mine))
         self.seat_dofs = self.size_rod + np.arange(SEATS, dtype=PETSc.IntType)
-        self.contact_dofs = np.concatenate([self.station_dofs[:, :3].ravel(), self.seat_dofs])
+        self.contact_dofs = np.concatenate(
+            [self.station_dofs[:, :3].ravel(), self.seat_dofs, self.station_dofs[:, 3:].ravel()]
+        )
         self._nodes = nodes
         shear = index_map.local_to_global(self.rod.shear_dofs.ravel().astype(np.int32)).reshape(-1, 2)
         element = np.concatenate(comm.allgather(line.element[: line.owned_cells]))
@@ -170,8 +173,12 @@ class System:
         """Evaluate the contacts at the rod's trial state, if stresses were found for it."""
         self.contributions, self.failed = [], not good
         if self.contacts and good:
-            x = self.gather(self.rod.x)
-            self.contributions = [contact.evaluate(x, self.seats) for contact in self.contacts]
+            x, turns = self.gather(self.rod.x), ()
+            if any(contact.rolls for contact in self.contacts):
+                turns = (self.gather(self.rod.increment.x.array[self.rod.turn_dofs]),)
+            self.contributions = [
+                contact.evaluate(x, self.seats, *(turns if contact.rolls else ())) for contact in self.contacts
+            ]
 
     def commit(self):
         """Make the trial state the equilibrium."""
@@ -266,6 +273,7 @@ class System:
         by 1e-14, so that a step without any change of load is at rest too.
         """
         greatest = comm_max(self.comm, np.abs(X.getArray(readonly=True)).max(initial=0.0))
+        greatest = min(greatest, self.extent)  # what flies away is not at rest
         increments = np.finfo(float).eps * greatest * self.weight * np.sqrt(X.getSize())
         return max(increments, 1e-14 * self.axial_force)
 

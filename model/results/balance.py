@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coilset.model.contact.resultants import station_forces
+from coilset.model.contact.resultants import station_forces, station_moments
 
 
 def section_wrenches(x, triads, resultants):
@@ -38,7 +38,8 @@ def imbalance(analysis):
     """
     shot, system, drive = analysis.snapshot("balance"), analysis.system, analysis.drive
     x = shot.x
-    forces, moments = station_forces(system.contributions, len(x)), np.zeros_like(x)
+    forces = station_forces(system.contributions, len(x))
+    moments = station_moments(system.contributions, system.gather(analysis.rod.chart))
     for station, components in drive.tips.values():
         reaction = np.zeros(6)
         reaction[components] = system.values(system.internal, system.station_dofs[station, components])

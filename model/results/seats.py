@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from coilset.model.contact.base import ENDS, TOUCH
-from coilset.model.contact.resultants import Wrench, station_forces
+from coilset.model.contact.resultants import Wrench, station_forces, station_moments
 from coilset.model.results.folder import whole
 
 FAINT = 1e-6  # axial forces below this share of the greatest one so far have no centre and load no turns
@@ -110,8 +110,9 @@ def end_wrench(analysis, end, x, parts):
     reaction[components] = analysis.system.values(
         analysis.system.internal, analysis.system.station_dofs[station, components]
     )
-    forces = station_forces(own, len(x))
-    return Wrench.of(forces, x) + Wrench.of(reaction[None, :3], x[[station]], reaction[None, 3:])
+    moments = station_moments(own, analysis.system.gather(analysis.rod.chart))
+    held = Wrench.of(reaction[None, :3], x[[station]], reaction[None, 3:])
+    return Wrench.of(station_forces(own, len(x)), x, moments) + held
 
 
 def bearing(analysis, end, x, parts, faint):
