@@ -17,6 +17,7 @@ LINES = ("-", "--", ":", "-.")  # of the phases
 FAINT = 0.02  # share of the greatest force below which a force centre says little and is not drawn
 REACH = 1.3  # of the picture, in coil radii
 DECADES = 3  # of the pressure's colours
+LEAST_TURNS = 0.2  # that are shown from the tip on, though nothing bears there
 
 
 def phases(result):
@@ -106,7 +107,7 @@ def seat_pressure(path, analysis, result):
                 turns.plot(travel[steps], values, style, marker="o", ms=2.5, lw=1.0, color=colour,
                            label=f"{words}, {label}")  # fmt: skip
         lengths.set(xlabel="travel in mm", ylabel="wire in contact with the seat in mm")
-        turns.set(xlabel="travel in mm", ylabel="turns", ylim=(0.0, 1.05 * analysis.spring.turns))
+        turns.set(xlabel="travel in mm", ylabel="turns", ylim=(0.0, 1.5 * analysis.spring.turns))
         for axes in (lengths, turns):
             axes.legend(fontsize=7)
             axes.grid(lw=0.3)
@@ -121,7 +122,8 @@ def draw_pressure(axes, result, kind, contact, greatest):
     bearing = np.unique(np.concatenate(rows)[:, 1].astype(int))
     if not len(bearing):
         return None
-    points = np.flatnonzero(away <= away[bearing].max() + 1e-9)
+    reach = max(LEAST_TURNS, away[bearing].max())
+    points = np.flatnonzero(away <= reach + 1e-9)
     points = points[np.argsort(away[points])]
     values = np.zeros((len(rows), len(away)))
     for number, one in enumerate(rows):
@@ -133,5 +135,5 @@ def draw_pressure(axes, result, kind, contact, greatest):
     places = np.unique(np.linspace(0, len(number) - 1, min(len(number), 9)).astype(int))
     labels = [f"{result.steps[k].travel_mm:.1f} mm, {abs(result.steps[k].force_N):.0f} N" for k in places]
     axes.set_yticks([number[k] for k in places], labels, fontsize=7)
-    axes.set(xlabel="turns from the wire's tip", ylabel="step" if kind == 1 else None)
+    axes.set(xlim=(-0.02 * reach, None), xlabel="turns from the wire's tip", ylabel="step" if kind == 1 else None)
     return shown
