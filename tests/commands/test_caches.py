@@ -12,7 +12,7 @@ def version(monkeypatch, sources, root="kept"):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(root))
     monkeypatch.setattr(numba.config, "CACHE_DIR", "")
     caches.keep_by_content()
-    assert numba.config.CACHE_DIR == os.environ["NUMBA_CACHE_DIR"]
+    assert os.environ["NUMBA_CACHE_DIR"] == numba.config.CACHE_DIR
     return numba.config.CACHE_DIR
 
 

@@ -8,9 +8,9 @@ from scipy.optimize import brentq
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.errors import InputError
-from coilset.model.solvers.methods import METHODS, options
 from coilset.model.material import library
 from coilset.model.section.rules import abramowitz9
+from coilset.model.solvers.methods import METHODS, options
 from coilset.model.solvers.solver import Solver
 from coilset.verification.frame import Frame
 
