@@ -153,7 +153,7 @@ def _draw(out, analysis, result, summary, console):
 
 def _conclude(console, summary, out, analysed):
     def number(value, unit, digits=4):
-        return "not reached" if value is None else f"{value:.{digits}f} {unit}"
+        return "not reached" if value is None else f"{round(value, digits) + 0.0:.{digits}f} {unit}"  # no -0.0
 
     table = Table(show_header=False, box=None, padding=(0, 2))
     table.add_row("free length before", number(summary["free_length_before_mm"], "mm"))
