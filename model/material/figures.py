@@ -1,5 +1,7 @@
 """Figures of the material: its functions, a program's answer, and the fit of tests."""
 
+import textwrap
+
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
@@ -21,7 +23,7 @@ def material_functions(law):
     """k², ζ and 2Gκ over the plastic work b*, one line a temperature; figures 6.3 to 6.5 of the thesis for Ck 15."""
     work = np.linspace(0.0, law.validity.plastic_work, 801)
     with mpl.rc_context(STYLE):
-        figure = _figure(10.5, 3.4)
+        figure = _figure(10.5, 3.7)
         axes = figure.subplots(1, 3)
         for temperature in law.temperatures:
             G = dict(law.constants(temperature))["G"][0]
@@ -32,12 +34,13 @@ def material_functions(law):
         axes[1].set(ylabel="ζ in N/mm²", title="kinematic hardening")
         if np.nanmax(zeta) > 0:
             axes[1].set_yscale("log")
-        axes[2].set(ylabel="2Gκ", title="deviation from normality")
+        axes[2].set(ylabel="2Gκ (dimensionless)", title="deviation from normality")
         for place in axes:
             place.set_xlabel("plastic work b* in N/mm²")
             place.set_xlim(0, work[-1])
             place.grid(lw=0.3)
         axes[0].legend(title=law.name)
+        figure.suptitle("\n".join(textwrap.wrap(f"{law.name}; constants: {law.source}", 150)), fontsize=8)
     return figure
 
 
@@ -85,7 +88,9 @@ def _stress_plane(axes, law, history):
         axes.plot(normal, shear * tangential, lw=0.8, ls="--", color=style, label=name)
     axes.set(xlabel="σ11 in N/mm²", ylabel="√3 τ12 in N/mm²", title="stress plane", aspect="equal")
     axes.grid(lw=0.3)
-    axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.16))
+    reach = 1.5 * max(map(abs, axes.get_xlim() + axes.get_ylim()))
+    axes.set(xlim=(-reach, reach), ylim=(-reach, reach))  # room for the legend
+    axes.legend(fontsize=7, loc="upper center")
 
 
 def fit(result, name):

@@ -202,12 +202,6 @@ class Law:
         alphas = np.interp([self.known(start), self.known(end)], self._temperatures, self._rows[:, fn.ALPHA])
         return float(alphas.mean()) * (end - start)
 
-    def initial_state(self, points):
-        """History rows of unstressed points of the rod, shape (points, n_state)."""
-        state = np.zeros((points, self.n_state))
-        state[:, 7:] = self.reference_temperature
-        return state
-
     def functions(self, work, temperature=None):
         """k², k²′, ζ, ζ′, κ, κ′ at plastic works b*.
 

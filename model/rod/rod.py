@@ -8,6 +8,7 @@ import numpy as np
 from dolfinx import fem
 
 from coilset.model.frames.rotations import triads, turn_nodes
+from coilset.model.material.points import initial_state
 from coilset.model.rod import forms
 from coilset.model.rod.kinematics import GAUSS, section_strains
 from coilset.model.section.update import update_sections
@@ -100,7 +101,7 @@ class Rod:
         self.chart = np.tile(np.eye(3), (len(x), 1, 1))
         self.shear = np.zeros((n, 2))
         self.strain = self.e.values
-        self.history = np.zeros((n, 2, points, self.law.n_state))
+        self.history = np.tile(initial_state(self.law, 1), (n, 2, points, 1))
         self.equilibrium = {}
         self.commit()
         self.update()
