@@ -201,7 +201,7 @@ def test_a_cycle_loses_energy_with_friction_and_none_without():
 
 
 def test_friction_is_in_balance_and_part_of_the_state(tmp_path):
-    """Every cut through the wire is in balance to 1e-8 of force and force times diameter; a resumed run has its bits."""
+    """Every cut through the wire is in balance to 1e-8 of force and force times diameter; resumed runs agree."""
     friction = {"seats": 0.2, "coils": 0.2}
     whole, lacks = analyse(friction), []
     whole.run(lambda step: lacks.append(imbalance(whole)))
