@@ -1,0 +1,45 @@
+"""The examples of docs/material.md run as they stand."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from coilset.model.material import library, points, programs
+
+TEXT = (Path(__file__).resolve().parents[2] / "docs" / "material.md").read_text(encoding="utf-8")
+
+
+def blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", TEXT, re.DOTALL)
+
+
+def test_python_example(capsys):
+    """1000 equal points; the printed flow stress is that of the stress reached, back stress apart."""
+    (code,) = blocks("python")
+    names = {}
+    exec(compile(code, "docs/material.md", "exec"), names)
+    assert capsys.readouterr().out
+    state, k2 = names["state"], names["k2"]
+    assert (state == state[0]).all()
+    n = [state[0, 0] / 1.5 - state[0, 3], *(state[0, 1:3] - state[0, 4:6])]
+    assert 1.5 * n[0] ** 2 + 2 * (n[1] ** 2 + n[2] ** 2) == pytest.approx(k2[0])
+    assert (names["iterations"] > 0).all()
+    assert names["accurate"][0, 6] > state[0, 6]
+
+
+def test_yaml_examples(tmp_path):
+    """The annotated material file is a material, the program a program, and the one goes through the other."""
+    material, program = blocks("yaml")
+    (tmp_path / "my_steel.yaml").write_text(material, encoding="utf-8")
+    (tmp_path / "program.yaml").write_text(program, encoding="utf-8")
+    law = library.load(tmp_path / "my_steel.yaml")
+    assert law.temperatures == (293.15, 473.15)
+    assert law.yield_stress == pytest.approx(300)
+    history = programs.run(law, programs.read(tmp_path / "program.yaml"))
+    np.testing.assert_allclose(history.stress[-1], 0, atol=1e-6)
+    rise = 0.9 / (7.85e-9 * 4.7e8) * history.work[-1]
+    assert history.temperature[-1] == pytest.approx(293.15 + rise, rel=1e-9)
+    assert set(library.names()) == set(re.findall(r"^\| `(\w+)` \|", TEXT, re.MULTILINE)) - {"return_mapping"}
+    assert points.INTEGRATORS == ("return_mapping", "heun")
