@@ -103,15 +103,16 @@ def _patches(places, samples, size):
     Args:
         places: y, z, s of the points, s from the section, shape (points, 3), mm.
         samples: y, z, shape (n, 2), mm.
-        size: points of a patch.
+        size: points of a patch; more where several are as far as the last one.
 
     Returns:
-        Indices and weights, each of shape (n, size).
+        Indices and weights, each of shape (n, 2 size); the weights are 0 outside of the patch.
     """
-    distance, points = cKDTree(places[:, :2]).query(samples, k=size)
-    reach = distance[:, -1:]
+    distance, points = cKDTree(places[:, :2]).query(samples, k=min(2 * size, len(places)))
+    reach = distance[:, size - 1 : size]
+    # all that are as far as the last one belong to the patch: which of them comes first depends on the partition
+    weight = np.where(distance < (1 + 1e-6) * reach, np.exp(-2 * (distance / reach) ** 2), 0.0)
     y, z = np.moveaxis((places[points, :2] - samples[:, None]) / reach[:, :, None], 2, 0)
     s = places[points, 2] / np.abs(places[:, 2]).max()
     basis = np.stack([np.ones_like(y), y, z, s, y * y, z * z, s * s, y * z, s * y, s * z], axis=2)
-    weight = np.exp(-2 * (distance / reach) ** 2)
     return points, np.linalg.pinv(basis * weight[:, :, None])[:, 0] * weight

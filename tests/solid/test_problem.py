@@ -13,6 +13,7 @@ from coilset.model.solid.heads import Motion
 from coilset.model.solid.points import MaterialPoints
 from coilset.model.solid.problem import SolidProblem
 from coilset.model.solid.program import AxialProgram
+from coilset.model.solid.sampling import SectionSample, disk_grid
 from coilset.verification.solid_vs_rod.references import nadai_torque
 
 d, R, L = 5.0, 2.5, 5.0
@@ -107,6 +108,18 @@ def test_all_ranks_together_find_what_one_finds(solver):
         results.append([(s.travel, s.force, s.torque) for s in program.stations])
     scale = np.abs(results[0]).max(axis=0)
     assert np.all(np.abs(np.array(results[0]) - results[1]) < 1e-8 * scale)
+
+
+@pytest.mark.mpi
+def test_all_ranks_together_sample_what_one_samples():
+    # a grid with many integration points at equal distances, whose order depends on the partition
+    found = []
+    for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
+        wire = coil_section(d, 40.0, 12.0, 180.0, 8, comm, SectionGrid(2, 2))
+        problem = SolidProblem(wire, Elastic(), precision=1e-10)
+        problem.step(Motion((0.0, 0.0, -0.5)))
+        found.append(SectionSample(problem.solid, 0.5 * wire.length, *disk_grid(R)).stress())
+    assert np.abs(found[1] - found[0]).max() < 1e-8 * np.abs(found[0]).max()
 
 
 def test_a_step_too_large_is_cut():
