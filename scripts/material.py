@@ -37,6 +37,7 @@ def run_program(
     material: str = MATERIAL,
     program: str = typer.Argument(help="program file (YAML): targets of strain and stress"),
     integrator: str = typer.Option("return_mapping", help="return_mapping, or heun as in the thesis"),
+    spin: bool = typer.Option(True, help="whether the rod's form has its spin terms (5.2.33)"),
     out: str = OUT,
     force: bool = FORCE,
 ):
@@ -45,7 +46,7 @@ def run_program(
 
     if integrator not in points.INTEGRATORS:
         raise InputError(f"'{integrator}' is none of {', '.join(points.INTEGRATORS)}", "--integrator")
-    law, steps = library.load(material), programs.read(program)
+    law, steps = library.load(material, spin=spin), programs.read(program)
     out = _folder(out, law.name)
     name = Path(program).stem
     console = Console(highlight=False)
@@ -133,9 +134,10 @@ def _constants(law):
         table.add_column(f"{temperature:g} K", justify="right")
     table.add_column("unit")
     rows = [dict(law.constants(temperature)) for temperature in law.temperatures]
-    for name, (_, unit) in rows[0].items():
-        values = [row[name][0] if name in row else "–" for row in rows]
-        table.add_row(name, *(f"{value:.7g}" if not isinstance(value, str) else value for value in values), unit)
+    for name in (name for name in UNITS if any(name in row for row in rows)):
+        table.add_row(name, *(f"{row[name][0]:.7g}" if name in row else "–" for row in rows), UNITS[name])
+    if law.is_adiabatic:
+        table.add_row("heating", f"{law.heating:.4g}", *[""] * (len(rows) - 1), "K mm²/N")
     return table
 
 
@@ -143,7 +145,7 @@ def _ends(program, history):
     """Table of the state at the end of each step: the strains and stresses that the program moves, and b*."""
     from coilset.model.material.figures import SYMBOLS
 
-    names = {**SYMBOLS, "plastic_work": "b*"}
+    names = {**SYMBOLS, "plastic_work": "b*", "temperature": "T"}
     columns = [(names[name], values) for name, values in history.columns() if name in names and np.ptp(values) > 1e-9]
     table = Table(box=None, padding=(0, 1))
     table.add_column("end of step")

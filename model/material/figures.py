@@ -39,7 +39,7 @@ def material_functions(law):
             place.set_xlabel("plastic work b* in N/mm²")
             place.set_xlim(0, work[-1])
             place.grid(lw=0.3)
-        axes[0].legend(title=law.name)
+        axes[0].legend(title=law.name if np.isfinite(k2).all() else f"{law.name}: never yields")
         figure.suptitle("\n".join(textwrap.wrap(f"{law.name}; constants: {law.source}", 150)), fontsize=8)
     return figure
 
@@ -68,7 +68,8 @@ def program(law, run, history):
             _stress_plane(axes[2], law, history)
         for place in axes[:2]:
             place.grid(lw=0.3)
-            place.legend(fontsize=8)
+            if moved:
+                place.legend(fontsize=8)
         source = f"; after {run.source}" if run.source else ""
         figure.suptitle(f"{run.name}, {law.name}{source}", fontsize=10)
     return figure
@@ -79,7 +80,7 @@ def _stress_plane(axes, law, history):
     axes.plot(history.stress[:, 0], shear * history.stress[:, 1], lw=1.3, label="way of the stress")
     angle = np.linspace(0, 2 * np.pi, 181)
     for row, name, style in ((0, "yield surface at the start", "0.6"), (-1, "at the end", "k")):
-        k = np.sqrt(law.k_squared(history.work[row]))
+        k = np.sqrt(law.functions(history.work[row], history.temperature[row])[0])
         if not np.isfinite(k):
             continue
         # 3/2 n11² + 2 n12² = k², σ11 = 3/2 (n11 + B11), τ12 = n12 + B12; B13 plays no part in these programs.
