@@ -202,14 +202,13 @@ def _failed(start, why=FAILED):
 
 
 @njit(**INLINE)
-def solve(p, start, values, guess=0.0):
+def solve(p, start, values):
     """Solve the two local equations.
 
     Args:
         p: parameter array.
         start: the increment's plastic part, a `Start`.
         values: `functions` where it starts.
-        guess: b* at the end as far as it is known; of no account where it cannot be.
 
     Returns:
         A `Local`; its `iterations` are -1 if there was no convergence, -2 if the temperature left the table.
@@ -251,10 +250,7 @@ def solve(p, start, values, guess=0.0):
             else:
                 high = b
         # Newton, unless it leaves the bracket or swings to and fro across a bend.
-        if iteration == 1 and inverse > 0.0 and step > 0.0 and low < guess < high:
-            multiplier += follow * (guess - b) / step
-            step = guess - b
-        elif inverse > 0.0 and low < b + step < high and (step * last > 0.0 or abs(step) <= 0.5 * abs(last)):
+        if inverse > 0.0 and low < b + step < high and (step * last > 0.0 or abs(step) <= 0.5 * abs(last)):
             multiplier += follow
         else:
             step = 0.5 * (low + high) - b

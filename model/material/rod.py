@@ -61,7 +61,7 @@ def _active(s, b):
 
 
 @njit(**KERNEL)
-def return_map(p, old, de11, dg12, dg13, new, C, guess=0.0):
+def return_map(p, old, de11, dg12, dg13, new, C):
     """Backward Euler step of the rod's law with its consistent tangent.
 
     Args:
@@ -70,7 +70,6 @@ def return_map(p, old, de11, dg12, dg13, new, C, guess=0.0):
         de11, dg12, dg13: increments of ε11, γ12 = 2ε12, γ13.
         new: history row at the end; always fully written.
         C: d(σ11, τ12, τ13)/d(ε11, γ12, γ13), shape (3, 3), N/mm²; written.
-        guess: b* at the end as far as it is known, as from an increment that differs little; it saves iterations.
 
     Returns:
         Number of local iterations, 0 for an elastic increment, -1 if there was no convergence, -2 if the point heated
@@ -89,7 +88,7 @@ def return_map(p, old, de11, dg12, dg13, new, C, guess=0.0):
         return 0
 
     e = (E * de11 / 1.5, G * dg12, G * dg13)
-    plastic = _plastic(p, old[6], temperature, heating, alpha, E, G, n0, e, values, guess)
+    plastic = _plastic(p, old[6], temperature, heating, alpha, E, G, n0, e, values)
     local = plastic.local
     if local.iterations < 0:
         for i in range(new.shape[0]):
@@ -126,7 +125,7 @@ def _elastic(old, s, point, E, G, new, C):
 
 
 @njit(**INLINE)
-def _plastic(p, b, temperature, heating, alpha, E, G, n0, e, values, guess):
+def _plastic(p, b, temperature, heating, alpha, E, G, n0, e, values):
     """Solve the plastic part: n and p at its end, from n₀ where it starts (n0 + β e) with e reduced to it."""
     k2, growth = surface(p, b, temperature, values[0])
     ne = _inner(n0, e) - 0.5 * growth
@@ -143,7 +142,7 @@ def _plastic(p, b, temperature, heating, alpha, E, G, n0, e, values, guess):
         2.0 * (n0[1] * n0[1] + n0[2] * n0[2]),
         2.0 * rest * (n0[1] * e[1] + n0[2] * e[2]),
         2.0 * rest * rest * (e[1] * e[1] + e[2] * e[2]),
-    ), values, guess)  # fmt: skip
+    ), values)  # fmt: skip
     if local.neutral:
         heating, dea = 0.0, 0.0
     whole = e

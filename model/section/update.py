@@ -23,7 +23,7 @@ def update_sections(p, y, z, w, radius, de, placement, stretch, old, new, s, D):
         de: increments of the section strains ε, γ12, γ13, φ′, κ2 = −w″, κ3 = v″, shape (cells, 2, 6).
         placement: shape (cells or 1, 2, 6, 6), stretch: ds/dx, shape (cells or 1, 2).
         old: state at the last equilibrium, shape (cells, 2, points, n_state); not changed.
-        new: written, the state at the end of the increment; its b* from the last evaluation is where the law begins.
+        new: written, the state at the end of the increment.
         s: written, N, Q2, Q3 in N and Mt, M2, M3 in N mm, shape (cells, 2, 6), about the chord axis.
         D: written, section tangent ds/de, shape (cells, 2, 6, 6).
 
@@ -66,8 +66,7 @@ def update_sections(p, y, z, w, radius, de, placement, stretch, old, new, s, D):
 @njit(**INLINE)
 def integrate_point(p, y, z, dA, d, old, new, C, resultant, tangent):
     """Add one point's share to the section: ε11 = ε + κ2 z − κ3 y, γ12 = γ2 − φ′ z, γ13 = γ3 + φ′ y (5.2.4)."""
-    e11, g12, g13 = d[0] + d[4] * z - d[5] * y, d[1] - d[3] * z, d[2] + d[3] * y
-    if return_map(p, old, e11, g12, g13, new, C, new[6]) < 0:  # the last evaluation's b* is near this one's
+    if return_map(p, old, d[0] + d[4] * z - d[5] * y, d[1] - d[3] * z, d[2] + d[3] * y, new, C) < 0:
         return False
     sigma, t2, t3 = new[0] * dA, new[1] * dA, new[2] * dA
     resultant[0] += sigma
