@@ -5,9 +5,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from typer.testing import CliRunner
 
 from coilset.model.errors import InputError
 from coilset.model.material import experiments, fit, library, points
+from coilset.scripts.material import app
 from coilset.verification.cases import material_fit
 
 DATA = Path(__file__).resolve().parents[2] / "examples" / "material" / "fit"
@@ -83,3 +85,20 @@ def test_wrong_data_files(change, message, tmp_path):
     with pytest.raises(InputError) as error:
         experiments.read_test(path)
     assert str(error.value) == f"{path}: {message}" or str(error.value).startswith(f"{path}: {message};")
+
+
+def test_the_command_reports_and_writes(fitted, tmp_path, monkeypatch):
+    """`coilset material fit` with the fit itself taken from above: table, residuals, material file and picture."""
+    monkeypatch.setattr(fit, "fit", lambda *_: fitted)
+    data = [str(path) for path in sorted(DATA.glob("*.csv"))]
+    arguments = ["fit", *data, "--G", "84000", "--nu", "0.28989", "--name", "mine", "--out", str(tmp_path)]
+    done = CliRunner().invoke(app, arguments)
+    assert done.exit_code == 0, done.output
+    for name, value in fitted.constants.items():
+        assert f"{name} " in done.output
+        assert f"{value:.6g}" in done.output
+    assert "tension_torsion (combined): rms residual" in done.output
+    assert library.load(tmp_path / "mine.yaml").G == 84000
+    assert (tmp_path / "fit.png").stat().st_size > 50_000
+    again = CliRunner().invoke(app, arguments)
+    assert isinstance(again.exception, InputError)
