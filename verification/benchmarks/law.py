@@ -63,7 +63,7 @@ def error(law, state, increments, new):
     some, components = slice(COMPARED), increments.shape[1]
     exact = points.update(law, state[some], increments[some], "heun", tolerance=1e-7)[0]
     flow = np.sqrt(1.5 * law.k_squared(exact[:, 2 * components]))
-    return np.sqrt(((new[some, :components] - exact[:, :components]) ** 2).sum(axis=1) / flow**2).mean()
+    return np.sqrt((((new[some, :components] - exact[:, :components]) ** 2).sum(axis=1) / flow**2).mean())
 
 
 def main():
