@@ -4,8 +4,8 @@ A straight rod lies on a seat and is pressed with N in all. Dragged along or acr
 with μ N; if it may turn about its axis it rolls by s/r instead, for its underside sticks, and needs no force: the
 tolerance is that of a step of 0.02 rad, over which the slip counts turns to the first order.
 
-A closed and ground spring, elastic, with end coils in grooves, is pressed by 15 mm and released, twice. Its coils and end
-coils slip a little where they lie down. What a cycle loses must be positive, the same in the second cycle as in the
+A closed and ground spring, elastic, with end coils in grooves, is pressed by 15 mm and released, twice. Its coils and
+end coils slip a little where they lie down. What a cycle loses must be positive, the same in the second cycle as in the
 first within 1 %, and without friction no more than 1e-5 of the energy of the spring, the error of its increments.
 """
 
@@ -82,7 +82,8 @@ def run(study):
         lost = [np.trapezoid(force[k : k + 2 * STEPS + 1], travel[k : k + 2 * STEPS + 1]) for k in (0, 2 * STEPS)]
         rows.append([mu, force.max(), *lost, lost[1] / energy])
         if mu:
-            study.check(f"second cycle's loss over the first one's, μ = {mu:g}", lost[1] / lost[0], 1.0, "first cycle", 0.01)
+            name = f"second cycle's loss over the first one's, μ = {mu:g}"
+            study.check(name, lost[1] / lost[0], 1.0, "first cycle", 0.01)
             study.check(f"0 over the loss of a cycle, μ = {mu:g}", -lost[1], 0.0, "second law", kind="at_most")
         else:
             study.check("loss over the energy, μ = 0", lost[1] / energy, 0.0, "elasticity", 1e-5, "absolute")
