@@ -1,4 +1,4 @@
-"""Known solutions: the curved wire under an axial force, and the straight wire in elastic-plastic torsion."""
+"""Known solutions: the curved wire under an axial force, the straight wire in elastic-plastic torsion and bending."""
 
 import numpy as np
 
@@ -75,3 +75,18 @@ def nadai_torque(yield_shear, radius, ratio):
         ratio: θ/θ_y, from 1.
     """
     return 2 * np.pi / 3 * yield_shear * radius**3 * (1 - 0.25 / ratio**3)
+
+
+def plastic_bending_moment(yield_stress, radius, ratio):
+    """Bending moment of a straight round wire without hardening after beam theory, N mm.
+
+    ∫ σ y dA with σ = σ_y y / h in the elastic core |y| < h = R / ratio, ± σ_y beyond; 4/3 σ_y R³ at the limit.
+
+    Args:
+        yield_stress: σ_y, MPa.
+        radius: R, mm.
+        ratio: curvature over that of first yield, from 1.
+    """
+    h, half = 1 / ratio, np.arcsin(1 / ratio)
+    core = (half / 8 - np.sin(4 * half) / 32) * ratio  # ∫₀ʰ y² √(1 − y²) dy / h
+    return 4 * yield_stress * radius**3 * (core + (1 - h * h) ** 1.5 / 3)
