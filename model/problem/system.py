@@ -50,13 +50,13 @@ class System:
         self.seats_start = np.zeros(SEATS)
         self.seats_start[LEVEL::SEAT_DOFS] = seats
         self.seats = self.seats_start.copy()
-        self.fixed, self.forces, self.share, self.failed = {}, {}, 1.0, False
-        self.fresh, self.patterns = True, 0
+        self.share, self.failed, self.fresh, self.patterns = 1.0, False, True, 0
         self._number()
         self.contributions = []
         self._local = la.vector(rod.V.dofmap.index_map, rod.V.dofmap.index_map_bs)
         self.internal = self.vector()  # internal forces without constraints and loads
         self.reaction_start = self.internal.duplicate()
+        self.fixed, self.forces = {}, {}
         self._evaluated = None
         # rows of prescribed values are weighted by an axial stiffness, so that norms of the residual are of one kind
         E, r, l = rod.law.E, rod.radius, rod.l0
@@ -64,6 +64,32 @@ class System:
         self.largest_radius = comm_max(self.comm, r.max(initial=0.0))
         self.extent = float(np.ptp(rod.line.stations, axis=0).max())
         self.axial_force = E * np.pi * self.largest_radius**2  # E A
+
+    # ---- constraints and loads -----------------------------------------------------------------------------------
+
+    @property
+    def fixed(self):
+        """System dof → increment prescribed in this step."""
+        return self._fixed
+
+    @fixed.setter
+    def fixed(self, values):
+        self._fixed, self._held = values, self._mine(values)
+
+    @property
+    def forces(self):
+        """System dof → external force at the end of this step, N or N mm."""
+        return self._forces
+
+    @forces.setter
+    def forces(self, values):
+        self._forces, self._loaded = values, self._mine(values)
+
+    def _mine(self, entries):
+        """Places in this rank's part of a vector, and values, of `entries`, a dict by system dofs."""
+        start, stop = self.internal.getOwnershipRange()
+        dofs = [dof for dof in entries if start <= dof < stop]
+        return np.array(dofs, dtype=PETSc.IntType) - start, np.array([entries[dof] for dof in dofs], dtype=float)
 
     # ---- numbering -------------------------------------------------------------------------------------------------
 
@@ -237,14 +263,11 @@ class System:
     def balance(self, X, F):
         """The residual at the state of the last evaluation, `X`, into F."""
         self.internal.copy(F)
-        start, stop = F.getOwnershipRange()
         values, x, before = F.getArray(), X.getArray(readonly=True), self.reaction_start.getArray(readonly=True)
-        for dof, force in self.forces.items():
-            if start <= dof < stop:
-                values[dof - start] -= self.share * force + (1.0 - self.share) * before[dof - start]
-        for dof, target in self.fixed.items():
-            if start <= dof < stop:
-                values[dof - start] = self.weight * (x[dof - start] - self.share * target)
+        dofs, force = self._loaded
+        values[dofs] -= self.share * force + (1.0 - self.share) * before[dofs]
+        dofs, target = self._held
+        values[dofs] = self.weight * (x[dofs] - self.share * target)
         if self.failed:
             F.set(np.inf)  # SNES sees a domain error; the step is cut
 
@@ -285,11 +308,10 @@ class System:
 
     def misses(self, X):
         """Do the increments `X` miss a prescribed value by more than rounding?"""
-        start, stop = X.getOwnershipRange()
-        x = X.getArray(readonly=True)
-        off = [abs(x[dof - start] - self.share * value) for dof, value in self.fixed.items() if start <= dof < stop]
+        dofs, target = self._held
+        off = np.abs(X.getArray(readonly=True)[dofs] - self.share * target).max(initial=0.0)
         scale = max((abs(value) for value in self.fixed.values()), default=0.0)
-        return comm_max(self.comm, max(off, default=0.0)) > 1e-12 * scale
+        return comm_max(self.comm, off) > 1e-12 * scale
 
     @property
     def depth(self):
@@ -335,9 +357,8 @@ class System:
 
     def clear_fixed(self, vector):
         """Zero the entries of a vector that belong to prescribed values."""
-        start, stop = vector.getOwnershipRange()
         values = vector.getArray()
-        values[[dof - start for dof in self.fixed if start <= dof < stop]] = 0.0
+        values[self._held[0]] = 0.0
 
     def imbalance(self, F):
         """How far the trial state with residual `F` is from equilibrium.
@@ -346,12 +367,10 @@ class System:
             Norm of the out-of-balance forces, norm of the change of loads and reactions since the step's start, N, and
             share of the prescribed increments that is still missing.
         """
-        start, stop = F.getOwnershipRange()
-        fixed = np.array([dof for dof in self.fixed if start <= dof < stop], dtype=np.int64) - start
-        loaded = np.array([dof for dof in self.forces if start <= dof < stop], dtype=np.int64) - start
+        fixed, loaded = self._held[0], self._loaded[0]
         rest = F.getArray(readonly=True).copy()
         rest[fixed] = 0.0
-        held = np.unique(np.concatenate([fixed, loaded]))
+        held = np.union1d(fixed, loaded) if len(loaded) else fixed
         change = self.internal.getArray(readonly=True)[held] - self.reaction_start.getArray(readonly=True)[held]
         missed = F.getArray(readonly=True)[fixed] / self.weight
         squares = np.array([rest @ rest, change @ change, missed @ missed])
@@ -381,7 +400,7 @@ class System:
             for dof in self.seat_dofs:  # the diagonal must exist for a fixed or untouched seat
                 P.setValue(dof, dof, 0.0, addv=PETSc.InsertMode.ADD_VALUES)
         P.assemble()
-        P.zeroRows([dof for dof in self.fixed if start <= dof < stop], diag=self.weight)
+        P.zeroRows(self._held[0] + start, diag=self.weight)
         return True
 
 

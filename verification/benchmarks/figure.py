@@ -65,6 +65,5 @@ def _ranks(axes, runs):
         bottom += height
     axes.set_xticks(place, [f"{run['ranks']} rank{'s' if run['ranks'] > 1 else ''}" for run in runs])
     speed = seconds(runs[0]["stages"], 0) / seconds(runs[-1]["stages"], 0)
-    axes.set(ylabel="time, s", title=f"{runs[0]['elements']:,} elements: {speed:.2f} times as fast")
+    axes.set(ylabel="time, s (colours as on the left)", title=f"{runs[0]['elements']:,} elements: × {speed:.2f}")
     axes.title.set_fontsize(9)
-    axes.legend(fontsize=7)
