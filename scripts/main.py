@@ -91,7 +91,7 @@ def verify(
 @app.command()
 def bench(
     out: str = typer.Option("results/bench", help="folder of the record and the figure; what is there is replaced"),
-    full: bool = typer.Option(False, "--full", help="up to 400,000 elements: 12 GiB, some half an hour"),
+    full: bool = typer.Option(False, "--full", help="up to 400,000 elements: 10 GiB, a quarter of an hour"),
     cold: bool = typer.Option(False, "--cold", help="also time the compilers, from nothing"),
 ):
     """Measure time by stage, over elements and ranks, and cases per hour."""

@@ -50,7 +50,7 @@ def bench(full, with_cold, environment, report):
     """All measurements.
 
     Args:
-        full: up to 400,000 elements, which needs 12 GiB and the better part of an hour; else up to 16,000.
+        full: up to 400,000 elements, which needs 10 GiB and a quarter of an hour; else up to 16,000.
         with_cold: also time the compilers.
         environment: of the processes, from before MPI.
         report: called with the name of each measurement before it begins.
