@@ -84,7 +84,7 @@ class Analysis:
         placement = None
         if case.mesh.axis == "curved":
             placement = section_placement(self.spring, self.turns, triads(np.diff(line.stations, axis=0)), GAUSS)
-        self.rod = Rod(line, self.wire_radius, self.law, case.mesh.section.build(), placement)
+        self.rod = Rod(line, self.wire_radius, self.law, case.mesh.section.build(), placement, case.temperature)
         top = self.spring.free_length
         contacts = build_contacts(case, self.spring, self.turns, line.stations, self.law.E)
         self.system = System(self.rod, contacts, seats=(0.0, top))

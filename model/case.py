@@ -93,6 +93,9 @@ class Case(Strict):
 
     spring: SpringEntry
     material: Annotated[str, Field(description="name in the library, or path of a material file")] = "ck15"
+    temperature: Annotated[
+        float | None, Field(gt=0, description="of the spring throughout, K; default: the material file's first")
+    ] = None
     ends: Annotated[Literal["seats", "clamped"], Field(description="seats or clamped")] = "seats"
     seats: SeatsSpec = SeatsSpec()
     mesh: MeshSpec = MeshSpec()

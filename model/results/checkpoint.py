@@ -15,7 +15,8 @@ from coilset.model.results.folder import whole
 from coilset.model.results.seats import Resultants
 
 NODAL, CELLWISE = ("x", "R"), ("chord", "shear", "strain", "history")
-SPRING_ENTRIES = ("spring", "material", "ends", "seats", "mesh", "contact")  # what must be the same to go on
+# what must be the same to go on
+SPRING_ENTRIES = ("spring", "material", "temperature", "ends", "seats", "mesh", "contact")
 
 
 class Checkpoint:

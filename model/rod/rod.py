@@ -39,6 +39,10 @@ class Rod:
         rule: quadrature of the wire's disk, DiskRule.
         placement: where the true sections lie in relation to the chords, `(matrices, stretch)` with shapes
             (elements, 2, 6, 6) and (elements, 2); None for straight rods.
+        temperature: of the rod, K; where plastic work heats it, at the start. None: the material's first.
+
+    Raises:
+        InputError: if the temperature lies outside the material's table.
 
     Attributes:
         x, chord, R, shear, strain, history: trial state of the local nodes and owned cells; x in mm, strain shape
@@ -46,10 +50,10 @@ class Rod:
         equilibrium: the same at the last equilibrium, a dict.
     """
 
-    def __init__(self, line, radius, law, rule, placement=None):
+    def __init__(self, line, radius, law, rule, placement=None, temperature=None):
         self.line, self.law, self.rule = line, law, rule
         mesh, n = line.mesh, line.owned_cells
-        self.mesh, self.parameters = mesh, law.parameters()
+        self.mesh, self.parameters = mesh, law.parameters(temperature)
         element = line.element[:n]
         self.radius = np.ascontiguousarray(np.asarray(radius, float)[element])
         self.placement, self.stretch = STRAIGHT, STRAIGHT_STRETCH
@@ -80,7 +84,7 @@ class Rod:
         self.forms = forms.RodForms(mesh, self.V, *(field.function for field in fields))
         self._residual = fem.form(self.forms.residual)
         self._tangent = fem.form(self.forms.material_stiffness + self.forms.frame_stiffness)
-        self._start(x)
+        self._start(x, temperature)
 
     def _number_dofs(self):
         """Local dofs of the nodes' displacements and turns, shape (nodes, 3), and of the cells' shear angles."""
@@ -92,7 +96,7 @@ class Rod:
             self.turn_dofs[geometry.dofmap, i] = nodal.sub(i + 3).dofmap.list
         self.shear_dofs = np.stack([shear.sub(i).dofmap.list[: self.line.owned_cells, 0] for i in range(2)], axis=1)
 
-    def _start(self, x):
+    def _start(self, x, temperature):
         """The stress-free state."""
         n, points = len(self.cells), len(self.rule)
         self.x = x  # the mesh's own coordinates: the forms are integrated on the current configuration
@@ -101,7 +105,7 @@ class Rod:
         self.chart = np.tile(np.eye(3), (len(x), 1, 1))
         self.shear = np.zeros((n, 2))
         self.strain = self.e.values
-        self.history = np.tile(initial_state(self.law, 1), (n, 2, points, 1))
+        self.history = np.tile(initial_state(self.law, 1, temperature=temperature), (n, 2, points, 1))
         self.equilibrium = {}
         self.commit()
         self.update()
