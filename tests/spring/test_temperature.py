@@ -12,11 +12,7 @@ from coilset.model.errors import InputError
 COLD = {"elasticity": {"G": 80000.0, "nu": 0.3}, "isotropic": {"k0_squared": 1.2e5, "a1": 0.0, "a2": 0.0, "a3": 1.0}}
 HOT = {"elasticity": {"G": 70000.0, "nu": 0.3}, "isotropic": {"k0_squared": 0.5e5, "a1": 0.0, "a2": 0.0, "a3": 1.0}}
 PROGRAM = "loading=[{to: {travel: 15}, steps: 4}, {to: {force: 0}, steps: 2}]"
-COARSE = [
-    "ends=clamped",
-    "mesh.elements_per_turn=8",
-    "loading=[{to: {travel: 15}, steps: 4}, {to: {force: 0}, steps: 2}]",
-]
+COARSE = ["ends=clamped", "mesh.elements_per_turn=8", "contact.bedding=2000", PROGRAM]  # default bedding: cold E/40
 
 
 @pytest.fixture
@@ -27,7 +23,8 @@ def make(example, tmp_path):
         rest = {"kinematic": "none", "non_normality": "none"}
         data = {
             "name": "synthetic", "description": "ideal plastic", "source": "made for this test", "units": "N, mm, K",
-            "validity": {"plastic_work": 100, "remark": "none"}, "temperatures": [{"temperature": t} | c | rest for t, c in table],
+            "validity": {"plastic_work": 100, "remark": "none"},
+            "temperatures": [{"temperature": t} | constants | rest for t, constants in table],
         }  # fmt: skip
         file = tmp_path / f"material{len(table)}.yaml"
         file.write_text(yaml.safe_dump(data))
