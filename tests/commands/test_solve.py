@@ -123,3 +123,10 @@ def test_an_impossible_target_keeps_the_results_and_ends_with_3(example, tmp_pat
     summary = json.loads((tmp_path / "results" / "case" / "summary.json").read_text())
     assert not summary["complete"]
     assert summary["steps"] >= 2
+
+
+def test_a_misspelt_entry_is_named_and_not_the_one_that_is_missing(example, tmp_path):
+    file = tmp_path / "case.yaml"
+    file.write_text(example.read_text().replace("wire_diameter:", "wire_diamter:"))
+    with pytest.raises(InputError, match="wire_diamter: unknown entry; is wire_diameter meant"):
+        read_case(file)
