@@ -191,7 +191,8 @@ def _index(data, part, place):
 def explain(error):
     """Place and problem of a pydantic error, in one line: the value that was given, and what would be right."""
     found = error.errors()
-    first = next((one for one in found if one["type"] == "extra_forbidden"), found[0])  # else it is just missing
+    # a misspelt entry first: the one that it was meant for is reported as missing besides
+    first = next((one for one in found if one["type"] == "extra_forbidden"), found[0])
     # names of the alternatives that pydantic tried are no entries of the file: `target`, `block`, `(number)`
     parts = [str(part) for part in first["loc"]]
     place = ".".join(part for part in parts if part not in ("target", "block") and not part.startswith("("))
