@@ -39,7 +39,15 @@ def station_moments(parts, charts):
     for part in parts:
         on_turns = part.dofs >= first
         np.subtract.at(moment, part.dofs[on_turns] - first, part.forces[on_turns])
+    if not moment.any():
+        return moment.reshape(n, 3)
     return np.linalg.solve(np.swapaxes(charts, 1, 2), moment.reshape(n, 3, 1))[..., 0]
+
+
+def levers(x, forces):
+    """Σ x × f, from the matrix Σ x fᵀ; shapes (n, 3) each."""
+    C = x.T @ forces
+    return np.array([C[1, 2] - C[2, 1], C[2, 0] - C[0, 2], C[0, 1] - C[1, 0]])
 
 
 @dataclass(frozen=True)
@@ -53,14 +61,14 @@ class Wrench:
     def of(cls, forces, x, moments=0.0):
         """The resultant of `forces` and `moments`, shape (n, 3), at the points `x`, shape (n, 3), mm."""
         turning = np.broadcast_to(moments, np.shape(forces))
-        return cls(np.sum(forces, axis=0), np.sum(np.cross(x, forces) + turning, axis=0))
+        return cls(np.sum(forces, axis=0), levers(x, forces) + np.sum(turning, axis=0))
 
     def __add__(self, other):
         return Wrench(self.force + other.force, self.moment + other.moment)
 
     def about(self, point):
         """Moment about another point, shape (3,), N mm."""
-        return self.moment - np.cross(point, self.force)
+        return self.moment - levers(point[None], self.force[None])
 
     def crossing(self, point):
         """Where the resultant crosses the plane z = const through `point`, relative to it.
