@@ -102,7 +102,7 @@ def test_rank_correlation_sees_monotone_and_constant_inputs():
         ({"vary": {"a": {"from": 1, "to": 2}}}, "vary.a: a grid needs 'count'"),
         ({"vary": {"a": {"from": 2, "to": 1, "count": 3}}}, "'from' must be the smaller one"),
         ({"vary": {"a": {"mean": 1, "tolerance": 0.1}}}, "a scatter has no grid"),
-        ({"vary": {"a": {"mean": 1, "tolerence": 0.1}}}, "vary.a.tolerance: this entry is required"),
+        ({"vary": {"a": {"mean": 1, "tolerence": 0.1}}}, "vary.a.tolerence: unknown entry; is tolerance meant?"),
         ({"vary": {"a": {"from": 0, "to": 1, "count": 3, "spacing": "log"}}}, "equal ratios need a positive start"),
         ({"vary": {"a": [1, 2], "b": [1]}, "design": "together"}, "as many values, not a 2, b 1"),
         ({"vary": {"a": [1, 2]}, "design": "latin_hypercube"}, "latin_hypercube needs 'samples'"),
