@@ -189,14 +189,13 @@ class System:
         if self.comm.size > 1:
             moved = self.comm.bcast(moved, root=self.comm.size - 1)
         self.seats = self.seats_start + moved
-        good = self.rod.update()
-        if self.comm.size > 1:
-            good = self.comm.allreduce(int(good)) == self.comm.size
-        self._touch(good)
-        return good
+        self._touch(self.rod.update())
+        return not self.failed
 
     def _touch(self, good):
-        """Evaluate the contacts at the rod's trial state, if stresses were found for it."""
+        """Evaluate the contacts at the rod's trial state, if stresses were found for it on every rank."""
+        if self.comm.size > 1:
+            good = self.comm.allreduce(int(good)) == self.comm.size
         self.contributions, self.failed = [], not good
         if self.contacts and good:
             x, turns = self.gather(self.rod.x), ()
@@ -217,7 +216,6 @@ class System:
 
     def restore(self):
         """Go back to the last equilibrium."""
-        self._evaluated = None
         self.seats = self.seats_start.copy()
         self.forget()
         self._touch(self.rod.restore())
@@ -277,9 +275,7 @@ class System:
 
     def value(self, vector, dof):
         """One entry of a vector of the system, on every rank."""
-        start, stop = vector.getOwnershipRange()
-        mine = vector.getArray(readonly=True)[dof - start] if start <= dof < stop else 0.0
-        return self.comm.allreduce(mine) if self.comm.size > 1 else float(mine)
+        return float(self.values(vector, dof))
 
     def values(self, vector, dofs):
         """Entries of a vector of the system at `dofs`, in their shape, on every rank."""
