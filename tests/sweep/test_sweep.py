@@ -123,13 +123,18 @@ def gone(pid):
         return True
 
 
+def begun(path, out, records, stdout):
+    """A sweep on one worker that has so many records behind it: its process, its workers' numbers, its journal."""
+    journal = out / "journal.jsonl"
+    leader = subprocess.Popen(command(path, out, "--jobs", "1"), stdout=stdout)
+    wait_until(lambda: journal.exists() and journal.read_bytes().count(b"\n") >= records)
+    return leader, workers_of(leader.pid), journal
+
+
 def test_kill_and_resume_lose_nothing_and_repeat_nothing(write_sweep, tmp_path):
     path = write_sweep("vary: {spring.wire_diameter: {from: 4, to: 5, count: 12}}")
     out = tmp_path / "out"
-    journal = out / "journal.jsonl"
-    leader = subprocess.Popen(command(path, out, "--jobs", "1"), stdout=subprocess.DEVNULL)
-    wait_until(lambda: journal.exists() and journal.read_bytes().count(b"\n") >= 3)
-    workers = workers_of(leader.pid)
+    leader, workers, journal = begun(path, out, 3, subprocess.DEVNULL)
     leader.send_signal(signal.SIGKILL)
     leader.wait()
     wait_until(lambda: all(gone(pid) for pid in workers))
@@ -150,10 +155,7 @@ def test_kill_and_resume_lose_nothing_and_repeat_nothing(write_sweep, tmp_path):
 def test_ctrl_c_keeps_what_has_ended(write_sweep, tmp_path):
     path = write_sweep("vary: {spring.wire_diameter: {from: 4, to: 5, count: 200}}")
     out = tmp_path / "out"
-    journal = out / "journal.jsonl"
-    leader = subprocess.Popen(command(path, out, "--jobs", "1"), stdout=subprocess.PIPE)
-    wait_until(lambda: journal.exists() and journal.read_bytes().count(b"\n") >= 2)
-    workers = workers_of(leader.pid)
+    leader, workers, journal = begun(path, out, 2, subprocess.PIPE)
     leader.send_signal(signal.SIGINT)
     said = leader.communicate(timeout=30)[0]
     assert leader.returncode == 130
