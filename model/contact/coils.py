@@ -135,7 +135,7 @@ class Coils:
 
     def augment(self, x, seats):
         """Press each point by as much more as it has sunk in."""
-        lift = self.memory["lift"]
+        lift = self.memory["lift"].copy()
         pair, where, _ = self.near(x, lift.max())
         sides, self.memory["lift"] = self.sides(pair), np.zeros_like(lift)
         np.maximum.at(self.memory["lift"], sides, lift[sides] - where[:, 1])

@@ -71,7 +71,7 @@ class Friction:
         """Tractions and their derivative at station positions, seats, and turns since the last equilibrium, (n, 3)."""
         at, dofs, constants = self.touching(x, seats)
         u = np.concatenate([x.ravel(), seats, turns.ravel()])[dofs]
-        constants = [self.memory.committed["traction"][at], *constants]
+        constants = [self.memory.committed("traction")[at], *constants]
         force, traction = self.forces(u, *constants)
         m, k = u.shape
         moved = u + 1j * STEP * np.eye(k)[:, None]  # one variable after the other, for all elements at once
@@ -101,9 +101,9 @@ class SeatFriction(Friction):
         i = np.flatnonzero(seat.gaps(points.at(x), seats) < seat.memory["lift"])
         turns = self.turning + points.dofs[i]
         plate = np.broadcast_to(seat.plate.dofs, (len(i), SEAT_DOFS))
-        start = self.memory.committed
-        q0 = seat.plate.sees(points.at(start["x"])[i], start["seats"])
-        θ0 = np.broadcast_to(start["seats"][seat.plate.own][3:], q0.shape)
+        seats0 = self.memory.committed("seats")
+        q0 = seat.plate.sees(points.at(self.memory.committed("x"))[i], seats0)
+        θ0 = np.broadcast_to(seats0[seat.plate.own][3:], q0.shape)
         return (i,), np.hstack([points.dofs[i], plate, turns]), (i, q0, θ0)
 
     def forces(self, u, before, i, q0, θ0):
@@ -160,7 +160,7 @@ class CoilFriction(Friction):
         pair, where, lift, _ = coils.pressed(x)
         i, e = pair[:, 0], pair[:, 1]
         dofs = np.hstack([points.dofs[i], line.dofs[e]])
-        start = self.memory.committed["x"]
+        start = self.memory.committed("x")
         at = coils.sides(pair)
         shift = coils.overlap[at] + lift
         x0, y0 = start[points.stations[i]], start[line.stations[e]]
