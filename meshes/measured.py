@@ -10,8 +10,9 @@ from pydantic import Field, ValidationInfo, field_validator
 from coilset.meshes import functions
 from coilset.meshes.checks import refuse
 from coilset.meshes.ends import OPEN, Ends, bottom_and_top
+from coilset.meshes.entry import Strict
 from coilset.meshes.geometry import Spring
-from coilset.meshes.shapes import Entry, Length
+from coilset.meshes.shapes import Length
 from coilset.model.errors import InputError
 
 LEAST_POINTS = 5
@@ -19,7 +20,7 @@ WIDEST_STEP = 1 / 3  # of a turn between neighbouring points
 WIRE_DIAMETER = "wire_diameter"
 
 
-class MeasuredSpec(Entry):
+class MeasuredSpec(Strict):
     """A spring whose centre line was measured. The file's z axis is the axis of the spring, lengths in mm.
 
     The points become mean radius and height over the polar angle, which the cubic spline joins: a helix stays exactly

@@ -3,9 +3,10 @@
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from coilset.meshes import functions
+from coilset.meshes.entry import Strict
 
 SHORTEST, LONGEST = 1e-3, 1e5  # mm
 CLOSEST = 1e-3  # turns
@@ -21,13 +22,7 @@ Length = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True), AfterVa
 Turn = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
 
 
-class Entry(BaseModel):
-    """A part of the case file: unknown keys are refused, values do not change."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Table(Entry):
+class Table(Strict):
     """Values at chosen turns, the first at turn 0 and the last at the last turn."""
 
     turns: Annotated[tuple[Turn, ...], Field(min_length=2, description="turns from the bottom end, increasing")]
@@ -54,7 +49,7 @@ class Table(Entry):
         return functions.tabulated(np.array([*self.turns[:-1], turns]), np.array(self.values), self.interpolation)
 
 
-class Cylinder(Entry):
+class Cylinder(Strict):
     """The same diameter at every turn."""
 
     shape: Literal["cylinder"]
@@ -65,7 +60,7 @@ class Cylinder(Entry):
         return functions.constant(self.diameter, turns)
 
 
-class Cone(Entry):
+class Cone(Strict):
     """A diameter that changes by the same amount every turn."""
 
     shape: Literal["cone"]
@@ -77,7 +72,7 @@ class Cone(Entry):
         return functions.polynomial([self.bottom, (self.top - self.bottom) / turns], 0.0, turns)
 
 
-class Funnel(Entry):
+class Funnel(Strict):
     """A cone on the bottom end that goes on as a cylinder (the funnel's neck) to the top end."""
 
     shape: Literal["funnel"]
@@ -94,7 +89,7 @@ class Funnel(Entry):
                                    np.array([self.bottom, self.neck, self.neck]), "linear")
 
 
-class _Waisted(Entry):
+class _Waisted(Strict):
     ends: Annotated[Length, Field(description="mean coil diameter at both ends, mm")]
     middle: Annotated[Length, Field(description="mean coil diameter at half of the turns, mm")]
 
@@ -151,7 +146,7 @@ def form_of_entry(value: Any) -> str:
     """Tag of the form of an entry; tags are in brackets because they are no part of its place in the case file."""
     if isinstance(value, dict):
         return f"({value['shape']})" if "shape" in value else "(table)"
-    if isinstance(value, Entry):
+    if isinstance(value, Strict):
         return f"({getattr(value, 'shape', 'table')})"
     return "(number)"
 

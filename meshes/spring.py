@@ -9,15 +9,16 @@ from scipy.optimize import brentq
 from coilset.meshes import functions
 from coilset.meshes.checks import refuse
 from coilset.meshes.ends import OPEN, Ends, bottom_and_top, pitch_with_ends, touching_pitch
+from coilset.meshes.entry import Strict
 from coilset.meshes.geometry import Spring
 from coilset.meshes.measured import MeasuredSpec
-from coilset.meshes.shapes import DiameterProfile, Entry, Length, Profile, profile_function
+from coilset.meshes.shapes import DiameterProfile, Length, Profile, profile_function
 from coilset.model.errors import InputError
 
 __all__ = ["MeasuredSpec", "Spring", "SpringEntry", "SpringSpec"]
 
 
-class SpringSpec(Entry):
+class SpringSpec(Strict):
     """A spring as on a drawing: three lengths over the turns, hand and ends. Lengths in mm."""
 
     wire_diameter: Annotated[Profile, Field(description="wire diameter, mm; a number or a table over the turns")]

@@ -3,9 +3,9 @@
 import yaml
 from pydantic import ValidationError
 
-from coilset.model.case import explain
+from coilset.model.case.entry import explain
+from coilset.model.case.phases import Phase
 from coilset.model.errors import InputError
-from coilset.model.loading.program import Phase
 
 HELP = """\
 Enter            the next step

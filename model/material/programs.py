@@ -14,7 +14,7 @@ import yaml
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from coilset.model.errors import InputError, SolveError
-from coilset.model.material.law import first_problem
+from coilset.model.material.file import first_problem
 from coilset.model.material.points import initial_state, update
 
 STRAINS = {

@@ -6,7 +6,9 @@ import json
 from functools import lru_cache
 from pathlib import Path
 
-from coilset.model.case import check, put, read_data
+from coilset.model.case import check
+from coilset.model.case.settings import put
+from coilset.model.case.yaml import read_data
 from coilset.model.errors import InputError
 from coilset.model.material import library
 from coilset.model.sweep.design import rows

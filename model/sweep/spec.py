@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 from scipy import stats
 
-from coilset.model.loading.program import Strict
+from coilset.model.case.entry import Strict
 
 
 class Input(Strict):

@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from coilset.model.errors import InputError
-from coilset.model.material.law import read
+from coilset.model.material.file import read
+from coilset.model.material.law import Law
 
 FOLDER = Path(__file__).parent
 
@@ -28,8 +29,9 @@ def load(name, **options):
     """
     name = str(name)
     if name.endswith((".yaml", ".yml")):
-        return read(name, **options)
+        return Law(read(name), file=name, **options)
     if name not in names():
         known = ", ".join(names())
         raise InputError(f"'{name}' is no material of the library ({known}) and no .yaml file", "material")
-    return read(FOLDER / f"{name}.yaml", **options)
+    path = FOLDER / f"{name}.yaml"
+    return Law(read(path), file=path, **options)

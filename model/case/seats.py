@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from coilset.model.loading.program import Strict
+from coilset.model.case.entry import Strict
 
 Stiffness = Annotated[float, Field(gt=0)]
 FREEDOMS = {"sideways": (0, 1), "tilt": (3, 4), "turn": (5,)}  # degrees of freedom of a seat

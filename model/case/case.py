@@ -1,17 +1,18 @@
 """The case file: one YAML file that names a spring, its material, its ends, its mesh and its load program."""
 
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Literal
 
-import yaml
 from pydantic import Field, ValidationError, model_validator
 
 from coilset.meshes.spring import SpringEntry
 from coilset.meshes.stations import ElementsPerTurn
-from coilset.model.contact.spec import SeatsSpec
+from coilset.model.case.entry import Strict, explain
+from coilset.model.case.phases import Phase
+from coilset.model.case.seats import SeatsSpec
+from coilset.model.case.settings import assign
+from coilset.model.case.yaml import read_data
 from coilset.model.errors import InputError
-from coilset.model.loading.program import Phase, Strict
 from coilset.model.section import rules
 from coilset.model.solvers.methods import METHODS
 
@@ -116,126 +117,6 @@ class Case(Strict):
         return self
 
 
-class _Loader(yaml.SafeLoader):
-    """Safe YAML that refuses an entry given twice."""
-
-    def construct_mapping(self, node, deep=False):
-        seen = set()
-        for key, _ in node.value:
-            if not isinstance(key, yaml.ScalarNode):
-                raise yaml.MarkedYAMLError(problem="an entry's name must be a word", problem_mark=key.start_mark)
-            if key.value in seen:
-                problem = f"the entry '{key.value}' is given twice"
-                raise yaml.MarkedYAMLError(problem=problem, problem_mark=key.start_mark)
-            seen.add(key.value)
-        return super().construct_mapping(node, deep)
-
-
-def load_yaml(text, file):
-    """Parse YAML safely; InputError with line and column if that fails."""
-    try:
-        return yaml.load(text, Loader=_Loader)
-    except yaml.MarkedYAMLError as error:
-        mark = error.problem_mark
-        place = f"line {mark.line + 1}, column {mark.column + 1}" if mark else ""
-        raise InputError(f"not readable as YAML: {error.problem}", place, file) from None
-    except yaml.YAMLError as error:
-        raise InputError("not readable as YAML: " + " ".join(str(error).split()), "", file) from None
-
-
-def assign(data, setting):
-    """Carry out one `--set key=value` on nested data; the value is read as YAML.
-
-    Raises:
-        InputError: if the setting has no `=`, or its path leads through something that has no entries.
-    """
-    path, equals, text = setting.partition("=")
-    place = f"--set {setting}"
-    if not equals or not path:
-        raise InputError("give it as key=value, as in mesh.elements_per_turn=32", place)
-    put(data, path, load_yaml(text, place), place)
-
-
-def put(data, path, value, place):
-    """Replace the entry at `path`, such as `loading.0.steps`, in nested data; `place` is where the user asked for it.
-
-    Raises:
-        InputError: if the path leads through something that has no entries.
-    """
-    *parents, last = path.split(".")
-    for part in parents:
-        data = _entry(data, part, place)
-    if isinstance(data, list):
-        data[_index(data, last, place)] = value
-    else:
-        data[last] = value
-
-
-def _entry(data, part, place):
-    if isinstance(data, list):
-        return data[_index(data, part, place)]
-    child = data.setdefault(part, {})
-    if child is None:
-        child = data[part] = {}
-    if not isinstance(child, (dict, list)):
-        raise InputError(f"'{part}' is {child!r} and has no entries of its own", place)
-    return child
-
-
-def _index(data, part, place):
-    if not part.isdigit() or int(part) >= len(data):
-        raise InputError(f"'{part}' is not an entry of this list; give a number from 0 to {len(data) - 1}", place)
-    return int(part)
-
-
-def explain(error):
-    """Place and problem of a pydantic error, in one line: the value that was given, and what would be right."""
-    found = error.errors()
-    # a misspelt entry first: the one that it was meant for is reported as missing besides
-    first = next((one for one in found if one["type"] == "extra_forbidden"), found[0])
-    # names of the alternatives that pydantic tried are no entries of the file: `target`, `block`, `(number)`
-    parts = [str(part) for part in first["loc"]]
-    place = ".".join(part for part in parts if part not in ("target", "block") and not part.startswith("("))
-    given = "" if first["type"] in ("missing", "value_error") else f"{first['input']!r}: "
-    message = first["msg"].removeprefix("Value error, ")
-    if first["type"] == "extra_forbidden":
-        missing = [one["loc"][-1] for one in found if one["type"] == "missing" and one["loc"][:-1] == first["loc"][:-1]]
-        near = get_close_matches(str(first["loc"][-1]), map(str, missing), 1)
-        message, given = f"unknown entry; is {near[0]} meant?" if near else "unknown entry; is it misspelt?", ""
-    elif first["type"] == "missing":
-        message = "this entry is required"
-    more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
-    return place, f"{given}{message}{more}"
-
-
-def read_data(path, settings=(), kind="a case file holds entries such as spring:, material: and loading:"):
-    """Read a YAML file of entries, unchecked.
-
-    Args:
-        path: the YAML file.
-        settings: texts `key=value` that replace entries of the file.
-        kind: what such a file holds, for a file that is no mapping.
-
-    Returns:
-        dict.
-
-    Raises:
-        InputError: if it cannot be read.
-    """
-    path = Path(path)
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is not a text file"
-        raise InputError(f"the file cannot be read: {reason}", "", path) from None
-    data = load_yaml(text, path)
-    if not isinstance(data, dict):
-        raise InputError(kind, "", path)
-    for setting in settings:
-        assign(data, setting)
-    return data
-
-
 def check(data, file="", model=Case):
     """The checked Case (or other `model`) of raw data.
 
@@ -263,4 +144,7 @@ def read_case(path, settings=()):
     Raises:
         InputError: one line with file, place, value and what would be right.
     """
-    return check(read_data(path, settings), path)
+    data = read_data(path)
+    for setting in settings:
+        assign(data, setting)
+    return check(data, path)
