@@ -49,7 +49,6 @@ class Prompt:
             InputError, ValueError: if it is wrong; nothing was changed.
             KeyboardInterrupt: for `stop`.
         """
-        stepper = self.analysis.stepper
         if word == "run":
             self.free = True
         elif word == "stop":
@@ -58,11 +57,11 @@ class Prompt:
             size = float(rest)
             if not 0.0 < size <= 1000.0:
                 raise ValueError("a size is a number above 0, in regular steps")
-            stepper.resize(size)
+            self.analysis.continuation.resize(size)
         elif word == "method":
-            self.analysis.solver.use(rest)
+            self.analysis.use_method(rest)
         elif word == "to":
-            stepper.redirect(parse_phase(rest))
+            self.analysis.program.redirect(self.analysis.stage(parse_phase(rest)))
         else:
             self.say(HELP)
 

@@ -12,9 +12,10 @@ from coilset.model.case.phases import Phase
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.case.settings import assign
 from coilset.model.case.yaml import read_data
+from coilset.model.equilibrium.control import NewtonControl, StepControl
+from coilset.model.equilibrium.methods import METHODS
 from coilset.model.errors import InputError
 from coilset.model.section import rules
-from coilset.model.solvers.methods import METHODS
 
 
 class SectionSpec(Strict):
@@ -79,6 +80,13 @@ class ContactSpec(Strict):
         return self
 
 
+class ControlSpec(Strict):
+    """Every number that steers the iteration and the steps."""
+
+    newton: Annotated[NewtonControl, Field(description="how one step is solved")] = NewtonControl()
+    steps: Annotated[StepControl, Field(description="how steps follow each other")] = StepControl()
+
+
 class SolverSpec(Strict):
     """How equilibrium is found."""
 
@@ -88,6 +96,7 @@ class SolverSpec(Strict):
         dict[Annotated[str, Field(pattern="^[a-z]\\w*$")], bool | int | float | str | None],
         Field(default_factory=dict, description="any PETSc options, without the leading hyphen; they win"),
     ]
+    control: ControlSpec = ControlSpec()
 
 
 class Case(Strict):

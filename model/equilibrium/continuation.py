@@ -136,6 +136,10 @@ class Continuation:
         """Stand at the start of a path."""
         self.position, self._attempts = Position(), 0
 
+    def resize(self, size: float) -> None:
+        """Make the next step as large as `size` regular steps."""
+        self.position = replace(self.position, size=size)
+
     def advance(self, path: Path) -> tuple[Outcome, int]:
         """Take one step along a path, cut as often as need be; collective.
 

@@ -4,6 +4,15 @@ How much each of them matters is measured in docs/methods.md: each halved and do
 """
 
 from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+from pydantic import ConfigDict, Field
+
+Positive = Annotated[float, Field(gt=0)]
+Share = Annotated[float, Field(gt=0, lt=1)]
+Growth = Annotated[float, Field(ge=1)]
+Count = Annotated[int, Field(ge=1)]
+STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
 @dataclass(frozen=True)
@@ -28,21 +37,22 @@ class NewtonControl:
         contact_bisections: to find how far a correction may go.
     """
 
-    stagnation: int = 25
-    part_tolerance: float = 0.2
-    smallest_part: float = 0.1
-    augmentations: int = 40
-    accepted_work: float = 0.3
-    sought_work: float = 0.3
-    search_trials: int = 6
-    bracket_margin: float = 0.1
-    backtrack: float = 0.4
-    smallest_step_length: float = 1e-3
-    stress_backtrack: float = 0.25
-    free_penetration: float | None = None
-    penetration_growth: float = 1.5
-    smallest_contact_step: float = 0.02
-    contact_bisections: int = 6
+    __pydantic_config__: ClassVar[ConfigDict] = STRICT
+    stagnation: Count = 25
+    part_tolerance: Share = 0.2
+    smallest_part: Share = 0.1
+    augmentations: Count = 40
+    accepted_work: Share = 0.3
+    sought_work: Share = 0.3
+    search_trials: Count = 6
+    bracket_margin: Share = 0.1
+    backtrack: Share = 0.4
+    smallest_step_length: Share = 1e-3
+    stress_backtrack: Share = 0.25
+    free_penetration: Positive | None = None
+    penetration_growth: Growth = 1.5
+    smallest_contact_step: Share = 0.02
+    contact_bisections: Count = 6
 
 
 @dataclass(frozen=True)
@@ -64,15 +74,16 @@ class StepControl:
         probe: travel by which the initial rate is measured, in free lengths.
     """
 
-    smallest: float = 2.0**-10
-    attempts: int = 40
-    spare_attempts: int = 200
-    automatic: int = 16
-    easy: int = 5
-    hard: int = 10
-    growth: float = 1.5
-    shrinkage: float = 0.7
-    largest: float = 2.0
-    cut: float = 0.5
-    regrowth: float = 2.0
-    probe: float = 1e-3
+    __pydantic_config__: ClassVar[ConfigDict] = STRICT
+    smallest: Share = 2.0**-10
+    attempts: Count = 40
+    spare_attempts: Annotated[int, Field(ge=0)] = 200
+    automatic: Count = 16
+    easy: Count = 5
+    hard: Count = 10
+    growth: Growth = 1.5
+    shrinkage: Share = 0.7
+    largest: Growth = 2.0
+    cut: Share = 0.5
+    regrowth: Growth = 2.0
+    probe: Share = 1e-3

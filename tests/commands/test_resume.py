@@ -117,7 +117,7 @@ def test_every_step_can_be_the_last_one_before_a_crash(example, tmp_path):
     resumed.run()
     assert resumed.result.steps == whole.result.steps
     np.testing.assert_array_equal(resumed.rod.x, whole.rod.x)
-    np.testing.assert_array_equal(resumed.rod.history, whole.rod.history)
+    np.testing.assert_array_equal(resumed.rod.point_state, whole.rod.point_state)
 
 
 def test_a_kill_while_writing_leaves_the_checkpoint_before(example, tmp_path, monkeypatch):

@@ -29,7 +29,7 @@ def test_penetration_is_as_small_as_asked_for_whatever_the_bedding():
     for bedding in (3000.0, 1000.0):
         for penetration in (None, 5e-4):
             analysis = analyse(bedding=bedding, penetration=penetration)
-            found[bedding, penetration] = summarise(analysis, analysis.run())
+            found[bedding, penetration] = summarise(analysis.setup, analysis.run())
             deepest = max(step.penetration_mm for step in analysis.result.steps)
             assert deepest <= 5e-4 if penetration else deepest > 0.01
     soft, hard = found[1000.0, None], found[3000.0, None]

@@ -163,9 +163,9 @@ def test_a_rod_that_may_turn_rolls_instead_of_sliding():
     """Drawn across by s it turns by s/r about its axis, to second order in a step of 0.02 rad, and needs no force."""
     frame = block((0, 4, 5))
     drawn, way = [frame.dof(node, 1) for node in range(NODES)], 0.04
-    before = frame.system.gather(frame.rod.R).copy()
+    before = frame.layout.gather(frame.rod.R).copy()
     assert frame.step(moves=dict.fromkeys(drawn, way), forces=frame.press).converged
-    turn = frame.system.gather(frame.rod.R) @ np.swapaxes(before, 1, 2)
+    turn = frame.layout.gather(frame.rod.R) @ np.swapaxes(before, 1, 2)
     angle = 0.5 * (turn[:, 2, 1] - turn[:, 1, 2])
     np.testing.assert_allclose(angle, -way / RADIUS, rtol=1e-3)  # to +y the underside stays behind
     assert abs(sum(frame.force(dof) for dof in drawn)) < 1e-6 * MU * LOAD * NODES
@@ -204,7 +204,7 @@ def test_friction_is_in_balance_and_part_of_the_state(tmp_path):
     """Every cut through the wire is in balance to 1e-8 of force and force times diameter; resumed runs agree."""
     friction = {"seats": 0.2, "coils": 0.2}
     whole, lacks = analyse(friction), []
-    whole.run(lambda step: lacks.append(imbalance(whole)))
+    whole.run(lambda step: lacks.append(imbalance(whole.snapshot("now"), whole.system, whole.control)))
     greatest = max(step.force_N for step in whole.result.steps)
     force, moment = np.max(lacks, axis=0)
     assert force < 1e-8 * greatest

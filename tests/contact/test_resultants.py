@@ -25,7 +25,7 @@ def example_runs(example):
     springs = example.parent / "springs"
     for file in (example, springs / "closed_and_ground.yaml", springs / "variable_wire.yaml"):
         analysis, lacks = Analysis(read_case(file, COARSE), MPI.COMM_SELF), []
-        analysis.run(lambda step, analysis=analysis, lacks=lacks: lacks.append(imbalance(analysis)))
+        analysis.run(lambda step, analysis=analysis, lacks=lacks: lacks.append(imbalance(analysis.snapshot("now"), analysis.system, analysis.control)))
         found[file.stem] = analysis, np.array(lacks)
     return found
 
@@ -68,7 +68,7 @@ def test_what_one_seat_does_the_other_undoes(example_runs):
 def test_pressure_adds_up_to_the_force(example_runs, tmp_path):
     """On level seats the pressure, times the length each point bears with, is the axial force while the tip bears."""
     analysis, _ = example_runs["closed_and_ground"]
-    data, seat = pressure_along_wire(analysis), analysis.system.contacts[1]
+    data, seat = pressure_along_wire(analysis.setup, analysis.result), analysis.system.contacts[1]
     assert list(data.contact.values) == ["coils", "bottom seat", "top seat"]
     place = np.searchsorted(seat.points.turns, data.wire_turn.values)
     lengths = seat.lengths[place]

@@ -52,8 +52,8 @@ def run(seats, loading=LIGHT, spring=SPRING):
     analysis = Analysis(case(seats, loading, spring), MPI.COMM_SELF)
 
     def judge(step):
-        assert imbalance(analysis)[0] < 1e-8 * step.force_N
-        assert imbalance(analysis)[1] < 1e-8 * step.force_N * spring["mean_diameter"]
+        assert imbalance(analysis.snapshot("now"), analysis.system, analysis.control)[0] < 1e-8 * step.force_N
+        assert imbalance(analysis.snapshot("now"), analysis.system, analysis.control)[1] < 1e-8 * step.force_N * spring["mean_diameter"]
 
     return analysis, analysis.run(judge)
 
@@ -108,7 +108,7 @@ def test_a_cone_moves_the_end_coil_towards_or_off_the_axis():
     for angle in (-20, 0, 20):
         seat = {"shape": "conical", "angle": angle} if angle else {}
         analysis, _ = run({"bottom": seat})
-        end_coil = analysis.system.gather(analysis.rod.x)[1:14]
+        end_coil = analysis.layout.gather(analysis.rod.x)[1:14]
         radius[angle] = np.hypot(*end_coil[:, :2].T).mean()
     assert radius[20] < radius[0] - 1e-3
     assert radius[0] + 1e-3 < radius[-20]

@@ -37,7 +37,7 @@ def test_finite_rigid_motion_leaves_no_stress(rod):
     R = Rotation.from_rotvec(E @ turn).as_matrix()
     shift, chord = E @ np.array([100.0, -20.0, 7.0]), LENGTH * AXIS
     put(rod, E.T @ shift, turn, E.T @ (shift + R @ chord - chord), turn)
-    assert np.abs(rod.history).max() < 1e-9
+    assert np.abs(rod.point_state).max() < 1e-9
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ def final(example, ends, method):
     analysis = Analysis(read_case(example, [*COARSE, f"ends={ends}", f"solver.method={method}"]), MPI.COMM_SELF)
     result = analysis.run()
     assert [step.cuts for step in result.steps] == [0] * 14
-    return result.snapshots[-1].history[..., :3], result.snapshots[-1].x
+    return result.snapshots[-1].point_state[..., :3], result.snapshots[-1].x
 
 
 @pytest.fixture(scope="module", params=["clamped", "seats"])

@@ -34,8 +34,8 @@ def apart(found, expected):
             stresses, forces = slice(0, 6), slice(0, 3)
             differences[shot.name] = {
                 "position": relative(shot.x, other.x),
-                "stress": relative(shot.history[..., stresses], other.history[..., stresses]),
-                "plastic work": relative(shot.history[..., 6], other.history[..., 6]),
+                "stress": relative(shot.point_state[..., stresses], other.point_state[..., stresses]),
+                "plastic work": relative(shot.point_state[..., 6], other.point_state[..., 6]),
                 "forces": relative(shot.resultants[..., forces], other.resultants[..., forces]),
                 "moments": relative(shot.resultants[..., 3:], other.resultants[..., 3:]),
             }

@@ -52,7 +52,7 @@ def test_cases_are_those_of_single_runs_and_a_wrong_spring_stops_nothing(write_s
     for k in range(2):
         analysis = Analysis(check(plan.data(plan.rows[k])), MPI.COMM_SELF)
         result = analysis.run()
-        expected = summarise(analysis, result)
+        expected = summarise(analysis.setup, result)
         for name in ("set_mm", "force_max_N", "rate_N_per_mm"):
             assert data[name].values[k] == expected[name]  # the same code on the same data: to the last bit
         curve = [step.force_N for step in result.steps]

@@ -146,7 +146,7 @@ def _torque(analysis):
 def _rod_section(analysis, snapshot):
     """Places and stresses of the middle element's section points, in the axes t, outward, t × outward."""
     middle = ROD_ELEMENTS // 2
-    radius = float(analysis.wire_radius[middle])
+    radius = float(analysis.setup.wire_radius[middle])
     E = snapshot.triads[middle]
     centre = snapshot.x[middle : middle + 2].mean(axis=0)
     outward = centre * [1.0, 1.0, 0.0]
@@ -154,6 +154,6 @@ def _rod_section(analysis, snapshot):
     outward /= np.linalg.norm(outward)
     turn = np.stack([outward, np.cross(E[:, 0], outward)]) @ E[:, 1:]  # local y, z → outward, t × outward
     places = radius * analysis.rod.rule.points @ turn.T
-    state = snapshot.history[middle].mean(axis=0)
+    state = snapshot.point_state[middle].mean(axis=0)
     stress = np.column_stack([state[:, 0], state[:, 1:3] @ turn.T])
     return {"y": places[:, 0].tolist(), "z": places[:, 1].tolist(), "stress": stress.tolist()}

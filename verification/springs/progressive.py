@@ -59,7 +59,7 @@ def solve(name):
     steps = analysis.run().steps
     force = np.array([step.force_N for step in steps])
     formula = torsion_characteristic(analysis.spring, analysis.law.G, force)
-    work = float(analysis.snapshot("end").history[..., 6].max())
+    work = float(analysis.snapshot("end").point_state[..., 6].max())
     return Characteristic(np.array([step.travel_mm for step in steps]), force, formula, work)
 
 
