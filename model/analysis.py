@@ -9,13 +9,12 @@ from coilset.meshes.line import line_mesh
 from coilset.meshes.placement import section_placement
 from coilset.model.contact.build import build_contacts
 from coilset.model.errors import SolveError
-from coilset.model.frames.rotations import triads
 from coilset.model.loading.driver import Drive
 from coilset.model.loading.stepper import Step, Stepper
 from coilset.model.material import library
 from coilset.model.problem.system import System
 from coilset.model.results.seats import Resultants, observe
-from coilset.model.rod.kinematics import GAUSS
+from coilset.model.rod.kinematics import GAUSS, chord_triads
 from coilset.model.rod.rod import Rod
 from coilset.model.solvers.solver import Solver
 
@@ -83,10 +82,11 @@ class Analysis:
         self.wire_radius = 0.5 * self.spring.wire_diameter(0.5 * (self.turns[1:] + self.turns[:-1]))
         placement = None
         if case.mesh.axis == "curved":
-            placement = section_placement(self.spring, self.turns, triads(np.diff(line.stations, axis=0)), GAUSS)
+            placement = section_placement(self.spring, self.turns, chord_triads(np.diff(line.stations, axis=0)), GAUSS)
         self.rod = Rod(line, self.wire_radius, self.law, case.mesh.section.build(), placement, case.temperature)
         top = self.spring.free_length
-        contacts = build_contacts(case, self.spring, self.turns, line.stations, self.law.E)
+        seats = case.seats if case.ends == "seats" else None
+        contacts = build_contacts(case.contact, seats, self.spring, self.turns, line.stations, self.law.E)
         self.system = System(self.rod, contacts, seats=(0.0, top))
         self.solver = Solver(self.system, case.solver.method, case.solver.tolerance, case.solver.options,
                              case.contact.penetration or np.inf)  # fmt: skip

@@ -3,8 +3,8 @@
 import numpy as np
 
 from coilset.model.contact.base import ENDS, LEVEL, SEAT_DOFS
-from coilset.model.contact.plate import turned_back
 from coilset.model.contact.seat import Seat
+from coilset.model.rotations.vectors import rotation_matrix
 
 
 class Drive:
@@ -63,8 +63,8 @@ class Drive:
 
     def tilt(self, end):
         """Angle between the axes of a seat and of the spring, rad."""
-        turn = self.system.seats[SEAT_DOFS * ENDS.index(end) :][3:SEAT_DOFS]
-        return float(np.arccos(min(1.0, turned_back(turn)[0][2, 2])))
+        axis = rotation_matrix(self.system.seats[SEAT_DOFS * ENDS.index(end) :][3:SEAT_DOFS])[:, 2]
+        return float(np.arctan2(np.hypot(axis[0], axis[1]), axis[2]))
 
     def accept(self, height, force):
         """The trial state has become the equilibrium."""

@@ -11,7 +11,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from scipy import sparse
 
-from coilset.model.contact.base import LEVEL, SEAT_DOFS
+from coilset.model.contact.base import LEVEL, SEAT_DOFS, Augmented, HasMemory, LimitsStep, TrialPositions
 
 SEATS = 2 * SEAT_DOFS  # unknowns of bottom and top seat
 DEEP = 0.02  # penetration in wire diameters that no correction need avoid; at rest it is some tenths of that
@@ -46,7 +46,8 @@ class System:
 
     def __init__(self, rod, contacts=(), seats=(0.0, 0.0)):
         self.rod, self.contacts, self.comm = rod, list(contacts), rod.mesh.comm
-        self.memories = [contact.memory for contact in self.contacts if contact.memory is not None]
+        self.memories = [contact.memory for contact in self.contacts if isinstance(contact, HasMemory)]
+        self.limiting = [contact for contact in self.contacts if isinstance(contact, LimitsStep)]
         self.seats_start = np.zeros(SEATS)
         self.seats_start[LEVEL::SEAT_DOFS] = seats
         self.seats = self.seats_start.copy()
@@ -198,12 +199,11 @@ class System:
             good = self.comm.allreduce(int(good)) == self.comm.size
         self.contributions, self.failed = [], not good
         if self.contacts and good:
-            x, turns = self.gather(self.rod.x), ()
-            if any(contact.rolls for contact in self.contacts):
-                turns = (self.gather(self.rod.increment.x.array[self.rod.turn_dofs]),)
-            self.contributions = [
-                contact.evaluate(x, self.seats, *(turns if contact.rolls else ())) for contact in self.contacts
-            ]
+            rotations = None
+            if any(contact.needs_rotations for contact in self.contacts):
+                rotations = self.gather(self.rod.increment.x.array[self.rod.turn_dofs])
+            trial = TrialPositions(self.gather(self.rod.x), self.seats, rotations)
+            self.contributions = [contact.evaluate(trial) for contact in self.contacts]
 
     def commit(self):
         """Make the trial state the equilibrium."""
@@ -229,10 +229,10 @@ class System:
     def augment(self):
         """Press contacts harder where they have sunk in (augmented Lagrange), from the next evaluation on."""
         self._evaluated = None
-        x = self.gather(self.rod.x)
+        trial = TrialPositions(self.gather(self.rod.x), self.seats)
         for contact in self.contacts:
-            if contact.memory is not None:
-                contact.augment(x, self.seats)
+            if isinstance(contact, Augmented):
+                contact.augment(trial)
 
     # ---- residual and tangent --------------------------------------------------------------------------------------
 
@@ -315,7 +315,8 @@ class System:
         if self.failed:
             return np.inf
         parts = zip(self.contacts, self.contributions, strict=False)
-        return max((part.penetration.max(initial=0.0) for contact, part in parts if contact.guarded), default=0.0)
+        found = (part.penetration.max(initial=0.0) for contact, part in parts if isinstance(contact, LimitsStep))
+        return max(found, default=0.0)
 
     def allowed_depth(self, depth):
         """Penetration up to which a correction may press, from a state with the penetration `depth`, mm."""
@@ -331,8 +332,7 @@ class System:
 
         Penetrations up to DEEP wire diameters are free; from deeper ones it goes on as long as they less than double.
         """
-        guarded = [contact for contact in self.contacts if contact.guarded]
-        if not guarded:
+        if not self.limiting:
             return 1.0
         n, start = len(self.station_dofs), self.gather(self.rod.equilibrium["x"])
         (x, seats), (u, moved) = ((values[: 6 * n].reshape(n, 6)[:, :3], values[-SEATS:])
@@ -340,7 +340,8 @@ class System:
         x, seats = start + x, self.seats_start + seats
 
         def depth(share):
-            return max(contact.depth(x + share * u, seats + share * moved) for contact in guarded)
+            trial = TrialPositions(x + share * u, seats + share * moved)
+            return max(contact.max_penetration(trial) for contact in self.limiting)
 
         allowed = self.allowed_depth(depth(0.0))
         if depth(1.0) <= allowed:

@@ -6,11 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from coilset.model.contact.base import ENDS, TOUCH
+from coilset.model.contact.base import ENDS
 from coilset.model.contact.resultants import Wrench, station_forces, station_moments
 from coilset.model.results.folder import whole
 
 FAINT = 1e-6  # axial forces below this share of the greatest one so far have no centre and load no turns
+ROUNDING = 2e-13  # axial forces below this share of E A are rounding, whatever came before
 
 
 @dataclass(frozen=True)
@@ -95,7 +96,7 @@ def observe(analysis, step):
     system, x = analysis.system, analysis.system.gather(analysis.rod.x)
     parts = list(zip(system.contacts, system.contributions, strict=True))
     greatest = max(abs(other.force_N) for other in [*analysis.result.steps, step])
-    faint = max(FAINT * greatest, TOUCH)
+    faint = max(FAINT * greatest, ROUNDING * analysis.law.E * np.pi * analysis.wire_radius.max() ** 2)
     pressure = pressures(parts)
     bearings = [bearing(analysis, end, x, parts, faint) for end in ENDS]
     active = active_turns(analysis, step.force_N) if abs(step.force_N) > faint else np.nan
@@ -123,7 +124,7 @@ def bearing(analysis, end, x, parts, faint):
     spot, length, down = np.full(2, np.nan), 0.0, 0.0
     for contact, part in parts:
         if contact.end == end and contact.points is not None:
-            bears = part.pressure > TOUCH
+            bears = part.bears
             number, wire = part.point[bears], contact.points
             points = wire.at(x)[number]
             length += float(wire.length[number].sum())
@@ -151,7 +152,7 @@ def pressures(parts):
     for kind, (contact, part) in enumerate(parts):
         if contact.points is None or not len(part.point):
             continue
-        force = np.bincount(part.point, np.where(part.pressure > TOUCH, part.pressure, 0.0), len(contact.points))
+        force = np.bincount(part.point, np.where(part.bears, part.pressure, 0.0), len(contact.points))
         bears = np.flatnonzero(force)
         halves = 1.0 if contact.end else 2.0
         rows.append(np.stack([np.full(len(bears), kind), bears, halves * force[bears] / contact.lengths[bears]], 1))

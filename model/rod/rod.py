@@ -7,10 +7,10 @@ without touching the equilibrium, `commit` makes the trial state the equilibrium
 import numpy as np
 from dolfinx import fem
 
-from coilset.model.frames.rotations import triads, turn_nodes
 from coilset.model.material.points import initial_state
 from coilset.model.rod import forms
-from coilset.model.rod.kinematics import GAUSS, section_strains
+from coilset.model.rod.kinematics import GAUSS, chord_triads, section_strains
+from coilset.model.rotations.kernels import rotate_nodes
 from coilset.model.section.update import update_sections
 
 STRAIGHT = np.eye(6)[None, None].repeat(2, axis=1)  # section placement of a straight rod
@@ -66,7 +66,7 @@ class Rod:
         self.cells = np.ascontiguousarray(mesh.geometry.dofmap[:n])
         x = mesh.geometry.x
         chords = x[self.cells[:, 1]] - x[self.cells[:, 0]]
-        self.l0, self.E0 = np.linalg.norm(chords, axis=1), triads(chords)
+        self.l0, self.E0 = np.linalg.norm(chords, axis=1), chord_triads(chords)
 
         self.xi = CellField(mesh, forms.section_element(()), (2,), n)
         self.xi.values[:] = GAUSS
@@ -121,7 +121,7 @@ class Rod:
         moved = increment[self.u_dofs]
         np.add(start["x"], moved, out=self.x)
         self.chord = start["chord"] + (moved[self.cells[:, 1]] - moved[self.cells[:, 0]])
-        turn_nodes(increment[self.turn_dofs], start["R"], self.R, self.chart)
+        rotate_nodes(increment[self.turn_dofs], start["R"], self.R, self.chart)
         self.shear = start["shear"] + increment[self.shear_dofs]
         section_strains(
             self.cells, self.chord, self.R, self.E0, self.l0, self.shear, self.share.values[:, 0], GAUSS,
