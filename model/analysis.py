@@ -25,7 +25,7 @@ from coilset.model.material import library
 from coilset.model.results.checkpoint import Saved
 from coilset.model.results.record import ContactRecord, Result, Setup, Snapshot, Step
 from coilset.model.results.seat_reactions import seat_reactions
-from coilset.model.rod.kinematics import GAUSS
+from coilset.model.rod.kinematics import GAUSS, chord_triads
 from coilset.model.rod.rod import Rod
 from coilset.model.state import State
 

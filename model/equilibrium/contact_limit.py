@@ -4,9 +4,9 @@ Bodies that a correction presses far into each other make the wire yield, which 
 penetrations up to some hundredths of the wire's diameter are free, and a deeper one may grow by a factor only.
 """
 
-import numpy as np
 from petsc4py import PETSc
 
+from coilset.model.contact.base import LimitsStep, TrialPositions
 from coilset.model.equilibrium.control import NewtonControl
 from coilset.model.equilibrium.layout import SEATS, LineLayout
 from coilset.model.equilibrium.system import System
@@ -23,7 +23,7 @@ class ContactLimit:
 
     def __init__(self, system: System, control: NewtonControl, free: float) -> None:
         self.system, self.control, self.free = system, control, free
-        self.limiting = [contact for contact in system.contacts if contact.guarded]
+        self.limiting = [contact for contact in system.contacts if isinstance(contact, LimitsStep)]
 
     def allowed(self, penetration: float) -> float:
         """Penetration up to which a correction may press, from a state with `penetration`, mm."""
@@ -43,7 +43,8 @@ class ContactLimit:
         x, seats = before + x, state["seats"].equilibrium + seats
 
         def penetration(length: float) -> float:
-            return max(contact.depth(x + length * u, seats + length * moved) for contact in self.limiting)
+            trial = TrialPositions(x + length * u, seats + length * moved)
+            return max(contact.max_penetration(trial) for contact in self.limiting)
 
         allowed = self.allowed(penetration(0.0))
         if penetration(1.0) <= allowed:

@@ -8,7 +8,7 @@ from dolfinx import la
 from petsc4py import PETSc
 
 from coilset.model.body import Body
-from coilset.model.contact.base import Contact, Contribution
+from coilset.model.contact.base import Augmented, Contact, Contribution, HasMemory, LimitsStep, TrialPositions
 from coilset.model.equilibrium.layout import LineLayout, Layout
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import TangentMatrix
@@ -53,7 +53,7 @@ class System:
     ) -> None:
         self.body, self.layout, self.comm, self.contacts = body, layout, layout.comm, list(contacts)
         self.state = body.state
-        self.memories = [contact.memory for contact in self.contacts if contact.memory is not None]
+        self.memories = [contact.memory for contact in self.contacts if isinstance(contact, HasMemory)]
         self._seats = None if seats is None else self.state.add("seats", np.array(seats, float), Where.SHARED)
         for number, memory in enumerate(self.memories):
             self.state.include(f"contact_{number}_", memory.state)
@@ -96,11 +96,11 @@ class System:
             self._assemble_internal()
 
     def _touch(self) -> list[Contribution]:
-        layout, body = self.layout, self.body
-        x, turns = layout.gather(body.state["x"].trial), ()
-        if any(contact.rolls for contact in self.contacts):
-            turns = (layout.gather(body.increment.x.array[body.rotation_dofs]),)
-        return [contact.evaluate(x, self.seats, *(turns if contact.rolls else ())) for contact in self.contacts]
+        layout, body, rotations = self.layout, self.body, None
+        if any(contact.needs_rotations for contact in self.contacts):
+            rotations = layout.gather(body.increment.x.array[body.rotation_dofs])
+        trial = TrialPositions(layout.gather(self.state["x"].trial), self.seats, rotations)
+        return [contact.evaluate(trial) for contact in self.contacts]
 
     def _assemble_internal(self) -> None:
         local, owned = self._local, self.layout.owned
@@ -128,7 +128,8 @@ class System:
         if not self.last.has_stress:
             return np.inf
         parts = zip(self.contacts, self.last.contributions, strict=False)
-        return max((part.penetration.max(initial=0.0) for contact, part in parts if contact.guarded), default=0.0)
+        found = (part.penetration.max(initial=0.0) for contact, part in parts if isinstance(contact, LimitsStep))
+        return max(found, default=0.0)
 
     # ---- transactions ----------------------------------------------------------------------------------------------
 
@@ -152,10 +153,10 @@ class System:
 
     def augment(self) -> None:
         """Press contacts harder where they have sunk in (augmented Lagrange), from the next evaluation on; collective."""
-        x = self.layout.gather(self.state["x"].trial)
+        trial = TrialPositions(self.layout.gather(self.state["x"].trial), self.seats)
         for contact in self.contacts:
-            if contact.memory is not None:
-                contact.augment(x, self.seats)
+            if isinstance(contact, Augmented):
+                contact.augment(trial)
         self.expire()
 
     # ---- residual and tangent --------------------------------------------------------------------------------------

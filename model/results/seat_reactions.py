@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coilset.model.contact.base import ENDS, TOUCH, Contact, Contribution
+from coilset.model.contact.base import ENDS, SEAT_DOFS, Contact, Contribution
 from coilset.model.contact.resultants import Wrench, station_forces, station_moments
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.layout import LineLayout
@@ -13,6 +13,7 @@ from coilset.model.results.record import SeatReaction, SeatReactions
 from coilset.model.rod.rod import Rod
 from coilset.model.rotations.vectors import rotation_matrix
 
+ROUNDING = 2e-13  # axial forces below this share of E A are rounding, whatever came before
 FAINT = 1e-6  # axial forces below this share of the greatest one so far have no centre and load no turns
 
 
@@ -35,7 +36,7 @@ def seat_reactions(
         SeatReactions, the same on every rank.
     """
     observer, force = _Observer(system, control), control.force
-    faint = max(FAINT * greatest_force, TOUCH)
+    faint = max(FAINT * greatest_force, ROUNDING * system.body.axial_force)
     pressure = pressures(observer.parts)
     ends = [observer.reaction(end, faint) for end in ENDS]
     active = active_turns(system.body, turns, force) if abs(force) > faint else np.nan
@@ -69,7 +70,7 @@ class _Observer:
         spot, length, down = np.full(2, np.nan), 0.0, 0.0
         for contact, part in self.parts:
             if contact.end == end and contact.points is not None:
-                bears = part.pressure > TOUCH
+                bears = part.bears
                 number, wire = part.point[bears], contact.points
                 points = wire.at(self.x)[number]
                 length += float(wire.length[number].sum())
@@ -82,8 +83,8 @@ class _Observer:
 
     def tilt(self, end: str) -> float:
         """Angle between the axes of a seat and of the spring, rad."""
-        rotation = self.system.seats[6 * ENDS.index(end) :][3:6]
-        return float(np.arccos(min(1.0, rotation_matrix(rotation)[2, 2])))
+        axis = rotation_matrix(self.system.seats[SEAT_DOFS * ENDS.index(end) :][3:SEAT_DOFS])[:, 2]
+        return float(np.arctan2(np.hypot(axis[0], axis[1]), axis[2]))
 
 
 def active_turns(rod: Rod, turns: np.ndarray, force: float) -> float:
@@ -101,7 +102,7 @@ def pressures(parts: Parts) -> np.ndarray:
     for kind, (contact, part) in enumerate(parts):
         if contact.points is None or not len(part.point):
             continue
-        force = np.bincount(part.point, np.where(part.pressure > TOUCH, part.pressure, 0.0), len(contact.points))
+        force = np.bincount(part.point, np.where(part.bears, part.pressure, 0.0), len(contact.points))
         bears = np.flatnonzero(force)
         halves = 1.0 if contact.end else 2.0
         rows.append(np.stack([np.full(len(bears), kind), bears, halves * force[bears] / contact.lengths[bears]], 1))

@@ -6,11 +6,11 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from coilset.meshes.line import LineMesh
-from coilset.model.frames.rotations import triads, turn_nodes
 from coilset.model.material.law import Law
 from coilset.model.material.points import initial_state
 from coilset.model.rod import forms
-from coilset.model.rod.kinematics import GAUSS, section_strains
+from coilset.model.rod.kinematics import GAUSS, chord_triads, section_strains
+from coilset.model.rotations.kernels import rotate_nodes
 from coilset.model.section.rules import DiskRule
 from coilset.model.section.update import update_sections
 from coilset.model.state import State, Where
@@ -84,7 +84,7 @@ class Rod:
         self.cells = np.ascontiguousarray(mesh.geometry.dofmap[:n])
         x = mesh.geometry.x
         chords = x[self.cells[:, 1]] - x[self.cells[:, 0]]
-        self.l0, self.E0 = np.linalg.norm(chords, axis=1), triads(chords)
+        self.l0, self.E0 = np.linalg.norm(chords, axis=1), chord_triads(chords)
 
         self.xi = CellField(mesh, forms.section_element(()), (2,), n)
         self.xi.values[:] = GAUSS
@@ -154,7 +154,7 @@ class Rod:
         moved = increment[self.u_dofs]
         np.add(self._x.equilibrium, moved, out=self._x.trial)
         np.add(self._chord.equilibrium, moved[self.cells[:, 1]] - moved[self.cells[:, 0]], out=self._chord.trial)
-        turn_nodes(increment[self.rotation_dofs], self._R.equilibrium, self._R.trial, self.chart)
+        rotate_nodes(increment[self.rotation_dofs], self._R.equilibrium, self._R.trial, self.chart)
         np.add(self._shear.equilibrium, increment[self.shear_dofs], out=self._shear.trial)
         section_strains(
             self.cells, self._chord.trial, self._R.trial, self.E0, self.l0, self._shear.trial,

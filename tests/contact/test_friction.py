@@ -6,7 +6,7 @@ from mpi4py import MPI
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import check
-from coilset.model.contact.base import SEAT_DOFS
+from coilset.model.contact.base import SEAT_DOFS, TrialPositions
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.friction import CoilFriction, SeatFriction
 from coilset.model.contact.seat import Seat
@@ -25,9 +25,9 @@ SPRING = {
 }  # fmt: skip
 
 
-def dense(friction, x, seats, turns):
-    """Forces and stiffness on displacements of all stations, seats, and turns."""
-    part = friction.evaluate(x, seats, turns)
+def dense(friction, x, seats, rotations):
+    """Forces and stiffness on displacements of all stations, seats, and rotations."""
+    part = friction.evaluate(TrialPositions(x, seats, rotations))
     size = 2 * x.size + len(seats)
     f, K = np.zeros(size), np.zeros((size, size))
     for dofs, force, k in zip(part.dofs, part.forces, part.stiffness, strict=True):
@@ -67,10 +67,10 @@ KINDS = [("bottom", {}), ("top", {}), ("top", {"slope": 0.3}), ("coils", {})]
 @pytest.mark.parametrize(("kind", "seat"), KINDS, ids=str)
 def test_stiffness_is_the_derivative_of_the_forces(rubbing, kind, seat):
     """Central differences with h = 1e-7 are good to 1e-6 of forces on the scale of 0.01 mm."""
-    friction, x, seats, turns = rubbing(kind, **seat)
-    f, K = dense(friction, x, seats, turns)
+    friction, x, seats, rotations = rubbing(kind, **seat)
+    f, K = dense(friction, x, seats, rotations)
     size = np.linalg.norm(friction.memory["traction"].reshape(-1, 3), axis=1)
-    i = friction.touching(x, seats)[0]
+    i = friction.touching(TrialPositions(x, seats))[0]
     assert len(i[0]) > 10
     assert np.linalg.norm(K - K.T) > 1e-3 * np.linalg.norm(K)  # some slide
     assert size.max() > 0.0
@@ -79,7 +79,8 @@ def test_stiffness_is_the_derivative_of_the_forces(rubbing, kind, seat):
     def moved(sign):
         u = sign * h * direction
         n = x.size
-        return dense(friction, x + u[:n].reshape(-1, 3), seats + u[n : n + 12], turns + u[n + 12 :].reshape(-1, 3))[0]
+        moved_x, swung = x + u[:n].reshape(-1, 3), rotations + u[n + 12 :].reshape(-1, 3)
+        return dense(friction, moved_x, seats + u[n : n + 12], swung)[0]
 
     change = (moved(1) - moved(-1)) / (2 * h)
     np.testing.assert_allclose(K @ direction, change, rtol=0, atol=1e-6 * np.abs(change).max())
@@ -87,11 +88,11 @@ def test_stiffness_is_the_derivative_of_the_forces(rubbing, kind, seat):
 
 @pytest.mark.parametrize(("kind", "seat"), KINDS, ids=str)
 def test_tractions_stay_in_the_cone_and_points_stick_and_slide(rubbing, kind, seat):
-    friction, x, seats, turns = rubbing(kind, **seat)
-    dense(friction, x, seats, turns)
-    at = friction.touching(x, seats)[0]
+    friction, x, seats, rotations = rubbing(kind, **seat)
+    dense(friction, x, seats, rotations)
+    at = friction.touching(TrialPositions(x, seats))[0]
     traction = np.linalg.norm(friction.memory["traction"][at], axis=1)
-    pressure = friction.normal.evaluate(x, seats)
+    pressure = friction.normal.evaluate(TrialPositions(x, seats))
     found = dict(zip(pressure.point, pressure.pressure, strict=True))
     share = traction / (MU * np.array([found[i] for i in at[0]]))
     if kind != "coils":  # there a point may touch on both sides
@@ -101,8 +102,8 @@ def test_tractions_stay_in_the_cone_and_points_stick_and_slide(rubbing, kind, se
 
 def test_coils_rub_without_force_and_moment_on_the_whole(rubbing):
     """Inner forces: sums of forces, and of their moments with those on the sections, vanish but for rounding."""
-    friction, x, seats, turns = rubbing("coils")
-    f = dense(friction, x, seats, turns)[0]
+    friction, x, seats, rotations = rubbing("coils")
+    f = dense(friction, x, seats, rotations)[0]
     force, moment = f[: x.size].reshape(-1, 3), f[x.size + 12 :].reshape(-1, 3)
     size = np.abs(force).max()
     assert size > 0.1

@@ -6,7 +6,7 @@ from mpi4py import MPI
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import check
-from coilset.model.contact.build import SOFT, SOFTNESS
+from coilset.model.contact.build import FREE_TILT_OF_BEDDING, MODULUS_OF_BEDDING
 from coilset.model.errors import InputError
 from coilset.model.results.balance import imbalance
 
@@ -73,7 +73,8 @@ def test_a_ball_joint_keeps_the_force_on_its_axis(guided):
         assert free.seats[step].top.eccentricity_mm < 1e-3
         assert abs(free.seats[step].top.moment_z_Nmm) < 1e-6 * abs(held.seats[step].top.moment_z_Nmm)
         assert free.seats[step].bottom.eccentricity_mm > 0.5
-    tilt, softness = np.hypot(*analysis.system.seats[9:11]), SOFT * analysis.law.E / SOFTNESS * 16.0**3
+    tilt = np.hypot(*analysis.system.seats[9:11])
+    softness = FREE_TILT_OF_BEDDING * analysis.law.E / MODULUS_OF_BEDDING * 16.0**3
     assert tilt > 1e-3
     assert free.seats[1].top.tilt_rad == pytest.approx(tilt, rel=1e-3)
     assert free.seats[1].top.eccentricity_mm == pytest.approx(softness * tilt / 30.0, rel=0.01)

@@ -15,7 +15,6 @@ from mpi4py import MPI
 from coilset.meshes.line import line_mesh
 from coilset.meshes.placement import polygon_nodes, section_placement
 from coilset.meshes.spring import SpringSpec
-from coilset.model.frames.rotations import triads
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.layout import SEATS, LineLayout
@@ -24,7 +23,7 @@ from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.system import System
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE, save
-from coilset.model.rod.kinematics import GAUSS
+from coilset.model.rod.kinematics import GAUSS, chord_triads
 from coilset.model.rod.rod import Rod
 from coilset.model.section.rules import polar
 from coilset.verification.springs.curved_rod import clamped_rate
@@ -57,7 +56,7 @@ def rate(spring, turns, representation, law):
     line = line_mesh(polygon_nodes(spring, turns, keep, poisson=law.E / (2 * law.G) - 1), MPI.COMM_SELF)
     placement = None
     if representation == "curved":
-        placement = section_placement(spring, turns, triads(np.diff(line.stations, axis=0)), GAUSS)
+        placement = section_placement(spring, turns, chord_triads(np.diff(line.stations, axis=0)), GAUSS)
     radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
     rod = Rod(line, radius, law, polar(2, 8), placement)
     system = System(rod, LineLayout(rod), (), np.zeros(SEATS))

@@ -1,6 +1,7 @@
-"""Rotation vector, matrix, and the tangent of the chart; compiled scalar kernels on 3-vectors and 3×3 matrices.
+"""Rotation vector, matrix, and the tangent of the chart; compiled kernels on single 3-vectors and 3×3 matrices.
 
-Rodrigues' formula and its inverse; see J. Argyris, An excursion into large rotations, CMAME 32 (1982) 85.
+Rodrigues' formula and its inverse; see J. Argyris, An excursion into large rotations, CMAME 32 (1982) 85. All write
+into arrays of the caller, so that a loop over nodes allocates nothing.
 """
 
 import math
@@ -105,28 +106,16 @@ def multiply_transposed(A, B, C):
 
 
 @njit(cache=True)
-def turn_nodes(v, R_old, R_new, T):
-    """Turn the nodes' triads by their rotation vectors: R_new = exp(v) R_old, with the charts' tangents T.
+def rotate_nodes(v, R_old, R_new, T):
+    """Rotate the nodes' matrices by their rotation vectors: R_new = exp(v) R_old, with the charts' tangents T.
 
     Args:
         v: rotation vectors since the last equilibrium, shape (nodes, 3), rad.
         R_old: rotations at the last equilibrium, shape (nodes, 3, 3).
         R_new, T: written, shape (nodes, 3, 3).
     """
-    turn = np.empty((3, 3))
+    increment = np.empty((3, 3))
     for node in range(len(v)):
-        exponential(v[node], turn)
-        multiply(turn, R_old[node], R_new[node])
+        exponential(v[node], increment)
+        multiply(increment, R_old[node], R_new[node])
         chart_tangent(v[node], T[node])
-
-
-def triads(chords):
-    """Right-handed orthonormal triads (columns) with the first axis along the chords, shape (n, 3) → (n, 3, 3).
-
-    The second axis lies as level as it can; for a round wire its direction is free (the external node 3 of 5.2.5).
-    """
-    e1 = chords / np.linalg.norm(chords, axis=1, keepdims=True)
-    helper = np.where(np.abs(e1[:, 2:]) < 0.9, [[0.0, 0.0, 1.0]], [[1.0, 0.0, 0.0]])
-    e2 = np.cross(helper, e1)
-    e2 /= np.linalg.norm(e2, axis=1, keepdims=True)
-    return np.stack([e1, e2, np.cross(e1, e2)], axis=-1)
