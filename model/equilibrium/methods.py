@@ -51,6 +51,7 @@ METHODS: dict[str, dict[str, Any]] = {
 }  # fmt: skip
 
 
+ARC_LENGTH = "newtonal"  # SNES type
 FORGETFUL = ("newtonls", "newtontr")  # SNES types that keep nothing from one step to the next
 
 _SOLID = {"snes_type": "newtonls", "snes_linesearch_type": "bt", "snes_max_it": 25, "snes_max_linear_solve_fail": 1}
@@ -114,7 +115,7 @@ class Method:
     @property
     def is_arc_length(self) -> bool:
         """Is the share of the load one more unknown?"""
-        return self.options.get("snes_type") == "newtonal"
+        return self.options.get("snes_type") == ARC_LENGTH
 
     @property
     def remembers(self) -> bool:

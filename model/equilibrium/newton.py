@@ -20,7 +20,7 @@ from coilset.model.equilibrium.convergence import EquilibriumTest, Outcome, Reas
 from coilset.model.equilibrium.line_search import WorkSearch
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import TangentMatrix
-from coilset.model.equilibrium.methods import FIRST, Method
+from coilset.model.equilibrium.methods import ARC_LENGTH, FIRST, Method
 from coilset.model.equilibrium.snes import SnesFactory
 from coilset.model.equilibrium.system import System
 
@@ -189,7 +189,7 @@ class Newton:
     def _residual(self, snes: PETSc.SNES, X: PETSc.Vec, F: PETSc.Vec) -> None:
         self._evaluations += 1
         self.system.residual(X, self.load, self.load_factor, F)
-        if snes.getType() == PETSc.SNES.Type.NEWTONAL:  # SNES takes its share of the load off: F(x) − λ load
+        if snes.getType() == ARC_LENGTH:  # SNES takes its share of the load off: F(x) − λ load
             F.axpy(1.0, self._arc_load)
 
     def _tangent(self, snes: PETSc.SNES, X: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:

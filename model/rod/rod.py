@@ -2,6 +2,7 @@
 
 import numpy as np
 from dolfinx import fem
+from dolfinx.fem.petsc import assemble_matrix
 from mpi4py import MPI
 from petsc4py import PETSc
 
@@ -186,7 +187,7 @@ class Rod:
 
     def tangent(self, matrix: PETSc.Mat) -> None:
         """Add K_l and the stiffness of the turning frame; see Body."""
-        fem.petsc.assemble_matrix(matrix, self._tangent)
+        assemble_matrix(matrix, self._tangent)
 
     @property
     def constraint_weight(self) -> float:
