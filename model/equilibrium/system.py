@@ -182,6 +182,10 @@ class System:
             at_step_start: begin with a matrix that has places for the contacts as they are now only.
         """
         self.evaluate(increments)
+        self.last_tangent(load, matrix, at_step_start)
+
+    def last_tangent(self, load: Load, matrix: TangentMatrix, at_step_start: bool = False) -> None:
+        """As `tangent`, with the moduli of the last evaluation, at the state as it is now; collective."""
         matrix.clear(self.last.contributions, at_step_start)
         self.body.tangent(matrix.mat)
         matrix.add(self.last.contributions)

@@ -141,8 +141,7 @@ class HeadPredictor:
     def __call__(self, load: Load) -> Start:
         """Solve for it; one iteration is counted; collective."""
         system, newton, solid = self.newton.system, self.newton, self.solid
-        self._start.set(0.0)
-        system.tangent(self._start, load, newton.matrix)
+        system.last_tangent(load, newton.matrix)
         newton.prepare(newton.matrix.mat)
         prescribed = self._prescribed.x.array
         prescribed[: system.layout.owned][load.held] = load.increments

@@ -99,7 +99,7 @@ def press_and_release(comm: MPI.Comm) -> dict[str, np.ndarray]:
     def keep(when: str, problem) -> None:
         if comm.size == 1:
             found[f"positions {when}"] = problem.solid.x.copy()
-            found[f"state {when}"] = problem.solid.state.copy()
+            found[f"state {when}"] = problem.solid.point_state.copy()
 
     case = PressedSection(8.0, 2, 12, steps=4)
     result = run_solid(case, comm, on_full=lambda p: keep("full", p), on_end=lambda p: keep("end", p))

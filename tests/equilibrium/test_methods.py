@@ -7,11 +7,11 @@ from scipy.optimize import brentq
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
+from coilset.model.equilibrium.methods import METHODS, rod_method
+from coilset.model.equilibrium.newton import Newton
 from coilset.model.errors import InputError
 from coilset.model.material import library
 from coilset.model.section.rules import abramowitz9
-from coilset.model.solvers.methods import METHODS, options
-from coilset.model.solvers.solver import Solver
 from coilset.verification.frame import Frame
 
 PROGRAM = "loading=[{to: {travel: 12}, steps: 10}, {to: {force: 0}, steps: 4}]"
@@ -41,29 +41,29 @@ def test_every_method_passes_the_reversal_to_the_same_state(example, newtons, me
 
 def test_an_unknown_method_names_the_near_one():
     with pytest.raises(InputError, match="is bfgs meant"):
-        options("bgfs", 1)
+        rod_method("bgfs", 1)
 
 
 def test_options_of_the_user_win(example):
     """One iteration is too few for 10 mm, and is said so; with a line search of one's own and 30 it is found."""
     analysis = Analysis(read_case(example, COARSE), MPI.COMM_SELF)
     own = {"snes_linesearch_type": "bt"}
-    solver = Solver(analysis.system, "newton", 1e-9, own | {"snes_max_it": 1})
-    assert not solver.damped
-    analysis.drive.by_height(analysis.drive.height - 10.0)
-    outcome = solver.solve()
+    method = rod_method("newton", 1, own | {"snes_max_it": 1})
+    assert not method.searches
+    load = analysis.control.to_height(analysis.control.height - 10.0)
+    outcome = Newton(analysis.system, method, 1e-9).solve(load)
     assert not outcome.converged
     assert outcome.iterations == 1
     assert "greatest number of iterations" in outcome.reason
     analysis.system.restore()
-    assert Solver(analysis.system, "newton", 1e-9, own | {"snes_max_it": 30}).solve().converged
+    patient = rod_method("newton", 1, own | {"snes_max_it": 30})
+    assert Newton(analysis.system, patient, 1e-9).solve(load).converged
 
 
 def test_a_residual_that_is_not_a_number_is_said(example, monkeypatch):
     analysis = Analysis(read_case(example, COARSE), MPI.COMM_SELF)
     monkeypatch.setattr(analysis.rod, "update", lambda: False)
-    analysis.drive.by_height(analysis.drive.height - 1.0)
-    outcome = analysis.solver.solve()
+    outcome = analysis.newton.solve(analysis.control.to_height(analysis.control.height - 1.0))
     assert not outcome.converged
     assert "not a number" in outcome.reason
 

@@ -65,4 +65,4 @@ def test_an_impossible_target_is_given_up_with_all_that_was_reached(make, progra
     assert result.steps
     assert not result.complete
     assert result.snapshots[-1].height == result.steps[-1].seat_height_mm > 5.0
-    assert analysis.system.depth <= 0.1  # 0.02 wire diameters
+    assert analysis.system.max_penetration <= 0.1  # 0.02 wire diameters
