@@ -121,8 +121,16 @@ def pitch_with_ends(body, bottom, top, touching):
         The pitch as a function of the turn, mm per turn.
     """
     last = body.x[-1]
-    marks = np.array([0.0, bottom.end_turns, bottom.end_turns + bottom.transition_turns,
-                      last - top.end_turns - top.transition_turns, last - top.end_turns, last])
+    marks = np.array(
+        [
+            0.0,
+            bottom.end_turns,
+            bottom.end_turns + bottom.transition_turns,
+            last - top.end_turns - top.transition_turns,
+            last - top.end_turns,
+            last,
+        ]
+    )
     parts = [functions.restricted(body, marks[2], marks[3])]
     if bottom.is_closed:
         coil = functions.polynomial([touching(*marks[:2])], *marks[:2])

@@ -83,10 +83,13 @@ class Funnel(Strict):
     def function(self, turns):
         """The diameter as a function of the turn, mm; raises ValueError if the cone has too many turns."""
         if self.cone_turns >= turns:
-            raise ValueError(f"cone_turns is {self.cone_turns:g}, but the spring has only {turns:g} turns; "
-                             "leave some for the neck, or take the shape cone")
-        return functions.tabulated(np.array([0, self.cone_turns, turns]),
-                                   np.array([self.bottom, self.neck, self.neck]), "linear")
+            raise ValueError(
+                f"cone_turns is {self.cone_turns:g}, but the spring has only {turns:g} turns; "
+                "leave some for the neck, or take the shape cone"
+            )
+        return functions.tabulated(
+            np.array([0, self.cone_turns, turns]), np.array([self.bottom, self.neck, self.neck]), "linear"
+        )
 
 
 class _Waisted(Strict):
@@ -101,8 +104,9 @@ class DoubleCone(_Waisted):
 
     def function(self, turns):
         """The diameter as a function of the turn, mm."""
-        return functions.tabulated(np.array([0, turns / 2, turns]), np.array([self.ends, self.middle, self.ends]),
-                                   "linear")
+        return functions.tabulated(
+            np.array([0, turns / 2, turns]), np.array([self.ends, self.middle, self.ends]), "linear"
+        )
 
 
 class _Parabola(_Waisted):
@@ -120,8 +124,10 @@ class Barrel(_Parabola):
     @model_validator(mode="after")
     def _is_wide(self):
         if self.middle <= self.ends:
-            raise ValueError(f"a barrel is wider in its middle ({self.middle:g} mm) than at its ends "
-                             f"({self.ends:g} mm); the other way round it is an hourglass")
+            raise ValueError(
+                f"a barrel is wider in its middle ({self.middle:g} mm) than at its ends "
+                f"({self.ends:g} mm); the other way round it is an hourglass"
+            )
         return self
 
 
@@ -133,13 +139,21 @@ class Hourglass(_Parabola):
     @model_validator(mode="after")
     def _is_narrow(self):
         if self.middle >= self.ends:
-            raise ValueError(f"an hourglass is narrower in its middle ({self.middle:g} mm) than at its ends "
-                             f"({self.ends:g} mm); the other way round it is a barrel")
+            raise ValueError(
+                f"an hourglass is narrower in its middle ({self.middle:g} mm) than at its ends "
+                f"({self.ends:g} mm); the other way round it is a barrel"
+            )
         return self
 
 
-SHAPES = {"cylinder": Cylinder, "cone": Cone, "double cone": DoubleCone, "hourglass": Hourglass, "barrel": Barrel,
-          "funnel": Funnel}
+SHAPES = {
+    "cylinder": Cylinder,
+    "cone": Cone,
+    "double cone": DoubleCone,
+    "hourglass": Hourglass,
+    "barrel": Barrel,
+    "funnel": Funnel,
+}
 
 
 def form_of_entry(value: Any) -> str:
@@ -166,8 +180,11 @@ DiameterProfile = Annotated[
     | Annotated[Hourglass, Tag("(hourglass)")]
     | Annotated[Barrel, Tag("(barrel)")]
     | Annotated[Funnel, Tag("(funnel)")],
-    Discriminator(form_of_entry, custom_error_type="form",
-                  custom_error_message=f"must be a number, a table, or one of the shapes {', '.join(SHAPES)}"),
+    Discriminator(
+        form_of_entry,
+        custom_error_type="form",
+        custom_error_message=f"must be a number, a table, or one of the shapes {', '.join(SHAPES)}",
+    ),
 ]
 """The mean coil diameter over the turns: a number in mm, a table, or a shape."""
 

@@ -52,8 +52,10 @@ class SpringSpec(Strict):
         radius = functions.PPoly(0.5 * diameter.c, diameter.x)
         ends_and_transitions = sum(end.end_turns + end.transition_turns for end in bottom_and_top(self.end_coils))
         if ends_and_transitions >= self.turns:
-            raise InputError(f"{self.turns:g} turns are too few: end turns and transitions alone are "
-                             f"{ends_and_transitions:g}", "spring.turns")
+            raise InputError(
+                f"{self.turns:g} turns are too few: end turns and transitions alone are {ends_and_transitions:g}",
+                "spring.turns",
+            )
 
         def spring(pitch):
             height = self._pitch_with_ends(pitch, wire, radius).antiderivative()
@@ -63,8 +65,11 @@ class SpringSpec(Strict):
             return refuse(self._with_free_length(spring, self.turns - ends_and_transitions))
         built = spring(self._function("pitch"))
         if self.free_length is not None and abs(built.free_length - self.free_length) > 1e-6 * self.free_length:
-            raise InputError(f"{self.free_length:g} mm contradicts the pitch, which makes {built.free_length:.6g} mm; "
-                             "leave one of the two out", "spring.free_length")
+            raise InputError(
+                f"{self.free_length:g} mm contradicts the pitch, which makes {built.free_length:.6g} mm; "
+                "leave one of the two out",
+                "spring.free_length",
+            )
         return refuse(built)
 
     def _function(self, entry):
@@ -84,13 +89,16 @@ class SpringSpec(Strict):
 
     def _with_free_length(self, spring, body_turns):
         """The spring whose body has the pitch that makes the free length; this grows with the pitch."""
+
         def too_long(pitch):
             return spring(functions.constant(pitch, self.turns)).free_length - self.free_length
 
         least = too_long(0.0) + self.free_length
         if least >= self.free_length:
-            raise InputError(f"{self.free_length:g} mm leave no pitch: end coils and wire alone need {least:.4g} mm",
-                             "spring.free_length")
+            raise InputError(
+                f"{self.free_length:g} mm leave no pitch: end coils and wire alone need {least:.4g} mm",
+                "spring.free_length",
+            )
         # the body alone rises by the greatest pitch times its turns
         pitch = brentq(too_long, 0.0, self.free_length / body_turns, xtol=1e-12, rtol=1e-14)
         return spring(functions.constant(pitch, self.turns))

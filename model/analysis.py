@@ -76,7 +76,8 @@ class Analysis:
         self.continuation = Continuation(self.newton, case.solver.control.steps, limit)
         self.program = LoadProgram(self.control, self.continuation)
         records = tuple(
-            ContactRecord(one.name, one.end, one.points and one.points.turns, getattr(one, "tip", 0)) for one in contacts
+            ContactRecord(one.name, one.end, one.points and one.points.turns, getattr(one, "tip", 0))
+            for one in contacts
         )
         self.setup = Setup(spring, self.law.name, self.law.n_state, case.ends, tuple(p.label for p in case.loading),
                            turns, radius, self.rod.rule, records)  # fmt: skip

@@ -69,5 +69,3 @@ class ContactLimit:
 def free_penetration(control: NewtonControl, penetration_limit: float) -> float:
     """What corrections may press without more ado, in wire diameters: the contacts' limit if nothing else is given."""
     return penetration_limit if control.free_penetration is None else control.free_penetration
-
-

@@ -13,7 +13,7 @@ from scipy import sparse
 
 from coilset.model.body import Body
 from coilset.model.contact.base import Contribution
-from coilset.model.equilibrium.layout import LineLayout, Layout
+from coilset.model.equilibrium.layout import Layout, LineLayout
 
 
 class TangentMatrix:

@@ -9,7 +9,7 @@ from petsc4py import PETSc
 
 from coilset.model.body import Body
 from coilset.model.contact.base import Augmented, Contact, Contribution, HasMemory, LimitsStep, TrialPositions
-from coilset.model.equilibrium.layout import LineLayout, Layout
+from coilset.model.equilibrium.layout import Layout, LineLayout
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import TangentMatrix
 from coilset.model.state import Where

@@ -53,7 +53,10 @@ def run(seats, loading=LIGHT, spring=SPRING):
 
     def judge(step):
         assert imbalance(analysis.snapshot("now"), analysis.system, analysis.control)[0] < 1e-8 * step.force_N
-        assert imbalance(analysis.snapshot("now"), analysis.system, analysis.control)[1] < 1e-8 * step.force_N * spring["mean_diameter"]
+        assert (
+            imbalance(analysis.snapshot("now"), analysis.system, analysis.control)[1]
+            < 1e-8 * step.force_N * spring["mean_diameter"]
+        )
 
     return analysis, analysis.run(judge)
 

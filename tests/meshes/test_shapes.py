@@ -80,7 +80,9 @@ def test_shape_meets_its_closed_formulas(name):
     end = 2 * np.pi * turns
     np.testing.assert_allclose(
         spring.centre_line(np.array([0.0, turns])),
-        [[r_bottom, 0, d / 2], [r_top * np.cos(end), r_top * np.sin(end), rise + d / 2]], atol=1e-9)
+        [[r_bottom, 0, d / 2], [r_top * np.cos(end), r_top * np.sin(end), rise + d / 2]],
+        atol=1e-9,
+    )
     nodes = spring.stations(16)
     assert len(nodes) - 1 == 16 * turns
     assert (nodes[0], nodes[-1]) == (0, turns)
@@ -146,10 +148,12 @@ def test_variable_pitch():
     spring = example("variable_pitch")
     np.testing.assert_allclose(np.diff(spring.centre_line(np.array([0.0, 2, 3, 4, 6]))[:, 2]), [14, 8.5, 11.5, 26])
     assert spring.free_length == pytest.approx(64)
+
     # ds = √((πD)² + p²) dt; ∫ of it over a linear p is that of the cone with the parts exchanged
     def primitive(p):
         c = np.pi * 36
         return 0.5 * (p * np.hypot(c, p) + c**2 * np.arcsinh(p / c))
+
     ramp = (primitive(13) - primitive(7)) / 3
     length = 2 * np.hypot(np.pi * 36, 7) + ramp + 2 * np.hypot(np.pi * 36, 13)
     assert spring.wire_length == pytest.approx(length, rel=EXACT)

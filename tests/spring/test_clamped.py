@@ -97,9 +97,7 @@ def test_newton_needs_few_iterations(by_steps):
 
 def test_small_travel_leaves_no_set():
     """Below yield (τ = 106 MPa, some 2 mm) the spring comes back; what is left is rounding of the solve."""
-    analysis = Analysis(
-        case([{"to": {"travel": 1.5}, "steps": 2}, {"to": {"force": 0}, "steps": 2}]), MPI.COMM_SELF
-    )
+    analysis = Analysis(case([{"to": {"travel": 1.5}, "steps": 2}, {"to": {"force": 0}, "steps": 2}]), MPI.COMM_SELF)
     assert abs(summarise(analysis.setup, analysis.run())["set_mm"]) < 1e-6
 
 

@@ -13,8 +13,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from petsc4py import PETSc
 
-from coilset.model.results.figures import STYLE
 from coilset.model.equilibrium.methods import rod_method
+from coilset.model.results.figures import STYLE
 
 FAST = True
 KEEP = 1_000_000  # iterations before a matrix is set up anew

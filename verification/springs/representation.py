@@ -39,7 +39,8 @@ REPRESENTATIONS = {
 SPRINGS = {
     "cylinder, 2.5 turns": SpringSpec(wire_diameter=5.0, mean_diameter=40.0, turns=2.5, pitch=12.0),
     "barrel, 6 turns": SpringSpec(
-        wire_diameter=5.0, mean_diameter={"shape": "barrel", "ends": 30.0, "middle": 50.0}, turns=6.0, pitch=14.0),
+        wire_diameter=5.0, mean_diameter={"shape": "barrel", "ends": 30.0, "middle": 50.0}, turns=6.0, pitch=14.0
+    ),
 }
 
 
@@ -79,8 +80,10 @@ def study():
     for name, spec in SPRINGS.items():
         spring = spec.build()
         exact = clamped_rate(spring, law.E, law.G)
-        errors[name] = {key: np.array([rate(spring, spring.stations(n), key, law) / exact - 1 for n in ELEMENTS])
-                        for key in REPRESENTATIONS}
+        errors[name] = {
+            key: np.array([rate(spring, spring.stations(n), key, law) / exact - 1 for n in ELEMENTS])
+            for key in REPRESENTATIONS
+        }
     return errors
 
 
