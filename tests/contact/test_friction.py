@@ -53,7 +53,7 @@ def rubbing(points, helix):
             friction = SeatFriction(normal, mu, place, seats)
         rng = np.random.default_rng(5)
         traction = rng.normal(size=friction.memory["traction"].shape)
-        friction.memory.committed["traction"] = traction
+        friction.memory.committed("traction")[...] = traction
         # slips of some hundredths of a millimetre: some points stick, others slide
         return (friction, place + 0.01 * rng.normal(size=place.shape), seats + 1e-3 * rng.normal(size=12),
                 0.01 * rng.normal(size=place.shape))  # fmt: skip
