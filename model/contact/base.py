@@ -2,8 +2,8 @@
 
 Degrees of freedom are numbered independently of the partition: 3 i + k is the displacement k of station i; after
 those of the n stations come x, y, z and rotations θx, θy, θz of the bottom and of the top seat, 3 n + j, and after
-these the stations' rotations since the last equilibrium, 3 n + 12 + 3 i + k. Positions of all stations are known on every
-rank (they are small), every rank evaluates all contacts, and adds each row where it lives.
+these the stations' rotations since the last equilibrium, 3 n + 12 + 3 i + k. Positions of all stations are known on
+every rank (they are small), every rank evaluates all contacts, and adds each row where it lives.
 
 Every kind is a `Contact`. What only some of them do has a protocol of its own, asked for by isinstance: `LimitsStep`,
 `HasMemory`, `Augmented`.

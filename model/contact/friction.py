@@ -2,8 +2,8 @@
 
 Since the last equilibrium the surfaces have slipped past each other where they touch by s: the difference of the
 displacements of both centre lines, and of what the rotations θ of the sections add at the arms a between centre line
-and surface, in the plane across the normal n. With P = 1 − n nᵀ, the traction t0 of that equilibrium, the pressure p and
-the stiffness c of the bedding along the surface, the traction sticks or slides:
+and surface, in the plane across the normal n. With P = 1 − n nᵀ, the traction t0 of that equilibrium, the pressure p
+and the stiffness c of the bedding along the surface, the traction sticks or slides:
 
     t* = P t0 + c s,   t = t*  if |t*| ≤ μ p,  else  μ p t*/|t*|.
 
@@ -85,12 +85,12 @@ class Friction(ABC):
             raise ValueError("friction needs the stations' rotations")
         at, dofs, constants = self.touching(trial)
         u = np.concatenate([x.ravel(), seats, rotations.ravel()])[dofs]
-        constants = [self.memory.committed["traction"][at], *constants]
+        constants = (self.memory.committed["traction"][at], *constants)
         force, traction = self.forces(u, *constants)
         m, k = u.shape
         moved = u + 1j * STEP * np.eye(k)[:, None]  # one variable after the other, for all elements at once
-        constants = [np.concatenate([values] * k) for values in constants]
-        moved = self.forces(moved.reshape(k * m, k), *constants)[0].imag.reshape(k, m, k) / STEP
+        copies = (np.concatenate([values] * k) for values in constants)
+        moved = self.forces(moved.reshape(k * m, k), *copies)[0].imag.reshape(k, m, k) / STEP
         stiffness = np.ascontiguousarray(np.moveaxis(moved, 0, 2))
         self.memory["traction"] = np.zeros_like(self.memory["traction"])
         self.memory["traction"][at] = traction
@@ -181,7 +181,7 @@ class CoilFriction(Friction):
 
 
 def nearest(p, Y, radii, cubic, ξ, inside):
-    """ξ of the location nearest to `p` by one step of Newton's method from the one that is known, exact to first order."""
+    """ξ nearest to `p` by one step of Newton's method from the one that is known, exact to first order."""
     N, dN, ddN = (curve_weights(cubic, ξ, order) for order in range(3))
     q, dc, ddc = p - mean(N, Y), mean(dN, Y), mean(ddN, Y)
     d = np.sqrt(dot(q, q))
