@@ -2,8 +2,8 @@
 
 Degrees of freedom are numbered independently of the partition: 3 i + k is the displacement k of station i; after
 those of the n stations come x, y, z and rotations θx, θy, θz of the bottom and of the top seat, 3 n + j, and after
-these the stations' rotations since the last equilibrium, 3 n + 12 + 3 i + k. Positions of all stations are known on every
-rank (they are small), every rank evaluates all contacts, and adds each row where it lives.
+these the stations' rotations since the last equilibrium, 3 n + 12 + 3 i + k. Positions of all stations are known on
+every rank (they are small), every rank evaluates all contacts, and adds each row where it lives.
 
 Every kind is a `Contact`. What only some of them do has a protocol of its own, asked for by isinstance: `LimitsStep`,
 `HasMemory`, `Augmented`.
@@ -21,9 +21,9 @@ ENDS = ("bottom", "top")
 SEAT_DOFS = 6  # x, y, z, θx, θy, θz; see plate.py
 LEVEL = 2  # the one along the spring's axis
 # A point counts as closed from this share of c w on, the force of its stiffness c over the way w of its onset: by the
-# law of the onset, c p²/(4 w), it has then sunk in by 2e-4 w, a millionth of a millimetre for usual wires. What presses
-# by less does so by the tolerance of the iteration.
-CLOSED_OF_ONSET_FORCE = 1e-8
+# law of the onset, c p²/(4 w), it has then sunk in by 4e-4 w, two millionths of a millimetre for a wire of 5 mm. What
+# presses by less does so by the tolerance of the iteration.
+CLOSED_OF_ONSET_FORCE = 4e-8
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ POINTS_PER_ELEMENT = 2  # points of the bedding in an element: its station and i
 
 
 @njit(cache=True)
-def station_weight(a, xi, order):
+def station_weight(a: np.ndarray, xi: float, order: int) -> float:
     """Weight of a station at ξ (order 0), or its derivative by ξ (1, 2); `a` are its coefficients, shape (4,)."""
     if order == 0:
         return a[0] + xi * (a[1] + xi * (a[2] + xi * a[3]))
@@ -27,7 +27,9 @@ def station_weight(a, xi, order):
 
 
 @njit(cache=True)
-def point_on_curve(y, first, cubic, e, xi, c, order):
+def point_on_curve(
+    y: np.ndarray, first: np.ndarray, cubic: np.ndarray, e: int, xi: float, c: np.ndarray, order: int
+) -> None:
     """Write into `c` the curve's point and radius (order 0) or their derivatives by ξ (1, 2) on element `e`.
 
     Args:

@@ -2,8 +2,8 @@
 
 Since the last equilibrium the surfaces have slipped past each other where they touch by s: the difference of the
 displacements of both centre lines, and of what the rotations θ of the sections add at the arms a between centre line
-and surface, in the plane across the normal n. With P = 1 − n nᵀ, the traction t0 of that equilibrium, the pressure p and
-the stiffness c of the bedding along the surface, the traction sticks or slides:
+and surface, in the plane across the normal n. With P = 1 − n nᵀ, the traction t0 of that equilibrium, the pressure p
+and the stiffness c of the bedding along the surface, the traction sticks or slides:
 
     t* = P t0 + c s,   t = t*  if |t*| ≤ μ p,  else  μ p t*/|t*|.
 
@@ -22,26 +22,26 @@ from coilset.model.contact.memory import Memory
 from coilset.model.contact.seat import Seat
 from coilset.model.rotations.vectors import moment_to_chart, rotate, rotate_back
 
-STEP = 1e-30  # complex step
+COMPLEX_STEP = 1e-30  # in mm and rad
 NODAL = 3 * STENCIL  # displacements, or rotations, of the four stations that a point hangs on
 
 
-def dot(a, b):
+def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Scalar products of the last axis, which stays; also for complex numbers."""
     return (a * b).sum(axis=-1, keepdims=True)
 
 
-def spread(weights, vectors):
+def spread(weights: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     """Share vectors of points, shape (m, 3), out over their stations, shape (m, 12)."""
     return (weights[:, :, None] * vectors[:, None, :]).reshape(len(vectors), NODAL)
 
 
-def nodal(u, first):
+def nodal(u: np.ndarray, first: int) -> np.ndarray:
     """The stations' vectors in the columns from `first` on, shape (m, 4, 3)."""
     return u[:, first : first + NODAL].reshape(len(u), STENCIL, 3)
 
 
-def mean(weights, vectors):
+def mean(weights: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     """Vectors of the stations, shape (m, 4, 3), at the points, shape (m, 3)."""
     return (weights[:, :, None] * vectors).sum(axis=1)
 
@@ -85,12 +85,12 @@ class Friction(ABC):
             raise ValueError("friction needs the stations' rotations")
         at, dofs, constants = self.touching(trial)
         u = np.concatenate([x.ravel(), seats, rotations.ravel()])[dofs]
-        constants = [self.memory.committed("traction")[at], *constants]
+        constants = (self.memory.committed("traction")[at], *constants)
         force, traction = self.forces(u, *constants)
         m, k = u.shape
-        moved = u + 1j * STEP * np.eye(k)[:, None]  # one variable after the other, for all elements at once
-        constants = [np.concatenate([values] * k) for values in constants]
-        moved = self.forces(moved.reshape(k * m, k), *constants)[0].imag.reshape(k, m, k) / STEP
+        moved = u + 1j * COMPLEX_STEP * np.eye(k)[:, None]  # one variable after the other, for all elements at once
+        copies = (np.concatenate([values] * k) for values in constants)
+        moved = self.forces(moved.reshape(k * m, k), *copies)[0].imag.reshape(k, m, k) / COMPLEX_STEP
         stiffness = np.ascontiguousarray(np.moveaxis(moved, 0, 2))
         self.memory["traction"] = np.zeros_like(self.memory["traction"])
         self.memory["traction"][at] = traction
@@ -113,7 +113,7 @@ class SeatFriction(Friction):
 
     normal: Seat
 
-    def touching(self, trial):
+    def touching(self, trial: TrialPositions) -> tuple[tuple, np.ndarray, tuple]:
         """Points that bear, their degrees of freedom, and what stays the same while these vary."""
         seat, points = self.normal, self.normal.points
         i = np.flatnonzero(seat.gaps(points.at(trial.x), trial.seats) < seat.multiplier_offset)
@@ -124,9 +124,9 @@ class SeatFriction(Friction):
         θ0 = np.broadcast_to(seats0[seat.plate.own][3:], q0.shape)
         return (i,), np.hstack([points.dofs[i], plate, rotations]), (i, q0, θ0)
 
-    def forces(self, u, before, i, q0, θ0):
+    def forces(self, u: np.ndarray, before: np.ndarray, *constants: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Forces on the variables, shape (m, 30), and tractions, shape (m, 3)."""
-        seat = self.normal
+        (i, q0, θ0), seat = constants, self.normal
         w, r = seat.points.weights[i], seat.points.radius[i][:, None]
         c, θ = u[:, NODAL : NODAL + 3], u[:, NODAL + 3 : NODAL + 6]
         d = mean(w, nodal(u, 0)) - c
@@ -141,14 +141,14 @@ class SeatFriction(Friction):
 
 
 class CoilFriction(Friction):
-    """Wire on wire; variables are the stations of the point and of its other on the next coil, and their rotations.
+    """Wire on wire; variables are the stations of the point and of the element that it touches, and their rotations.
 
     The arms reach from both centre lines to one point between them, so that no moment is left over.
     """
 
     normal: Coils
 
-    def touching(self, trial):
+    def touching(self, trial: TrialPositions) -> tuple[tuple, np.ndarray, tuple]:
         """Pairs that bear, their degrees of freedom, and what stays the same while these vary."""
         coils, points, line = self.normal, self.normal.points, self.normal.points.line
         pair, where, offset, _ = coils.pressed(trial.x)
@@ -160,8 +160,9 @@ class CoilFriction(Friction):
         x0, y0 = start[points.stations[i]], start[line.stations[e]]
         return at, np.hstack([dofs, self.first_rotation + dofs]), (i, e, where[:, 0], pair[:, 2] == 1, shift, x0, y0)
 
-    def forces(self, u, before, i, e, xi, inside, shift, x0, y0):
+    def forces(self, u: np.ndarray, before: np.ndarray, *constants: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Forces on the variables, shape (m, 48), and tractions, shape (m, 3)."""
+        i, e, xi, inside, shift, x0, y0 = constants
         coils, points, line = self.normal, self.normal.points, self.normal.points.line
         w, r, radii = points.weights[i], points.radius[i][:, None], line.radius[line.stations[e]]
         X, Y, p = nodal(u, 0), nodal(u, NODAL), mean(w, nodal(u, 0))
@@ -180,8 +181,10 @@ class CoilFriction(Friction):
         return np.hstack(parts), t
 
 
-def nearest(p, Y, radii, cubic, ξ, inside):
-    """ξ of the location nearest to `p` by one step of Newton's method from the one that is known, exact to first order."""
+def nearest(
+    p: np.ndarray, Y: np.ndarray, radii: np.ndarray, cubic: np.ndarray, ξ: np.ndarray, inside: np.ndarray
+) -> np.ndarray:
+    """ξ nearest to `p` by one step of Newton's method from the one that is known, exact to first order."""
     N, dN, ddN = (curve_weights(cubic, ξ, order) for order in range(3))
     q, dc, ddc = p - mean(N, Y), mean(dN, Y), mean(ddN, Y)
     d = np.sqrt(dot(q, q))

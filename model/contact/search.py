@@ -104,7 +104,19 @@ def closest(p, y, first, cubic, j, work):
 
 
 @njit(cache=True, error_model="numpy")
-def near_locations(p, radius, turns, y, station_turns, first, cubic, overlap, margin, pair, where):
+def near_locations(
+    p: np.ndarray,
+    radius: np.ndarray,
+    turns: np.ndarray,
+    y: np.ndarray,
+    station_turns: np.ndarray,
+    first: np.ndarray,
+    cubic: np.ndarray,
+    overlap: np.ndarray,
+    margin: float,
+    pair: np.ndarray,
+    where: np.ndarray,
+) -> int:
     """All locations where a point of the wire and another coil are nearer than `margin`.
 
     Args:

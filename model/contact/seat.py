@@ -10,8 +10,8 @@ from coilset.model.contact.curve import STENCIL, WirePoints
 from coilset.model.contact.memory import Memory
 from coilset.model.contact.plate import Plate, radial
 
-# Stiffness of the spring that holds a tip which lifts off, as a share of the bedding of a wire diameter. 1e-3 changed the
-# set of a spring whose tips lift off at the end of the release by 0.24 mm of 37.7 mm, 1e-5 by less than 0.01 mm.
+# Stiffness of the spring that holds a tip which lifts off, as a share of the bedding of a wire diameter. 1e-3 changed
+# the set of a spring whose tips lift off at the end of the release by 0.24 mm of 37.7 mm, 1e-5 by less than 0.01 mm.
 TIP_SPRING_OF_BEDDING = 1e-5
 
 

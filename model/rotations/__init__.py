@@ -1,1 +1,1 @@
-"""Finite rotations by rotation vectors: compiled `kernels` for one node at a time, `vectors` for arrays, also complex."""
+"""Finite rotations by rotation vectors: compiled `kernels` for single nodes, `vectors` for arrays, also complex."""

@@ -11,7 +11,7 @@ from numba import njit
 
 
 @njit(cache=True)
-def exponential(v, R):
+def exponential(v: np.ndarray, R: np.ndarray) -> None:
     """Write into `R` the rotation matrix of the rotation vector `v` (rad): R = 1 + a v× + b v×v×."""
     x, y, z = v[0], v[1], v[2]
     angle2 = x * x + y * y + z * z
@@ -34,7 +34,7 @@ def exponential(v, R):
 
 
 @njit(cache=True)
-def logarithm(R, v):
+def logarithm(R: np.ndarray, v: np.ndarray) -> None:
     """Write into `v` the rotation vector of the matrix `R`, for angles below π."""
     x, y, z = R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]  # 2 sin(angle) times the axis
     sine = 0.5 * math.sqrt(x * x + y * y + z * z)
@@ -46,7 +46,7 @@ def logarithm(R, v):
 
 
 @njit(cache=True)
-def chart_tangent(v, T):
+def chart_tangent(v: np.ndarray, T: np.ndarray) -> None:
     """Write into `T` the matrix with ω = T v̇: spatial spin of exp(v) for a rate of the rotation vector."""
     x, y, z = v[0], v[1], v[2]
     angle2 = x * x + y * y + z * z
@@ -69,7 +69,7 @@ def chart_tangent(v, T):
 
 
 @njit(cache=True)
-def inverse_chart_tangent(v, P):
+def inverse_chart_tangent(v: np.ndarray, P: np.ndarray) -> None:
     """Write into `P` the inverse of the chart's tangent: v̇ = P ω, for angles below 2π."""
     x, y, z = v[0], v[1], v[2]
     angle2 = x * x + y * y + z * z
@@ -90,7 +90,7 @@ def inverse_chart_tangent(v, P):
 
 
 @njit(cache=True)
-def multiply(A, B, C):
+def multiply(A: np.ndarray, B: np.ndarray, C: np.ndarray) -> None:
     """C = A B for 3×3 matrices, without an allocation."""
     for i in range(3):
         for j in range(3):
@@ -98,7 +98,7 @@ def multiply(A, B, C):
 
 
 @njit(cache=True)
-def multiply_transposed(A, B, C):
+def multiply_transposed(A: np.ndarray, B: np.ndarray, C: np.ndarray) -> None:
     """C = Aᵀ B for 3×3 matrices, without an allocation."""
     for i in range(3):
         for j in range(3):
@@ -106,7 +106,7 @@ def multiply_transposed(A, B, C):
 
 
 @njit(cache=True)
-def rotate_nodes(v, R_old, R_new, T):
+def rotate_nodes(v: np.ndarray, R_old: np.ndarray, R_new: np.ndarray, T: np.ndarray) -> None:
     """Rotate the nodes' matrices by their rotation vectors: R_new = exp(v) R_old, with the charts' tangents T.
 
     Args:

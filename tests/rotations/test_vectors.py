@@ -17,7 +17,7 @@ from coilset.model.rotations.vectors import (
     stumpff,
 )
 
-ANGLES = [0.0, 1e-12, 1e-9, 1e-6, 1e-3, 0.1, 1.0, 2.0, np.pi - 1e-7, np.pi, 4.0, 5.0, 6.28]
+ANGLES = [0.0, 1e-12, 1e-9, 1e-6, 1.1e-3, 0.1, 1.0, 2.0, np.pi - 1e-7, np.pi, 4.0, 5.0, 6.28]
 
 
 def vector(angle, seed=0):
@@ -38,8 +38,8 @@ def test_stumpff_functions_are_their_closed_forms():
 
 @pytest.mark.parametrize("angle", ANGLES)
 def test_matrix_and_derivatives_agree_with_matrix_exponentials(angle):
-    """The blocks of exp([[M, A], [0, M]]) hold the derivative of exp(M) along A, those of the next larger the second one
-    (C. Van Loan, IEEE Trans. Autom. Control 23 (1978) 395). expm of 12 × 12 matrices is good to some 1e-14 at 2π."""
+    """A block of exp([[M, A], [0, M]]) is the derivative of exp(M) along A, one of the next larger the second one (C.
+    Van Loan, IEEE Trans. Autom. Control 23 (1978) 395). expm of 12 × 12 matrices is good to some 1e-14 at 2π."""
     θ, Z = vector(angle), np.zeros((3, 3))
     R, dR, ddR = rotation_derivatives(θ)
     M = cross_matrix(θ)
@@ -70,7 +70,9 @@ def test_taylor_remainders_are_of_second_and_third_order(angle):
 
 @pytest.mark.parametrize("angle", ANGLES)
 def test_vectors_and_moments_go_as_with_the_matrices(angle):
-    """R v, Rᵀ v and Tᵀ M, with R of scipy and T of the compiled kernel, for many vectors at once."""
+    """R v, Rᵀ v and Tᵀ M, with R of scipy and T of the compiled kernel, for many vectors at once.
+
+    The kernel's 1 − cos α loses digits where its series ends: 4e-14 of T at 1.1e-3 rad."""
     rng = np.random.default_rng(4)
     θ = np.stack([vector(angle, seed) for seed in range(6)])
     v, R = rng.normal(size=(6, 3)), Rotation.from_rotvec(θ).as_matrix()
@@ -79,7 +81,7 @@ def test_vectors_and_moments_go_as_with_the_matrices(angle):
     T = np.empty((3, 3))
     for one, M, ours in zip(θ, v, moment_to_chart(v, θ), strict=True):
         kernels.chart_tangent(one, T)
-        np.testing.assert_allclose(ours, T.T @ M, rtol=0, atol=2e-12 if 0.0 < angle < 0.1 else 5e-14)
+        np.testing.assert_allclose(ours, T.T @ M, rtol=0, atol=2e-13 if 0.0 < angle < 0.1 else 2e-14)
 
 
 @pytest.mark.parametrize("angle", [0.0, 1e-3, 1.0, 3.0, 6.0])
