@@ -132,7 +132,7 @@ def test_a_kill_while_writing_leaves_the_checkpoint_before(example, tmp_path, mo
 
     monkeypatch.setattr(checkpoints.np, "savez", half)
     with pytest.raises(Killed):
-        checkpoint.save(analysis)
+        checkpoint.save(analysis.system.state, analysis.layout, analysis.program.position, analysis.result)
     monkeypatch.undo()
     for name, values in before.items():
         np.testing.assert_array_equal(final(tmp_path)[name], values)
@@ -141,11 +141,11 @@ def test_a_kill_while_writing_leaves_the_checkpoint_before(example, tmp_path, mo
 def test_a_changed_program_goes_on_and_a_changed_spring_does_not(example, tmp_path):
     case = read_case(example, [*SETTINGS, "loading.0.to={travel: 8}"])
     analysis = Analysis(case, MPI.COMM_SELF)
-    analysis.run(checkpoint=Checkpoint(tmp_path, case))
+    analysis.run(save=Checkpoint(tmp_path, case).save)
     longer = read_case(example, [*SETTINGS, "loading=[{to: {travel: 8}, steps: 20}, {to: {travel: 6}, steps: 5}]"])
     resumed = Analysis(longer, MPI.COMM_SELF)
     about = json.loads(str(np.load(tmp_path / "checkpoint" / "state.npz")["about"]))
-    assert about["walk"]["phase"] == 2
+    assert about["position"]["stage"] == 2
     with pytest.raises(InputError, match="loading"):  # both phases of the old program are behind
         resumed.resume(Checkpoint(tmp_path, longer).load(resumed.comm))
     more = case.model_copy(update={"loading": [*case.loading, longer.loading[1]]})
@@ -154,7 +154,7 @@ def test_a_changed_program_goes_on_and_a_changed_spring_does_not(example, tmp_pa
     assert resumed.run().steps[-1].travel_mm == pytest.approx(6.0, abs=1e-12)
     thicker = read_case(example, [*SETTINGS, "loading.0.to={travel: 8}", "spring.wire_diameter=5.1"])
     with pytest.raises(InputError, match="spring"):
-        Checkpoint(tmp_path, thicker).resume(Analysis(thicker, MPI.COMM_SELF))
+        Checkpoint(tmp_path, thicker).load(MPI.COMM_SELF)
 
 
 def test_no_checkpoint_and_a_broken_one_are_said(example, tmp_path):
