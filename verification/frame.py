@@ -4,7 +4,9 @@ import numpy as np
 from mpi4py import MPI
 
 from coilset.meshes.frame import frame_mesh
+from coilset.model.equilibrium.contact_limit import ContactLimit
 from coilset.model.equilibrium.continuation import Continuation
+from coilset.model.equilibrium.control import NewtonControl
 from coilset.model.equilibrium.layout import SEATS, LineLayout
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.methods import rod_method
@@ -12,6 +14,7 @@ from coilset.model.equilibrium.newton import Newton, Start
 from coilset.model.equilibrium.system import System
 from coilset.model.rod.rod import Rod
 
+FREE_PENETRATION = 0.02  # wire diameters that a correction may press, as for springs
 KEEP = {"snes_lag_jacobian": 1_000_000}  # the matrix is kept over the whole step, as in the thesis (4.4.5)
 
 
@@ -36,7 +39,8 @@ class Frame:
         self.system = System(self.rod, self.layout, contacts, np.zeros(SEATS))
         # an arc by which every node moves by about the wire's radius
         arc = self.rod.largest_radius * np.sqrt(len(self.layout.station_dofs))
-        self.continuation = Continuation(Newton(self.system, rod_method(method, 1, options, arc), 1e-7))
+        limit = ContactLimit(self.system, NewtonControl(), FREE_PENETRATION * 2.0 * self.rod.largest_radius)
+        self.continuation = Continuation(Newton(self.system, rod_method(method, 1, options, arc), 1e-7, limit=limit))
         self.held = {int(dof): 0.0 for dof in self.layout.seat_dofs}
         self.held |= {self.dof(node, component): 0.0 for node, components in held for component in components}
         self._stepped = False

@@ -25,12 +25,14 @@ class StepLength:
     """How far to go.
 
     Attributes:
-        value: share of the correction.
-        limited_by_contact: was it, or a lack of stress on its way, what kept a correction from the prescribed increments?
+        contact_limit: share of the correction that contacts allow.
+        value: share of that.
+        ends_on_the_way: is it short of the prescribed increments, which the whole correction would meet?
     """
 
+    contact_limit: float
     value: float
-    limited_by_contact: bool
+    ends_on_the_way: bool
 
 
 class WorkSearch:
@@ -67,7 +69,7 @@ class WorkSearch:
             if not (norm < start_norm or abs(work) <= control.accepted_work * abs(start_work)):
                 crosses_zero = start_work > 0.0 > work
                 length = self._zero(start_work, length, work) if crosses_zero else self._back(start_norm, length, norm)
-        return StepLength(limit * length, pending and limit * length < 1.0)
+        return StepLength(limit, length, pending and limit * length < 1.0)
 
     def _at(self, length: float) -> tuple[float | None, float]:
         """Work and norm of the forces on the free unknowns after `length`; None where the law finds no stress."""

@@ -207,9 +207,10 @@ class Newton:
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Before a line search of type `basic`: scale the correction −y."""
         step = self.search(x, y, self.F, self.load, self.load_factor)
-        if step.value != 1.0:
-            y.scale(step.value)
-        if step.limited_by_contact:
+        for share in (step.contact_limit, step.value):
+            if share != 1.0:
+                y.scale(share)
+        if step.ends_on_the_way:
             reached = x.copy()
             reached.axpy(-1.0, y)
             self.load_factor = self.load.reached(reached.getArray(readonly=True))
