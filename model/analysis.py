@@ -89,9 +89,9 @@ class Analysis:
         contacts = build_contacts(case, self.spring, self.turns, line.stations, self.law.E)
         self.system = System(self.rod, contacts, seats=(0.0, top))
         self.solver = Solver(self.system, case.solver.method, case.solver.tolerance, case.solver.options,
-                             case.contact.penetration or np.inf)  # fmt: skip
+                             case.contact.augmentation_tolerance or np.inf)  # fmt: skip
         self.drive = Drive(self.system, case.ends, top, case.seats)
-        deepest = case.contact.deepest * 2.0 * self.wire_radius.min()
+        deepest = case.contact.penetration_limit * 2.0 * self.wire_radius.min()
         self.stepper = Stepper(self.drive, self.solver, self.spring.block_height, deepest)
         self.result = Result()
 
