@@ -149,6 +149,15 @@ def check(data: Any, file: str | Path = "", model: type[Group] = Case) -> Group:
     return check_entries(data, model, file)
 
 
+def read_case_data(path: str | Path) -> dict[str, Any]:
+    """The raw, unchecked data of a case file.
+
+    Raises:
+        InputError: if it cannot be read.
+    """
+    return read_data(path, "a case file holds entries such as spring:, material: and loading:")
+
+
 def read_case(path: str | Path, settings: Iterable[str] = ()) -> Case:
     """Read and check a case file.
 
@@ -162,7 +171,7 @@ def read_case(path: str | Path, settings: Iterable[str] = ()) -> Case:
     Raises:
         InputError: one line with file, place, value and what would be right.
     """
-    data = read_data(path, "a case file holds entries such as spring:, material: and loading:")
+    data = read_case_data(path)
     for setting in settings:
         assign(data, setting)
     return check(data, path)

@@ -64,12 +64,8 @@ def explain(error: ValidationError) -> tuple[str, str]:
 
 def _innermost(found: list[Any]) -> list[Any]:
     """Without complaints of groups that follow from one within: a list whose only value is wrong is also too short."""
-    places = [one["loc"] for one in found]
-    return [one for one in found if not any(_within(other, one["loc"]) for other in places)]
-
-
-def _within(inner: tuple[Any, ...], outer: tuple[Any, ...]) -> bool:
-    return len(inner) > len(outer) and inner[: len(outer)] == outer
+    outside = {one["loc"][:depth] for one in found for depth in range(len(one["loc"]))}
+    return [one for one in found if one["loc"] not in outside]
 
 
 def _in_words(message: str) -> str:
