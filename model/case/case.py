@@ -21,9 +21,9 @@ from coilset.model.solvers.methods import METHODS
 class SectionSpec(Strict):
     """Quadrature of the wire's cross-section."""
 
-    rule: Annotated[
-        Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")
-    ] = "polar"
+    rule: Annotated[Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")] = (
+        "polar"
+    )
     radial: Annotated[Whole, Field(ge=1, le=64, description="rings of the polar rule")] = 4
     angular: Annotated[Whole, Field(ge=3, le=256, description="angles of the polar rule")] = 12
 

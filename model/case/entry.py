@@ -26,6 +26,7 @@ TEXTS = {  # what would be right, where pydantic's words are those of a programm
     "int_type": "must be a whole number",
     "float_type": "must be a number",
     "bool_type": "must be true or false",
+    "string_pattern_mismatch": "must be a name of letters, digits, _ and in a sweep also full stops",
 }
 ALTERNATIVES = {"(word)": ", or a number", "(none)": ", or a group of constants"}  # to a word, by its tag
 _short = reprlib.Repr()
@@ -51,8 +52,8 @@ def explain(error: ValidationError) -> tuple[str, str]:
     # a misspelt entry first: the one that it was meant for is reported as missing besides
     first = next((one for one in found if one["type"] == "unknown_entry"), found[0])
     context = first.get("ctx", {})
-    # tags of alternatives are in brackets, for they are no entries of the file
-    parts = [shortened(part) for part in first["loc"] if not re.fullmatch(r"\(.*\)", str(part))]
+    # what is in brackets is no entry of the file: tags of alternatives, and that an entry's name is meant
+    parts = [shortened(part) for part in first["loc"] if not re.fullmatch(r"\(.*\)|\[key\]", str(part))]
     if first["type"] in OWN:
         parts.append(shortened(context["entry"]))
     given = "" if first["type"] in (*OWN, "value_error") else f"{shown(first['input'])}: "

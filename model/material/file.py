@@ -96,9 +96,7 @@ class Heating(Strict):
 class Validity(Strict):
     """Where the constants may be trusted; the checks of the functions go up to the greatest plastic work."""
 
-    plastic_work: Annotated[
-        float, Field(gt=0, description="the largest b* up to which the constants are valid, N/mm²")
-    ]
+    plastic_work: Annotated[float, Field(gt=0, description="the largest b* up to which the constants are valid, N/mm²")]
     remark: Annotated[Text, Field(description="where else the constants may be trusted")]
 
 

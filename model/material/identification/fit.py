@@ -263,9 +263,7 @@ class Fit:
         }
 
 
-def fit(
-    tests: Iterable[Test], G: float, nu: float, saturates: bool = True, temperature: float = 293.15
-) -> Fit:
+def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool = True, temperature: float = 293.15) -> Fit:
     """Identify the constants of k², ζ and κ.
 
     Args:
