@@ -25,8 +25,10 @@ Turn = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
 class Table(Strict):
     """Values at chosen turns, the first at turn 0 and the last at the last turn."""
 
-    turns: Annotated[tuple[Turn, ...], Field(min_length=2, description="turns from the bottom end, increasing")]
-    values: Annotated[tuple[Length, ...], Field(min_length=2, description="values at these turns, mm")]
+    turns: Annotated[
+        tuple[Turn, ...], Field(strict=False, min_length=2, description="turns from the bottom end, increasing")
+    ]
+    values: Annotated[tuple[Length, ...], Field(strict=False, min_length=2, description="values at these turns, mm")]
     interpolation: Annotated[
         Literal["linear", "monotone", "spline"],
         Field(description="linear; monotone (cubic without overshoot, smooth slope); spline (cubic, smooth curvature)"),

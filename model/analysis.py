@@ -72,7 +72,7 @@ class Analysis:
             self.system, spring.free_length, case.ends == "clamped", case.seats.hold == "tips",
             (case.seats.bottom.held(), case.seats.top.held()),
         )  # fmt: skip
-        limit = case.contact.deepest * 2.0 * float(radius.min())
+        limit = case.contact.penetration_limit * 2.0 * float(radius.min())
         self.continuation = Continuation(self.newton, case.solver.control.steps, limit)
         self.program = LoadProgram(self.control, self.continuation)
         records = tuple(
@@ -86,9 +86,9 @@ class Analysis:
     def _newton(self, wire_diameter: float) -> Newton:
         solver, contact = self.case.solver, self.case.contact
         control = solver.control.newton
-        limit = ContactLimit(self.system, control, free_penetration(control, contact.deepest) * wire_diameter)
+        limit = ContactLimit(self.system, control, free_penetration(control, contact.penetration_limit) * wire_diameter)
         return Newton(self.system, self._method(solver.method), solver.tolerance, control, limit,
-                      contact.penetration or np.inf)  # fmt: skip
+                      contact.augmentation_tolerance or np.inf)  # fmt: skip
 
     def _method(self, name: str):
         # an arc by which every node moves by about the wire's radius

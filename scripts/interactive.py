@@ -1,10 +1,8 @@
 """`coilset solve --interactive`: watch each step, and change size, method and target before the next."""
 
-import yaml
-from pydantic import ValidationError
-
-from coilset.model.case.entry import explain
+from coilset.model.case.entry import check_entries
 from coilset.model.case.phases import Phase
+from coilset.model.case.yaml import load_yaml
 from coilset.model.errors import InputError
 
 HELP = """\
@@ -73,8 +71,7 @@ def parse_phase(text):
         InputError: if it is none.
     """
     try:
-        return Phase.model_validate(yaml.safe_load(f"{{to: {text}}}"))
-    except ValidationError as error:
-        raise InputError(*reversed(explain(error))) from None
-    except yaml.YAMLError:
-        raise InputError("a target is block, {travel: mm}, {height: mm} or {force: N}", text) from None
+        return check_entries(load_yaml(f"{{to: {text}}}"), Phase)
+    except InputError as error:
+        problem = f"{error.problem}; a target is block, {{travel: mm}}, {{height: mm}} or {{force: N}}"
+        raise InputError(problem, error.place) from None

@@ -66,7 +66,7 @@ def _begin(analysis, out, resume):
 
 
 def _announce(console, analysis, case_file, resume):
-    for warning in analysis.spring.warnings:
+    for warning in [*analysis.case.notices(), *analysis.spring.warnings]:
         console.print(f"[yellow]warning:[/] {warning}")
     targets = ", ".join(phase.label for phase in analysis.case.loading)
     elements, ranks = len(analysis.setup.turns) - 1, analysis.comm.size

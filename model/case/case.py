@@ -1,16 +1,18 @@
 """The case file: one YAML file that names a spring, its material, its ends, its mesh and its load program."""
 
+import math
+from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
 
-from pydantic import Field, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
 
 from coilset.meshes.spring import SpringEntry
 from coilset.meshes.stations import ElementsPerTurn
-from coilset.model.case.entry import Strict, explain
+from coilset.model.case.entry import Strict, Whole, check_entries
 from coilset.model.case.phases import Phase
 from coilset.model.case.seats import SeatsSpec
-from coilset.model.case.settings import assign
+from coilset.model.case.settings import assign, located
 from coilset.model.case.yaml import read_data
 from coilset.model.equilibrium.control import NewtonControl, StepControl
 from coilset.model.equilibrium.methods import METHODS
@@ -24,11 +26,11 @@ class SectionSpec(Strict):
     rule: Annotated[Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")] = (
         "polar"
     )
-    radial: Annotated[int, Field(ge=1, le=64, description="rings of the polar rule")] = 4
-    angular: Annotated[int, Field(ge=3, le=256, description="angles of the polar rule")] = 12
+    radial: Annotated[Whole, Field(ge=1, le=64, description="rings of the polar rule")] = 4
+    angular: Annotated[Whole, Field(ge=3, le=256, description="angles of the polar rule")] = 12
 
-    def build(self):
-        """The DiskRule."""
+    def build(self) -> rules.DiskRule:
+        """The quadrature rule."""
         return rules.abramowitz9() if self.rule == "abramowitz9" else rules.polar(self.radial, self.angular)
 
 
@@ -58,6 +60,8 @@ class FrictionSpec(Strict):
 class ContactSpec(Strict):
     """Stiffness of seats and coils against penetration."""
 
+    RENAMED: ClassVar[dict[str, str]] = {"deepest": "penetration_limit", "penetration": "augmentation_tolerance"}
+
     coils: Annotated[
         Literal["closest", "gaps"],
         Field(description="closest points of the wires, or the thesis's gap elements between nodes one turn apart"),
@@ -65,16 +69,16 @@ class ContactSpec(Strict):
     bedding: Annotated[
         float | None, Field(gt=0, description="force per length and penetration, N/mm per mm; default E/40")
     ] = None
-    deepest: Annotated[
+    penetration_limit: Annotated[
         float, Field(gt=0, description="penetration in wire diameters beyond which a step is no equilibrium")
     ] = 0.02
-    penetration: Annotated[
+    augmentation_tolerance: Annotated[
         float | None, Field(gt=0, description="greatest penetration, mm, reached by augmented Lagrange; default: any")
     ] = None
     friction: FrictionSpec = FrictionSpec()
 
     @model_validator(mode="after")
-    def _friction_belongs(self):
+    def _friction_belongs(self) -> Self:
         if self.coils == "gaps" and self.friction.coils:
             raise ValueError("gap elements have no friction; give coils: closest, or leave friction.coils out")
         return self
@@ -87,13 +91,23 @@ class ControlSpec(Strict):
     steps: Annotated[StepControl, Field(description="how steps follow each other")] = StepControl()
 
 
+def _one_value(value: Any) -> Any:
+    if isinstance(value, dict | list | tuple) or (isinstance(value, float) and not math.isfinite(value)):
+        raise ValueError("must be a word, a finite number, true, false or null")
+    return value
+
+
+Option = Annotated[bool | int | float | str | None, BeforeValidator(_one_value)]
+"""Value of a PETSc option."""
+
+
 class SolverSpec(Strict):
     """How equilibrium is found."""
 
     method: Annotated[Literal[tuple(METHODS)], Field(description="iteration method")] = "newton"
     tolerance: Annotated[float, Field(gt=0, lt=1, description="ε of (6.3.1)")] = 1e-9
     options: Annotated[
-        dict[Annotated[str, Field(pattern="^[a-z]\\w*$")], bool | int | float | str | None],
+        dict[Annotated[str, Field(pattern="^[a-z]\\w*$")], Option],
         Field(default_factory=dict, description="any PETSc options, without the leading hyphen; they win"),
     ]
     control: ControlSpec = ControlSpec()
@@ -102,7 +116,7 @@ class SolverSpec(Strict):
 class Case(Strict):
     """A whole case; units mm, N, MPa, K."""
 
-    spring: SpringEntry
+    spring: Annotated[SpringEntry, Field(description="the spring's drawing, or the file of a measured one")]
     material: Annotated[str, Field(description="name in the library, or path of a material file")] = "ck15"
     temperature: Annotated[
         float | None, Field(gt=0, description="of the spring throughout, K; default: the material file's first")
@@ -112,10 +126,17 @@ class Case(Strict):
     mesh: MeshSpec = MeshSpec()
     contact: ContactSpec = ContactSpec()
     solver: SolverSpec = SolverSpec()
-    loading: Annotated[list[Phase], Field(min_length=1, description="targets, one after the other")]
+    loading: Annotated[list[Phase], Field(strict=False, min_length=1, description="targets, one after the other")]
+
+    @field_validator("material")
+    @classmethod
+    def _from_folder(cls, material: str, info: ValidationInfo) -> str:
+        """The path of a material file counts from the folder of the case file, where the context has one."""
+        folder = (info.context or {}).get("folder")
+        return material if folder is None else located("material", material, folder)
 
     @model_validator(mode="after")
-    def _seats_belong(self):
+    def _seats_belong(self) -> Self:
         if self.ends != "seats" and self.seats != SeatsSpec():
             raise ValueError("there are no seats between clamped ends; leave the seats out, or give ends: seats")
         if self.ends != "seats" and self.contact.friction.seats:
@@ -126,26 +147,33 @@ class Case(Strict):
         return self
 
 
-def check(data, file="", model=Case):
-    """The checked Case (or other `model`) of raw data.
+Group = TypeVar("Group", bound=Strict)
+
+
+def check(data: Any, file: str | Path = "", model: type[Group] = Case) -> Group:  # type: ignore[assignment]
+    """The checked Case (or other `model`) of raw data; paths in it count from the folder of `file`.
 
     Raises:
         InputError: one line with file, place, value and what would be right.
     """
-    try:
-        # paths in a case count from its folder
-        return model.model_validate(data, context={"folder": Path(file).parent})
-    except ValidationError as error:
-        place, problem = explain(error)
-        raise InputError(problem, place, file) from None
+    return check_entries(data, model, file)
 
 
-def read_case(path, settings=()):
+def read_case_data(path: str | Path) -> dict[str, Any]:
+    """The raw, unchecked data of a case file.
+
+    Raises:
+        InputError: if it cannot be read.
+    """
+    return read_data(path, "a case file holds entries such as spring:, material: and loading:")
+
+
+def read_case(path: str | Path, settings: Iterable[str] = ()) -> Case:
     """Read and check a case file.
 
     Args:
         path: the YAML file.
-        settings: texts `key=value` that replace entries of the file.
+        settings: texts `key=value` that replace entries of the file; paths in them count from the working directory.
 
     Returns:
         Case.
@@ -153,7 +181,7 @@ def read_case(path, settings=()):
     Raises:
         InputError: one line with file, place, value and what would be right.
     """
-    data = read_data(path)
+    data = read_case_data(path)
     for setting in settings:
         assign(data, setting)
     return check(data, path)

@@ -1,10 +1,10 @@
 """The `loading` section of a case: a list of targets, each reached in a number of steps."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from coilset.model.case.entry import Strict
+from coilset.model.case.entry import WORD_OR_NUMBER, Strict, Whole
 
 
 class Target(Strict):
@@ -15,32 +15,33 @@ class Target(Strict):
     force: Annotated[float | None, Field(description="axial force, compression positive, N")] = None
 
     @model_validator(mode="after")
-    def _one(self):
+    def _one(self) -> Self:
         if sum(value is not None for value in (self.travel, self.height, self.force)) != 1:
             raise ValueError("give exactly one of travel (mm), height (mm) or force (N), as in {force: 0}")
         return self
 
 
-def _kind(value):
+def _kind(value: Any) -> str:
     """A target with entries, or the word `block`."""
-    return "target" if isinstance(value, (dict, Target)) else "block"
+    return "(target)" if isinstance(value, dict | Target) else "(block)"
 
 
 class Phase(Strict):
     """Go to a target in equal steps."""
 
     to: Annotated[
-        Annotated[Literal["block"], Tag("block")] | Annotated[Target, Tag("target")],
+        Annotated[Literal["block"], Tag("(block)")] | Annotated[Target, Tag("(target)")],
         Discriminator(_kind),
         Field(description="block, {travel: mm}, {height: mm} or {force: N}"),
     ]
     steps: Annotated[
-        Annotated[int, Field(gt=0, le=100_000)] | Literal["auto"],
+        Annotated[Whole, Field(gt=0, le=100_000), Tag("(number)")] | Annotated[Literal["auto"], Tag("(word)")],
+        WORD_OR_NUMBER,
         Field(description="number of equal load steps, or auto: as large as converges with ease"),
     ] = 12
 
     @property
-    def label(self):
+    def label(self) -> str:
         """The target in words, for progress and logs."""
         if self.to == "block":
             return "block"

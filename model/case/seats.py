@@ -1,19 +1,18 @@
 """The `seats` section of a case: shape of both seats, how they hold the end coils, and how they are held themselves."""
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, Tag, model_validator
 
-from coilset.model.case.entry import Strict
+from coilset.model.case.entry import WORD_OR_NUMBER, Strict
 
-Stiffness = Annotated[float, Field(gt=0)]
+Freedom = Annotated[
+    Annotated[Literal["held", "free"], Tag("(word)")] | Annotated[float, Field(gt=0), Tag("(number)")], WORD_OR_NUMBER
+]
+"""How a seat is held in one freedom: `held`, `free`, or on a spring of this stiffness."""
 FREEDOMS = {"sideways": (0, 1), "tilt": (3, 4), "turn": (5,)}  # degrees of freedom of a seat
 GROOVE = 0.75  # turns of the groove that are usual: what grinding makes flat
-
-
-def _freedom(text):
-    return Annotated[Literal["held", "free"] | Stiffness, Field(description=text)]
 
 
 class SeatSpec(Strict):
@@ -26,12 +25,14 @@ class SeatSpec(Strict):
     turns: Annotated[
         float | None, Field(gt=0, description="of a stepped seat, turns from the tip over which it follows the wire")
     ] = None
-    sideways: _freedom("held, free, or stiffness in N/mm") = "held"
-    tilt: _freedom("held, free (ball joint), or stiffness in N mm/rad") = "held"
-    turn: _freedom("turning about the spring's axis: held, free, or stiffness in N mm/rad") = "held"
+    sideways: Annotated[Freedom, Field(description="held, free, or stiffness in N/mm")] = "held"
+    tilt: Annotated[Freedom, Field(description="held, free (ball joint), or stiffness in N mm/rad")] = "held"
+    turn: Annotated[
+        Freedom, Field(description="turning about the spring's axis: held, free, or stiffness in N mm/rad")
+    ] = "held"
 
     @model_validator(mode="after")
-    def _belongs(self):
+    def _belongs(self) -> Self:
         for name, shape in (("angle", "conical"), ("turns", "stepped")):
             given = getattr(self, name) is not None
             if given and self.shape != shape:
@@ -41,21 +42,21 @@ class SeatSpec(Strict):
         return self
 
     @property
-    def slope(self):
+    def slope(self) -> float:
         """tan β of a cone, else 0."""
         return math.tan(math.radians(self.angle or 0.0))
 
-    def held(self):
+    def held(self) -> list[int]:
         """Degrees of freedom that are held, without the level; the others are free or on springs."""
         return [dof for name, dofs in FREEDOMS.items() for dof in dofs if getattr(self, name) == "held"]
 
-    def springs(self):
+    def springs(self) -> dict[int, float]:
         """Stiffness by degree of freedom, a dict, N/mm and N mm/rad."""
         given = {name: getattr(self, name) for name in FREEDOMS}
         return {dof: k for name, k in given.items() if not isinstance(k, str) for dof in FREEDOMS[name]}
 
     @property
-    def moves(self):
+    def moves(self) -> bool:
         """Whether it moves otherwise than along the axis."""
         return any(getattr(self, name) != "held" for name in FREEDOMS)
 
@@ -72,7 +73,7 @@ class SeatsSpec(Strict):
     top: SeatSpec = SeatSpec()
 
     @model_validator(mode="after")
-    def _no_rigid_motion(self):
+    def _no_rigid_motion(self) -> Self:
         if self.groove is not None and self.hold != "groove":
             raise ValueError("groove gives the turns of a groove; say hold: groove with it")
         for end in ("bottom", "top"):
@@ -86,6 +87,6 @@ class SeatsSpec(Strict):
         return self
 
     @property
-    def groove_turns(self):
+    def groove_turns(self) -> float:
         """Length of the groove in turns."""
         return self.groove or GROOVE

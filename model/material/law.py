@@ -1,13 +1,17 @@
 """The law that comes out of a material file: its checks, and the array of its constants for the kernels."""
 
 import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NoReturn
 
 import numpy as np
-from pydantic import BaseModel
+import numpy.typing as npt
 
+from coilset.model.case.entry import Strict
 from coilset.model.errors import InputError
 from coilset.model.material import functions as fn
-from coilset.model.material.file import UNITS
+from coilset.model.material.file import UNITS, Constants, MaterialFile, Validity
 
 
 class Law:
@@ -23,7 +27,9 @@ class Law:
         InputError: if the functions break a condition of the theory.
     """
 
-    def __init__(self, data, spin=True, heun_tolerance=1e-4, file=""):
+    def __init__(
+        self, data: MaterialFile, spin: bool = True, heun_tolerance: float = 1e-4, file: str | Path = ""
+    ) -> None:
         self.data, self.spin, self.heun_tolerance, self.file = data, spin, heun_tolerance, str(file)
         self._temperatures = np.array([at.temperature for at in data.temperatures])
         self._rows = np.array([self._row(i, at) for i, at in enumerate(data.temperatures)])
@@ -35,38 +41,85 @@ class Law:
             self._fail("temperatures", "isotropic is 'none' at some temperatures only; give it at all or at none")
         self._check_functions()
 
-    name = property(lambda self: self.data.name)
-    description = property(lambda self: self.data.description)
-    source = property(lambda self: self.data.source)
-    validity = property(lambda self: self.data.validity)
-    reference_temperature = property(lambda self: float(self._temperatures[0]), doc="The first temperature given, K.")
-    temperature_range = property(lambda self: (float(self._temperatures[0]), float(self._temperatures[-1])), doc="K.")
-    G = property(lambda self: self.data.temperatures[0].elasticity.G, doc="At the reference temperature, N/mm².")
-    nu = property(lambda self: self.data.temperatures[0].elasticity.nu, doc="At the reference temperature.")
-    E = property(lambda self: 2 * self.G * (1 + self.nu), doc="At the reference temperature, N/mm².")
-    temperatures = property(lambda self: tuple(float(t) for t in self._temperatures), doc="Of the table, K.")
-    is_adiabatic = property(lambda self: self.data.heating is not None, doc="Whether plastic work heats the points.")
-    n_state = property(lambda self: 8 if self.data.heating else 7, doc="Length of a rod point's history row.")
+    @property
+    def name(self) -> str:
+        """As the file names it."""
+        return self.data.name
 
     @property
-    def yield_stress(self):
+    def description(self) -> str:
+        """What it is, in a sentence."""
+        return self.data.description
+
+    @property
+    def source(self) -> str:
+        """Where its constants come from."""
+        return self.data.source
+
+    @property
+    def validity(self) -> Validity:
+        """Where its constants may be trusted."""
+        return self.data.validity
+
+    @property
+    def temperatures(self) -> tuple[float, ...]:
+        """Of the table, K."""
+        return tuple(float(t) for t in self._temperatures)
+
+    @property
+    def reference_temperature(self) -> float:
+        """The first temperature given, K."""
+        return float(self._temperatures[0])
+
+    @property
+    def temperature_range(self) -> tuple[float, float]:
+        """The first and the last temperature given, K."""
+        return float(self._temperatures[0]), float(self._temperatures[-1])
+
+    @property
+    def G(self) -> float:
+        """Shear modulus at the reference temperature, N/mm²."""
+        return self.data.temperatures[0].elasticity.G
+
+    @property
+    def nu(self) -> float:
+        """Poisson's ratio at the reference temperature."""
+        return self.data.temperatures[0].elasticity.nu
+
+    @property
+    def E(self) -> float:
+        """Young's modulus at the reference temperature, N/mm²."""
+        return 2 * self.G * (1 + self.nu)
+
+    @property
+    def is_adiabatic(self) -> bool:
+        """Whether plastic work heats the points."""
+        return self.data.heating is not None
+
+    @property
+    def n_state(self) -> int:
+        """Length of a rod point's state."""
+        return 8 if self.data.heating else 7
+
+    @property
+    def yield_stress(self) -> float:
         """First uniaxial yield stress sqrt(1.5 k0²) at the reference temperature, N/mm² (3.1.4); inf if elastic."""
         return math.sqrt(1.5 * self._rows[0, fn.K0])
 
     @property
-    def heating(self):
+    def heating(self) -> float:
         """Rise of temperature per plastic work b*, K mm²/N."""
         h = self.data.heating
         return h.dissipated / (h.density * h.specific_heat) if h else 0.0
 
-    def constants(self, temperature):
+    def constants(self, temperature: float) -> Iterator[tuple[str, tuple[float, str]]]:
         """Names, values and units of the constants that the file gives at one of its temperatures."""
         at = self.data.temperatures[self.temperatures.index(temperature)]
         for section in (at.elasticity, at.isotropic, getattr(at.isotropic, "saturation", None), at.kinematic):
             yield from _entries(section)
         yield from _entries(at.non_normality)
 
-    def parameters(self, temperature=None):
+    def parameters(self, temperature: float | None = None) -> np.ndarray:
         """Parameter array of the kernels.
 
         Args:
@@ -87,7 +140,7 @@ class Law:
         head[fn.N_ROWS] = len(self._rows)
         return np.concatenate([head, self._rows.ravel()])
 
-    def known(self, temperature):
+    def known(self, temperature: float) -> float:
         """The temperature, K, as a number.
 
         Raises:
@@ -99,12 +152,12 @@ class Law:
             self._fail("temperature", f"{temperature:g} K is outside the table of '{self.name}', known {known}")
         return float(temperature)
 
-    def thermal_strain(self, start, end):
+    def thermal_strain(self, start: float, end: float) -> float:
         """Thermal strain α ΔT (3.1.2) from one temperature to another, K, with the mean α of both."""
         alphas = np.interp([self.known(start), self.known(end)], self._temperatures, self._rows[:, fn.ALPHA])
         return float(alphas.mean()) * (end - start)
 
-    def functions(self, work, temperature=None):
+    def functions(self, work: npt.ArrayLike, temperature: float | None = None) -> np.ndarray:
         """k², k²′, ζ, ζ′, κ, κ′ at plastic works b*.
 
         Args:
@@ -121,14 +174,14 @@ class Law:
         fn.many(p, work.ravel(), p[fn.TEMPERATURE], values)
         return values.reshape(6, *work.shape)
 
-    def k_squared(self, work):
+    def k_squared(self, work: npt.ArrayLike) -> np.ndarray:
         """k² at the reference temperature, N²/mm⁴."""
         return self.functions(work)[0]
 
-    def _fail(self, place, problem):
+    def _fail(self, place: str, problem: str) -> NoReturn:
         raise InputError(problem, place, self.file)
 
-    def _row(self, i, at):
+    def _row(self, i: int, at: Constants) -> np.ndarray:
         row = np.zeros(fn.ROW_LENGTH)
         G, nu = at.elasticity.G, at.elasticity.nu
         row[[fn.ROW_T, fn.YOUNG, fn.SHEAR, fn.ALPHA]] = at.temperature, 2 * G * (1 + nu), G, at.elasticity.alpha
@@ -152,7 +205,7 @@ class Law:
             row[fn.KAPPA] = at.non_normality.a / (2 * G)
         return row
 
-    def _check_functions(self):
+    def _check_functions(self) -> None:
         """k² > 0, 2ζ + k²′ ≥ 0 and κ k²′ < 2 over the range of validity: else (3.1.9) is not positive."""
         work = np.linspace(0, self.validity.plastic_work, 2001)
         for i, row in enumerate(self._rows):
@@ -176,8 +229,8 @@ class Law:
                                    " (checked up to validity.plastic_work)")  # fmt: skip
 
 
-def _entries(section):
-    if isinstance(section, BaseModel):
+def _entries(section: object) -> Iterator[tuple[str, tuple[float, str]]]:
+    if isinstance(section, Strict):
         for name, value in section:
-            if not isinstance(value, BaseModel) and value is not None:
+            if not isinstance(value, Strict) and value is not None:
                 yield name, (value, UNITS[name])

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from coilset.model.case.entry import shortened
 from coilset.model.errors import InputError
 
 COLUMNS = ("eps11", "gamma12", "sigma11", "tau12")
@@ -23,7 +24,7 @@ class Test:
     stress: np.ndarray
 
     @property
-    def kind(self):
+    def kind(self) -> str:
         """tension, torsion or combined, by the stresses; a free end's strain in torsion does not count."""
         tension, torsion = np.abs(self.stress).max(axis=0) * (1, math.sqrt(3))
         if torsion < 0.1 * tension:
@@ -31,7 +32,7 @@ class Test:
         return "torsion" if tension < 0.1 * torsion else "combined"
 
 
-def read_test(path):
+def read_test(path: str | Path) -> Test:
     """Read a test from a CSV file.
 
     Lines at the top that begin with # are remarks. Of the columns, eps11, gamma12 (1) and sigma11, tau12 (N/mm²) are
@@ -62,11 +63,11 @@ def read_test(path):
     return Test(path.stem, values[:, :2], values[:, 2:])
 
 
-def _number(text, name, line, path):
+def _number(text: str | None, name: str, line: int, path: Path) -> float:
     try:
         value = float(text)
     except (TypeError, ValueError):
         value = math.nan
     if not math.isfinite(value):
-        raise InputError(f"'{text}' is no number", f"line {line}, column {name}", str(path))
+        raise InputError(f"'{shortened(str(text))}' is no number", f"line {line}, column {name}", str(path))
     return value

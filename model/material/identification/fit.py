@@ -13,7 +13,9 @@ others.
 
 import itertools
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -23,6 +25,7 @@ from scipy.stats import norm
 from coilset.model.errors import InputError, SolveError
 from coilset.model.material import functions as fn
 from coilset.model.material.heun import ROD_METRIC, integrate
+from coilset.model.material.identification.experiments import Test
 
 SUBSTEP = 1e-3  # greatest strain increment of the simulation
 STEP = 1e-4  # of the logarithms of the variables, for derivatives
@@ -229,15 +232,15 @@ class Fit:
     G: float
     nu: float
     temperature: float
-    constants: dict
-    standard: dict
-    uncertainty: dict
-    tests: tuple
-    stress: tuple
-    scatter: tuple
+    constants: dict[str, float]
+    standard: dict[str, float]
+    uncertainty: dict[str, float]
+    tests: tuple[Test, ...]
+    stress: tuple[np.ndarray, ...]
+    scatter: tuple[float, ...]
     work: float
 
-    def material(self, name):
+    def material(self, name: str) -> dict[str, Any]:
         """Content of a material file."""
         c = self.constants
         isotropic = {key: c[key] for key in ("k0_squared", "a1", "a2", "a3")}
@@ -260,7 +263,7 @@ class Fit:
         }
 
 
-def fit(tests, G, nu, saturates=True, temperature=293.15):
+def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool = True, temperature: float = 293.15) -> Fit:
     """Identify the constants of k², ζ and κ.
 
     Args:
