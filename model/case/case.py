@@ -16,7 +16,6 @@ from coilset.model.case.settings import assign, located
 from coilset.model.case.yaml import read_data
 from coilset.model.equilibrium.control import NewtonControl, StepControl
 from coilset.model.equilibrium.methods import METHODS
-from coilset.model.errors import InputError
 from coilset.model.section import rules
 
 

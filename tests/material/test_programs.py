@@ -111,6 +111,7 @@ def test_a_stress_that_cannot_be_carried():
             {"steps": [], "speed": 3},
             "speed: unknown entry; the entries here are name, description, source, form, temperature, steps",
         ),
+        ({"steps": []}, "steps: "),
     ],
 )
 def test_wrong_programs(content, message, tmp_path):
@@ -119,6 +120,7 @@ def test_wrong_programs(content, message, tmp_path):
     with pytest.raises(InputError) as error:
         programs.read(path)
     assert str(error.value).startswith(f"{path}: {message}")
+    assert "\n" not in str(error.value)
 
 
 def test_the_command_draws_and_keeps(tmp_path):
