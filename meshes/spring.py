@@ -89,8 +89,11 @@ class SpringSpec(Strict):
             return self._refuse(self._with_free_length(spring, self.turns - ends_and_transitions))
         built = spring(self._function("pitch"))
         if self.free_length is not None and abs(built.free_length - self.free_length) > 1e-6 * self.free_length:
-            raise InputError(f"{self.free_length:g} mm contradicts the pitch, which makes {built.free_length:.6g} mm; "
-                             "leave one of the two out", "spring.free_length")
+            raise InputError(
+                f"{self.free_length:g} mm contradicts the pitch, which makes {built.free_length:.6g} mm; "
+                "leave one of the two out",
+                "spring.free_length",
+            )
         return self._refuse(built)
 
     def _refuse(self, spring):

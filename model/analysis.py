@@ -22,6 +22,7 @@ from coilset.model.equilibrium.program import LoadProgram, ProgramPosition, Stag
 from coilset.model.equilibrium.system import System
 from coilset.model.errors import SolveError
 from coilset.model.material import library
+from coilset.model.results.balance import imbalance
 from coilset.model.results.checkpoint import Saved
 from coilset.model.results.record import ContactRecord, Result, Setup, Snapshot, Step
 from coilset.model.results.seat_reactions import seat_reactions
@@ -33,7 +34,9 @@ from coilset.model.state import State
 class Save(Protocol):
     """Keeps the state after each step, as coilset.model.results.checkpoint.Checkpoint.save."""
 
-    def __call__(self, state: State, layout: LineLayout, position: ProgramPosition, result: Result) -> object: ...
+    def __call__(self, state: State, layout: LineLayout, position: ProgramPosition, result: Result) -> object:
+        """Keep it; collective."""
+        ...
 
 
 class Analysis:
@@ -185,6 +188,10 @@ class Analysis:
         if not outcome.converged:
             raise SolveError(f"no equilibrium at the first touch: {outcome.reason}")
         return float(force / (before - after))
+
+    def imbalance(self) -> tuple[float, float]:
+        """Lack of balance at any cut as it stands, N and N mm; see coilset.model.results.balance; collective."""
+        return imbalance(self.snapshot("balance"), self.system, self.control)
 
     def _add_snapshot(self, name: str) -> None:
         self.result = replace(self.result, snapshots=(*self.result.snapshots, self.snapshot(name)))

@@ -31,7 +31,7 @@ class Body(Protocol):
         ...
 
     def internal_forces(self, vector: np.ndarray) -> None:
-        """Add ∫ σ : δε of the owned cells at the trial state to a local array (owned and ghost unknowns), N and N mm."""
+        """Add ∫ σ : δε of the owned cells at the trial state to a local array (owned and ghost unknowns), N, N mm."""
         ...
 
     def create_matrix(self, rows: int) -> PETSc.Mat:
@@ -48,7 +48,7 @@ class Body(Protocol):
 
     @property
     def constraint_weight(self) -> float:
-        """Stiffness by which a missed increment counts as a force, so that norms of the residual are of one kind, N/mm."""
+        """Stiffness by which a missed increment counts as a force, so that residuals are of one kind, N/mm."""
         ...
 
     def rounding(self, increments: np.ndarray) -> float:

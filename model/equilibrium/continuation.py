@@ -153,8 +153,8 @@ class Continuation:
         while True:
             self._attempts += 1
             if self._attempts > self.control.attempts * path.regular + self.control.spare_attempts:
-                raise SolveError(f"no equilibrium beyond {path.place()}: the program stalls, {self._attempts} solves on "
-                                 f"the way to {path.target}")  # fmt: skip
+                stalls = f"the program stalls, {self._attempts} solves on the way to {path.target}"
+                raise SolveError(f"no equilibrium beyond {path.place()}: {stalls}")
             position = self.position
             size = min(position.size, path.regular - position.done)
             if not path.automatic:

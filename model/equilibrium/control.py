@@ -24,7 +24,8 @@ class NewtonControl:
         part_tolerance: ε of (6.3.1) for a part of a step, which is only a place to go on from.
         smallest_part: of a step, balanced on the way to the whole; smaller ones are left to the step control.
         augmentations: of the contacts in a step, at most.
-        accepted_work: |s(λ)/s(0)| of the out-of-balance work up to which a full correction is taken though the norm grows.
+        accepted_work: |s(λ)/s(0)| of the out-of-balance work up to which a full correction is taken, though the norm
+            grows.
         sought_work: |s(λ)/s(0)| at which the search for a zero of the work ends.
         search_trials: of that search, at most.
         bracket_margin: share of the bracket by which a trial keeps away from its ends.

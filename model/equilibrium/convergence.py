@@ -1,4 +1,4 @@
-"""When a step is in equilibrium: the thesis's measure (6.3.1), what rounding leaves, and how a solve ended, in words."""
+"""When a step is in equilibrium: the thesis's measure (6.3.1), and how a solve ended, in words."""
 
 from dataclasses import dataclass, replace
 

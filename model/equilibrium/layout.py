@@ -39,7 +39,7 @@ class Layout:
         self.stop = self.start + self.size_local
 
     def vector(self, values: np.ndarray | None = None) -> PETSc.Vec:
-        """A PETSc vector of the unknowns: new and zero, or with this rank's `values`, shape (size_local,), as its own."""
+        """A PETSc vector of the unknowns: new and zero, or around this rank's `values`, shape (size_local,)."""
         if values is None:
             return PETSc.Vec().createMPI((self.size_local, None), bsize=self.block_size, comm=self.comm)
         return PETSc.Vec().createWithArray(values, (self.size_local, None), bsize=self.block_size, comm=self.comm)
@@ -107,7 +107,7 @@ class LineLayout(Layout):
         return everything[self.start : self.stop]
 
     def natural(self, field: Field) -> np.ndarray | None:
-        """A field at the last equilibrium in an order that no partition changes; of cells on rank 0 only; collective."""
+        """A field at the last equilibrium in an order that no partition changes; cells on rank 0 only; collective."""
         if field.where is Where.STATION:
             return self.gather(field.equilibrium)
         if field.where is Where.ELEMENT:

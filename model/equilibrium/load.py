@@ -52,7 +52,7 @@ class Load:
         return self._max(off) > 1e-12 * self._max(np.abs(self.increments).max(initial=0.0))
 
     def reached(self, increments: np.ndarray) -> float:
-        """Part of the step that the increments have reached, by the greatest prescribed one; 1 if none is; collective."""
+        """Part of the step that the increments have reached, by the greatest prescribed one, else 1; collective."""
         size, part = 0.0, 1.0
         if len(self.held):
             greatest = int(np.abs(self.increments).argmax())

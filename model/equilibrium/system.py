@@ -41,8 +41,8 @@ class System:
             rad; None for a body without seats.
 
     Attributes:
-        state: the body's State, with `seats`, the contacts' memories, the `increments` of the last step and the internal
-            forces `reactions` beside the body's fields.
+        state: the body's State, with `seats`, the contacts' memories, the `increments` of the last step and the
+            internal forces `reactions` beside the body's fields.
         increments: PETSc's vector of the increments on trial, that of the state.
         internal: internal forces at the last evaluation, without constraints and loads, that of the state.
         last: Evaluation.
@@ -152,7 +152,7 @@ class System:
         self.expire()
 
     def augment(self) -> None:
-        """Press contacts harder where they have sunk in (augmented Lagrange), from the next evaluation on; collective."""
+        """Press contacts harder where they have sunk in (augmented Lagrange), from now on; collective."""
         trial = TrialPositions(self.layout.gather(self.state["x"].trial), self.seats)
         for contact in self.contacts:
             if isinstance(contact, Augmented):

@@ -1,4 +1,4 @@
-"""Where the force goes: reactions at both ends of the spring at an equilibrium, pressure along the wire, active turns."""
+"""Where the force goes: reactions at both ends of the spring, pressure along the wire, active turns."""
 
 from collections.abc import Sequence
 
@@ -97,7 +97,7 @@ def active_turns(rod: Rod, turns: np.ndarray, force: float) -> float:
 
 
 def pressures(parts: Parts) -> np.ndarray:
-    """Rows of SeatReactions.pressure: forces of each kind of contact summed over the elements at a point of the wire."""
+    """Rows of SeatReactions.pressure: forces of each kind of contact summed over what bears at a point."""
     rows = [np.empty((0, 3))]
     for kind, (contact, part) in enumerate(parts):
         if contact.points is None or not len(part.point):

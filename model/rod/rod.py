@@ -56,8 +56,9 @@ class Rod:
 
     Attributes:
         increment: function of the increments since the last equilibrium.
-        state: State with `x`, mm, and `R`, rotations since the stress-free state, of the local nodes; `chord`, mm, `shear`,
-            `strain`, shape (cells, 2, 6), and `point_state`, shape (cells, 2, points, n_state), of the owned cells.
+        state: State with `x`, mm, and `R`, rotations since the stress-free state, of the local nodes; `chord`, mm,
+            `shear`, `strain`, shape (cells, 2, 6), and `point_state`, shape (cells, 2, points, n_state), of the owned
+            cells.
         chart: tangents of the nodes' rotation charts on trial, shape (nodes, 3, 3).
     """
 
@@ -122,7 +123,7 @@ class Rod:
         self.shear_dofs = np.stack([shear.sub(i).dofmap.list[: self.line.owned_cells, 0] for i in range(2)], axis=1)
 
     def _start(self, x: np.ndarray, temperature: float | None) -> None:
-        """The stress-free state; the mesh's own coordinates are the trial positions: forms see the current configuration."""
+        """The stress-free state; the mesh's coordinates are the trial positions: forms see the current configuration."""
         n, state = len(self.cells), State()
         history = np.tile(initial_state(self.law, 1, temperature=temperature), (n, 2, len(self.rule), 1))
         self._x = state.add("x", x, Where.STATION)

@@ -47,7 +47,7 @@ def test_kinds_do_what_their_protocols_say(kinds):
 def test_shapes_agree_and_the_last_equilibrium_stays(kinds, trial):
     """Each kind bears at this state; evaluation changes no committed array."""
     for kind in kinds():
-        before = {k: v.copy() for k, v in kind.memory.committed.items()} if isinstance(kind, HasMemory) else {}
+        before = {k: v.equilibrium.copy() for k, v in kind.memory.state.items()} if isinstance(kind, HasMemory) else {}
         part = kind.evaluate(trial)
         m, k = part.dofs.shape
         assert part.forces.shape == (m, k), kind.name
@@ -57,7 +57,7 @@ def test_shapes_agree_and_the_last_equilibrium_stays(kinds, trial):
         if isinstance(kind, LimitsStep):
             assert kind.max_penetration(trial) == part.penetration.max() > 0.0, kind.name
         for name, values in before.items():
-            np.testing.assert_array_equal(kind.memory.committed[name], values, err_msg=kind.name)
+            np.testing.assert_array_equal(kind.memory.committed(name), values, err_msg=kind.name)
 
 
 def test_an_offset_presses_as_much_as_it_was_sunk_in(kinds, trial):
@@ -76,7 +76,7 @@ def test_an_offset_presses_as_much_as_it_was_sunk_in(kinds, trial):
             found = after.pressure[after.point == before.point[deep]].max()
             c = before.onset_force[deep] / ONSET
             assert found == pytest.approx(c * (2 * p - ONSET), rel=1e-9), kind.name
-            kind.memory.restore()
+            kind.memory.state.restore()
             np.testing.assert_array_equal(kind.evaluate(trial).pressure, before.pressure)
 
 

@@ -12,7 +12,6 @@ from coilset.model.contact.friction import CoilFriction, SeatFriction
 from coilset.model.contact.seat import Seat
 from coilset.model.errors import InputError
 from coilset.model.material import library
-from coilset.model.results.balance import imbalance
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.section.rules import polar
 from coilset.verification.frame import Frame
@@ -209,7 +208,7 @@ def test_friction_is_in_balance_and_part_of_the_state(tmp_path):
     """Every cut through the wire is in balance to 1e-8 of force and force times diameter; resumed runs agree."""
     friction = {"seats": 0.2, "coils": 0.2}
     whole, lacks = analyse(friction), []
-    whole.run(lambda step: lacks.append(imbalance(whole.snapshot("now"), whole.system, whole.control)))
+    whole.run(lambda step: lacks.append(whole.imbalance()))
     greatest = max(step.force_N for step in whole.result.steps)
     force, moment = np.max(lacks, axis=0)
     assert force < 1e-8 * greatest

@@ -9,7 +9,6 @@ from mpi4py import MPI
 from coilset.model.analysis import Analysis
 from coilset.model.case import check, read_case
 from coilset.model.contact.resultants import Wrench
-from coilset.model.results.balance import imbalance
 from coilset.model.results.dataset import pressure_along_wire
 from coilset.model.results.folder import write_seats
 from coilset.model.results.record import SeatReactions
@@ -26,11 +25,7 @@ def example_runs(example):
     springs = example.parent / "springs"
     for file in (example, springs / "closed_and_ground.yaml", springs / "variable_wire.yaml"):
         analysis, lacks = Analysis(read_case(file, COARSE), MPI.COMM_SELF), []
-        analysis.run(
-            lambda step, analysis=analysis, lacks=lacks: lacks.append(
-                imbalance(analysis.snapshot("now"), analysis.system, analysis.control)
-            )
-        )
+        analysis.run(lambda step, analysis=analysis, lacks=lacks: lacks.append(analysis.imbalance()))
         found[file.stem] = analysis, np.array(lacks)
     return found
 

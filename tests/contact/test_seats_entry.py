@@ -8,7 +8,6 @@ from coilset.model.analysis import Analysis
 from coilset.model.case import check
 from coilset.model.contact.build import FREE_TILT_OF_BEDDING, MODULUS_OF_BEDDING
 from coilset.model.errors import InputError
-from coilset.model.results.balance import imbalance
 
 SPRING = {"wire_diameter": 4.0, "mean_diameter": 32.0, "turns": 7.5, "free_length": 75.0,
           "end_coils": {"form": "closed and ground"}}  # fmt: skip
@@ -52,11 +51,8 @@ def run(seats, loading=LIGHT, spring=SPRING):
     analysis = Analysis(case(seats, loading, spring), MPI.COMM_SELF)
 
     def judge(step):
-        assert imbalance(analysis.snapshot("now"), analysis.system, analysis.control)[0] < 1e-8 * step.force_N
-        assert (
-            imbalance(analysis.snapshot("now"), analysis.system, analysis.control)[1]
-            < 1e-8 * step.force_N * spring["mean_diameter"]
-        )
+        assert analysis.imbalance()[0] < 1e-8 * step.force_N
+        assert analysis.imbalance()[1] < 1e-8 * step.force_N * spring["mean_diameter"]
 
     return analysis, analysis.run(judge)
 

@@ -144,8 +144,8 @@ WRONG_TABLES = [
     ),
     (
         HEAD + "".join(POINTS[:9] + POINTS[5:]),
-        "point 10: the wire does not go on round the z axis here; the axis of the spring must be the z axis, and no point "
-        "may occur twice",
+        "point 10: the wire does not go on round the z axis here; the axis of the spring must be the z axis, and no "
+        "point may occur twice",
     ),
     (HEAD + "".join(POINTS[::5]), "point 2: is 143° away from the point before; must be at most 120°"),
     (

@@ -8,7 +8,6 @@ from mpi4py import MPI
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.results.balance import imbalance
 from coilset.model.results.summary import summarise
 from coilset.verification.springs.torsion import CoilByCoil
 
@@ -31,7 +30,7 @@ def test_there_are_eleven():
 def test_pressed_to_block_and_released(file):
     """To the end, in balance, with the forces and the set of coils that twist one by one."""
     analysis, lacks = Analysis(read_case(file), MPI.COMM_SELF), []
-    result = analysis.run(lambda step: lacks.append(imbalance(analysis)))
+    result = analysis.run(lambda step: lacks.append(analysis.imbalance()))
     spring, summary = analysis.spring, summarise(analysis, result)
     pressed = [step for step in result.steps if step.phase == 0]
     travel, force = (np.array([getattr(step, name) for step in pressed]) for name in ("travel_mm", "force_N"))
