@@ -123,7 +123,7 @@ class Rod:
         self.shear_dofs = np.stack([shear.sub(i).dofmap.list[: self.line.owned_cells, 0] for i in range(2)], axis=1)
 
     def _start(self, x: np.ndarray, temperature: float | None) -> None:
-        """The stress-free state; the mesh's coordinates are the trial positions: forms see the current configuration."""
+        """The stress-free state; the mesh's coordinates are the trial positions, as forms need it."""
         n, state = len(self.cells), State()
         history = np.tile(initial_state(self.law, 1, temperature=temperature), (n, 2, len(self.rule), 1))
         self._x = state.add("x", x, Where.STATION)

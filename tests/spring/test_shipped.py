@@ -31,7 +31,7 @@ def test_pressed_to_block_and_released(file):
     """To the end, in balance, with the forces and the set of coils that twist one by one."""
     analysis, lacks = Analysis(read_case(file), MPI.COMM_SELF), []
     result = analysis.run(lambda step: lacks.append(analysis.imbalance()))
-    spring, summary = analysis.spring, summarise(analysis, result)
+    spring, summary = analysis.spring, summarise(analysis.setup, result)
     pressed = [step for step in result.steps if step.phase == 0]
     travel, force = (np.array([getattr(step, name) for step in pressed]) for name in ("travel_mm", "force_N"))
 
@@ -40,10 +40,10 @@ def test_pressed_to_block_and_released(file):
     assert abs(result.snapshots[2].force) < 1e-6 * force.max()
     lack_of_force, lack_of_moment = np.max(lacks, axis=0)
     assert lack_of_force < BALANCE * force.max()
-    assert lack_of_moment < BALANCE * force.max() * 2 * spring.mean_radius(analysis.turns).max()
+    assert lack_of_moment < BALANCE * force.max() * 2 * spring.mean_radius(analysis.setup.turns).max()
 
     by_hand, early = CoilByCoil(spring, analysis.law), travel < EARLY * (spring.free_length - spring.block_height)
-    off = TAPERED if np.ptp(analysis.wire_radius) > 0.1 else FORCE
+    off = TAPERED if np.ptp(analysis.setup.wire_radius) > 0.1 else FORCE
     low, high = ((1 + sign * off) * by_hand.travel((1 + sign * off) * force) for sign in (-1, 1))
     assert np.all((low < travel) & (travel < high) | ~early), np.stack([low, travel, high])
     assert np.count_nonzero(early) >= 9
