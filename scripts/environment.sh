@@ -2,6 +2,7 @@
 # shellcheck shell=bash
 
 private_root=$COILSET_CACHE/debian-13
+record=/etc/coilset-packages # in the private root: what was installed there
 modules="dolfinx petsc4py mpi4py gmsh meshio pyvista numba scipy pydantic typer rich xarray h5netcdf h5py yaml matplotlib pytest"
 
 say() { printf 'coilset: %s\n' "$*" >&2; }
@@ -33,8 +34,7 @@ distribution() { # prints "debian 12" or "ubuntu 2504"
 
 find_environment() {
     find_python && enter_directly && return
-    [ -f "$private_root/.coilset-packages" ] && cmp -s "$private_root/.coilset-packages" "$scripts/packages.txt" \
-        && enter_private_root && return
+    private_root_complete && enter_private_root && return
 
     local id version
     read -r id version <<< "$(distribution)"
@@ -83,24 +83,44 @@ install_here() {
     quietly apt-get install -y --no-install-recommends $(packages)
 }
 
+private_root_complete() { # has the private root every package? It may have more: checkouts of all ages share it
+    [ -f "$private_root$record" ] && ! grep -qvxFf "$private_root$record" "$scripts/packages.txt"
+}
+
+add_packages() { # to a private root that is there: seconds, where a new one takes minutes
+    run_in_root() { bwrap --bind "$private_root" / --ro-bind /etc/resolv.conf /etc/resolv.conf --dev /dev --proc /proc \
+        --setenv PATH /usr/sbin:/usr/bin:/sbin:/bin --setenv DEBIAN_FRONTEND noninteractive -- "$@"; }
+    run_in_root dpkg --configure -a && run_in_root apt-get update &&
+        run_in_root apt-get install -y --no-install-recommends $(packages) && run_in_root apt-get clean
+}
+
 make_private_root() {
     mkdir -p "$COILSET_CACHE"
     exec 9> "$COILSET_CACHE/environment.lock"
     flock -n 9 || { say "another coilset is making the environment; waiting for it ..."; flock 9; }
-    cmp -s "$private_root/.coilset-packages" "$scripts/packages.txt" && { exec 9>&-; return; }
+    private_root_complete && { exec 9>&-; return; }
     if ! command -v mmdebstrap > /dev/null || ! command -v bwrap > /dev/null; then
         say "installing mmdebstrap and bubblewrap ..."
         quietly apt-get update
         quietly apt-get install -y --no-install-recommends mmdebstrap bubblewrap
+    fi
+    if [ -d "$private_root" ]; then
+        say "adding packages to the private Debian 13 (once, less than a minute) ..."
+        (quietly add_packages) && finish_private_root && return
+        say "making it anew instead"
     fi
     say "this system is older than DOLFINx's packages: making a private Debian 13 with them in"
     say "$private_root (once, 2 to 4 minutes, 3 GB; delete the folder to be rid of it) ..."
     local partial=$private_root.partial
     rm -rf "$partial"
     quietly mmdebstrap --variant=minbase --include="$(packages | tr ' ' ',')" trixie "$partial"
-    cp "$scripts/packages.txt" "$partial/.coilset-packages"
     rm -rf "$private_root"
     mv "$partial" "$private_root"
+    finish_private_root
+}
+
+finish_private_root() {
+    cp "$scripts/packages.txt" "$private_root$record"
     exec 9>&-
     say "the environment is ready"
 }
