@@ -7,6 +7,7 @@ without touching the equilibrium, `commit` makes the trial state the equilibrium
 import numpy as np
 from dolfinx import fem
 
+from coilset.model.compat import geometry_dofs
 from coilset.model.frames.rotations import triads, turn_nodes
 from coilset.model.material.points import initial_state
 from coilset.model.rod import forms
@@ -63,7 +64,7 @@ class Rod:
         self.V = fem.functionspace(mesh, forms.rod_element())
         self.increment = fem.Function(self.V)
         self._number_dofs()
-        self.cells = np.ascontiguousarray(mesh.geometry.dofmap[:n])
+        self.cells = np.ascontiguousarray(geometry_dofs(mesh)[:n])
         x = mesh.geometry.x
         chords = x[self.cells[:, 1]] - x[self.cells[:, 0]]
         self.l0, self.E0 = np.linalg.norm(chords, axis=1), triads(chords)
@@ -88,12 +89,12 @@ class Rod:
 
     def _number_dofs(self):
         """Local dofs of the nodes' displacements and turns, shape (nodes, 3), and of the cells' shear angles."""
-        geometry = self.mesh.geometry
-        self.u_dofs, self.turn_dofs = np.empty((2, len(geometry.x), 3), dtype=np.int32)
+        nodes = geometry_dofs(self.mesh)
+        self.u_dofs, self.turn_dofs = np.empty((2, len(self.mesh.geometry.x), 3), dtype=np.int32)
         nodal, shear = self.V.sub(0), self.V.sub(1)
         for i in range(3):
-            self.u_dofs[geometry.dofmap, i] = nodal.sub(i).dofmap.list
-            self.turn_dofs[geometry.dofmap, i] = nodal.sub(i + 3).dofmap.list
+            self.u_dofs[nodes, i] = nodal.sub(i).dofmap.list
+            self.turn_dofs[nodes, i] = nodal.sub(i + 3).dofmap.list
         self.shear_dofs = np.stack([shear.sub(i).dofmap.list[: self.line.owned_cells, 0] for i in range(2)], axis=1)
 
     def _start(self, x, temperature):

@@ -8,6 +8,7 @@ import numpy as np
 from dolfinx import fem, la
 from petsc4py import PETSc
 
+from coilset.model.compat import NOT_A_NUMBER
 from coilset.model.errors import SolveError
 from coilset.model.solid.heads import Head
 from coilset.model.solid.multigrid import VertexMultigrid
@@ -128,7 +129,7 @@ class SolidProblem:
         """
         norm = norms[2]
         if not np.isfinite(norm):
-            return PETSc.SNES.ConvergedReason.DIVERGED_FNORM_NAN
+            return NOT_A_NUMBER
         change = (self.forces - self._start)[self._held]
         scale = np.sqrt(self.comm.allreduce(float(np.sum(change**2))))
         converged = norm <= max(self.precision * scale, self._rounding)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from petsc4py import PETSc
 
+from coilset.model.compat import NOT_A_NUMBER
 from coilset.model.errors import InputError
 from coilset.model.solvers.damping import Damping
 from coilset.model.solvers.methods import ONE_STEP, check_method, options
@@ -18,6 +19,7 @@ Reason = PETSc.SNES.ConvergedReason
 REASONS = {value: name for name, value in vars(Reason).items() if isinstance(value, int)}
 WORDS = {
     "DIVERGED_FNORM_NAN": "the residual is not a number, or the law found no stress",
+    "DIVERGED_FUNCTION_NANORINF": "the residual is not a number, or the law found no stress",
     "DIVERGED_FUNCTION_DOMAIN": "the law found no stress",
     "DIVERGED_LINEAR_SOLVE": "the tangent is singular",
     "DIVERGED_MAX_IT": "no equilibrium within the greatest number of iterations",
@@ -175,7 +177,7 @@ class Solver:
         if iteration == 0:
             self._start, self._least = norm, (norm, 0)
         if not np.isfinite(norm):
-            return Reason.DIVERGED_FNORM_NAN
+            return NOT_A_NUMBER
         if iteration == 0 and snes.getType() == ARC:
             return Reason.ITERATING  # at the load share 0 every step is in equilibrium
         balance = self.F
