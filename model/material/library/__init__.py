@@ -1,16 +1,16 @@
 """The material library: one YAML file a material, beside this module; users name their own file instead."""
 
-from pathlib import Path
+from importlib import resources
 
 from coilset.model.errors import InputError
 from coilset.model.material.law import read
 
-FOLDER = Path(__file__).parent
+FOLDER = resources.files(__package__)
 
 
 def names():
     """Names of the materials that come with coilset."""
-    return sorted(path.stem for path in FOLDER.glob("*.yaml"))
+    return sorted(path.name.removesuffix(".yaml") for path in FOLDER.iterdir() if path.name.endswith(".yaml"))
 
 
 def load(name, **options):
