@@ -6,7 +6,7 @@ import gmsh
 import numpy as np
 from dolfinx import mesh as dmesh
 
-from coilset.model.compat import mesh_from_gmsh
+from coilset.model.compat import geometry_dofs, mesh_from_gmsh
 
 
 @dataclass
@@ -88,7 +88,7 @@ def line_mesh(stations, comm):
     finally:
         gmsh.finalize()
     node = np.asarray(mesh.geometry.input_global_indices, dtype=np.int64)
-    cells = mesh.geometry.dofmap
+    cells = geometry_dofs(mesh)
     element = node[cells].min(axis=1)
     # gmsh may hand the stations over with rounding of its own; take them as they were given
     mesh.geometry.x[:] = stations[node]

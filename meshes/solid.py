@@ -8,7 +8,7 @@ import gmsh
 import numpy as np
 
 from coilset.meshes.solid_grid import SectionGrid, gmsh_cylinder
-from coilset.model.compat import mesh_from_gmsh
+from coilset.model.compat import mesh_from_gmsh, unghosted
 from coilset.model.errors import InputError
 
 
@@ -111,7 +111,7 @@ def straight_wire(diameter, length, layers, comm, grid=SectionGrid(), cell="hexa
     try:
         groups = gmsh_cylinder(0.5 * diameter, length, layers, grid, cell) if comm.rank == 0 else None
         groups = comm.bcast(groups)
-        partitioner = dolfinx.mesh.create_cell_partitioner(dolfinx.mesh.GhostMode.none)
+        partitioner = unghosted()
         mesh, _, facet_tags = mesh_from_gmsh(gmsh.model, comm, partitioner=partitioner)
     finally:
         gmsh.finalize()

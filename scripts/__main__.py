@@ -1,5 +1,26 @@
-"""`python -m coilset.scripts`."""
+"""`python -m coilset.scripts`, and the installed command."""
 
-from coilset.scripts.main import run
+import os
+import signal
 
-run()
+
+def _leave(*_: object) -> None:
+    os.write(2, b"coilset: interrupted\n")
+    os._exit(128 + signal.SIGINT)
+
+
+def main() -> None:
+    """Run the command; Ctrl-C while its libraries are still being loaded ends it at once.
+
+    scripts/coilset starts Python with SIGINT held back, or it would answer with a traceback until it gets here.
+    """
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, _leave)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
+    from coilset.scripts.main import run
+
+    run()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,29 +1,85 @@
 # Sourced by scripts/coilset: find_environment sets `python` and `enter`, making the environment where there is none.
+#
+# An environment is, in this order: (a) a Python that has DOLFINx >= 0.9 and the other packages: $COILSET_PYTHON, or
+# python3 of the PATH (conda, a venv), or /usr/bin/python3; (b) Debian >= 13 or Ubuntu >= 25.04 with root: the
+# distribution's own packages; (c) an older Debian or Ubuntu with root: a private Debian in the user's cache folder.
+# COILSET_RELEASE=sid asks for the private Debian of that release, whatever else there is.
 # shellcheck shell=bash
 
-private_root=$COILSET_CACHE/debian-13
 modules="dolfinx petsc4py mpi4py gmsh meshio pyvista numba scipy pydantic typer rich xarray h5netcdf h5py yaml matplotlib pytest"
+ways="No Python with DOLFINx >= 0.9 is found. Ways to get one:
+  conda                      conda env create -f environment.yml; conda activate coilset
+  Debian 13, Ubuntu 25.04    or later, as root: run any command, it installs the distribution's packages
+  older Debian and Ubuntu    as root: run any command, it makes a private Debian 13 in $COILSET_CACHE (3 GB)
+  neither root nor conda     any Linux with Python >= 3.12 and a C compiler: docs/install.md says how, with pip"
 
 say() { printf 'coilset: %s\n' "$*" >&2; }
 fail() { say "$*"; exit 2; }
 
 packages() { tr '\n' ' ' < "$scripts/packages.txt"; }
 
-complete() { # has this Python every module, and DOLFINx >= 0.9?
-    PYTHONPATH='' "$1" - $modules 2> /dev/null << 'PYTHON'
-import importlib.metadata, importlib.util, sys
-missing = [name for name in sys.argv[1:] if importlib.util.find_spec(name) is None]
-version = importlib.metadata.version("fenics-dolfinx").split(".")
-sys.exit(bool(missing) or (int(version[0]), int(version[1])) < (0, 9))
-PYTHON
+# What was found is kept beside the checkout's link in the cache folder, one record for each python3 of the PATH: the
+# kind, the Python, and facts: files and folders that must be there and not be newer than the record.
+find_environment() {
+    local first=${COILSET_PYTHON:-} kind='' fact facts=()
+    [ -n "$first" ] || first=$(type -P python3 || true)
+    found=$namespace/found-${COILSET_RELEASE:-any}-${first//\//%}
+    if recall; then
+        "enter_$kind"
+        return
+    fi
+    if ! ready; then
+        case " $* " in *' --help '* | *' -h '* | *' --version '* | '  ') printf '%s\n' "$ways"; exit 0 ;; esac
+        make_environment
+    fi
+    "enter_$kind"
+    remember
 }
 
-find_python() {
-    local candidate
-    for candidate in "${COILSET_PYTHON:-}" "$(command -v python3 || true)" /usr/bin/python3; do
-        [ -n "$candidate" ] && complete "$candidate" && python=$candidate && return 0
+recall() { # the record, if its facts still hold
+    [ -f "$found" ] || return 1
+    { read -r kind && read -r python && mapfile -t facts; } < "$found" || return 1
+    for fact in "${facts[@]}"; do
+        [ -e "$fact" ] && [ ! "$fact" -nt "$found" ] || return 1
     done
-    return 1
+}
+
+remember() {
+    facts+=("$scripts/environment.sh" "$scripts/packages.txt")
+    [ "$kind" = directly ] || facts+=("$private_root$record")
+    printf '%s\n' "$kind" "$python" "${facts[@]}" > "$found.$$" && mv "$found.$$" "$found"
+}
+
+ready() { # is there an environment? Sets kind, python and the facts that this rests on
+    local candidate
+    facts=()
+    if [ -z "${COILSET_RELEASE:-}" ]; then
+        for candidate in "$first" /usr/bin/python3; do
+            [ -x "$candidate" ] || continue
+            if complete "$candidate"; then
+                kind=directly python=$candidate
+                return
+            fi
+        done
+    fi
+    private_root_complete && kind=private_root python=/usr/bin/python3
+}
+
+complete() { # has this Python every module, and DOLFINx >= 0.9? Where it looks for them is added to the facts
+    local looked status=0
+    looked=$(PYTHONPATH='' "$1" - $modules 2> /dev/null << 'PYTHON'
+import importlib.metadata, importlib.util, os, sys
+print(os.path.realpath(sys.executable), *(path for path in sys.path if os.path.isdir(path)), sep="\n")
+missing = [name for name in sys.argv[1:] if importlib.util.find_spec(name) is None]
+try:
+    version = importlib.metadata.version("fenics-dolfinx")
+except importlib.metadata.PackageNotFoundError:
+    version = importlib.metadata.version("dolfinx-solver-real")  # its wheel on PyPI
+sys.exit(bool(missing) or tuple(map(int, version.split(".")[:2])) < (0, 9))
+PYTHON
+    ) || status=1
+    while read -r fact; do [ -z "$fact" ] || facts+=("$fact"); done <<< "$looked"
+    return "$status"
 }
 
 distribution() { # prints "debian 12" or "ubuntu 2504"
@@ -31,32 +87,29 @@ distribution() { # prints "debian 12" or "ubuntu 2504"
     (. /etc/os-release 2> /dev/null && printf '%s %s\n' "${ID:-none}" "$(tr -d . <<< "${VERSION_ID:-999}")") || echo 'none 0'
 }
 
-find_environment() {
-    find_python && enter_directly && return
-    [ -f "$private_root/.coilset-packages" ] && cmp -s "$private_root/.coilset-packages" "$scripts/packages.txt" \
-        && enter_private_root && return
-
+make_environment() {
     local id version
     read -r id version <<< "$(distribution)"
-    case "$id" in
-        debian | ubuntu) ;;
-        *) fail "no Python with DOLFINx >= 0.9 found; make one with 'conda env create -f environment.yml' and run this again" ;;
-    esac
-    [ "$(id -u)" = 0 ] || fail "no Python with DOLFINx >= 0.9 found, and installing needs root; run this once as root, \
-or make one with 'conda env create -f environment.yml'"
-    if { [ "$id" = debian ] && [ "$version" -ge 13 ]; } || { [ "$id" = ubuntu ] && [ "$version" -ge 2504 ]; }; then
+    if [ "$(id -u)" != 0 ] || { [ "$id" != debian ] && [ "$id" != ubuntu ]; }; then
+        printf '%s\n' "$ways" >&2
+        exit 2
+    fi
+    if [ -z "${COILSET_RELEASE:-}" ] && { { [ "$id" = debian ] && [ "$version" -ge 13 ]; } ||
+        { [ "$id" = ubuntu ] && [ "$version" -ge 2504 ]; }; }; then
         install_here
-        find_python || fail "the packages are installed, but Python does not find them"
-        enter_directly
     else
         make_private_root
-        enter_private_root
     fi
+    ready || fail "the packages are installed, but Python does not find them"
 }
 
-enter_directly() {
-    export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
-    enter() { exec "$@"; }
+install_here() {
+    mkdir -p "$COILSET_CACHE"
+    say "installing DOLFINx, PETSc, gmsh and the rest from the distribution's packages (once, some minutes) ..."
+    export DEBIAN_FRONTEND=noninteractive
+    quietly apt-get update
+    # shellcheck disable=SC2046
+    quietly apt-get install -y --no-install-recommends $(packages)
 }
 
 quietly() { # run with the output in a log file, a dot every five seconds, and the log's end if it fails
@@ -74,59 +127,17 @@ quietly() { # run with the output in a log file, a dot every five seconds, and t
     wait "$job" || { tail -n 15 "$log" >&2; fail "that failed; the whole log is $log"; }
 }
 
-install_here() {
-    mkdir -p "$COILSET_CACHE"
-    say "installing DOLFINx, PETSc, gmsh and the rest from the distribution's packages (once, some minutes) ..."
-    export DEBIAN_FRONTEND=noninteractive
-    quietly apt-get update
-    # shellcheck disable=SC2046
-    quietly apt-get install -y --no-install-recommends $(packages)
-}
-
-make_private_root() {
-    mkdir -p "$COILSET_CACHE"
-    exec 9> "$COILSET_CACHE/environment.lock"
-    flock -n 9 || { say "another coilset is making the environment; waiting for it ..."; flock 9; }
-    cmp -s "$private_root/.coilset-packages" "$scripts/packages.txt" && { exec 9>&-; return; }
-    if ! command -v mmdebstrap > /dev/null || ! command -v bwrap > /dev/null; then
-        say "installing mmdebstrap and bubblewrap ..."
-        quietly apt-get update
-        quietly apt-get install -y --no-install-recommends mmdebstrap bubblewrap
-    fi
-    say "this system is older than DOLFINx's packages: making a private Debian 13 with them in"
-    say "$private_root (once, 2 to 4 minutes, 3 GB; delete the folder to be rid of it) ..."
-    local partial=$private_root.partial
-    rm -rf "$partial"
-    quietly mmdebstrap --variant=minbase --include="$(packages | tr ' ' ',')" trixie "$partial"
-    cp "$scripts/packages.txt" "$partial/.coilset-packages"
-    rm -rf "$private_root"
-    mv "$partial" "$private_root"
-    exec 9>&-
-    say "the environment is ready"
-}
-
-enter_private_root() {
-    python=/usr/bin/python3
-    # The private root brings its own system folders; every other folder of this machine is seen through.
+enter_directly() {
     enter() {
-        local binds=() folder
-        for folder in /*; do
-            case "$folder" in
-                /bin | /boot | /dev | /etc | /lib* | /proc | /run | /sbin | /sys | /usr | /var | /lost+found) ;;
-                *) [ -d "$folder" ] && [ ! -L "$folder" ] && binds+=(--bind "$folder" "$folder") ;;
-            esac
-        done
-        trap '' INT # bwrap must outlive Ctrl-C, which is for the command inside: that one listens to it again
-        exec bwrap --bind "$private_root" / "${binds[@]}" --dev /dev --proc /proc --ro-bind /sys /sys \
-            --setenv PATH /usr/local/bin:/usr/bin:/bin --setenv LANG C.UTF-8 --setenv HOME "$HOME" \
-            --setenv OMPI_ALLOW_RUN_AS_ROOT 1 --setenv OMPI_ALLOW_RUN_AS_ROOT_CONFIRM 1 --setenv COILSET_PRIVATE_ROOT 1 \
-            --chdir "$PWD" -- "$@"
+        local hold=()
+        case "$OSTYPE" in linux-gnu*) hold=(env --block-signal=INT) ;; esac # held back until Python can answer Ctrl-C
+        exec ${hold[@]+"${hold[@]}"} "$@"
     }
 }
 
 link_namespace() { # `import coilset.model` finds the folder model of this checkout, without an installation
-    namespace=$COILSET_CACHE/checkouts/$(cksum <<< "$1" | cut -d ' ' -f 1)
-    [ "$(readlink "$namespace/coilset" 2> /dev/null)" = "$1" ] || {
+    namespace=$COILSET_CACHE/checkouts/${1//\//%}
+    [ "$namespace/coilset" -ef "$1" ] || {
         mkdir -p "$namespace"
         ln -sfn "$1" "$namespace/coilset"
     }

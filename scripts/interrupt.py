@@ -1,36 +1,52 @@
-"""Ctrl-C during a solve: the step in progress is finished, then the run ends; a second Ctrl-C ends it at once."""
+"""What ends a run early, gently: Ctrl-C, a batch system's SIGTERM, and a reader that closes our output.
+
+During a solve the step in progress is finished, then the run ends; a second Ctrl-C ends it at once.
+"""
 
 import os
 import signal
+import time
+from collections.abc import Callable
+from types import FrameType
+from typing import Any
 
 from mpi4py import MPI
 
+from coilset.scripts.output import output_closed
+
+STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1)  # SIGUSR1: how mpirun hands them on, see scripts/ranks.py
+ONE_SIGNAL = 0.5  # seconds in which several count as one: `timeout` sends to a process and to its group
+
 
 class Interrupt:
-    """Context in which Ctrl-C (or a batch system's SIGTERM) is noted; `check` raises KeyboardInterrupt on all ranks.
+    """Context in which STOPS are noted; `check` raises KeyboardInterrupt on all ranks.
 
     PETSc's callbacks are no place for an exception out of nowhere: between steps the state is whole.
     """
 
-    def __init__(self, comm, say):
-        self.comm, self.say, self.noted = comm, say, False
+    def __init__(self, comm: MPI.Comm, say: Callable[[str], Any]):
+        self.comm, self.say, self.noted = comm, say, 0.0
 
-    def _note(self, number, frame):
-        if self.noted:
-            os._exit(128 + number)  # the last checkpoint is whole whatever happens
-        self.noted = True
-        self.say("finishing this step; once more ends at once")
+    def _note(self, number: int, frame: FrameType | None) -> None:
+        now = time.monotonic()
+        if self.noted and now - self.noted > ONE_SIGNAL:
+            os._exit(128 + signal.SIGINT)  # the last checkpoint is whole whatever happens
+        if not self.noted:
+            self.noted = now
+            self.say("finishing this step; once more ends at once")
 
-    def __enter__(self):
-        self.before = {number: signal.signal(number, self._note) for number in (signal.SIGINT, signal.SIGTERM)}
+    def __enter__(self) -> "Interrupt":
+        self.before = {number: signal.signal(number, self._note) for number in STOPS}
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         for number, handler in self.before.items():
             signal.signal(number, handler)
 
-    def check(self):
-        """Raise KeyboardInterrupt if any rank was interrupted; collective."""
-        noted = self.noted if self.comm.size == 1 else self.comm.allreduce(self.noted, op=MPI.LOR)
+    def check(self) -> None:
+        """Raise KeyboardInterrupt if any rank was interrupted or has lost its output; collective."""
+        noted = bool(self.noted) or output_closed()
+        if self.comm.size > 1:
+            noted = self.comm.allreduce(noted, op=MPI.LOR)
         if noted:
             raise KeyboardInterrupt

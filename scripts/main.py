@@ -3,23 +3,56 @@
 import os
 import signal
 import sys
+import time
+from types import FrameType
 
 import typer
 
 from coilset.model.errors import CoilsetError
+from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.material import app as material
+from coilset.scripts.output import Output, output_closed
+
+HELP = """How far does a coil spring set, and what stress stays in it?
+
+It needs DOLFINx >= 0.9, from conda (environment.yml), from Debian's or Ubuntu's packages or a private Debian
+(scripts/coilset installs them as root), or from PyPI without either (docs/install.md)."""
+INTERRUPTED = 128 + signal.SIGINT
+ONE_SIGNAL = 0.5  # seconds in which several count as one: `timeout` sends to a process and to its group
 
 app = typer.Typer(
     name="coilset",
-    help="How far does a coil spring set, and what stress stays in it?",
+    help=HELP,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-
-
 app.add_typer(material, name="material")
+
+
+def _show_version(wanted: bool) -> None:
+    if wanted:
+        from coilset.scripts.versions import versions
+
+        print(versions())
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    context: typer.Context,
+    ranks: int = typer.Option(1, "-n", min=1, metavar="RANKS", help="run solve, sweep or python on several MPI ranks"),
+    version: bool = typer.Option(False, "--version", is_eager=True, callback=_show_version, help="print versions"),
+):
+    """Options before the command."""
+    if context.get_parameter_source("ranks").name == "COMMANDLINE":
+        from coilset.scripts.ranks import check, launch
+
+        command = sys.argv[sys.argv.index(context.invoked_subcommand) :]
+        check(ranks, context.invoked_subcommand)
+        if ranks > 1 and not {"-h", "--help"} & set(command):
+            raise typer.Exit(launch(ranks, command))
 
 
 @app.command()
@@ -34,6 +67,7 @@ def solve(
     method: str = typer.Option(None, help="iteration method; newton, modified-newton, bfgs, broyden, arc-length, ..."),
 ):
     """Run a spring through its load program and write what it found."""
+    announce_compiling()
     from coilset.scripts.solve import solve as run_case
 
     settings = [*settings, f"solver.method={method}"] if method else settings
@@ -85,6 +119,7 @@ def verify(
     if show:
         verification.show()
     else:
+        announce_compiling()
         raise typer.Exit(verification.verify(names, out, fast))
 
 
@@ -98,6 +133,21 @@ def bench(
     from coilset.scripts.bench import bench as run_benchmarks
 
     run_benchmarks(out, full, cold)
+
+
+@app.command()
+def examples(
+    name: str = typer.Argument(None, help="example to copy; all are listed if none is named"),
+    out: str = typer.Option(".", help="folder to copy it to"),
+    force: bool = typer.Option(False, "--force", help="replace files that are there"),
+):
+    """List the examples, or copy one to start from."""
+    from coilset.scripts import examples as shipped
+
+    if name is None:
+        shipped.show()
+    else:
+        shipped.copy(name, out, force)
 
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
@@ -114,9 +164,12 @@ def python(context: typer.Context):
     os.execv(sys.executable, [sys.executable, *context.args])
 
 
-def run():
+def run() -> None:
     """Entry of the command: one line and an exit code for every error that can be foreseen."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+    sys.stdout = Output(sys.stdout)
+    # PETSc would take a closed pipe, which Output answers, for a crash.
+    os.environ["PETSC_OPTIONS"] = f"{os.environ.get('PETSC_OPTIONS', '')} -no_signal_handler"
+    _listen()
     status = 1
     try:
         status = app(prog_name="coilset", standalone_mode=False) or 0
@@ -126,19 +179,51 @@ def run():
     except typer.Exit as error:
         status = error.exit_code
     except (typer.Abort, KeyboardInterrupt):
-        status = 128 + signal.SIGINT
-        _complain("interrupted")
+        status = INTERRUPTED
     except Exception as error:
-        from click import ClickException
-
-        if not isinstance(error, ClickException):
+        if not hasattr(error, "format_message"):  # of click, which newer typers bring along under a name of their own
+            _crash()
             raise
         status = error.exit_code
         _complain(error.format_message())
+    if status == INTERRUPTED and output_closed():
+        status = 128 + signal.SIGPIPE  # as every program whose reader has gone
+    elif status == INTERRUPTED:  # typer may have made an exit code of the exception
+        _complain("interrupted")
     sys.stdout.flush()
     sys.exit(status)
 
 
-def _complain(line):
+def _listen() -> None:
+    """Ctrl-C raises KeyboardInterrupt; on ranks started by `-n` it comes as SIGUSR1, and they end with mpirun."""
+    last = -ONE_SIGNAL
+
+    def interrupt(number: int, frame: FrameType | None) -> None:
+        nonlocal last
+        before, last = last, time.monotonic()
+        if last - before > ONE_SIGNAL:
+            raise KeyboardInterrupt
+
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
+        signal.signal(signal.SIGINT, interrupt)
+    if "COILSET_RANKS" in os.environ:
+        from coilset.model.processes import end_with_parent
+
+        end_with_parent()
+        signal.signal(signal.SIGUSR1, interrupt)
+
+
+def _crash() -> None:
+    """What nobody foresaw, on one of several ranks: the others would wait for it without end."""
+    if "COILSET_RANKS" in os.environ:
+        import traceback
+
+        from mpi4py import MPI
+
+        traceback.print_exc()
+        MPI.COMM_WORLD.Abort(1)
+
+
+def _complain(line: str) -> None:
     if int(os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK", "0"))) == 0:
         print(f"coilset: {line}", file=sys.stderr)

@@ -4,13 +4,9 @@ import csv
 import os
 from pathlib import Path
 
-import numpy as np
 import typer
-from rich.console import Console
-from rich.table import Table
 
 from coilset.model.errors import InputError
-from coilset.model.material.file import UNITS
 
 app = typer.Typer(help="Draw a material, test it at one point, or fit it to tests.", no_args_is_help=True)
 MATERIAL = typer.Argument(help="name in the library, or the path of a material file")
@@ -22,6 +18,8 @@ FORCE = typer.Option(False, "--force", help="replace files that are there")
 @app.command()
 def show(material: str = MATERIAL, out: str = OUT, force: bool = FORCE):
     """Print a material's constants and draw k², ζ and 2Gκ over the plastic work."""
+    from rich.console import Console
+
     from coilset.model.material import figures, library
 
     law = library.load(material)
@@ -42,6 +40,8 @@ def run_program(
     force: bool = FORCE,
 ):
     """Drive one point through a program of strain, stress or both, and draw it."""
+    from rich.console import Console
+
     from coilset.model.material import figures, library, points, programs
 
     if integrator not in points.INTEGRATORS:
@@ -74,8 +74,11 @@ def fit(
 ):
     """Identify the constants of k², ζ and κ from tension, reversed torsion and tension-torsion tests."""
     import yaml
+    from rich.console import Console
+    from rich.table import Table
 
     from coilset.model.material import figures
+    from coilset.model.material.file import UNITS
     from coilset.model.material.identification import experiments
     from coilset.model.material.identification import fit as fitting
     from coilset.model.results.folder import whole
@@ -129,6 +132,10 @@ def _write_csv(path, history):
 
 
 def _constants(law):
+    from rich.table import Table
+
+    from coilset.model.material.law import UNITS
+
     table = Table(box=None, padding=(0, 2))
     table.add_column("constant")
     for temperature in law.temperatures:
@@ -144,6 +151,9 @@ def _constants(law):
 
 def _ends(program, history):
     """Table of the state at the end of each step: the strains and stresses that the program moves, and b*."""
+    import numpy as np
+    from rich.table import Table
+
     from coilset.model.material.figures import SYMBOLS
 
     names = {**SYMBOLS, "plastic_work": "b*", "temperature": "T"}

@@ -97,11 +97,7 @@ def _pool(comm, jobs, ranks_per_case, environment, out):
 
 def _lead(plan, out, retry, pool, console):
     """Run the missing cases with a bar of their progress."""
-
-    def stop(*_):
-        raise KeyboardInterrupt
-
-    signal.signal(signal.SIGTERM, stop)  # what a job's scheduler sends at the end of its time
+    signal.signal(signal.SIGTERM, signal.getsignal(signal.SIGINT))  # what a job's scheduler sends at its end
     path = out / "journal.jsonl"
     with closing(Journal(path)) as journal:
         todo = list(missing(plan, finished(path, retry)))

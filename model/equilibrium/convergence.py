@@ -12,6 +12,7 @@ Reason = PETSc.SNES.ConvergedReason
 REASONS = {value: name for name, value in vars(Reason).items() if isinstance(value, int)}
 WORDS = {
     "DIVERGED_FNORM_NAN": "the residual is not a number, or the law found no stress",
+    "DIVERGED_FUNCTION_NANORINF": "the residual is not a number, or the law found no stress",
     "DIVERGED_FUNCTION_DOMAIN": "the law found no stress",
     "DIVERGED_LINEAR_SOLVE": "the tangent is singular",
     "DIVERGED_MAX_IT": "no equilibrium within the greatest number of iterations",

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from petsc4py import PETSc
 
+from coilset.model.compat import NOT_A_NUMBER
 from coilset.model.equilibrium.contact_limit import ContactLimit
 from coilset.model.equilibrium.control import NewtonControl
 from coilset.model.equilibrium.convergence import EquilibriumTest, Outcome, Reason, imbalance, reason_in_words
@@ -221,7 +222,7 @@ class Newton:
         if iteration == 0:
             self.test.begin(norm)
         if not np.isfinite(norm):
-            return Reason.DIVERGED_FNORM_NAN
+            return NOT_A_NUMBER
         if self.method.is_arc_length:
             if iteration == 0:
                 return Reason.ITERATING  # at the load share 0 every step is in equilibrium

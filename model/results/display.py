@@ -5,6 +5,8 @@ import os
 import shutil
 import subprocess
 
+from coilset.model.processes import end_with_parent
+
 
 def ensure():
     """Start a virtual X server if there is no display; it ends with this process.
@@ -20,6 +22,7 @@ def ensure():
     server = subprocess.Popen(
         ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x1024x24", "-nolisten", "tcp"],
         pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+        preexec_fn=end_with_parent,
     )  # fmt: skip
     os.close(write)
     atexit.register(server.terminate)

@@ -7,6 +7,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from coilset.meshes.line import LineMesh
+from coilset.model.compat import geometry_dofs
 from coilset.model.material.law import Law
 from coilset.model.material.points import initial_state
 from coilset.model.rod import forms
@@ -83,7 +84,7 @@ class Rod:
         self.V = fem.functionspace(mesh, forms.rod_element())
         self.increment = fem.Function(self.V)
         self._number_dofs()
-        self.cells = np.ascontiguousarray(mesh.geometry.dofmap[:n])
+        self.cells = np.ascontiguousarray(geometry_dofs(mesh)[:n])
         x = mesh.geometry.x
         chords = x[self.cells[:, 1]] - x[self.cells[:, 0]]
         self.l0, self.E0 = np.linalg.norm(chords, axis=1), chord_triads(chords)
@@ -114,12 +115,12 @@ class Rod:
 
     def _number_dofs(self) -> None:
         """Local dofs of the nodes' displacements and rotations, shape (nodes, 3), and of the cells' shear angles."""
-        geometry = self.mesh.geometry
-        self.u_dofs, self.rotation_dofs = np.empty((2, len(geometry.x), 3), dtype=np.int32)
+        nodes = geometry_dofs(self.mesh)
+        self.u_dofs, self.rotation_dofs = np.empty((2, len(self.mesh.geometry.x), 3), dtype=np.int32)
         nodal, shear = self.V.sub(0), self.V.sub(1)
         for i in range(3):
-            self.u_dofs[geometry.dofmap, i] = nodal.sub(i).dofmap.list
-            self.rotation_dofs[geometry.dofmap, i] = nodal.sub(i + 3).dofmap.list
+            self.u_dofs[nodes, i] = nodal.sub(i).dofmap.list
+            self.rotation_dofs[nodes, i] = nodal.sub(i + 3).dofmap.list
         self.shear_dofs = np.stack([shear.sub(i).dofmap.list[: self.line.owned_cells, 0] for i in range(2)], axis=1)
 
     def _start(self, x: np.ndarray, temperature: float | None) -> None:

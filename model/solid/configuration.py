@@ -5,6 +5,8 @@ import numpy as np
 import scipy.sparse
 from dolfinx import fem
 
+from coilset.model.compat import geometry_dofs
+
 # The elements: 20-node hexahedra with 2 x 2 x 2 points, which neither lock in plastic flow nor have zero-energy modes
 # in any patch of 2 x 2 x 2 elements or more; 10-node tetrahedra with 4 points.
 FAMILY = {"hexahedron": "S", "tetrahedron": "P"}
@@ -67,15 +69,17 @@ class Configuration:
 
 def _node_matrix(mesh, V):
     """Matrix from position coefficients to geometry nodes, shape (nodes, blocks): row i evaluates node i."""
-    geometry, dofs = mesh.geometry, V.dofmap.list
+    nodes, dofs = geometry_dofs(mesh), V.dofmap.list
     points = mesh.ufl_domain().ufl_coordinate_element().basix_element.points
     shape = V.element.basix_element.tabulate(0, points)[0, :, :, 0]  # (nodes of a cell, blocks of a cell)
     shape[np.abs(shape) < 1e-14] = 0.0
-    node, first = np.unique(geometry.dofmap, return_index=True)
-    cell, local = np.unravel_index(first, geometry.dofmap.shape)
+    node, first = np.unique(nodes, return_index=True)
+    cell, local = np.unravel_index(first, nodes.shape)
     columns = dofs[cell]
     rows = np.repeat(node, columns.shape[1])
     n_blocks = V.dofmap.index_map.size_local + V.dofmap.index_map.num_ghosts
-    matrix = scipy.sparse.csr_matrix((shape[local].ravel(), (rows, columns.ravel())), shape=(len(geometry.x), n_blocks))
+    matrix = scipy.sparse.csr_matrix(
+        (shape[local].ravel(), (rows, columns.ravel())), shape=(len(mesh.geometry.x), n_blocks)
+    )
     matrix.eliminate_zeros()
     return matrix

@@ -7,6 +7,7 @@ import dolfinx.plot
 import numpy as np
 import pyvista
 
+from coilset.model.compat import geometry_dofs
 from coilset.model.results.folder import whole
 
 BAR = {
@@ -40,7 +41,7 @@ def at_nodes(solid, values):
     to_points, to_nodes = (linear.tabulate(0, at)[0, :, :, 0] for at in (solid.forms.points, nodes))
     carried = np.einsum("nq,cq...->cn...", to_nodes @ np.linalg.inv(to_points), values)
     carried = np.clip(carried, values.min(axis=1, keepdims=True), values.max(axis=1, keepdims=True))
-    dofs = mesh.geometry.dofmap[: solid.n_cells]
+    dofs = geometry_dofs(mesh)[: solid.n_cells]
     total = np.zeros((len(mesh.geometry.x), *values.shape[2:]))
     np.add.at(total, dofs, carried)
     count = np.bincount(dofs.ravel(), minlength=len(total))

@@ -8,6 +8,8 @@ recovery, Zienkiewicz and Zhu, IJNME 33 (1992) 1331, with patches of points).
 import numpy as np
 from scipy.spatial import cKDTree
 
+from coilset.model.compat import geometry_dofs
+
 NEIGHBOURS = 16  # integration points of a patch in each of the four planes of points about the section
 
 
@@ -26,7 +28,7 @@ class SectionSample:
     def __init__(self, solid, section, y, z):
         self.solid, self.y, self.z = solid, np.asarray(y, float), np.asarray(z, float)
         mesh, n = solid.wire.mesh, solid.n_cells
-        straight = solid.wire.straight[mesh.geometry.dofmap[:n]]
+        straight = solid.wire.straight[geometry_dofs(mesh)[:n]]
         thickness = np.ptp(straight[:, :, 2], axis=1)
         middle = straight[:, :, 2].mean(axis=1)
         self._cells = np.flatnonzero(np.abs(middle - section) < 1.02 * thickness)

@@ -39,7 +39,8 @@ def mpi_pool(comm, ranks_per_case):
         need = f"one leads, and {ranks_per_case} share a case"
         raise InputError(f"{comm.size} ranks are too few: {need}", "--ranks-per-case")
     if comm.rank:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the rank that leads
+        for number in (signal.SIGINT, signal.SIGUSR1):  # the latter is how mpirun hands on the former
+            signal.signal(number, signal.SIG_IGN)  # Ctrl-C is for the rank that leads
     gc.collect()
     gc.freeze()  # the collection after each case need not go through the libraries
     number = (comm.rank - 1) // ranks_per_case  # of this rank's group; -1 for the one that leads

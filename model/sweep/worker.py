@@ -1,7 +1,7 @@
 """A process that runs cases one after the other: JSON lines in, JSON lines out; it ends when its input ends.
 
 Imports, compiled forms and compiled kernels stay warm from case to case. It ends with whoever started it, however that
-ended, since the pipe closes.
+ended.
 """
 
 import gc
@@ -10,9 +10,12 @@ import os
 import signal
 import sys
 
+from coilset.model.processes import end_with_parent
+
 
 def main():
     """`python -m coilset.model.sweep.worker`."""
+    end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that leads
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # what libraries print must not get between the answers

@@ -16,9 +16,9 @@ import sys
 import tempfile
 from pathlib import Path
 
+from coilset.model.examples import EXAMPLES
 from coilset.verification.benchmarks.stopwatch import Stopwatch
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 TURNS = 2.5  # of the example's spring
 TRAVEL = 10.0  # mm, in one step: three times the travel at which the wire begins to yield
 STAGES = ("mesh", "set-up", "law", "contact", "assemble", "factorise", "solve", "other")

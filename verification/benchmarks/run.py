@@ -8,6 +8,7 @@ import sys
 import tempfile
 
 from coilset.model.errors import CoilsetError
+from coilset.model.processes import MPI_SETTINGS, mpirun
 from coilset.verification.benchmarks.target import targets
 
 MODULE = "coilset.verification.benchmarks.measure"
@@ -32,8 +33,8 @@ def measure(environment, job, *arguments, ranks=1):
     """
     command = [sys.executable, "-m", MODULE, job, *map(str, arguments)]
     if ranks > 1:
-        command = ["mpirun", "--oversubscribe", "--mca", "btl", "self,sm", "-n", str(ranks), *command]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True)
+        command = [*mpirun(ranks), *command]
+    done = subprocess.run(command, env=MPI_SETTINGS | environment, capture_output=True, text=True)
     if done.returncode:
         reason = (done.stderr.strip() or "no message").splitlines()[-1]
         raise CoilsetError(f"the measurement '{' '.join(map(str, (job, *arguments)))}' failed: {reason}")

@@ -10,7 +10,6 @@ within some thousandths of a millimetre: it settles last.
 """
 
 import logging
-from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
@@ -18,12 +17,12 @@ from matplotlib.figure import Figure
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
+from coilset.model.examples import EXAMPLES
 from coilset.model.results.figures import STYLE
 from coilset.model.results.summary import summarise
 
 SPRINGS = ("cylinder", "cone", "barrel")
 MESHES = (16, 32, 64)
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "springs"
 FAILED = ("no equilibrium from the last step's direction", "cut to")  # in the log of the step control
 IN_PARTS = ("no equilibrium of the whole step yet",)
 
@@ -43,7 +42,7 @@ def press(name, mesh, automatic):
     """Run an example; the Analysis, its summary, and the Counter of its solves."""
     settings = [f"mesh.elements_per_turn={mesh}"]
     settings += [f"loading.{phase}.steps=auto" for phase in (0, 1) if automatic]
-    analysis, counter = Analysis(read_case(EXAMPLES / f"{name}.yaml", settings)), Counter()
+    analysis, counter = Analysis(read_case(EXAMPLES / "springs" / f"{name}.yaml", settings)), Counter()
     logger = logging.getLogger("coilset.steps")
     level = logger.level
     logger.setLevel(logging.INFO)

@@ -18,7 +18,6 @@ the one for limit points.
 import itertools
 import time
 from dataclasses import dataclass
-from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
@@ -30,10 +29,11 @@ from coilset.model.case import read_case
 from coilset.model.equilibrium.methods import METHODS, rod_method
 from coilset.model.equilibrium.newton import Newton, Start
 from coilset.model.errors import SolveError
+from coilset.model.examples import EXAMPLES
 from coilset.model.results.figures import STYLE
 
 FAST = False
-EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "ck15_presetting.yaml"
+EXAMPLE = EXAMPLES / "ck15_presetting.yaml"
 STEPS = ((10, 12), (60, 60))  # down and up
 TOLERANCE = 1e-9  # ε of (6.3.1)
 COUNTS = ("iterations", "factorisations", "evaluations")

@@ -2,18 +2,19 @@
 
 from pathlib import Path
 from typing import Any
+from importlib import resources
 
 from coilset.model.case.entry import shortened
 from coilset.model.errors import InputError
 from coilset.model.material.file import read
 from coilset.model.material.law import Law
 
-FOLDER = Path(__file__).parent
+FOLDER = resources.files(__package__)
 
 
 def names() -> list[str]:
     """Names of the materials that come with coilset."""
-    return sorted(path.stem for path in FOLDER.glob("*.yaml"))
+    return sorted(path.name.removesuffix(".yaml") for path in FOLDER.iterdir() if path.name.endswith(".yaml"))
 
 
 def load(name: str | Path, **options: Any) -> Law:

@@ -1,0 +1,1 @@
+"""Cases to start from; `coilset examples` lists and copies them."""

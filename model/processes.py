@@ -1,0 +1,34 @@
+"""Processes that a command starts: they end with it, however it ends."""
+
+import ctypes
+import os
+import signal
+import sys
+from pathlib import Path
+
+PR_SET_PDEATHSIG = 1  # of Linux's prctl
+MPI_SETTINGS = {  # of Open MPI; other kinds of MPI allow more ranks than cores by themselves and read none of these
+    "OMPI_MCA_btl": "self,sm",  # ranks of one machine talk through memory
+    "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
+}
+
+
+def end_with_parent() -> None:
+    """Have the kernel kill this process (SIGKILL) when the one that started it is gone; does nothing but on Linux.
+
+    A process that is killed can tell nobody: whoever it started has to watch for itself. The wish outlives `exec`,
+    and it is the thread that started this process whose end counts.
+    """
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def mpirun(ranks: int) -> list[str]:
+    """The words before a command that is to run on some ranks: the mpirun that belongs to this Python."""
+    beside = Path(sys.executable).parent / "mpirun"
+    return [str(beside) if beside.exists() else "mpirun", "-n", str(ranks)]
+
+
+def mpi_environment() -> dict[str, str]:
+    """Environment for `mpirun`: this process's own, with MPI_SETTINGS unless the user has set them."""
+    return MPI_SETTINGS | os.environ

@@ -1,0 +1,101 @@
+# Sourced by scripts/coilset: a private Debian in the user's cache folder, made by mmdebstrap, entered by bubblewrap.
+# shellcheck shell=bash
+
+case "${COILSET_RELEASE:-trixie}" in
+    trixie) private_root=$COILSET_CACHE/debian-13 ;;
+    *) private_root=$COILSET_CACHE/debian-$COILSET_RELEASE ;;
+esac
+record=/etc/coilset-packages # in the private root: what was installed there
+# Mirrors of releases in the making are often older than the week that their lists are valid for.
+may_be_old='Acquire::Check-Valid-Until "false"'
+
+private_root_complete() { # has the private root every package? It may have more: checkouts of all ages share it
+    [ -f "$private_root$record" ] && ! grep -qvxFf "$private_root$record" "$scripts/packages.txt"
+}
+
+make_private_root() {
+    mkdir -p "$COILSET_CACHE"
+    exec 9> "$private_root.lock"
+    flock -n 9 || { say "another coilset is making the environment; waiting for it ..."; flock 9; }
+    private_root_complete || install_tools
+    private_root_complete || { [ -d "$private_root" ] && add_packages; } || make_it_anew
+    exec 9>&-
+}
+
+install_tools() {
+    if ! command -v mmdebstrap > /dev/null || ! command -v bwrap > /dev/null; then
+        say "installing mmdebstrap and bubblewrap ..."
+        quietly apt-get update
+        quietly apt-get install -y --no-install-recommends mmdebstrap bubblewrap
+    fi
+}
+
+make_it_anew() {
+    local release=${COILSET_RELEASE:-trixie} partial=$private_root.partial
+    say "making a private Debian ($release) with DOLFINx and the rest in"
+    say "$private_root (once, 2 to 4 minutes, 3 GB; delete the folder to be rid of it) ..."
+    rm -rf "$partial"
+    quietly mmdebstrap --variant=minbase --aptopt="$may_be_old" --include="$(packages | tr ' ' ',')" "$release" "$partial"
+    cp "$scripts/packages.txt" "$partial$record"
+    rm -rf "$private_root"
+    mv "$partial" "$private_root"
+    say "the environment is ready"
+}
+
+add_packages() { # to a private root that is there: a minute at most, where a new one takes several
+    say "adding packages to $private_root (once, less than a minute) ..."
+    (quietly add_all) || { say "making it anew instead"; return 1; }
+    sort -u "$scripts/packages.txt" "$private_root$record" -o "$private_root$record"
+}
+
+add_all() {
+    in_root() {
+        bwrap --bind "$private_root" / --ro-bind /etc/resolv.conf /etc/resolv.conf --dev /dev --proc /proc \
+            --setenv PATH /usr/sbin:/usr/bin:/sbin:/bin --setenv DEBIAN_FRONTEND noninteractive -- "$@"
+    }
+    # shellcheck disable=SC2046
+    in_root dpkg --configure -a && in_root apt-get -o "${may_be_old/ /=}" update &&
+        in_root apt-get install -y --no-install-recommends $(packages) && in_root apt-get clean
+}
+
+# The private root brings its own system folders; every other folder of this machine is seen through. This shell stays
+# above bubblewrap, which ends with it however it ends (SIGKILL too) and takes the command along. Signals are for the
+# command: bubblewrap ignores them, and this shell passes them on.
+enter_private_root() {
+    enter() {
+        local binds=() folder child reset=TERM
+        for folder in /*; do
+            case "$folder" in
+                /bin | /boot | /dev | /etc | /lib* | /proc | /run | /sbin | /sys | /usr | /var | /lost+found) ;;
+                *) [ -d "$folder" ] && [ ! -L "$folder" ] && binds+=(--bind "$folder" "$folder") ;;
+            esac
+        done
+        case $(trap) in *"'' SIGINT"*) ;; *) reset+=,INT ;; esac # ignored from above, as in a script's background: stays so
+        # In a shell's background, SIGINT is ignored and the input is empty: both are given back.
+        (
+            trap '' INT TERM
+            exec bwrap --die-with-parent --bind "$private_root" / "${binds[@]}" --dev /dev --proc /proc \
+                --ro-bind /sys /sys --setenv PATH /usr/local/bin:/usr/bin:/bin --setenv LANG C.UTF-8 \
+                --setenv HOME "$HOME" --setenv COILSET_PRIVATE_ROOT 1 --chdir "$PWD" \
+                -- env --default-signal=$reset --block-signal=INT "$@"
+        ) <&0 &
+        child=$!
+        trap 'in_foreground || pass_on INT' INT
+        trap 'pass_on TERM' TERM
+        while kill -0 "$child" 2> /dev/null; do wait "$child" || true; done
+        wait "$child"
+    }
+}
+
+pass_on() { # a signal to the command in bubblewrap; while there is none yet, nothing is lost with bubblewrap itself
+    local command=''
+    read -r command < "/proc/$child/task/$child/children" || true
+    kill -s "$1" "$command" 2> /dev/null || kill -s KILL "$child" 2> /dev/null || true
+}
+
+in_foreground() { # are we where the terminal sends Ctrl-C? Then it reaches the command by itself
+    local fields
+    read -r fields < "/proc/$$/stat"
+    read -ra fields <<< "${fields##*) }"
+    [ "${fields[2]}" = "${fields[5]}" ]
+}

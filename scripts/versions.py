@@ -1,0 +1,24 @@
+"""What `coilset --version` prints."""
+
+import platform
+from importlib import metadata
+
+from coilset.model.version import __version__
+
+LIBRARIES = {"DOLFINx": ("fenics-dolfinx", "dolfinx-solver-real"), "PETSc": ("petsc4py", "dolfinx-solver-real"),
+             "numba": ("numba",)}  # by the names of their packages, whose metadata costs no import  # fmt: skip
+
+
+def versions() -> str:
+    """One line: coilset's version and those of the libraries that its numbers rest on."""
+    found = [f"{name} {version}" for name, packages in LIBRARIES.items() if (version := _first(packages))]
+    return ", ".join([f"coilset {__version__}", *found, f"Python {platform.python_version()}"])
+
+
+def _first(packages: tuple[str, ...]) -> str:
+    for package in packages:
+        try:
+            return metadata.version(package)
+        except metadata.PackageNotFoundError:
+            continue
+    return ""

@@ -1,0 +1,163 @@
+"""Processes end with the command that started them, however it ends: real ones, known by a mark they carry."""
+
+import json
+import os
+import signal
+import subprocess
+import time
+import uuid
+from pathlib import Path
+
+import pytest
+
+LAUNCHER = Path(__file__).resolve().parents[2] / "scripts" / "coilset"
+CACHE = Path(os.environ.get("COILSET_CACHE", Path.home() / ".cache" / "coilset"))
+LONG = ["--no-pictures"] + [
+    part
+    for setting in (
+        "mesh.section.rule=abramowitz9",
+        "mesh.elements_per_turn=8",
+        "loading=[{to: {travel: 8}, steps: 2000}]",
+    )
+    for part in ("--set", setting)
+]
+PATIENCE = 240.0  # seconds; a busy machine takes long to start Python
+
+in_private_root = pytest.mark.skipif(
+    not (CACHE / "debian-13" / "usr").is_dir() or os.geteuid() != 0 or not any(
+        os.access(Path(folder) / "bwrap", os.X_OK) for folder in os.environ["PATH"].split(":")),
+    reason="no private Debian here",
+)  # fmt: skip
+
+
+class Running:
+    """A command under way in a folder; what it says goes to files there."""
+
+    def __init__(self, command, folder, **environment):
+        self.folder, self.mark = folder, f"COILSET_MARK={uuid.uuid4()}"
+        name, value = self.mark.split("=")
+        self.said, self.complaints = folder / "stdout", folder / "stderr"
+        with open(self.said, "wb") as out, open(self.complaints, "wb") as err:
+            self.process = subprocess.Popen(
+                command, cwd=folder, stdout=out, stderr=err, stdin=subprocess.DEVNULL, start_new_session=True,
+                env=os.environ | {name: value} | environment,
+            )  # fmt: skip
+
+    def wait_for(self, words):
+        """Until it has said these words."""
+        self.until(lambda: words in self.said.read_text())
+
+    def until(self, condition):
+        end = time.monotonic() + PATIENCE
+        while not condition():
+            assert time.monotonic() < end, (self.said.read_text(), self.complaints.read_text(), self.alive())
+            time.sleep(0.02)
+
+    def alive(self):
+        """Every process that carries the mark, by number; those that have ended and wait to be noticed are none."""
+        found = {}
+        for folder in Path("/proc").glob("[0-9]*"):
+            try:
+                if self.mark.encode() in (folder / "environ").read_bytes().split(b"\0"):
+                    found[int(folder.name)] = (folder / "cmdline").read_bytes().replace(b"\0", b" ").decode()
+            except OSError:
+                continue
+        return found
+
+    def end(self):
+        for number in self.alive():
+            os.kill(number, signal.SIGKILL)
+        self.process.wait()
+
+
+@pytest.fixture
+def start(tmp_path):
+    """Start commands that do not outlive the test."""
+    started = []
+
+    def begin(command, **environment):
+        started.append(Running(command, tmp_path, **environment))
+        return started[-1]
+
+    yield begin
+    for running in started:
+        running.end()
+
+
+def coilset(*arguments):
+    """A command through the launcher: with PRIVATE in a private root, without in the environment of this Python."""
+    return [str(LAUNCHER), *map(str, arguments)]
+
+
+PRIVATE = {"COILSET_RELEASE": "trixie"}
+
+
+@in_private_root
+@pytest.mark.parametrize(
+    ("ranks", "number"),
+    [(1, signal.SIGKILL), (1, signal.SIGTERM), (1, signal.SIGINT), (2, signal.SIGKILL), (2, signal.SIGTERM)],
+)
+def test_ending_the_outer_process_ends_all(start, example, ranks, number):
+    """SIGTERM and SIGINT gently: after the step, with results and exit code 130."""
+    command = coilset("-n", ranks, "solve", example, "--out", "out", *LONG)
+    running = start(command, **PRIVATE)
+    running.wait_for("\n      3  ")
+    assert len(running.alive()) > 2 * ranks
+    os.kill(running.process.pid, number)
+    running.process.wait(PATIENCE)
+    if number == signal.SIGKILL:
+        running.until(lambda: not running.alive())
+    else:
+        assert running.alive() == {}
+        judge_gentle_end(running)
+
+
+def judge_gentle_end(running):
+    said, complaints = running.said.read_text(), running.complaints.read_text().strip().splitlines()
+    assert running.process.returncode == 130, (said, complaints)
+    assert "finishing this step" in said
+    assert "--resume" in said
+    assert [line for line in complaints if "compiling" not in line] == ["coilset: interrupted"]
+    summary = json.loads((running.folder / "out" / "summary.json").read_text())
+    assert summary["steps"] >= 3
+    assert not summary["complete"]
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_stopped_in_an_environment_without_a_root(start, example, ranks):
+    running = start(coilset("-n", ranks, "solve", example, "--out", "out", *LONG))
+    running.wait_for("\n      3  ")
+    os.kill(running.process.pid, signal.SIGINT)
+    running.process.wait(PATIENCE)
+    judge_gentle_end(running)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("seconds", [0.05, 0.2, 0.5, 1.0])
+def test_ctrl_c_while_it_starts(start, example, ranks, seconds):
+    """It is not lost: two thousand steps would take longer than the wait."""
+    running = start(coilset("-n", ranks, "solve", example, "--out", "out", *LONG))
+    time.sleep(seconds)
+    os.kill(running.process.pid, signal.SIGINT)
+    code = running.process.wait(PATIENCE)
+    assert code in (130, -signal.SIGINT)
+    running.until(lambda: not running.alive())
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_closed_output_is_a_gentle_end(start, example, ranks):
+    """`solve | head -3`."""
+    solve = " ".join(coilset("-n", ranks, "solve", example, "--out", "out", *(f"'{word}'" for word in LONG)))
+    running = start(["bash", "-c", f"{solve} | head -n 3; exit ${{PIPESTATUS[0]}}"])
+    assert running.process.wait(PATIENCE) == 128 + signal.SIGPIPE
+    complaints = running.complaints.read_text().strip().splitlines()
+    assert [line for line in complaints if "compiling" not in line] == []
+    assert len(running.said.read_text().splitlines()) == 3
+    assert not json.loads((running.folder / "out" / "summary.json").read_text())["complete"]
+
+
+def test_errors_on_ranks_are_one_line(start):
+    running = start(coilset("-n", 2, "solve", "nowhere.yaml"))
+    assert running.process.wait(PATIENCE) == 2
+    assert len(running.complaints.read_text().strip().splitlines()) == 1
+    assert "nowhere.yaml" in running.complaints.read_text()

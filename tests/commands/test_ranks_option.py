@@ -1,0 +1,40 @@
+"""`coilset -n`: which ranks are refused, and whose lines are kept."""
+
+import io
+import os
+
+import pytest
+
+from coilset.model.errors import InputError
+from coilset.scripts.ranks import RULER, MpirunMessages, check
+
+
+def test_more_ranks_than_make_sense_are_refused(monkeypatch):
+    monkeypatch.delenv("COILSET_MAX_RANKS", raising=False)
+    cores = len(os.sched_getaffinity(0))
+    check(4 * cores, "solve")
+    with pytest.raises(InputError, match=f"{4 * cores + 1} ranks on {cores} cores; give at most {4 * cores}"):
+        check(4 * cores + 1, "solve")
+    monkeypatch.setenv("COILSET_MAX_RANKS", "5000")
+    check(5000, "sweep")
+    with pytest.raises(InputError, match="at most 5000"):
+        check(5001, "sweep")
+
+
+def test_commands_of_one_rank_are_refused_on_more():
+    for command in ("mesh", "material", "verify", "bench", "test"):
+        check(1, command)
+        with pytest.raises(InputError, match=f"'{command}' works on one rank"):
+            check(2, command)
+
+
+def test_mpirun_s_own_words_are_kept_apart():
+    target = io.BytesIO()
+    messages = MpirunMessages(target)
+    own = b"coilset: case.yaml: wrong\n"
+    theirs = RULER + b"\nprterun detected that one or more processes exited\n   Exit code:    2\n" + RULER + b"\n"
+    for piece in (own[:9], own[9:] + theirs[:100], theirs[100:], b"[vm:1] PMIX ERROR: lost\n", own):
+        messages.write(piece)
+    assert target.getvalue() == 2 * own
+    messages.tell()
+    assert target.getvalue() == 2 * own + theirs + b"[vm:1] PMIX ERROR: lost\n"
