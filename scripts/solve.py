@@ -16,6 +16,7 @@ from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.folder import prepare, write_history, write_summary
 from coilset.model.results.seats import write_seats
 from coilset.model.results.summary import summarise
+from coilset.model.standards.warnings import spring_warnings
 from coilset.scripts.interactive import Prompt
 from coilset.scripts.interrupt import Interrupt
 
@@ -67,8 +68,8 @@ def _begin(analysis, out, resume):
 
 
 def _announce(console, analysis, case_file, resume):
-    for warning in analysis.spring.warnings:
-        console.print(f"[yellow]warning:[/] {warning}")
+    for warning in spring_warnings(analysis.spring):
+        console.print(f"[yellow]warning:[/] {warning.text}")
     targets = ", ".join(phase.label for phase in analysis.case.loading)
     elements, ranks = len(analysis.turns) - 1, analysis.comm.size
     console.print(f"{Path(case_file).name}: {elements} elements, to {targets}, {ranks} rank(s)")
