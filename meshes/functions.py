@@ -106,9 +106,7 @@ def joined(parts: Iterable[PPoly]) -> PPoly:
     return PPoly(np.hstack([part.c for part in parts]), breaks)
 
 
-def integral(
-    integrand: Callable[[np.ndarray], np.ndarray], breaks: np.ndarray, points: int = 6
-) -> np.ndarray:
+def integral(integrand: Callable[[np.ndarray], np.ndarray], breaks: np.ndarray, points: int = 6) -> np.ndarray:
     """Integrals over every interval between breaks, by Gauss's rule.
 
     Args:

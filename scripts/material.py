@@ -134,7 +134,7 @@ def _write_csv(path, history):
 def _constants(law):
     from rich.table import Table
 
-    from coilset.model.material.law import UNITS
+    from coilset.model.material.file import UNITS
 
     table = Table(box=None, padding=(0, 2))
     table.add_column("constant")

@@ -1,8 +1,8 @@
 """The material library: one YAML file a material, beside this module; users name their own file instead."""
 
+from importlib import resources
 from pathlib import Path
 from typing import Any
-from importlib import resources
 
 from coilset.model.case.entry import shortened
 from coilset.model.errors import InputError
