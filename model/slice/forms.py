@@ -12,10 +12,7 @@ and a variation (v, μ, χ) of (x₀, λ, h̄) has the gradient L = Ĝ F̂⁻¹ 
 Virtual work per radian is ∫ σ : L |det F̂| dξ dη; the factor of χ is the axial force, that of μ the torque.
 """
 
-from functools import partial
-
 import basix.ufl
-import dolfinx.fem
 import numpy as np
 import ufl
 from dolfinx import fem
@@ -69,10 +66,7 @@ class SliceForms:
         old: h̄ in mm/rad and λ at the last equilibrium; increment: what was added since, each a Constant of shape (2,).
         stress: Cauchy stress at the points, 6 components, MPa; moduli: A of `solid.kinematics.push_forward`, 6 × 6.
         points: reference points that carry the state, shape (n, 2).
-        residual: virtual work of v per radian, N; tangent: its derivative by u.
-        columns: derivatives of the residual by h̄ and by λ.
-        rows: derivatives of force and torque by u; corner: by h̄ and λ, [[∂N/∂h̄, ∂N/∂λ], [∂M/∂h̄, ∂M/∂λ]].
-        resultants: axial force (tension positive, N) and torque (N mm).
+        cells: all of the mesh.
     """
 
     def __init__(self, section: SectionMesh):
@@ -111,30 +105,55 @@ class SliceForms:
             form = (material + ufl.inner(L, dL * σ)) * volume * dx
             return form if second is None else form + work(second)
 
-        form = partial(fem.form, dtype=np.float64)
         of_u, with_du = variation["u"](v), variation["u"](du)
         turned = last_column(about_axis(v))  # ∂Ĝ(v)/∂λ, and the same for the torque's derivative by u
-        self.residual = form(work(of_u))
-        self.tangent = form(change(of_u, with_du))
-        self.columns = [form(change(of_u, variation[RISE])), form(change(of_u, variation[TURN], turned))]
-        self.rows = [form(change(variation[RISE], of_u)), form(change(variation[TURN], of_u, turned))]
-        self.corner = [[form(change(variation[i], variation[j])) for j in (RISE, TURN)] for i in (RISE, TURN)]
-        self.resultants = [form(work(variation[i])) for i in (RISE, TURN)]
+        self._expressions = {
+            "residual": lambda: work(of_u),
+            "tangent": lambda: change(of_u, with_du),
+            ("column", RISE): lambda: change(of_u, variation[RISE]),
+            ("column", TURN): lambda: change(of_u, variation[TURN], turned),
+            ("row", RISE): lambda: change(variation[RISE], of_u),
+            ("row", TURN): lambda: change(variation[TURN], of_u, turned),
+            ("resultant", RISE): lambda: work(variation[RISE]),
+            ("resultant", TURN): lambda: work(variation[TURN]),
+        } | {
+            ("corner", i, j): lambda i=i, j=j: change(variation[i], variation[j])
+            for i in (RISE, TURN) for j in (RISE, TURN)
+        }  # fmt: skip
+        self._compiled = {}
         self._motion(F, inverse)
         self.cells = np.arange(mesh.topology.index_map(2).size_local, dtype=np.int32)
+
+    def __getitem__(self, name: str | tuple) -> fem.Form:
+        """A compiled form; those that a run does not need are never compiled.
+
+        Args:
+            name: ``residual``, virtual work of v per radian, N; ``tangent``, its derivative by u; ``("column", k)``,
+                its derivative by h̄ or λ; ``("row", k)``, derivative of force or torque by u; ``("corner", k, m)``, by
+                h̄ or λ; ``("resultant", k)``, axial force (tension positive, N) or torque (N mm). k: RISE or TURN.
+        """
+        if name not in self._compiled:
+            self._compiled[name] = fem.form(self._expressions[name]())
+        return self._compiled[name]
 
     def _motion(self, F, inverse):
         """1 − F̂_old F̂⁻¹ = ΔF̂ F̂⁻¹, the increment's gradient in its end configuration, and F̂ itself."""
         x, u, old, new = self.x, self.u, self.old, self.increment
         third = new[TURN] * about_axis(x + u) + old[TURN] * about_axis(u) + along_axis(new[RISE])
         self._gradient = fem.Expression(tangents(u, third) * inverse, self.points)
-        self.tangents = F
+        self._tangents = F
 
     def evaluate_gradient(self) -> np.ndarray:
         """ΔF̂ F̂⁻¹ at the points, from which `solid.kinematics.stretches` has the increment; (cells × points, 3, 3)."""
         return self._gradient.eval(self.mesh, self.cells).reshape(-1, 3, 3)
 
+    def evaluate_tangents(self) -> np.ndarray:
+        """F̂ at the points, shape (cells × points, 3, 3)."""
+        if "F" not in self._compiled:
+            self._compiled["F"] = fem.Expression(self._tangents, self.points)
+        return self._compiled["F"].eval(self.mesh, self.cells).reshape(-1, 3, 3)
 
-def assemble(form: dolfinx.fem.Form) -> np.ndarray:
+
+def assemble(form: fem.Form) -> np.ndarray:
     """A linear form as an array over the space."""
     return fem.assemble_vector(form).array

@@ -51,7 +51,7 @@ class SliceProblem:
         # a shift along the axis and a turn about it change nothing: they are taken out at the middle of the section
         self._gauge = np.array([3 * centre + 1, 3 * centre + 2])
         self._scale = np.array([1.0, body.coil.radius])
-        self._matrix = BorderedMatrix(body.forms.tangent, self._gauge)
+        self._matrix = BorderedMatrix(body.forms["tangent"], self._gauge)
         self._n = self._matrix.size
         self.force, self.torque, self._direction = 0.0, 0.0, 0.0
         self._create_snes()
@@ -108,13 +108,13 @@ class SliceProblem:
         forms, scale = self.body.forms, self._scale
         free = [self._force is not None, self.free_ends]
         moves = [True, self.free_ends]
-        columns = [assemble(forms.columns[k]) / scale[k] if moves[k] else None for k in (RISE, TURN)]
-        rows = [assemble(forms.rows[k]) / scale[k] if free[k] else None for k in (RISE, TURN)]
+        columns = [assemble(forms["column", k]) / scale[k] if moves[k] else None for k in (RISE, TURN)]
+        rows = [assemble(forms["row", k]) / scale[k] if free[k] else None for k in (RISE, TURN)]
         corner = np.eye(2)
         for i in (RISE, TURN):
             for j in (RISE, TURN):
                 if free[i]:
-                    corner[i, j] = fem.assemble_scalar(forms.corner[i][j]) / (scale[i] * scale[j]) if moves[j] else 0.0
+                    corner[i, j] = fem.assemble_scalar(forms["corner", i, j]) / (scale[i] * scale[j]) if moves[j] else 0.0
         self._matrix.assemble(columns, rows, corner)
         self._column = columns[RISE]
 

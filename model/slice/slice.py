@@ -107,7 +107,7 @@ class Slice:
         if update_points(self._parameters, self.state, self._strain, self.trial, self._C) != 0:
             return False
         push_forward(self.trial, self._C, self._axes, self._rotation, self._log, self._stress, self._moduli, False)
-        self.forces = assemble(self.forms.residual).reshape(-1, 3)
+        self.forces = assemble(self.forms["residual"]).reshape(-1, 3)
         return True
 
     def commit(self) -> None:
@@ -126,7 +126,7 @@ class Slice:
         for kept, now in zip(self._committed, (self._stress, self._moduli), strict=True):
             now[:] = kept
         self.trial[:] = self.state
-        self.forces = assemble(self.forms.residual).reshape(-1, 3)
+        self.forces = assemble(self.forms["residual"]).reshape(-1, 3)
 
     def soften(self) -> None:
         """Take the elastic moduli for the next step's beginning, as is right where the load turns back."""
@@ -135,4 +135,4 @@ class Slice:
 
     def resultants(self) -> np.ndarray:
         """Axial force on the slice, tension positive, N, and torque about the coil's axis, N mm."""
-        return np.array([fem.assemble_scalar(form) for form in self.forms.resultants])
+        return np.array([fem.assemble_scalar(self.forms["resultant", k]) for k in (RISE, TURN)])
