@@ -65,7 +65,7 @@ class SliceForms:
         x: x₀ at the last equilibrium, mm; u: its increment since then, mm.
         old: h̄ in mm/rad and λ at the last equilibrium; increment: what was added since, each a Constant of shape (2,).
         stress: Cauchy stress at the points, 6 components, MPa; moduli: A of `solid.kinematics.push_forward`, 6 × 6.
-        points: reference points that carry the state, shape (n, 2).
+        points: reference points that carry the state, shape (n, 2); weights: of the quadrature, shape (n,).
         cells: all of the mesh.
     """
 
@@ -80,7 +80,7 @@ class SliceForms:
         self.x, self.u = fem.Function(self.V), fem.Function(self.V)
         self.old, self.increment = (fem.Constant(mesh, np.zeros(2)) for _ in range(2))
         self.stress, self.moduli = fem.Function(at_points((6,))), fem.Function(at_points((6, 6)))
-        self.points = basix.make_quadrature(mesh.basix_cell(), degree)[0]
+        self.points, self.weights = basix.make_quadrature(mesh.basix_cell(), degree)
         dx = ufl.dx(domain=mesh, metadata={"quadrature_degree": degree, "quadrature_rule": "default"})
 
         x, λ, h = self.x + self.u, self.old[TURN] + self.increment[TURN], self.old[RISE] + self.increment[RISE]

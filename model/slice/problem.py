@@ -9,6 +9,7 @@ from petsc4py import PETSc
 
 from coilset.model.errors import SolveError
 from coilset.model.slice.bordered import BorderedMatrix
+from coilset.model.slice.contact import SelfContact
 from coilset.model.slice.forms import RISE, TURN, assemble
 from coilset.model.slice.slice import Slice
 
@@ -39,58 +40,79 @@ class SliceProblem:
     Args:
         body: Slice.
         free_ends: the ends may turn about the coil's axis (no torque); else they cannot (λ = 1).
+        contact: SelfContact of the body, or None: coils pass through each other. It takes part from the first step
+            on that would press coils into each other.
         precision: ε of (6.3.1): out-of-balance forces over those that the step puts on the slice.
 
     Attributes:
         force: axial force at the last equilibrium, compression positive, N; torque: about the axis, N mm.
+        pressure: `Pressure` of the contact there, None without contact.
+        touching: whether contact takes part.
     """
 
-    def __init__(self, body: Slice, free_ends: bool = False, precision: float = 1e-8):
-        self.body, self.free_ends, self.precision = body, free_ends, precision
+    def __init__(
+        self, body: Slice, free_ends: bool = False, contact: SelfContact | None = None, precision: float = 1e-8
+    ):
+        self.body, self.free_ends, self.contact, self.precision = body, free_ends, contact, precision
         centre = int(np.argmin(np.linalg.norm(body.start - [body.coil.radius, 0.0, 0.0], axis=1)))
         # a shift along the axis and a turn about it change nothing: they are taken out at the middle of the section
         self._gauge = np.array([3 * centre + 1, 3 * centre + 2])
         self._scale = np.array([1.0, body.coil.radius])
-        self._matrix = BorderedMatrix(body.forms["tangent"], self._gauge)
-        self._n = self._matrix.size
+        self._n = body.u.size
         self.force, self.torque, self._direction = 0.0, 0.0, 0.0
-        self._create_snes()
+        self.pressure = contact.evaluate() if contact else None
+        self._solvers = {}
+        self._let_touch(False)
 
-    def _create_snes(self):
-        matrix = self._matrix.petsc
-        self._X, self._F = matrix.createVecRight(), matrix.createVecLeft()
-        self.snes = PETSc.SNES().create(PETSc.COMM_SELF)
+    def _let_touch(self, touching):
+        """Take contact, and the room it needs in the matrix, in or out."""
+        self.touching = touching
+        if touching not in self._solvers:
+            coupled = self.contact.blocks if touching else None
+            matrix = BorderedMatrix(self.body.forms["tangent"], self._gauge, coupled)
+            self._solvers[touching] = matrix, self._create_snes(matrix)
+        self._matrix, self.snes = self._solvers[touching]
+        self._X, self._b = self._matrix.petsc.createVecRight(), self._matrix.petsc.createVecLeft()
+
+    def _create_snes(self, matrix):
+        snes = PETSc.SNES().create(PETSc.COMM_SELF)
         prefix = f"slice{next(_numbers)}_"
-        self.snes.setOptionsPrefix(prefix)
+        snes.setOptionsPrefix(prefix)
         database = PETSc.Options(prefix)
         for key, value in OPTIONS.items():
             database[key] = value
-        self.snes.setFunction(self._residual, self._F)
-        self.snes.setJacobian(self._tangent, matrix)
-        self.snes.setConvergenceTest(self._converged)
-        self.snes.setFromOptions()
+        snes.setFunction(self._residual, matrix.petsc.createVecLeft())
+        snes.setJacobian(self._tangent, matrix.petsc)
+        snes.setConvergenceTest(self._converged)
+        snes.setFromOptions()
         for key in OPTIONS:
             database.delValue(key)
+        return snes
 
     # ---- callbacks of SNES -----------------------------------------------------------------------------------------
 
     def _set(self, X):
         values = X.getArray(readonly=True)
-        if np.array_equal(values, self._at):
-            return self._good
-        self.body.u[:] = values[:-2].reshape(-1, 3)
-        self.body.increment[:] = values[-2:] / self._scale
-        self._good = self.body.update()
-        self._at = values.copy()
+        if not np.array_equal(values, self._at):
+            self.body.u[:] = values[:-2].reshape(-1, 3)
+            self.body.increment[:] = values[-2:] / self._scale
+            self._good = self.body.update()
+            if self.touching:
+                self._pressure = self.contact.evaluate()
+            self._at = values.copy()
         return self._good
+
+    def resultants(self) -> np.ndarray:
+        """Axial force, tension positive, N, and torque, N mm, at the increment, what contact bears included."""
+        return self.body.resultants() + (self._pressure.numbers if self.touching else 0.0)
 
     def _rest(self):
         """Out-of-balance forces at the increment, shape (n + 2,), N."""
         rest = np.zeros(self._n + 2)
-        rest[:-2] = self.body.forces.ravel()
+        rest[:-2] = (self.body.forces + (self._pressure.forces if self.touching else 0.0)).ravel()
         rest[self._gauge] = 0.0
         if self._force is not None or self.free_ends:
-            driven = (self.body.resultants() - [-(self._force or 0.0), 0.0]) / self._scale
+            driven = (self.resultants() - [-(self._force or 0.0), 0.0]) / self._scale
             rest[-2:] = np.where([self._force is not None, self.free_ends], driven, 0.0)
         return rest
 
@@ -106,17 +128,25 @@ class SliceProblem:
 
     def _assemble(self):
         forms, scale = self.body.forms, self._scale
-        free = [self._force is not None, self.free_ends]
-        moves = [True, self.free_ends]
+        free, moves = [self._force is not None, self.free_ends], [True, self.free_ends]
         columns = [assemble(forms["column", k]) / scale[k] if moves[k] else None for k in (RISE, TURN)]
         rows = [assemble(forms["row", k]) / scale[k] if free[k] else None for k in (RISE, TURN)]
         corner = np.eye(2)
-        for i in (RISE, TURN):
-            for j in (RISE, TURN):
-                if free[i]:
-                    corner[i, j] = fem.assemble_scalar(forms["corner", i, j]) / (scale[i] * scale[j]) if moves[j] else 0.0
-        self._matrix.assemble(columns, rows, corner)
-        self._column = columns[RISE]
+        for i, j in itertools.product((RISE, TURN), repeat=2):
+            if free[i]:
+                corner[i, j] = fem.assemble_scalar(forms["corner", i, j]) / (scale[i] * scale[j]) if moves[j] else 0.0
+        self._matrix.assemble(columns, rows, corner, self._of_contact(free, moves))
+
+    def _of_contact(self, free, moves):
+        """Places and values in the matrix of the contact's stiffness, without equations of prescribed numbers."""
+        if not self.touching:
+            return None
+        pressure, n = self._pressure, self._n
+        i, j, scales = pressure.rows, pressure.columns, np.ones(n + 2)
+        scales[n:] = self._scale
+        used = np.append(np.ones(n, bool), free)[i] & np.append(np.ones(n, bool), moves)[j]
+        i, j = i[used], j[used]
+        return self._matrix.places(i, j), pressure.values[used] / (scales[i] * scales[j])
 
     def _converged(self, snes, iteration, norms):
         norm, reason = norms[2], PETSc.SNES.ConvergedReason
@@ -145,14 +175,16 @@ class SliceProblem:
             value = target if end >= 1.0 else begin + end * (target - begin)
             direction = np.sign(value - self.force) if by_force else np.sign(self.body.rise - value)
             if direction * self._direction < 0.0:
-                self.body.soften()
-            self._attempt(value, by_force)
+                self.body.start_elastic()
+            converged = self._attempt(value, by_force)
             iterations += 1 + self.snes.getIterationNumber()
-            if self.snes.getConvergedReason() > 0:
-                self._set(self._X)
-                self.body.commit()
-                axial, self.torque = self.body.resultants()
-                self.force, self._direction, done = -axial, direction, end
+            if converged and self._sinks_in():
+                self.body.restore()
+                self._let_touch(True)
+                continue
+            if converged:
+                self._accept()
+                self._direction, done = direction, end
                 continue
             self.body.restore()
             part, cuts = 0.5 * part, cuts + 1
@@ -162,20 +194,40 @@ class SliceProblem:
                                  f"{2 * np.pi * self.body.rise:.6g} mm on the way to {kind}")  # fmt: skip
         return Effort(iterations, cuts)
 
+    def _sinks_in(self):
+        """Whether coils lie in each other at an equilibrium that was found without contact."""
+        return self.contact is not None and not self.touching and self.contact.evaluate().gap < 0.0
+
+    def _accept(self):
+        axial, self.torque = self.resultants()
+        self.force = -axial
+        if self.contact is not None:
+            self.pressure = self._pressure if self.touching else self.contact.evaluate()
+        self.body.commit()
+        if self.touching and not self.pressure.bearing:
+            self._let_touch(False)
+
     def _attempt(self, value, by_force):
-        """Newton's method from the linear answer at the last moduli: K Δu = −R − ∂R/∂h̄ Δh̄."""
+        """Newton's method from the linear answer at the last moduli, K Δu = −R − ∂R/∂h̄ Δh̄; whether it converged."""
+        self._linear_answer(value, by_force)
+        self.snes.solve(None, self._X)
+        return self.snes.getConvergedReason() > 0 and self._set(self._X)
+
+    def _linear_answer(self, value, by_force):
         self._force = value if by_force else None
         self._at, self._good = np.zeros(self._n + 2), True
+        if self.touching:
+            self._pressure = self.contact.evaluate()
         rest = self._rest()
         self._assemble()
         b = -rest
         if not by_force:
             b[-2] = value - self.body.rise
-        self._load = np.linalg.norm(rest) if by_force else np.linalg.norm(self._column) * abs(b[-2])
+            pull = assemble(self.body.forms["column", RISE])
+        self._load = np.linalg.norm(rest) if by_force else np.linalg.norm(pull) * abs(b[-2])
         diagonal = self._matrix.petsc.getDiagonal().array[:-2]
         self._floor = 0.5 * np.finfo(float).eps * np.linalg.norm(diagonal * self.body.x.ravel())
         ksp = self.snes.getKSP()
         ksp.setOperators(self._matrix.petsc)
-        self._F.setArray(b)
-        ksp.solve(self._F, self._X)
-        self.snes.solve(None, self._X)
+        self._b.setArray(b)
+        ksp.solve(self._b, self._X)
