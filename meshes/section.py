@@ -11,6 +11,8 @@ from coilset.meshes.section_shapes import Outline
 from coilset.model.compat import mesh_from_gmsh
 from coilset.model.errors import InputError
 
+SAMPLES = 4001  # of each curve, in the search for the section's extent
+
 
 @dataclass(frozen=True, eq=False)
 class SectionMesh:
@@ -63,10 +65,10 @@ def section_mesh(outline: Outline, across: float = 5.0, degree: int = 3, surface
         curves = outline.draw()
         face = gmsh.model.occ.addPlaneSurface([gmsh.model.occ.addCurveLoop(curves)])
         gmsh.model.occ.synchronize()
-        area = gmsh.model.occ.getMass(2, face)
+        area, outer = gmsh.model.occ.getMass(2, face), gmsh.model.getBoundary([(2, face)], oriented=False)
         size = 2.0 * np.sqrt(area / np.pi) / across
-        low, high = gmsh.model.occ.getBoundingBox(2, face)[:2], gmsh.model.occ.getBoundingBox(2, face)[3:5]
-        _sizes(size, surface, [tag for _, tag in gmsh.model.getBoundary([(2, face)], oriented=False)])
+        _sizes(size, surface, [tag for _, tag in outer])
+        extent = _extent([tag for _, tag in outer])
         gmsh.model.addPhysicalGroup(2, [face], name="section")
         gmsh.model.mesh.generate(2)
         gmsh.model.mesh.setOrder(degree)
@@ -75,7 +77,17 @@ def section_mesh(outline: Outline, across: float = 5.0, degree: int = 3, surface
         gmsh.finalize()
     mesh.topology.create_connectivity(1, 2)
     facets = dolfinx.mesh.exterior_facet_indices(mesh.topology)
-    return SectionMesh(mesh, facets, degree, area, size, (low[0], high[0], low[1], high[1]))
+    return SectionMesh(mesh, facets, degree, area, size, extent)
+
+
+def _extent(curves: list[int]) -> tuple[float, float, float, float]:
+    """Least and greatest ξ, least and greatest η of curves in the current gmsh model, from points on them."""
+    points = []
+    for tag in curves:
+        (start,), (end,) = gmsh.model.getParametrizationBounds(1, tag)
+        points.append(gmsh.model.getValue(1, tag, np.linspace(start, end, SAMPLES)).reshape(-1, 3))
+    points = np.concatenate(points)
+    return (*np.sort(points[:, 0])[[0, -1]].tolist(), *np.sort(points[:, 1])[[0, -1]].tolist())
 
 
 def _sizes(size: float, surface: float, curves: list[int]) -> None:

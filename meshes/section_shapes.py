@@ -69,7 +69,7 @@ class Trapezoid:
 
     def __post_init__(self):
         _positive(width=self.width, inside=self.inside, outside=self.outside)
-        if not 0 <= self.corner:
+        if not self.corner >= 0:
             raise InputError(f"{self.corner:g} mm cannot be; give a radius from 0", "section.corner")
 
     @property
@@ -191,3 +191,33 @@ def _rounded(corners: np.ndarray, radius: float) -> list[int]:
     if not radius:
         return sides
     return [piece for i in range(n) for piece in (arcs[i], sides[i])]
+
+
+# what makes them, and the least and the greatest number of lengths
+WORDS = {
+    "round": (round_wire, 1, 1), "oval": (Oval, 2, 2), "rectangle": (rectangle, 2, 3), "trapezoid": (Trapezoid, 3, 4),
+}  # fmt: skip
+FORMS = "round:d, oval:width:height, rectangle:width:height[:corner], trapezoid:width:inside:outside[:corner] in mm"
+
+
+def parse(text: str) -> Outline:
+    """A section in words, as `rectangle:4:5:0.5`, or a CSV file of its outline; `smooth:FILE` takes a curved one.
+
+    Raises:
+        InputError: if it is none of these.
+    """
+    word, *rest = text.split(":")
+    if word in WORDS:
+        make, least, most = WORDS[word]
+        try:
+            lengths = [float(part) for part in rest]
+        except ValueError:
+            lengths = []
+        if not least <= len(lengths) <= most:
+            raise InputError(f"'{text}' is no section; give {FORMS}", "--section")
+        return make(*lengths)
+    smooth = word == "smooth" and bool(rest)
+    path = ":".join(rest) if smooth else text
+    if not path.endswith(".csv"):
+        raise InputError(f"'{text}' is no section; give {FORMS}, or a file.csv of its outline", "--section")
+    return Curve.read(path, smooth)

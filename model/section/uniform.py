@@ -51,9 +51,7 @@ def derivatives(rod, q, S, B, H):
     for a in range(4):
         for b in range(a):
             H[a, b] = H[b, a]
-    H[INCLINATION, INCLINATION] = (
-        -S[0] * (λ * r * c + up * s) + S[1] * (λ * r * s - up * c) - λ * (S[2] * s + S[3] * c)
-    )
+    H[INCLINATION, INCLINATION] = -S[0] * (λ * r * c + up * s) + S[1] * (λ * r * s - up * c) - λ * (S[2] * s + S[3] * c)
     H /= j
 
 

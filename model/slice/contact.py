@@ -66,10 +66,9 @@ class SelfContact:
 
     def _points_areas(self, weights):
         """Surface of the unloaded wire that each point stands for, per radian, mm²."""
-        n = len(self._edges.polynomials)
-        powers = np.arange(n)
-        derivative = powers * self._gauss[:, None] ** np.maximum(powers - 1, 0)
-        values, slopes = self._gauss[:, None] ** powers @ self._edges.polynomials.T, derivative @ self._edges.polynomials.T
+        t, powers = self._gauss[:, None], np.arange(len(self._edges.polynomials))
+        values = t**powers @ self._edges.polynomials.T
+        slopes = powers * t ** np.maximum(powers - 1, 0) @ self._edges.polynomials.T
         nodes = self.body.start[self._edges.blocks[self._above]]
         length = np.linalg.norm(np.einsum("ka,eai->eki", slopes, nodes), axis=2)
         radius = np.einsum("ka,eai->eki", values, nodes)[..., 0]

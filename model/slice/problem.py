@@ -12,6 +12,7 @@ from coilset.model.slice.bordered import BorderedMatrix
 from coilset.model.slice.contact import SelfContact
 from coilset.model.slice.forms import RISE, TURN, assemble
 from coilset.model.slice.slice import Slice
+from coilset.model.slice.watch import Watch
 
 # PETSc's own factorisation: below some thousands of unknowns MUMPS costs several times as much. Minimum degree puts the
 # dense border last.
@@ -167,6 +168,18 @@ class SliceProblem:
     def go_to_force(self, force: float) -> Effort:
         """Find the equilibrium under an axial force, compression positive, N; else as `go_to_rise`."""
         return self._go(lambda: self.force, force, by_force=True)
+
+    def probe(self, rise: float, watch: Watch) -> tuple[float, np.ndarray]:
+        """Linear answer to a small change of the rise from the last equilibrium, which stays.
+
+        Returns:
+            Axial force, compression positive, N, and the stress at the watch's places in the section's axes, MPa.
+        """
+        self._linear_answer(rise, by_force=False)
+        self._set(self._X)
+        force, stress = -float(self.resultants()[RISE]), watch.section_stress(watch.evaluate())
+        self.body.restore()
+        return force, stress
 
     def _go(self, where, target, by_force):
         begin, done, part, iterations, cuts = where(), 0.0, 1.0, 0, 0
