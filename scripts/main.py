@@ -74,6 +74,22 @@ def solve(
     run_case(case, out, force, settings, pictures, resume, interactive)
 
 
+@app.command(name="slice")
+def slice_(
+    case: str = typer.Argument(help="case file (YAML) of a cylindrical spring"),
+    out: str = typer.Option(None, help="results folder; default results/NAME-OF-CASE-slice"),
+    force: bool = typer.Option(False, "--force", help="replace results that are there"),
+    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
+    section: str = typer.Option(None, help="oval:4:5, rectangle:4:5:0.5, trapezoid:4:5:6:0.4, FILE.csv"),
+    across: float = typer.Option(None, help="triangles across the section; default 6.5"),
+    pictures: bool = typer.Option(True, help="draw the figure"),
+):
+    """Press and release a cylindrical spring as a 3D body, by one section of its wire, and write what it found."""
+    from coilset.scripts.slice import slice_case
+
+    slice_case(case, out, force, settings, section, across, pictures)
+
+
 @app.command()
 def mesh(
     case: str = typer.Argument(help="case file (YAML)"),

@@ -40,3 +40,9 @@ def polar(radial=4, angular=12):
     angle = 2.0 * np.pi * (np.arange(angular) + 0.5) / angular
     points = np.stack([np.outer(r, np.cos(angle)), np.outer(r, np.sin(angle))], axis=-1).reshape(-1, 2)
     return DiskRule(points, np.repeat(0.5 * w / angular, angular), f"polar {radial} × {angular}")
+
+
+def upper_half(rule):
+    """The points of a symmetric rule with z > 0, weights doubled: for what is the same, or opposite, at z and −z."""
+    above = rule.points[:, 1] > 0.0
+    return DiskRule(rule.points[above], 2.0 * rule.weights[above], f"upper half of {rule.name}")

@@ -1,0 +1,106 @@
+"""Meshes of a wire's cross-section: curved triangles of the plane (ξ, η), made by gmsh."""
+
+from dataclasses import dataclass
+
+import dolfinx.mesh
+import gmsh
+import numpy as np
+from mpi4py import MPI
+
+from coilset.meshes.section_shapes import Outline
+from coilset.model.compat import mesh_from_gmsh
+from coilset.model.errors import InputError
+
+SAMPLES = 4001  # of each curve, in the search for the section's extent
+
+
+@dataclass(frozen=True, eq=False)
+class SectionMesh:
+    """A section's mesh, whole on this rank.
+
+    Attributes:
+        mesh: DOLFINx mesh of triangles with sides of the degree of `degree`, coordinates (ξ, η), mm.
+        facets: facets on the section's surface.
+        degree: of the sides and of the displacements.
+        area: mm².
+        size: length of the triangles' sides that was asked for, mm.
+        extent: least and greatest ξ, least and greatest η of the section, mm.
+    """
+
+    mesh: dolfinx.mesh.Mesh
+    facets: np.ndarray
+    degree: int
+    area: float
+    size: float
+    extent: tuple[float, float, float, float]
+
+    @property
+    def equivalent_diameter(self) -> float:
+        """Diameter of the round section of the same area, mm."""
+        return 2.0 * np.sqrt(self.area / np.pi)
+
+
+def section_mesh(outline: Outline, across: float = 5.0, degree: int = 3, surface: float = 1.0) -> SectionMesh:
+    """Mesh a section.
+
+    Args:
+        outline: `Outline`, see `section_shapes`.
+        across: triangles across the round section of the same area.
+        degree: of the triangles' sides and of the displacements, 2 or 3.
+        surface: how much finer the triangles are at the surface than in the middle.
+
+    Returns:
+        SectionMesh.
+
+    Raises:
+        InputError: values that make no mesh.
+    """
+    if not (np.isfinite(across) and across >= 1):
+        raise InputError(f"{across:g} cannot be; give 1 or more triangles across the section", "section.across")
+    if degree not in (2, 3):
+        raise InputError(f"{degree} cannot be; give 2 or 3", "section.degree")
+    gmsh.initialize(["coilset", "-v", "1"], readConfigFiles=False, interruptible=False)
+    try:
+        gmsh.model.add("section")
+        curves = outline.draw()
+        face = gmsh.model.occ.addPlaneSurface([gmsh.model.occ.addCurveLoop(curves)])
+        gmsh.model.occ.synchronize()
+        area, outer = gmsh.model.occ.getMass(2, face), gmsh.model.getBoundary([(2, face)], oriented=False)
+        size = 2.0 * np.sqrt(area / np.pi) / across
+        _sizes(size, surface, [tag for _, tag in outer])
+        extent = _extent([tag for _, tag in outer])
+        gmsh.model.addPhysicalGroup(2, [face], name="section")
+        gmsh.model.mesh.generate(2)
+        gmsh.model.mesh.setOrder(degree)
+        mesh = mesh_from_gmsh(gmsh.model, MPI.COMM_SELF, gdim=2)[0]
+    finally:
+        gmsh.finalize()
+    mesh.topology.create_connectivity(1, 2)
+    facets = dolfinx.mesh.exterior_facet_indices(mesh.topology)
+    return SectionMesh(mesh, facets, degree, area, size, extent)
+
+
+def _extent(curves: list[int]) -> tuple[float, float, float, float]:
+    """Least and greatest ξ, least and greatest η of curves in the current gmsh model, from points on them."""
+    points = []
+    for tag in curves:
+        (start,), (end,) = gmsh.model.getParametrizationBounds(1, tag)
+        points.append(gmsh.model.getValue(1, tag, np.linspace(start, end, SAMPLES)).reshape(-1, 3))
+    points = np.concatenate(points)
+    return (*np.sort(points[:, 0])[[0, -1]].tolist(), *np.sort(points[:, 1])[[0, -1]].tolist())
+
+
+def _sizes(size: float, surface: float, curves: list[int]) -> None:
+    """Triangles of a size, and of size/surface at the curves, in the current gmsh model."""
+    field, options = gmsh.model.mesh.field, gmsh.option
+    for name in ("MeshSizeFromPoints", "MeshSizeFromCurvature", "MeshSizeExtendFromBoundary"):
+        options.setNumber(f"Mesh.{name}", 0)
+    options.setNumber("Mesh.MeshSizeMax", size)
+    options.setNumber("Mesh.Algorithm", 6)  # frontal Delaunay: even triangles
+    distance, threshold = field.add("Distance"), field.add("Threshold")
+    field.setNumbers(distance, "CurvesList", curves)
+    field.setNumber(distance, "Sampling", 200)
+    for name, value in (("InField", distance), ("SizeMin", size / surface), ("SizeMax", size),
+                        ("DistMin", 0.5 * size / surface), ("DistMax", 2.0 * size)):  # fmt: skip
+        field.setNumber(threshold, name, value)
+    field.setAsBackgroundMesh(threshold)

@@ -1,0 +1,223 @@
+"""Outlines of a wire's cross-section, drawn as curves of a gmsh model.
+
+Coordinates (ξ, η), mm: ξ points away from the coil's axis, η upwards along the spring. The origin lies on the centre
+line, whose radius is half of the mean diameter; shapes are drawn about it by the middle of their width and height.
+"""
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+import gmsh
+import numpy as np
+
+from coilset.model.errors import InputError
+
+
+class Outline(Protocol):
+    """A closed curve round a section."""
+
+    def draw(self) -> list[int]:
+        """Draw the curve in the current gmsh model (OpenCASCADE); tags of its pieces, in their order round it."""
+        ...
+
+
+def _positive(**lengths: float) -> None:
+    for name, value in lengths.items():
+        if not (np.isfinite(value) and value > 0):
+            raise InputError(f"{value:g} mm cannot be; give a positive length", f"section.{name}")
+
+
+@dataclass(frozen=True)
+class Oval:
+    """An ellipse; a round wire is one of equal `width` (radial) and `height` (axial), mm."""
+
+    width: float
+    height: float
+
+    def __post_init__(self):
+        _positive(width=self.width, height=self.height)
+
+    def draw(self) -> list[int]:
+        """See `Outline`."""
+        a, b = 0.5 * self.width, 0.5 * self.height
+        along = [1, 0, 0] if a >= b else [0, 1, 0]
+        return [gmsh.model.occ.addEllipse(0, 0, 0, max(a, b), min(a, b), zAxis=[0, 0, 1], xAxis=along)]
+
+
+def round_wire(diameter: float) -> Oval:
+    """The section of a round wire of a diameter, mm."""
+    _positive(diameter=diameter)
+    return Oval(diameter, diameter)
+
+
+@dataclass(frozen=True)
+class Trapezoid:
+    """A trapezium with two sides parallel to the coil's axis, as keystone wire has before coiling, corners rounded.
+
+    Attributes:
+        width: radial, mm.
+        inside, outside: axial heights at the inside and at the outside of the coil, mm; equal ones make a rectangle.
+        corner: radius of the corners, mm; 0 leaves them sharp.
+    """
+
+    width: float
+    inside: float
+    outside: float
+    corner: float = 0.0
+
+    def __post_init__(self):
+        _positive(width=self.width, inside=self.inside, outside=self.outside)
+        if not self.corner >= 0:
+            raise InputError(f"{self.corner:g} mm cannot be; give a radius from 0", "section.corner")
+
+    @property
+    def corners(self) -> np.ndarray:
+        """Its four corners before rounding, anticlockwise, shape (4, 2), mm."""
+        a, i, o = 0.5 * self.width, 0.5 * self.inside, 0.5 * self.outside
+        return np.array([(-a, -i), (a, -o), (a, o), (-a, i)])
+
+    def draw(self) -> list[int]:
+        """See `Outline`."""
+        return _rounded(self.corners, self.corner)
+
+
+def rectangle(width: float, height: float, corner: float = 0.0) -> Trapezoid:
+    """A rectangle of radial `width` and axial `height`, its corners rounded with a radius, mm."""
+    return Trapezoid(width, height, height, corner)
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """A closed curve through points.
+
+    Attributes:
+        points: shape (n, 2), mm, in their order round the section; the last one is joined to the first.
+        smooth: a cubic spline through them instead of straight sides.
+    """
+
+    points: np.ndarray
+    smooth: bool = False
+
+    def __post_init__(self):
+        points = np.asarray(self.points, float)
+        if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3 or not np.isfinite(points).all():
+            raise InputError("give three points (ξ, η) or more, in mm", "section.points")
+        if np.allclose(points[0], points[-1]):
+            points = points[:-1]
+        if len(points) < 3 or not abs(signed_area(points)) > 0:
+            raise InputError("the curve encloses no area; give its points in their order round the section",
+                             "section.points")  # fmt: skip
+        if crosses_itself(points):
+            raise InputError("the curve crosses itself; give its points in their order round the section",
+                             "section.points")  # fmt: skip
+        object.__setattr__(self, "points", points if signed_area(points) > 0 else points[::-1])
+
+    @classmethod
+    def read(cls, path: str | Path, smooth: bool = False) -> "Curve":
+        """Read a CSV file with two columns ξ, η in mm; a line that is no pair of numbers may only be the first.
+
+        Raises:
+            InputError: if it cannot be read, with the line.
+        """
+        try:
+            with open(path, newline="", encoding="utf-8") as file:
+                rows = [(number, row) for number, row in enumerate(csv.reader(file), 1) if any(map(str.strip, row))]
+        except (OSError, UnicodeDecodeError) as error:
+            raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", "", path) from None
+        points = []
+        for number, row in rows:
+            try:
+                ξ, η = map(float, row)
+            except ValueError:
+                if number == rows[0][0]:
+                    continue  # the columns' names
+                raise InputError(f"'{','.join(row)}' is no pair of numbers ξ, η in mm", f"line {number}",
+                                 path) from None  # fmt: skip
+            points.append((ξ, η))
+        try:
+            return cls(np.array(points), smooth)
+        except InputError as error:
+            raise InputError(error.problem, error.place, path) from None
+
+    def draw(self) -> list[int]:
+        """See `Outline`."""
+        if not self.smooth:
+            return _rounded(self.points, 0.0)
+        tags = [gmsh.model.occ.addPoint(ξ, η, 0) for ξ, η in self.points]
+        return [gmsh.model.occ.addSpline([*tags, tags[0]])]
+
+
+def signed_area(points: np.ndarray) -> float:
+    """Area of a polygon, mm², positive if its points run anticlockwise, shape (n, 2)."""
+    x, y = points.T
+    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+
+
+def crosses_itself(points: np.ndarray) -> bool:
+    """Whether two sides of a closed polygon that do not follow each other cross, shape (n, 2)."""
+    a, b = points, np.roll(points, -1, axis=0)
+
+    def side(p, q, r):
+        return np.sign((q[..., 0] - p[..., 0]) * (r[..., 1] - p[..., 1])
+                       - (q[..., 1] - p[..., 1]) * (r[..., 0] - p[..., 0]))  # fmt: skip
+
+    i, j = np.triu_indices(len(points), 2)
+    apart = (j - i) < len(points) - 1
+    i, j = i[apart], j[apart]
+    return bool(np.any((side(a[i], b[i], a[j]) * side(a[i], b[i], b[j]) < 0)
+                       & (side(a[j], b[j], a[i]) * side(a[j], b[j], b[i]) < 0)))  # fmt: skip
+
+
+def _rounded(corners: np.ndarray, radius: float) -> list[int]:
+    """Straight sides between corners that run anticlockwise, joined by arcs of a radius that touch them."""
+    occ, n = gmsh.model.occ, len(corners)
+    ends, arcs = [], []
+    for i in range(n):
+        here, before, after = corners[i], corners[i - 1], corners[(i + 1) % n]
+        a, b = (before - here) / np.linalg.norm(before - here), (after - here) / np.linalg.norm(after - here)
+        half = 0.5 * np.arccos(np.clip(a @ b, -1, 1))
+        reach = radius / np.tan(half)
+        if 2 * reach > min(np.linalg.norm(before - here), np.linalg.norm(after - here)):
+            raise InputError(f"{radius:g} mm is more than the sides allow", "section.corner")
+        points = [occ.addPoint(*(here + reach * d), 0) for d in ((a, b) if radius else (a,))]
+        ends.append((points[0], points[-1]))
+        if radius:
+            middle = (a + b) / np.linalg.norm(a + b)
+            centre = occ.addPoint(*(here + radius / np.sin(half) * middle), 0)
+            arcs.append(occ.addCircleArc(points[0], centre, points[1]))
+    sides = [occ.addLine(ends[i][1], ends[(i + 1) % n][0]) for i in range(n)]
+    if not radius:
+        return sides
+    return [piece for i in range(n) for piece in (arcs[i], sides[i])]
+
+
+# what makes them, and the least and the greatest number of lengths
+WORDS = {
+    "round": (round_wire, 1, 1), "oval": (Oval, 2, 2), "rectangle": (rectangle, 2, 3), "trapezoid": (Trapezoid, 3, 4),
+}  # fmt: skip
+FORMS = "round:d, oval:width:height, rectangle:width:height[:corner], trapezoid:width:inside:outside[:corner] in mm"
+
+
+def parse(text: str) -> Outline:
+    """A section in words, as `rectangle:4:5:0.5`, or a CSV file of its outline; `smooth:FILE` takes a curved one.
+
+    Raises:
+        InputError: if it is none of these.
+    """
+    word, *rest = text.split(":")
+    if word in WORDS:
+        make, least, most = WORDS[word]
+        try:
+            lengths = [float(part) for part in rest]
+        except ValueError:
+            lengths = []
+        if not least <= len(lengths) <= most:
+            raise InputError(f"'{text}' is no section; give {FORMS}", "--section")
+        return make(*lengths)
+    smooth = word == "smooth" and bool(rest)
+    path = ":".join(rest) if smooth else text
+    if not path.endswith(".csv"):
+        raise InputError(f"'{text}' is no section; give {FORMS}, or a file.csv of its outline", "--section")
+    return Curve.read(path, smooth)

@@ -1,0 +1,176 @@
+"""Equilibrium of the uniform coil's section, compiled: strains, resultants, and one step of Newton's method.
+
+The equations and the letters are those of `coilset.model.uniform`.
+"""
+
+import math
+from collections import namedtuple
+
+import numpy as np
+from numba import njit
+
+from coilset.model.material.functions import INLINE
+from coilset.model.material.rod import return_map
+
+RADIUS, INCLINATION, RISE, TURN = range(4)  # the coordinates q = (R̄, ϑ, h̄, λ)
+MAX_ITERATIONS = 25
+PRECISION = 1e-9  # out-of-balance force over that which the step puts on the coil
+ROUNDING = 1e-13  # below which, times the greatest resultant, nothing is out of balance
+
+# One coil and how it is driven: constants of the law; radius R, rise h, j = √(R² + h²); places and areas of the points.
+Rod = namedtuple("Rod", "p R h j y z area by_force free")
+
+
+@njit(**INLINE)
+def strains(rod, q, E):
+    """Write E = (Γ₁, Γ₃, K₁, K₃) at the coordinates q."""
+    c, s, j = math.cos(q[INCLINATION]), math.sin(q[INCLINATION]), rod.j
+    around, up = q[TURN] * q[RADIUS], q[RISE]
+    E[0] = (around * c + up * s) / j - 1.0
+    E[1] = (up * c - around * s) / j
+    E[2] = q[TURN] * s / j - rod.h / j**2
+    E[3] = q[TURN] * c / j - rod.R / j**2
+
+
+@njit(**INLINE)
+def derivatives(rod, q, S, B, H):
+    """Write B = ∂E/∂q and H = Σ S_k ∂²E_k/∂q², both 4 × 4."""
+    c, s, j = math.cos(q[INCLINATION]), math.sin(q[INCLINATION]), rod.j
+    r, up, λ = q[RADIUS], q[RISE], q[TURN]
+    B[:] = 0.0
+    B[0, RADIUS], B[0, INCLINATION], B[0, RISE], B[0, TURN] = λ * c, up * c - λ * r * s, s, r * c
+    B[1, RADIUS], B[1, INCLINATION], B[1, RISE], B[1, TURN] = -λ * s, -λ * r * c - up * s, c, -r * s
+    B[2, INCLINATION], B[2, TURN] = λ * c, s
+    B[3, INCLINATION], B[3, TURN] = -λ * s, c
+    B /= j
+    H[:] = 0.0
+    H[RADIUS, INCLINATION] = -λ * (S[0] * s + S[1] * c)
+    H[RADIUS, TURN] = S[0] * c - S[1] * s
+    H[INCLINATION, RISE] = S[0] * c - S[1] * s
+    H[INCLINATION, TURN] = -r * (S[0] * s + S[1] * c) + S[2] * c - S[3] * s
+    for a in range(4):
+        for b in range(a):
+            H[a, b] = H[b, a]
+    H[INCLINATION, INCLINATION] = -S[0] * (λ * r * c + up * s) + S[1] * (λ * r * s - up * c) - λ * (S[2] * s + S[3] * c)
+    H /= j
+
+
+@njit(**INLINE)
+def integrate(rod, E, old_E, old, new, C, S, T):
+    """Resultants S = (N, Q₃, Mt, M₃) and T = ∂S/∂E of the strains E, reached from `old_E` and the rows `old`.
+
+    Returns:
+        False if the law found no solution at some point, or a fibre is turned inside out.
+    """
+    S[:] = 0.0
+    T[:] = 0.0
+    for k in range(len(rod.y)):
+        y, z = rod.y[k], rod.z[k]
+        m = 1.0 + y * rod.R / rod.j**2
+        stretched, before = m + E[0] + y * E[3], m + old_E[0] + y * old_E[3]
+        if not stretched > 0.0:
+            return False
+        e11 = math.log(stretched / before)
+        g12 = (E[2] - old_E[2]) * z / m
+        g13 = (E[1] - old_E[1] - y * (E[2] - old_E[2])) / m
+        if return_map(rod.p, old[k], e11, g12, g13, new[k], C) < 0:
+            return False
+        dA = rod.area[k] * m
+        # a = ∂(ε₁₁, γ₁₂, γ₁₃)/∂E: (a, 0, 0, ya), (0, 0, zb, 0), (0, b, −yb, 0)
+        a, b = 1.0 / stretched, 1.0 / m
+        σ, t2, t3 = new[k, 0] * dA, new[k, 1] * dA, new[k, 2] * dA
+        S[0] += σ * a
+        S[1] += t3 * b
+        S[2] += (t2 * z - t3 * y) * b
+        S[3] += σ * a * y
+        c00 = (C[0, 0] * dA - σ) * a * a  # with the logarithm's second derivative
+        c0q, cq0 = C[0, 2] * dA * a * b, C[2, 0] * dA * a * b
+        c0t, ct0 = (C[0, 1] * z - C[0, 2] * y) * dA * a * b, (C[1, 0] * z - C[2, 0] * y) * dA * a * b
+        cqq = C[2, 2] * dA * b * b
+        cqt, ctq = (C[2, 1] * z - C[2, 2] * y) * dA * b * b, (C[1, 2] * z - C[2, 2] * y) * dA * b * b
+        ctt = (z * (C[1, 1] * z - C[1, 2] * y) - y * (C[2, 1] * z - C[2, 2] * y)) * dA * b * b
+        T[0, 0] += c00
+        T[0, 1] += c0q
+        T[0, 2] += c0t
+        T[0, 3] += c00 * y
+        T[1, 0] += cq0
+        T[1, 1] += cqq
+        T[1, 2] += cqt
+        T[1, 3] += cq0 * y
+        T[2, 0] += ct0
+        T[2, 1] += ctq
+        T[2, 2] += ctt
+        T[2, 3] += ct0 * y
+        T[3, 0] += c00 * y
+        T[3, 1] += c0q * y
+        T[3, 2] += c0t * y
+        T[3, 3] += c00 * y * y
+    return math.isfinite(S.sum())
+
+
+@njit(cache=True)
+def residual_and_tangent(rod, q, S, T, f, K):
+    """Write f = ∂W/∂q per radian (N, and N mm for ϑ and λ) and its derivative K; ∂W/∂h̄ is the force that pulls."""
+    B, H = np.empty((4, 4)), np.empty((4, 4))
+    derivatives(rod, q, S, B, H)
+    for a in range(4):
+        f[a] = 0.0
+        for k in range(4):
+            f[a] += rod.j * S[k] * B[k, a]
+        for b in range(4):
+            K[a, b] = H[a, b]
+            for k in range(4):
+                for l in range(4):
+                    K[a, b] += B[k, a] * T[k, l] * B[l, b]
+            K[a, b] *= rod.j
+
+
+@njit(cache=True)
+def step(rod, value, elastic, q, points, new, S, T):
+    """One step: to the rise `value` (mm/rad), or under the axial force `value` (compression positive, N).
+
+    Args:
+        rod: Rod.
+        elastic: begin with the elastic tangent, not with that of the last step.
+        q, points: coordinates and history rows at the last equilibrium; replaced if there is a new one.
+        new: room for history rows.
+        S, T: resultants and their tangent at the last equilibrium; replaced.
+
+    Returns:
+        Whether there is an equilibrium, the axial force (compression positive, N) and the torque (N mm).
+    """
+    E, old_E, C = np.empty(4), np.empty(4), np.empty((3, 3))
+    f, K, held = np.empty(4), np.empty((4, 4)), np.zeros(4, dtype=np.bool_)
+    trial, scale = q.copy(), np.array([1.0, 1.0 / rod.R, 1.0, 1.0 / rod.R])
+    kept_S, kept_T = S.copy(), T.copy()
+    held[RISE], held[TURN] = not rod.by_force, not rod.free
+    strains(rod, q, old_E)
+    good = integrate(rod, old_E, old_E, points, new, C, S, T) if elastic else True
+    load = 0.0
+    for iteration in range(MAX_ITERATIONS):
+        if not good:
+            break
+        residual_and_tangent(rod, trial, S, T, f, K)
+        force, torque = -f[RISE], f[TURN]
+        f[RISE] += value if rod.by_force else 0.0
+        size = 0.0
+        for a in range(4):
+            if not held[a]:
+                size = max(size, abs(f[a] * scale[a]))
+        if iteration == 0:
+            load = abs(f[RISE]) if rod.by_force else np.abs(K[:, RISE] * scale).max() * abs(value - q[RISE])
+        elif size <= max(PRECISION * load, ROUNDING * np.abs(S).max()):
+            q[:], points[:] = trial, new
+            return True, force, torque
+        for a in range(4):
+            if held[a]:
+                for b in range(4):
+                    K[a, b] = 1.0 if a == b else 0.0
+                f[a] = 0.0
+        if iteration == 0 and not rod.by_force:
+            f[RISE] = q[RISE] - value
+        trial -= np.linalg.solve(K, f)
+        strains(rod, trial, E)
+        good = integrate(rod, E, old_E, points, new, C, S, T)
+    S[:], T[:] = kept_S, kept_T
+    return False, 0.0, 0.0

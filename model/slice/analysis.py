@@ -1,0 +1,248 @@
+"""From a case to the slice's history: the cylindrical coil of a case file, its section, and its load program."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from coilset.meshes.section import section_mesh
+from coilset.meshes.section_shapes import Outline, round_wire
+from coilset.model.case import Case
+from coilset.model.errors import InputError, SolveError
+from coilset.model.material import library
+from coilset.model.slice.contact import SelfContact
+from coilset.model.slice.lattice import Lattice
+from coilset.model.slice.problem import SliceProblem
+from coilset.model.slice.slice import Coil, Slice
+from coilset.model.slice.watch import Watch
+
+ACROSS = 6.5  # triangles across the section: 600 unknowns of a round wire
+AUTOMATIC = 16  # equal steps of a phase whose steps are `auto`
+PROBE = 1e-6  # travel by which the initial rate is measured, in free lengths
+TOUCHING = 1e-7  # gap at which coils count as touching, in wire diameters
+APPROACHES = 8
+SAME = 1e-9  # relative difference below which a quantity counts as the same in all turns
+
+
+@dataclass(frozen=True)
+class SliceStep:
+    """One converged step; the columns of history.csv."""
+
+    number: int
+    phase: int
+    progress: float
+    seat_height_mm: float
+    travel_mm: float
+    force_N: float
+    iterations: int
+    cuts: int
+    contacts: int
+    penetration_mm: float
+    pitch_mm: float
+    torque_Nmm: float
+
+
+@dataclass
+class SliceSnapshot:
+    """The section at one moment.
+
+    Attributes:
+        name: what moment it is, such as `start`, `block`, `force 0 N`.
+        height, force: of the spring, mm and N.
+        x: positions of the lattice's points, shape (points, 3), mm.
+        stress: σ11, σ22, σ33, τ12, τ13, τ23 there in the section's axes, shape (points, 6), MPa.
+        work: plastic work b* there, shape (points,), N/mm².
+        line: the stress on the line η = 0, shape (points, 6), MPa.
+    """
+
+    name: str
+    height: float
+    force: float
+    x: np.ndarray
+    stress: np.ndarray
+    work: np.ndarray
+    line: np.ndarray
+
+
+@dataclass
+class SliceResult:
+    """What a run has found; `complete` is False if it ended before its program did.
+
+    Attributes:
+        rate: N/mm; inside_factor: elastic shear at the inside of a round wire over 8 F D/(π d³), None for others.
+    """
+
+    steps: list[SliceStep] = field(default_factory=list)
+    snapshots: list[SliceSnapshot] = field(default_factory=list)
+    rate: float = float("nan")
+    inside_factor: float | None = None
+    complete: bool = False
+
+
+class SliceAnalysis:
+    """The slice of a cylindrical spring with its load program, ready to run.
+
+    Args:
+        case: Case; its mesh, seats' shapes and solver do not matter here.
+        outline: of the section; default is the round wire. `wire_diameter` must be its height along the spring.
+        across: triangles across the section; degree: of the displacements, see `meshes.section`.
+
+    Attributes:
+        spring, law, coil, body, problem: geometry, Law, Coil, Slice, SliceProblem.
+        lattice, points: Lattice over the section and the Watch of its places; line: Watch along η = 0.
+
+    Raises:
+        InputError: if the spring is no cylinder, or does not fit the section.
+    """
+
+    def __init__(self, case: Case, outline: Outline | None = None, across: float = ACROSS, degree: int = 2):
+        self.case, self.spring = case, case.spring.build()
+        self.law = library.load(case.material)
+        d, D, pitch = (_same_in_all_turns(self.spring, name) for name in ("wire_diameter", "mean_diameter", "pitch"))
+        self.wire_diameter, self.mean_diameter, self.is_round = d, D, outline is None
+        self.coil, self.turns = Coil(0.5 * D, pitch), self.spring.turns
+        section = section_mesh(outline or round_wire(d), across, degree)
+        _fits(section.extent, d)
+        self.body = Slice(section, self.coil, self.law, case.temperature)
+        self.lattice = Lattice(self.body)
+        self.points = Watch(self.body, self.lattice.places)
+        ends = np.linspace(section.extent[0], section.extent[1], 61)
+        self.line = Watch(self.body, np.stack([ends, np.zeros_like(ends)], axis=1))
+        self.problem = SliceProblem(self.body, _ends_turn(case), SelfContact(self.body))
+        self.result = SliceResult()
+
+    @property
+    def travel(self) -> float:
+        """Shortening of all turns since the start, mm."""
+        return 2.0 * np.pi * self.turns * (self.coil.rise - self.body.rise)
+
+    @property
+    def height(self) -> float:
+        """Distance of the seats, mm."""
+        return self.spring.free_length - self.travel
+
+    def run(self, report: Callable[[SliceStep], None] = lambda step: None) -> SliceResult:
+        """Walk through the load program.
+
+        Args:
+            report: called with each converged SliceStep.
+
+        Raises:
+            SolveError: no equilibrium was found; `result` holds what was found up to there.
+        """
+        result = self.result
+        self._probe()
+        result.snapshots.append(self.snapshot("start"))
+        for index, phase in enumerate(self.case.loading):
+            try:
+                self._phase(index, phase, report)
+            except SolveError:
+                result.snapshots.append(self.snapshot("last equilibrium"))
+                raise
+            result.snapshots.append(self.snapshot(phase.label))
+        result.complete = True
+        return result
+
+    def _phase(self, index, phase, report):
+        steps = AUTOMATIC if phase.steps == "auto" else phase.steps
+        kind, end = self._target(phase)
+        begin = self.problem.force if kind == "force" else self.height
+        for k in range(1, steps + 1):
+            value = end if k == steps else begin + k / steps * (end - begin)
+            if kind == "force":
+                effort = self.problem.go_to_force(value)
+            elif phase.to == "block" and k == steps:
+                effort = self._close(value)
+            else:
+                effort = self.problem.go_to_rise(self._rise(value))
+            problem, pressure = self.problem, self.problem.pressure
+            step = SliceStep(
+                len(self.result.steps) + 1, index, k / steps, self.height, self.travel, float(problem.force),
+                effort.iterations, effort.cuts, pressure.bearing, max(0.0, -pressure.gap),
+                2.0 * np.pi * self.body.rise, float(problem.torque),
+            )  # fmt: skip
+            self.result.steps.append(step)
+            report(step)
+
+    def _rise(self, height):
+        return self.coil.rise - (self.spring.free_length - height) / (2.0 * np.pi * self.turns)
+
+    def _target(self, phase):
+        """Kind (`force` or `height`) and value of a phase's end, N or mm."""
+        to = phase.to
+        if to == "block":
+            return "height", self.spring.block_height
+        if to.force is not None:
+            return "force", to.force
+        return "height", to.height if to.height is not None else self.spring.free_length - to.travel
+
+    def check_targets(self) -> None:
+        """Refuse a load program that asks for less height than that of the coils lying on each other.
+
+        Raises:
+            InputError: with the phase.
+        """
+        block = self.spring.block_height
+        for index, phase in enumerate(self.case.loading):
+            kind, value = self._target(phase)
+            if kind == "height" and value < block * (1.0 - SAME):
+                raise InputError(f"a height of {value:.6g} mm is below block, {block:.6g} mm; give to: block",
+                                 f"loading.{index}.to")  # fmt: skip
+
+    def _close(self, height):
+        """Go on to where the coils just touch, which by the wire's inclination is a little before block's height."""
+        rise, limit = self._rise(height), TOUCHING * self.wire_diameter
+        iterations = cuts = 0
+        for _ in range(APPROACHES):
+            pressure = self.problem.contact.evaluate()
+            rise = max(self._rise(height), self.body.rise - self.body.turn * (pressure.gap - 0.5 * limit) / (2 * np.pi))
+            effort = self.problem.go_to_rise(rise)
+            iterations, cuts = iterations + effort.iterations, cuts + effort.cuts
+            if abs(self.problem.pressure.gap - 0.5 * limit) <= 0.5 * limit or rise == self._rise(height):
+                break
+        return type(effort)(iterations, cuts)
+
+    def _probe(self):
+        """Initial rate and the factor at the inside from the linear answer to a small travel."""
+        travel = PROBE * self.spring.free_length
+        force, stress = self.problem.probe(self.coil.rise - travel / (2.0 * np.pi * self.turns), self.line)
+        self.result.rate = force / travel
+        if self.is_round:
+            nominal = 8.0 * force * self.mean_diameter / (np.pi * self.wire_diameter**3)
+            self.result.inside_factor = float(abs(stress[0, 4]) / nominal)
+
+    def snapshot(self, name: str) -> SliceSnapshot:
+        """The section as it stands."""
+        positions = self.lattice.positions(self.body.x)
+        return SliceSnapshot(name, self.height, float(self.problem.force), positions, self.points.section_stress(),
+                             self.points.state[:, 12].copy(), self.line.section_stress())  # fmt: skip
+
+
+def _same_in_all_turns(spring, name):
+    function = {"wire_diameter": spring.wire_diameter, "mean_diameter": lambda t: 2.0 * spring.mean_radius(t),
+                "pitch": spring.pitch}[name]  # fmt: skip
+    values = function(0.5 * (spring.breaks[1:] + spring.breaks[:-1]))
+    if np.ptp(values) > SAME * np.abs(values).max():
+        closed = name == "pitch" and not spring.bottom.form == spring.top.form == "open"
+        hint = "; leave end_coils out" if closed else ""
+        raise InputError(f"{values.min():.6g} to {values.max():.6g} mm; the slice wants the same in all turns, a "
+                         f"cylindrical spring{hint}", f"spring.{name}")  # fmt: skip
+    return float(values.mean())
+
+
+def _fits(extent, diameter):
+    height = extent[3] - extent[2]
+    if abs(height - diameter) > 1e-3 * diameter:
+        raise InputError(f"{diameter:g} mm, but the section is {height:.5g} mm high along the spring; give its height",
+                         "spring.wire_diameter")  # fmt: skip
+
+
+def _ends_turn(case):
+    """Whether an end is free to turn about the spring's axis."""
+    if case.ends == "clamped" or case.seats.hold == "tips":
+        return False
+    turns = [case.seats.bottom.turn, case.seats.top.turn]
+    for end, turn in zip(("bottom", "top"), turns, strict=True):
+        if not isinstance(turn, str):
+            raise InputError(f"{turn:g} N mm/rad; the slice's ends are held or free", f"seats.{end}.turn")
+    return "free" in turns

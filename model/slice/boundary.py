@@ -1,0 +1,49 @@
+"""The surface of the section as edges of the mesh: their degrees of freedom, in order round the section."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coilset.model.slice.slice import Slice
+
+
+@dataclass(frozen=True, eq=False)
+class Boundary:
+    """Edges of a section's surface.
+
+    Attributes:
+        blocks: of each edge's nodes in order along it, the section on the left, shape (edges, nodes).
+        polynomials: shape functions of an edge, coefficients of t⁰, t¹, … on 0 ≤ t ≤ 1, shape (nodes, nodes).
+        upward: mean component η of the outward normal of each edge, shape (edges,).
+    """
+
+    blocks: np.ndarray
+    polynomials: np.ndarray
+    upward: np.ndarray
+
+    @classmethod
+    def of(cls, body: Slice) -> "Boundary":
+        """The surface of a slice's section."""
+        mesh, V = body.section.mesh, body.forms.V
+        element = V.element.basix_element
+        closure = element.entity_closure_dofs[1]
+        mesh.topology.create_connectivity(1, 2)
+        mesh.topology.create_connectivity(2, 1)
+        to_cell, to_facet = mesh.topology.connectivity(1, 2), mesh.topology.connectivity(2, 1)
+        nodes = V.tabulate_dof_coordinates()[:, :2]
+        blocks, upward = [], []
+        for facet in body.section.facets:
+            cell = to_cell.links(facet)[0]
+            local = closure[list(to_facet.links(cell)).index(facet)]
+            edge = V.dofmap.list[cell][local]
+            edge = np.array([edge[0], *edge[2:], edge[1]])  # of vertices first and inner nodes after
+            inner = nodes[V.dofmap.list[cell]].mean(axis=0)
+            chord = nodes[edge[-1]] - nodes[edge[0]]
+            if len(edge) > 3 and np.linalg.norm(nodes[edge[1]] - nodes[edge[0]]) > 0.5 * np.linalg.norm(chord):
+                edge[1:-1] = edge[-2:0:-1]
+            left = chord[0] * (inner - nodes[edge[0]])[1] - chord[1] * (inner - nodes[edge[0]])[0]
+            blocks.append(edge if left > 0 else edge[::-1])
+            upward.append(-np.sign(left) * chord[0] / np.linalg.norm(chord))
+        t = np.linspace(0.0, 1.0, len(blocks[0]))
+        polynomials = np.ascontiguousarray(np.linalg.inv(np.vander(t, increasing=True)).T)
+        return cls(np.array(blocks, np.int64), polynomials, np.array(upward))

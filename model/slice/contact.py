@@ -1,0 +1,101 @@
+"""A coil on its own neighbour: a one-sided bedding between the section's surface and that of the next coil."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coilset.model.contact.base import one_sided
+from coilset.model.slice.boundary import Boundary
+from coilset.model.slice.forms import RISE, TURN
+from coilset.model.slice.gap import gaps
+from coilset.model.slice.slice import Slice
+
+STIFFNESS = 10.0  # default bedding over E/d: as stiff as the triangles at the surface
+ONSET = 1e-4  # way over which contact sets in, in equivalent wire diameters
+STEEP = 0.3  # component of the normal along the coil's axis from which an edge may touch
+GAUSS = 4  # points of contact on an edge
+
+
+@dataclass
+class Pressure:
+    """What contact does at an increment.
+
+    Attributes:
+        gap: least gap, mm.
+        bearing: number of points that press.
+        force: pressure times area of all points, per turn of wire, N.
+        forces: on the displacements, shape (blocks, 3), N; numbers: on h̄ and λ, shape (2,), N and N mm.
+        rows, columns, values: entries of its stiffness; h̄ and λ are the unknowns after the displacements.
+    """
+
+    gap: float
+    bearing: int
+    force: float
+    forces: np.ndarray
+    numbers: np.ndarray
+    rows: np.ndarray
+    columns: np.ndarray
+    values: np.ndarray
+
+
+class SelfContact:
+    """Contact of a slice with the coil above it, and so of the coil below with the slice.
+
+    Args:
+        body: Slice.
+        stiffness: pressure per penetration, N/mm³; default 10 E/d.
+
+    Attributes:
+        blocks: blocks of degrees of freedom that may touch.
+    """
+
+    def __init__(self, body: Slice, stiffness: float | None = None):
+        diameter = body.section.equivalent_diameter
+        self.body, self.onset = body, ONSET * diameter
+        self.stiffness = STIFFNESS * body.law.E / diameter if stiffness is None else stiffness
+        self._edges = edges = Boundary.of(body)
+        self._above = np.flatnonzero(edges.upward > STEEP)
+        self._below = np.flatnonzero(edges.upward < -STEEP)
+        self.blocks = np.unique(edges.blocks[np.concatenate([self._above, self._below])])
+        t, w = np.polynomial.legendre.leggauss(GAUSS)
+        self._gauss = 0.5 * (t + 1.0)
+        self._areas = self._points_areas(0.5 * w)
+        points, size = self._areas.size, 6 * edges.blocks.shape[1] + 1
+        self._gap, self._where = np.empty(self._areas.shape), np.empty((points, 3), np.int64)
+        self._gradient, self._hessian = np.empty((points, size)), np.empty((points, size, size))
+
+    def _points_areas(self, weights):
+        """Surface of the unloaded wire that each point stands for, per radian, mm²."""
+        t, powers = self._gauss[:, None], np.arange(len(self._edges.polynomials))
+        values = t**powers @ self._edges.polynomials.T
+        slopes = powers * t ** np.maximum(powers - 1, 0) @ self._edges.polynomials.T
+        nodes = self.body.start[self._edges.blocks[self._above]]
+        length = np.linalg.norm(np.einsum("ka,eai->eki", slopes, nodes), axis=2)
+        radius = np.einsum("ka,eai->eki", values, nodes)[..., 0]
+        return length * weights * np.hypot(radius, self.body.coil.rise)
+
+    def evaluate(self) -> Pressure:
+        """Forces and stiffness at the body's increment."""
+        body, edges = self.body, self._edges
+        h, λ, x = body.rise, body.turn, body.x
+        count = gaps(x, h / λ, edges.blocks, edges.polynomials, self._above, self._below, self._gauss, 0.0,
+                     self._gap, self._where, self._gradient, self._hessian)  # fmt: skip
+        a, k, b = self._where[:count].T
+        gradient, hessian = self._gradient[:count], self._hessian[:count]
+        pressure, slope = one_sided(self._gap[a, k], self.stiffness * self._areas[a, k], self.onset)
+        load = -pressure[:, None] * gradient
+        K = slope[:, None, None] * gradient[:, :, None] * gradient[:, None, :] - pressure[:, None, None] * hessian
+        # κ = h̄/λ: its share goes to both numbers
+        first = np.array([1.0 / λ, -h / λ**2])
+        second = np.array([[0.0, -1.0 / λ**2], [-1.0 / λ**2, 2.0 * h / λ**3]])
+        onto = np.zeros((gradient.shape[1], gradient.shape[1] + 1))
+        onto[:-1, :-2], onto[-1, -2:] = np.eye(gradient.shape[1] - 1), first
+        K = onto.T @ K @ onto
+        K[:, -2:, -2:] += load[:, -1, None, None] * second
+        pair = np.hstack([edges.blocks[self._above[a]], edges.blocks[self._below[b]]])
+        dofs = (3 * pair[:, :, None] + np.arange(3)).reshape(count, 6 * edges.blocks.shape[1])
+        dofs = np.hstack([dofs, np.tile(x.size + np.array([RISE, TURN]), (count, 1))])
+        forces = np.bincount(dofs.ravel(), (load @ onto).ravel(), x.size + 2)
+        i, j = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
+        return Pressure(float(self._gap.min()), int(np.count_nonzero(pressure > 0)), 2 * np.pi * float(pressure.sum()),
+                        forces[:-2].reshape(-1, 3), forces[-2:], i.ravel(), j.ravel(), K.ravel())  # fmt: skip

@@ -1,0 +1,57 @@
+"""Places all over the section, for pictures, files and the greatest stress: a lattice in each triangle of the mesh."""
+
+import basix
+import numpy as np
+
+from coilset.model.slice.slice import Slice
+
+DIVISIONS = 4  # of the sides of the mesh's triangles
+
+
+class Lattice:
+    """A finer triangulation of a slice's section; points on common sides are there once for each triangle.
+
+    Args:
+        body: Slice.
+
+    Attributes:
+        places: ξ, η, shape (n, 2), mm.
+        triangles: three points each, shape (m, 3).
+        surface: numbers of the points on the surface; rim: the same by sides of triangles, shape (sides, points).
+    """
+
+    def __init__(self, body: Slice):
+        mesh, V = body.section.mesh, body.forms.V
+        local = basix.create_lattice(basix.CellType.triangle, DIVISIONS, basix.LatticeType.equispaced, True)
+        element = mesh.ufl_domain().ufl_coordinate_element().basix_element
+        nodes = mesh.geometry.x[mesh.geometry.dofmap][:, :, :2]
+        self.places = np.einsum("qb,cbi->cqi", element.tabulate(0, local)[0, :, :, 0], nodes).reshape(-1, 2)
+        self._shape, self._dofs = V.element.basix_element.tabulate(0, local)[0, :, :, 0], V.dofmap.list
+        self.triangles = _all_cells(_small_triangles(), len(nodes), len(local))
+        sides = [np.flatnonzero(np.isclose(value, 0.0)) for value in (1.0 - local.sum(axis=1), *local.T)]
+        mesh.topology.create_connectivity(1, 2)
+        mesh.topology.create_connectivity(2, 1)
+        to_cell, to_facet = mesh.topology.connectivity(1, 2), mesh.topology.connectivity(2, 1)
+        rim = []
+        for facet in body.section.facets:
+            cell = to_cell.links(facet)[0]
+            rim.append(cell * len(local) + sides[list(to_facet.links(cell)).index(facet)])
+        self.rim = np.array(rim)
+        self.surface = np.unique(self.rim)
+
+    def positions(self, x: np.ndarray) -> np.ndarray:
+        """Where the points lie in space, by coefficients of the position, shape (blocks, 3) → (n, 3), mm."""
+        return np.einsum("qb,cbi->cqi", self._shape, x[self._dofs]).reshape(-1, 3)
+
+
+def _small_triangles():
+    """The triangles of one cell's lattice, whose points are ordered by rows."""
+    n = DIVISIONS
+    first = np.cumsum([0] + [n + 1 - j for j in range(n)])  # number of each row's first point
+    up = [(first[j] + i, first[j] + i + 1, first[j + 1] + i) for j in range(n) for i in range(n - j)]
+    down = [(first[j] + i + 1, first[j + 1] + i + 1, first[j + 1] + i) for j in range(n) for i in range(n - j - 1)]
+    return np.array(up + down)
+
+
+def _all_cells(triangles, cells, points):
+    return (triangles[None] + points * np.arange(cells)[:, None, None]).reshape(-1, 3)

@@ -1,0 +1,81 @@
+"""Fields of the section for ParaView, and the figure of its stresses."""
+
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import pyvista
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from coilset.model.results.figures import STYLE, save
+from coilset.model.results.folder import whole
+from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot
+from coilset.model.slice.watch import equivalent, shear
+
+
+def write_fields(folder: Path, analysis: SliceAnalysis) -> None:
+    """One .vtu file a snapshot: the section where it lies in space, with its fields.
+
+    Fields: `displacement` (mm), `stress` (11, 22, 33, 12, 13, 23 with 1 along the wire, 2 outward, 3
+    upward, MPa), `shear stress` in the section and `von Mises stress` (MPa), `plastic work` (N/mm²).
+    """
+    folder = Path(folder) / "fields"
+    folder.mkdir(parents=True, exist_ok=True)
+    for old in folder.glob("*.vtu"):
+        old.unlink()
+    lattice = analysis.lattice
+    start = lattice.positions(analysis.body.start)
+    for number, shot in enumerate(analysis.result.snapshots):
+        grid = pyvista.UnstructuredGrid({pyvista.CellType.TRIANGLE: lattice.triangles}, shot.x)
+        grid.point_data["displacement"] = shot.x - start
+        grid.point_data["stress"] = shot.stress
+        grid.point_data["shear stress"] = shear(shot.stress)
+        grid.point_data["von Mises stress"] = equivalent(shot.stress)
+        grid.point_data["plastic work"] = shot.work
+        with whole(folder / f"{number:02d}_{shot.name.replace(' ', '_')}.vtu") as path:
+            grid.save(path)
+
+
+def around_the_wire(places: np.ndarray, stress: np.ndarray) -> np.ndarray:
+    """Shear stress along circles about the section's middle, positive anticlockwise in (ξ, η), MPa."""
+    distance = np.hypot(*places.T)
+    turned = stress[:, 4] * places[:, 0] - stress[:, 3] * places[:, 1]
+    return turned / np.where(distance > 0, distance, 1.0)
+
+
+def figure(path: Path, analysis: SliceAnalysis) -> None:
+    """Stress over the section under the greatest force and at the end: shear, von Mises stress, on a diameter."""
+    shots = analysis.result.snapshots
+    loaded = max(shots, key=lambda shot: abs(shot.force))
+    rows = [loaded, shots[-1]] if shots[-1] is not loaded else [loaded]
+    with mpl.rc_context(STYLE):
+        sheet = Figure(figsize=(10.5, 3.3 * len(rows)), layout="constrained")
+        axes = sheet.subplots(len(rows), 3, squeeze=False)
+        for row, shot in zip(axes, rows, strict=True):
+            _row(sheet, row, analysis, shot)
+        law, coil = analysis.law.name, analysis.coil
+        sheet.suptitle(f"Section of the coil, {law}, D = {2 * coil.radius:g} mm; the coil's axis is on the left")
+        save(sheet, path)
+
+
+def _row(sheet: Figure, row: list[Axes], analysis: SliceAnalysis, shot: SliceSnapshot) -> None:
+    lattice, when = analysis.lattice, f"{shot.name}, {round(shot.force, 2) + 0.0:.2f} N"
+    around = around_the_wire(lattice.places, shot.stress)
+    limit = max(float(np.abs(around).max()), 1e-9)
+    for axes, values, levels, colours, name in (
+        (row[0], around, np.linspace(-limit, limit, 25), "RdBu_r", "shear about the wire's axis"),
+        (row[1], equivalent(shot.stress), 24, "viridis", "von Mises stress"),
+    ):
+        shown = axes.tricontourf(*lattice.places.T, lattice.triangles, values, levels=levels, cmap=colours)
+        for side in lattice.rim:
+            axes.plot(*lattice.places[side].T, "k-", lw=0.8)
+        axes.set(aspect="equal", xlabel="outward, ξ in mm", ylabel="upward, η in mm", title=f"{name}\n{when}")
+        sheet.colorbar(shown, ax=axes, label="MPa", shrink=0.9)
+    ξ = analysis.line.places[:, 0]
+    row[2].plot(ξ, shot.line[:, 4], "C0-", lw=1.4, label="shear τ13, upward")
+    row[2].plot(ξ, shot.line[:, 0], "C1--", lw=1.1, label="normal stress σ11")
+    row[2].axhline(0, color="k", lw=0.5)
+    row[2].set(xlabel="ξ on the line η = 0, in mm", ylabel="MPa", title=f"from the inside to the outside\n{when}")
+    row[2].grid(lw=0.3)
+    row[2].legend(fontsize=8)

@@ -1,0 +1,246 @@
+"""Equilibrium of the slice as a SNES problem of its displacements and of the two numbers h̄ and λ."""
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+from dolfinx import fem
+from petsc4py import PETSc
+
+from coilset.model.errors import SolveError
+from coilset.model.slice.bordered import BorderedMatrix
+from coilset.model.slice.contact import SelfContact
+from coilset.model.slice.forms import RISE, TURN, assemble
+from coilset.model.slice.slice import Slice
+from coilset.model.slice.watch import Watch
+
+# PETSc's own factorisation: below some thousands of unknowns MUMPS costs several times as much. Minimum degree puts the
+# dense border last.
+OPTIONS = {
+    "snes_type": "newtonls", "snes_linesearch_type": "bt", "snes_max_it": 20, "ksp_type": "preonly", "pc_type": "lu",
+    "pc_factor_mat_ordering_type": "qmd",
+}  # fmt: skip
+MAX_CUTS = 8
+_numbers = itertools.count()
+
+
+@dataclass(frozen=True)
+class Effort:
+    """What it took to reach an equilibrium: iterations of Newton's method and cuts of the step."""
+
+    iterations: int
+    cuts: int
+
+
+class SliceProblem:
+    """Steps of a slice from equilibrium to equilibrium.
+
+    The two numbers are the last unknowns, h̄ and λ times the coil's radius, so that all unknowns are in mm and all
+    residuals in N. Where one of them is prescribed its equation is its value.
+
+    Args:
+        body: Slice.
+        free_ends: the ends may turn about the coil's axis (no torque); else they cannot (λ = 1).
+        contact: SelfContact of the body, or None: coils pass through each other. It takes part from the first step
+            on that would press coils into each other.
+        precision: ε of (6.3.1): out-of-balance forces over those that the step puts on the slice.
+
+    Attributes:
+        force: axial force at the last equilibrium, compression positive, N; torque: about the axis, N mm.
+        pressure: `Pressure` of the contact there, None without contact.
+        touching: whether contact takes part.
+    """
+
+    def __init__(
+        self, body: Slice, free_ends: bool = False, contact: SelfContact | None = None, precision: float = 1e-8
+    ):
+        self.body, self.free_ends, self.contact, self.precision = body, free_ends, contact, precision
+        centre = int(np.argmin(np.linalg.norm(body.start - [body.coil.radius, 0.0, 0.0], axis=1)))
+        # a shift along the axis and a turn about it change nothing: they are taken out at the middle of the section
+        self._gauge = np.array([3 * centre + 1, 3 * centre + 2])
+        self._scale = np.array([1.0, body.coil.radius])
+        self._n = body.u.size
+        self.force, self.torque, self._direction = 0.0, 0.0, 0.0
+        self.pressure = contact.evaluate() if contact else None
+        self._solvers = {}
+        self._let_touch(False)
+
+    def _let_touch(self, touching):
+        """Take contact, and the room it needs in the matrix, in or out."""
+        self.touching = touching
+        if touching not in self._solvers:
+            coupled = self.contact.blocks if touching else None
+            matrix = BorderedMatrix(self.body.forms["tangent"], self._gauge, coupled)
+            self._solvers[touching] = matrix, self._create_snes(matrix)
+        self._matrix, self.snes = self._solvers[touching]
+        self._X, self._b = self._matrix.petsc.createVecRight(), self._matrix.petsc.createVecLeft()
+
+    def _create_snes(self, matrix):
+        snes = PETSc.SNES().create(PETSc.COMM_SELF)
+        prefix = f"slice{next(_numbers)}_"
+        snes.setOptionsPrefix(prefix)
+        database = PETSc.Options(prefix)
+        for key, value in OPTIONS.items():
+            database[key] = value
+        snes.setFunction(self._residual, matrix.petsc.createVecLeft())
+        snes.setJacobian(self._tangent, matrix.petsc)
+        snes.setConvergenceTest(self._converged)
+        snes.setFromOptions()
+        for key in OPTIONS:
+            database.delValue(key)
+        return snes
+
+    # ---- callbacks of SNES -----------------------------------------------------------------------------------------
+
+    def _set(self, X):
+        values = X.getArray(readonly=True)
+        if not np.array_equal(values, self._at):
+            self.body.u[:] = values[:-2].reshape(-1, 3)
+            self.body.increment[:] = values[-2:] / self._scale
+            self._good = self.body.update()
+            if self.touching:
+                self._pressure = self.contact.evaluate()
+            self._at = values.copy()
+        return self._good
+
+    def resultants(self) -> np.ndarray:
+        """Axial force, tension positive, N, and torque, N mm, at the increment, what contact bears included."""
+        return self.body.resultants() + (self._pressure.numbers if self.touching else 0.0)
+
+    def _rest(self):
+        """Out-of-balance forces at the increment, shape (n + 2,), N."""
+        rest = np.zeros(self._n + 2)
+        rest[:-2] = (self.body.forces + (self._pressure.forces if self.touching else 0.0)).ravel()
+        rest[self._gauge] = 0.0
+        if self._force is not None or self.free_ends:
+            driven = (self.resultants() - [-(self._force or 0.0), 0.0]) / self._scale
+            rest[-2:] = np.where([self._force is not None, self.free_ends], driven, 0.0)
+        return rest
+
+    def _residual(self, snes, X, F):
+        if self._set(X):
+            F.setArray(self._rest())
+        else:
+            F.set(np.inf)
+
+    def _tangent(self, snes, X, J, P):
+        self._set(X)  # a line search may have looked elsewhere last
+        self._assemble()
+
+    def _assemble(self):
+        forms, scale = self.body.forms, self._scale
+        free, moves = [self._force is not None, self.free_ends], [True, self.free_ends]
+        columns = [assemble(forms["column", k]) / scale[k] if moves[k] else None for k in (RISE, TURN)]
+        rows = [assemble(forms["row", k]) / scale[k] if free[k] else None for k in (RISE, TURN)]
+        corner = np.eye(2)
+        for i, j in itertools.product((RISE, TURN), repeat=2):
+            if free[i]:
+                corner[i, j] = fem.assemble_scalar(forms["corner", i, j]) / (scale[i] * scale[j]) if moves[j] else 0.0
+        self._matrix.assemble(columns, rows, corner, self._of_contact(free, moves))
+
+    def _of_contact(self, free, moves):
+        """Places and values in the matrix of the contact's stiffness, without equations of prescribed numbers."""
+        if not self.touching:
+            return None
+        pressure, n = self._pressure, self._n
+        i, j, scales = pressure.rows, pressure.columns, np.ones(n + 2)
+        scales[n:] = self._scale
+        used = np.append(np.ones(n, bool), free)[i] & np.append(np.ones(n, bool), moves)[j]
+        i, j = i[used], j[used]
+        return self._matrix.places(i, j), pressure.values[used] / (scales[i] * scales[j])
+
+    def _converged(self, snes, iteration, norms):
+        norm, reason = norms[2], PETSc.SNES.ConvergedReason
+        if not np.isfinite(norm):
+            return reason.DIVERGED_FNORM_NAN
+        return reason.CONVERGED_FNORM_RELATIVE if norm <= max(self.precision * self._load, self._floor) else 0
+
+    # ---- steps -----------------------------------------------------------------------------------------------------
+
+    def go_to_rise(self, rise: float) -> Effort:
+        """Find the equilibrium at a rise h̄, mm/rad; a step that does not converge is cut in halves.
+
+        Raises:
+            SolveError: if there is none even after `MAX_CUTS` cuts; the last equilibrium is kept.
+        """
+        return self._go(lambda: self.body.rise, rise, by_force=False)
+
+    def go_to_force(self, force: float) -> Effort:
+        """Find the equilibrium under an axial force, compression positive, N; else as `go_to_rise`."""
+        return self._go(lambda: self.force, force, by_force=True)
+
+    def probe(self, rise: float, watch: Watch) -> tuple[float, np.ndarray]:
+        """Linear answer to a small change of the rise from the last equilibrium, which stays.
+
+        Returns:
+            Axial force, compression positive, N, and the stress at the watch's places in the section's axes, MPa.
+        """
+        self._linear_answer(rise, by_force=False)
+        self._set(self._X)
+        force, stress = -float(self.resultants()[RISE]), watch.section_stress(watch.evaluate())
+        self.body.restore()
+        return force, stress
+
+    def _go(self, where, target, by_force):
+        begin, done, part, iterations, cuts = where(), 0.0, 1.0, 0, 0
+        while done < 1.0:
+            end = min(done + part, 1.0)
+            value = target if end >= 1.0 else begin + end * (target - begin)
+            direction = np.sign(value - self.force) if by_force else np.sign(self.body.rise - value)
+            if direction * self._direction < 0.0:
+                self.body.start_elastic()
+            converged = self._attempt(value, by_force)
+            iterations += 1 + self.snes.getIterationNumber()
+            if converged and self._sinks_in():
+                self.body.restore()
+                self._let_touch(True)
+                continue
+            if converged:
+                self._accept()
+                self._direction, done = direction, end
+                continue
+            self.body.restore()
+            part, cuts = 0.5 * part, cuts + 1
+            if cuts > MAX_CUTS:
+                kind = f"{target:g} N" if by_force else f"a pitch of {2 * np.pi * target:g} mm"
+                raise SolveError(f"no equilibrium of the slice beyond {self.force:.6g} N and a pitch of "
+                                 f"{2 * np.pi * self.body.rise:.6g} mm on the way to {kind}")  # fmt: skip
+        return Effort(iterations, cuts)
+
+    def _sinks_in(self):
+        """Whether coils lie in each other at an equilibrium that was found without contact."""
+        return self.contact is not None and not self.touching and self.contact.evaluate().gap < 0.0
+
+    def _accept(self):
+        axial, self.torque = self.resultants()
+        self.force = -axial
+        if self.contact is not None:
+            self.pressure = self._pressure if self.touching else self.contact.evaluate()
+        self.body.commit()
+        if self.touching and not self.pressure.bearing:
+            self._let_touch(False)
+
+    def _attempt(self, value, by_force):
+        """Newton's method from the linear answer at the last moduli, K Δu = −R − ∂R/∂h̄ Δh̄; whether it converged."""
+        self._linear_answer(value, by_force)
+        self.snes.solve(None, self._X)
+        return self.snes.getConvergedReason() > 0 and self._set(self._X)
+
+    def _linear_answer(self, value, by_force):
+        self._force = value if by_force else None
+        self._at, self._good = np.zeros(self._n + 2), True
+        if self.touching:
+            self._pressure = self.contact.evaluate()
+        rest = self._rest()
+        self._assemble()
+        b = -rest
+        if not by_force:
+            b[-2] = value - self.body.rise
+            pull = assemble(self.body.forms["column", RISE])
+        self._load = np.linalg.norm(rest) if by_force else np.linalg.norm(pull) * abs(b[-2])
+        diagonal = self._matrix.petsc.getDiagonal().array[:-2]
+        self._floor = 0.5 * np.finfo(float).eps * np.linalg.norm(diagonal * self.body.x.ravel())
+        ksp = self.snes.getKSP()
+        ksp.setOperators(self._matrix.petsc)
+        self._b.setArray(b)
+        ksp.solve(self._b, self._X)

@@ -1,0 +1,76 @@
+"""The few numbers of a slice's run, by the names that a spring's run gives them, and some more."""
+
+import csv
+from dataclasses import asdict, fields
+from pathlib import Path
+
+import numpy as np
+
+from coilset.model.results.folder import whole
+from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot, SliceStep
+from coilset.model.slice.watch import equivalent, shear
+
+
+def summarise(analysis: SliceAnalysis) -> dict:
+    """Summary of a run as plain numbers; what is not known (no release) is None. Units are in the names."""
+    result, spring = analysis.result, analysis.spring
+    last, section = result.snapshots[-1], analysis.body.section
+    forces = [step.force_N for step in result.steps]
+    greatest = max(forces, default=0.0, key=abs)
+    released = bool(result.steps) and abs(last.force) <= 1e-6 * abs(greatest)
+    loaded = max(result.snapshots, key=lambda shot: abs(shot.force))
+    before, after = spring.free_length, analysis.height if released else None
+    return {
+        "complete": result.complete,
+        "free_length_before_mm": before,
+        "free_length_after_mm": after,
+        "set_mm": None if after is None else before - after,
+        "rate_N_per_mm": result.rate,
+        "force_max_N": greatest,
+        "block_height_mm": spring.block_height,
+        "residual_shear_max_MPa": float(shear(last.stress).max()) if released else None,
+        "shear_max_MPa": max(float(shear(shot.stress).max()) for shot in result.snapshots),
+        "steps": len(result.steps),
+        "iterations": sum(step.iterations for step in result.steps),
+        "material": analysis.law.name,
+        "ends": analysis.case.ends,
+        "elements": len(analysis.body.forms.cells),
+        "section_rule": f"triangles of degree {section.degree} with {len(analysis.body.forms.points)} points",
+        "unknowns": analysis.body.u.size + 2,
+        "turns": analysis.turns,
+        "free_to_turn": analysis.problem.free_ends,
+        "turn_after": analysis.body.turn,
+        "inside_factor": result.inside_factor,
+        "plastic_work_max_N_per_mm2": max(float(shot.work.max()) for shot in result.snapshots),
+        "plastic_work_known_to_N_per_mm2": analysis.law.validity.plastic_work,
+        "loaded": at_surface(analysis, loaded),
+        "released": at_surface(analysis, last) if released else None,
+    }
+
+
+def at_surface(analysis: SliceAnalysis, shot: SliceSnapshot) -> dict:
+    """Shear at the inside and the outside of the coil (signed), greatest shear and equivalent stress at the surface.
+
+    A place is (ξ, η) in the unloaded section, mm.
+    """
+    surface, ends = analysis.lattice.surface, [0, -1]
+    places = np.concatenate([analysis.lattice.places[surface], analysis.line.places[ends]])
+    stress = np.concatenate([shot.stress[surface], shot.line[ends]])
+    out = {
+        "moment": shot.name,
+        "force_N": shot.force,
+        "shear_inside_MPa": float(shot.line[0, 4]),
+        "shear_outside_MPa": float(shot.line[-1, 4]),
+    }
+    for name, values in (("shear", shear(stress)), ("equivalent_stress", equivalent(stress))):
+        at = int(np.argmax(values))
+        out |= {f"surface_{name}_max_MPa": float(values[at]), f"surface_{name}_max_at_mm": places[at].tolist()}
+    return out
+
+
+def write_history(folder: Path, steps: list[SliceStep]) -> None:
+    """history.csv: one row a step; numbers with all their digits."""
+    with whole(Path(folder) / "history.csv") as path, open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, [column.name for column in fields(SliceStep)])
+        writer.writeheader()
+        writer.writerows(asdict(step) for step in steps)

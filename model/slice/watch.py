@@ -1,0 +1,103 @@
+"""Stress at chosen places of the section, its surface included: the law is integrated there, too.
+
+The strain increments of a place are carried to it from the integration points by a quadratic least-squares polynomial
+through the nearest ones (patches of points after Zienkiewicz and Zhu, IJNME 33 (1992) 1331); strains are smooth also
+where plastic flow begins, stresses are not. The law then makes the stress of the place's own history, so that no yield
+condition is broken there.
+"""
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from coilset.model.errors import SolveError
+from coilset.model.material.points import initial_state
+from coilset.model.slice.slice import Slice
+from coilset.model.solid.kinematics import push_forward, stretches
+from coilset.model.solid.points import update_points
+
+NEIGHBOURS = 20  # integration points of a patch
+
+
+class Watch:
+    """Places of a slice, followed as material points; to be made before the first step.
+
+    Args:
+        body: Slice; it tells its watches of every equilibrium.
+        places: ξ, η, shape (n, 2), mm.
+
+    Attributes:
+        places: as given.
+        state: history rows at the last equilibrium, shape (n, n_state), in space.
+    """
+
+    def __init__(self, body: Slice, places: np.ndarray):
+        self.body, self.places = body, np.atleast_2d(np.asarray(places, float))
+        self._weights = patch_weights(body.places, self.places)
+        self.state = initial_state(body.law, len(self.places), 6, body.temperature)
+        self._trial = self.state.copy()
+        body.watches.append(self)
+
+    def evaluate(self) -> np.ndarray:
+        """History rows at the body's increment, shape (n, n_state); a view that the next call overwrites.
+
+        Raises:
+            SolveError: if the law finds no solution at a place.
+        """
+        n = len(self.places)
+        gradient = np.einsum("np,pij->nij", self._weights, self.body.gradient)
+        strain, log, axes, rotation = np.empty((n, 6)), np.empty((n, 3)), np.empty((n, 3, 3)), np.empty((n, 3, 3))
+        C, stress, moduli = np.empty((n, 6, 6)), np.empty((n, 6)), np.empty((n, 6, 6))
+        good = stretches(gradient, strain, axes, rotation, log) == 0
+        if not good or update_points(self.body.parameters, self.state, strain, self._trial, C) != 0:
+            raise SolveError("the law finds no stress at a watched place of the section; take smaller steps")
+        push_forward(self._trial, C, axes, rotation, log, stress, moduli, False)
+        return self._trial
+
+    def accept(self) -> None:
+        """Make the body's increment the equilibrium."""
+        self.state[:] = self.evaluate()
+
+    def section_stress(self, state: np.ndarray | None = None) -> np.ndarray:
+        """Stress in the axes of the section as it lies now: 1 along the wire, 2 outward, 3 upward.
+
+        Args:
+            state: history rows; default are those at the last equilibrium.
+
+        Returns:
+            σ11, σ22, σ33, τ12, τ13, τ23, shape (n, 6), MPa.
+        """
+        six = (self.state if state is None else state)[:, :6]
+        σ = six[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
+        axes = self.body.axes()
+        turned = np.einsum("ia,nij,jb->nab", axes, σ, axes)
+        return turned[:, [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+
+
+def shear(stress: np.ndarray) -> np.ndarray:
+    """Magnitude of the shear stress in the section, √(τ12² + τ13²), of components (..., 6), MPa."""
+    return np.hypot(stress[..., 3], stress[..., 4])
+
+
+def equivalent(stress: np.ndarray) -> np.ndarray:
+    """von Mises stress of components (..., 6), MPa."""
+    n, t = stress[..., :3], stress[..., 3:]
+    spread = (n[..., 0] - n[..., 1]) ** 2 + (n[..., 1] - n[..., 2]) ** 2 + (n[..., 2] - n[..., 0]) ** 2
+    return np.sqrt(0.5 * spread + 3.0 * np.sum(t * t, axis=-1))
+
+
+def patch_weights(points: np.ndarray, samples: np.ndarray) -> np.ndarray:
+    """Weights that carry values at points to samples, exact for quadratic polynomials, shape (samples, points).
+
+    Args:
+        points, samples: places in the plane, shapes (m, 2) and (n, 2).
+    """
+    size = min(NEIGHBOURS, len(points))
+    distance, nearest = cKDTree(points).query(samples, k=size)
+    reach = distance[:, -1:]
+    weight = np.exp(-2.0 * (distance / reach) ** 2)
+    y, z = np.moveaxis((points[nearest] - samples[:, None]) / reach[:, :, None], 2, 0)
+    basis = np.stack([np.ones_like(y), y, z, y * y, y * z, z * z], axis=2)
+    found = np.linalg.pinv(basis * weight[:, :, None])[:, 0] * weight
+    weights = np.zeros((len(samples), len(points)))
+    np.put_along_axis(weights, nearest, found, axis=1)
+    return weights

@@ -1,0 +1,93 @@
+"""`coilset slice`: a cylindrical spring by the section of its wire alone, as a three-dimensional body."""
+
+import os
+from pathlib import Path
+
+from mpi4py import MPI
+from rich.console import Console
+from rich.table import Table
+
+from coilset.meshes.section_shapes import parse
+from coilset.model.case import read_case
+from coilset.model.errors import InputError, SolveError
+from coilset.model.results.folder import prepare, write_summary
+from coilset.model.slice.analysis import SliceAnalysis
+from coilset.model.slice.summary import summarise, write_history
+
+
+def slice_case(case_file, out=None, force=False, settings=(), section=None, across=None, pictures=True):
+    """Run the slice of a case; see `coilset slice --help`.
+
+    Args:
+        case_file: the case file.
+        out: results folder; default results/NAME-OF-CASE-slice.
+        force: replace results that are there.
+        settings: texts `key=value` that replace entries of the case file.
+        section: the section in words or a CSV file of its outline, see `meshes.section_shapes.parse`; default is round.
+        across: triangles across the section.
+        pictures: draw the figure.
+
+    Raises:
+        InputError, SolveError: the latter after the results up to there are written.
+    """
+    if MPI.COMM_WORLD.rank:
+        return  # a section is too small to be divided
+    console = Console(highlight=False)
+    case = read_case(case_file, settings)
+    out = Path(out or Path("results") / f"{Path(case_file).stem}-slice")
+    try:
+        options = {} if across is None else {"across": across}
+        analysis = SliceAnalysis(case, parse(section) if section else None, **options)
+        analysis.check_targets()
+    except InputError as error:
+        raise InputError(error.problem, error.place, error.file or case_file) from None
+    prepare(out, force)
+    for warning in analysis.spring.warnings:
+        console.print(f"[yellow]warning:[/] {warning}")
+    targets = ", ".join(phase.label for phase in case.loading)
+    console.print(f"{Path(case_file).name}: slice with {analysis.body.u.size + 2} unknowns, to {targets}")
+    console.print("   step   seat height/mm      force/N   iterations")
+    failure = None
+    try:
+        analysis.run(lambda step: console.print(_row(step)))
+    except SolveError as error:
+        failure = error
+    summary = summarise(analysis)
+    _write(out, analysis, summary, pictures)
+    _conclude(console, summary, out)
+    if failure is not None:
+        raise failure
+
+
+def _row(step):
+    touching = "   coils touch" if step.contacts else ""
+    force = round(step.force_N, 3) + 0.0  # no -0.000
+    return f"{step.number:7d}{step.seat_height_mm:17.4f}{force:13.3f}{step.iterations:13d}{touching}"
+
+
+def _write(out, analysis, summary, pictures):
+    from coilset.model.slice import output
+
+    write_history(out, analysis.result.steps)
+    output.write_fields(out, analysis)
+    if pictures:
+        output.figure(out / "section.png", analysis)
+    write_summary(out, summary)
+
+
+def _conclude(console, summary, out):
+    def number(value, unit, digits=4):
+        return "not reached" if value is None else f"{round(value, digits) + 0.0:.{digits}f} {unit}"  # no -0.0
+
+    loaded, released = summary["loaded"], summary["released"] or {}
+    table = Table(show_header=False, box=None, padding=(0, 2))
+    table.add_row("free length before", number(summary["free_length_before_mm"], "mm"))
+    table.add_row("free length after", number(summary["free_length_after_mm"], "mm"))
+    table.add_row("[bold]set[/]", f"[bold]{number(summary['set_mm'], 'mm')}[/]")
+    table.add_row("initial rate", number(summary["rate_N_per_mm"], "N/mm"))
+    table.add_row("greatest force", number(summary["force_max_N"], "N", 2))
+    table.add_row("shear at the surface, inside, loaded", number(loaded["shear_inside_MPa"], "MPa", 2))
+    table.add_row("the same, released", number(released.get("shear_inside_MPa"), "MPa", 2))
+    table.add_row("greatest shear at the surface, released", number(released.get("surface_shear_max_MPa"), "MPa", 2))
+    table.add_row("results in", f"{out}{os.sep}")
+    console.print(table)
