@@ -23,11 +23,13 @@ class Frame:
         held: (node, components) pairs that stay where they are; components are 0-2 for x, y, z, 3-5 for turns.
         method, options: as for Solver; its tolerance is the thesis's 1e-7.
         contacts: kinds of contact.
+        placement: of sections beside the chords, as for Rod.
     """
 
-    def __init__(self, nodes, pairs, radius, law, rule, held, method="newton", options=None, contacts=()):
+    def __init__(self, nodes, pairs, radius, law, rule, held, method="newton", options=None, contacts=(),
+                 placement=None):  # fmt: skip
         line = frame_mesh(nodes, pairs, MPI.COMM_SELF)
-        self.rod = Rod(line, np.broadcast_to(np.asarray(radius, float), len(pairs)), law, rule)
+        self.rod = Rod(line, np.broadcast_to(np.asarray(radius, float), len(pairs)), law, rule, placement)
         self.system = System(self.rod, contacts)
         self.solver = Solver(self.system, method, 1e-7, options)
         self.held = {int(dof): 0.0 for dof in self.system.seat_dofs}
