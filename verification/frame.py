@@ -2,6 +2,7 @@
 
 import numpy as np
 from mpi4py import MPI
+from scipy.spatial.transform import Rotation
 
 from coilset.meshes.frame import frame_mesh
 from coilset.model.problem.system import System
@@ -67,6 +68,10 @@ class Frame:
     def moved(self, node):
         """Displacement of a node since the start, mm."""
         return self.system.gather(self.rod.x)[node] - self.rod.line.stations[node]
+
+    def turned(self, node):
+        """Rotation vector of a node since the start, up to a whole turn, rad."""
+        return Rotation.from_matrix(self.system.gather(self.rod.R)[node]).as_rotvec()
 
     def force(self, dof):
         """Internal force at a dof, N or N mm; a support's reaction has the same sign."""
