@@ -38,7 +38,7 @@ def loop(law, steps):
     more = twist * np.expm1(STRETCH)
 
     def keep():
-        rows.append((frame.rod.history[0, 0, 0, 0], frame.rod.history[0, 0, 0, 2]))
+        rows.append((frame.rod.point_state[0, 0, 0, 0], frame.rod.point_state[0, 0, 0, 2]))
 
     for way, angle in ((length, 0.0), (0.0, twist + more), (-length, -more), (0.0, -twist)):
         drive(frame, steps, {pull: way, turn: angle}, after=keep)

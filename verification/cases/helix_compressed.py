@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from coilset.meshes.placement import section_placement
 from coilset.meshes.spring import SpringSpec
-from coilset.model.frames.rotations import triads
+from coilset.model.rod.kinematics import chord_triads
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
 from coilset.model.rod.kinematics import GAUSS
@@ -36,7 +36,7 @@ def press(pitch, helix, mesh):
     spring = SpringSpec(wire_diameter=WIRE, mean_diameter=DIAMETER, turns=TURNS, pitch=pitch).build()
     turns = np.linspace(0.0, TURNS, TURNS * mesh + 1)
     nodes, last = spring.centre_line(turns), TURNS * mesh
-    placement = section_placement(spring, turns, triads(np.diff(nodes, axis=0)), GAUSS)
+    placement = section_placement(spring, turns, chord_triads(np.diff(nodes, axis=0)), GAUSS)
     frame = chain(nodes, 0.5 * WIRE, library.load("elastic"), held=(), placement=placement)
     rise = pitch / (2.0 * np.pi)
     tilt = helix.inclination - np.arctan2(rise, 0.5 * DIAMETER)

@@ -25,7 +25,7 @@ def turn(steps):
     nodes = np.stack([20.0 * np.cos(angle), 20.0 * np.sin(angle), 2.0 * angle], axis=1)
     frame, stress = chain(nodes, RADIUS, library.load("elastic"), held=()), []
     moves = {frame.dof(0, X + k): 0.0 for k in range(3)} | {frame.dof(0, TURN_X + k): ANGLE * AXIS[k] for k in range(3)}
-    counts = drive(frame, steps, moves, after=lambda: stress.append(np.abs(frame.rod.history[..., :3]).max()))
+    counts = drive(frame, steps, moves, after=lambda: stress.append(np.abs(frame.rod.point_state[..., :3]).max()))
     back = max(np.linalg.norm(frame.moved(node)) for node in range(ELEMENTS + 1))
     return np.array(stress), back, counts
 

@@ -33,7 +33,7 @@ def twist(law, rings):
     frame, torques = chain(straight(LENGTH, 1), RADIUS, law, polar(rings, 12), held), [0.0]
     end = frame.dof(1, TURN_X)
     drive(frame, STEPS, {end: SHEAR / RADIUS * LENGTH}, after=lambda: torques.append(frame.force(end)))
-    stress = np.hypot(*frame.rod.history[0, 0, ::12, 1:3].T)
+    stress = np.hypot(*frame.rod.point_state[0, 0, ::12, 1:3].T)
     drive(frame, 2, forces={end: 0.0})
     return np.array(torques), frame.turned(1)[0] / LENGTH, stress
 
