@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 
 if TYPE_CHECKING:
     from coilset.meshes.geometry import Spring

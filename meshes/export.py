@@ -6,8 +6,8 @@ import gmsh
 import meshio
 import numpy as np
 
+from coilset.meshes.errors import InputError
 from coilset.meshes.measured import WIRE_DIAMETER
-from coilset.model.errors import InputError
 
 
 def write_mesh(spring, turns, path):

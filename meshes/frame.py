@@ -5,8 +5,8 @@ import numpy as np
 import ufl
 from dolfinx import mesh as dmesh
 
+from coilset.meshes.errors import InputError
 from coilset.meshes.line import LineMesh
-from coilset.model.errors import InputError
 
 
 def frame_mesh(nodes, pairs, comm):

@@ -6,7 +6,7 @@ import gmsh
 import numpy as np
 from dolfinx import mesh as dmesh
 
-from coilset.model.compat import geometry_dofs, mesh_from_gmsh
+from coilset.meshes.compat import geometry_dofs, mesh_from_gmsh
 
 
 @dataclass

@@ -11,9 +11,9 @@ from coilset.meshes import functions
 from coilset.meshes.checks import refuse
 from coilset.meshes.ends import OPEN, Ends, bottom_and_top
 from coilset.meshes.entry import Strict
+from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
 from coilset.meshes.shapes import Length
-from coilset.model.errors import InputError
 
 LEAST_POINTS = 5
 WIDEST_STEP = 1 / 3  # of a turn between neighbouring points

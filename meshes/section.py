@@ -7,9 +7,9 @@ import gmsh
 import numpy as np
 from mpi4py import MPI
 
+from coilset.meshes.compat import mesh_from_gmsh
+from coilset.meshes.errors import InputError
 from coilset.meshes.section_shapes import Outline
-from coilset.model.compat import mesh_from_gmsh
-from coilset.model.errors import InputError
 
 SAMPLES = 4001  # of each curve, in the search for the section's extent
 

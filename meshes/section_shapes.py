@@ -12,7 +12,7 @@ from typing import Protocol
 import gmsh
 import numpy as np
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 
 
 class Outline(Protocol):

@@ -7,9 +7,9 @@ import dolfinx.mesh
 import gmsh
 import numpy as np
 
+from coilset.meshes.compat import mesh_from_gmsh, unghosted
+from coilset.meshes.errors import InputError
 from coilset.meshes.solid_grid import SectionGrid, gmsh_cylinder
-from coilset.model.compat import mesh_from_gmsh, unghosted
-from coilset.model.errors import InputError
 
 
 @dataclass(frozen=True)

@@ -10,10 +10,10 @@ from coilset.meshes import functions
 from coilset.meshes.checks import refuse
 from coilset.meshes.ends import OPEN, Ends, bottom_and_top, pitch_with_ends, touching_pitch
 from coilset.meshes.entry import Strict
+from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
 from coilset.meshes.measured import MeasuredSpec
 from coilset.meshes.shapes import DiameterProfile, Length, Profile, profile_function
-from coilset.model.errors import InputError
 
 DIAMETERS = {"mean_diameter": 0, "outer_diameter": -1, "inner_diameter": 1}  # wires to add for the mean diameter
 

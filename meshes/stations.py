@@ -6,8 +6,8 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag
 
 from coilset.meshes import functions
+from coilset.meshes.errors import InputError
 from coilset.meshes.shapes import Table, form_of_entry
-from coilset.model.errors import InputError
 
 LEAST, MOST = 3, 1_000_000
 

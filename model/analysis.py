@@ -7,6 +7,7 @@ from typing import Protocol
 import numpy as np
 from mpi4py import MPI
 
+from coilset.meshes.errors import SolveError
 from coilset.meshes.line import line_mesh
 from coilset.meshes.placement import section_placement
 from coilset.model.case import Case
@@ -20,7 +21,6 @@ from coilset.model.equilibrium.methods import rod_method
 from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.program import LoadProgram, ProgramPosition, Stage, StepTaken
 from coilset.model.equilibrium.system import System
-from coilset.model.errors import SolveError
 from coilset.model.material import library
 from coilset.model.results.balance import imbalance
 from coilset.model.results.checkpoint import Saved

@@ -5,7 +5,7 @@ import shutil
 from importlib import resources
 from pathlib import Path
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 
 EXAMPLES = Path(str(resources.files("coilset.examples")))
 SUFFIXES = (".yaml", ".csv", ".sh")

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from coilset.model.errors import SolveError
+from coilset.meshes.errors import SolveError
 from coilset.model.material.law import Law
 from coilset.model.material.points import initial_state
 from coilset.model.section.rules import DiskRule, polar, upper_half

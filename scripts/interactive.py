@@ -1,9 +1,9 @@
 """`coilset solve --interactive`: watch each step, and change size, method and target before the next."""
 
+from coilset.meshes.errors import InputError
 from coilset.model.case.entry import check_entries
 from coilset.model.case.phases import Phase
 from coilset.model.case.yaml import load_yaml
-from coilset.model.errors import InputError
 
 HELP = """\
 Enter            the next step

@@ -8,7 +8,7 @@ from types import FrameType
 
 import typer
 
-from coilset.model.errors import CoilsetError
+from coilset.meshes.errors import CoilsetError
 from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.material import app as material
 from coilset.scripts.output import Output, output_closed

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import typer
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 
 app = typer.Typer(help="Draw a material, test it at one point, or fit it to tests.", no_args_is_help=True)
 MATERIAL = typer.Argument(help="name in the library, or the path of a material file")

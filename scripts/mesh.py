@@ -7,8 +7,8 @@ from mpi4py import MPI
 from rich.console import Console
 from rich.table import Table
 
+from coilset.meshes.errors import InputError
 from coilset.model.case import read_case
-from coilset.model.errors import InputError
 from coilset.model.material import library
 from coilset.model.results.folder import whole
 from coilset.model.standards.data import spring_data

@@ -15,7 +15,7 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import BinaryIO
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 from coilset.model.processes import end_with_parent, mpi_environment, mpirun
 
 PARALLEL = ("solve", "sweep", "python")

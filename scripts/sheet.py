@@ -7,8 +7,8 @@ from pathlib import Path
 from mpi4py import MPI
 from rich.console import Console
 
+from coilset.meshes.errors import InputError
 from coilset.model.case import read_case
-from coilset.model.errors import InputError
 from coilset.model.material import library
 from coilset.model.standards import found, goodman
 from coilset.model.standards.cylinder import Cylinder

@@ -7,12 +7,13 @@ from mpi4py import MPI
 from rich.console import Console
 from rich.table import Table
 
+from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.section_shapes import parse
 from coilset.model.case import read_case
-from coilset.model.errors import InputError, SolveError
 from coilset.model.results.folder import prepare, write_summary
 from coilset.model.slice.analysis import SliceAnalysis
 from coilset.model.slice.summary import summarise, write_history
+from coilset.model.standards.warnings import spring_warnings
 
 
 def slice_case(case_file, out=None, force=False, settings=(), section=None, across=None, pictures=True):
@@ -42,8 +43,8 @@ def slice_case(case_file, out=None, force=False, settings=(), section=None, acro
     except InputError as error:
         raise InputError(error.problem, error.place, error.file or case_file) from None
     prepare(out, force)
-    for warning in analysis.spring.warnings:
-        console.print(f"[yellow]warning:[/] {warning}")
+    for warning in spring_warnings(analysis.spring):
+        console.print(f"[yellow]warning:[/] {warning.text}")
     targets = ", ".join(phase.label for phase in case.loading)
     console.print(f"{Path(case_file).name}: slice with {analysis.body.u.size + 2} unknowns, to {targets}")
     console.print("   step   seat height/mm      force/N   iterations")

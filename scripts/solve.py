@@ -9,9 +9,9 @@ from mpi4py import MPI
 from rich.console import Console
 from rich.table import Table
 
+from coilset.meshes.errors import CoilsetError, InputError, SolveError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.errors import CoilsetError, InputError, SolveError
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.folder import prepare, write_history, write_seats, write_summary
 from coilset.model.results.summary import summarise

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
-from coilset.model.errors import InputError, SolveError
+from coilset.meshes.errors import InputError, SolveError
 from coilset.model.sweep import dataset
 from coilset.model.sweep.figures import draw
 from coilset.model.sweep.journal import Journal

@@ -4,7 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 from coilset.model.processes import mpi_environment, mpirun
 
 REPOSITORY = Path(__file__).resolve().parent.parent

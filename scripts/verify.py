@@ -9,7 +9,7 @@ from mpi4py import MPI
 from rich.console import Console
 from rich.table import Table
 
-from coilset.model.errors import CoilsetError, InputError
+from coilset.meshes.errors import CoilsetError, InputError
 from coilset.verification import registry
 from coilset.verification.study import Study
 

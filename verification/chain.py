@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coilset.model.errors import SolveError
+from coilset.meshes.errors import SolveError
 from coilset.model.material import library
 from coilset.model.material.law import Law, MaterialFile
 from coilset.model.section.rules import DiskRule, polar

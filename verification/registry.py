@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 from coilset.verification import cases
 
 

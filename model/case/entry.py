@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from pydantic import ValidationError
 
 from coilset.meshes.entry import WORD_OR_NUMBER, Strict, Whole
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 
 __all__ = ["WORD_OR_NUMBER", "Strict", "Whole", "check_entries", "explain", "shown"]
 

@@ -3,9 +3,9 @@
 from pathlib import Path
 from typing import Any
 
+from coilset.meshes.errors import InputError
 from coilset.model.case.entry import shortened, shown
 from coilset.model.case.yaml import load_yaml
-from coilset.model.errors import InputError
 
 FILES = ("material", "spring.file")  # entries that are paths, or may be
 

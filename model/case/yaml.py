@@ -10,8 +10,8 @@ from typing import Any
 
 import yaml
 
+from coilset.meshes.errors import InputError
 from coilset.model.case.entry import shortened
-from coilset.model.errors import InputError
 
 DEEPEST = 40  # levels of nesting; a case has six
 LARGEST = 1_000_000  # values of a file, those that aliases repeat counted each time

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
 from coilset.model.contact.base import ENDS, LEVEL, SEAT_DOFS, Contact
 from coilset.model.contact.coils import Coils
@@ -12,7 +13,6 @@ from coilset.model.contact.friction import CoilFriction, SeatFriction
 from coilset.model.contact.gap import Gaps
 from coilset.model.contact.hold import Groove, Mount
 from coilset.model.contact.seat import Seat
-from coilset.model.errors import InputError
 
 MODULUS_OF_BEDDING = 40.0  # default bedding is E/40: steel wire sinks in by some thousandths of its diameter at block
 FREE_TILT_OF_BEDDING = 1e-7  # stiffness of a joint that is free to tilt, against that of the coil's bedding, b r³

@@ -10,11 +10,11 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
+from coilset.meshes.errors import SolveError
 from coilset.model.equilibrium.control import StepControl
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.newton import Newton, Start
-from coilset.model.errors import SolveError
 
 log = logging.getLogger("coilset.steps")
 Reading = TypeVar("Reading")

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import Any
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 
 DIRECT = {"ksp_type": "preonly", "pc_type": "lu"}
 RENEWAL = 10

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.model.compat import NOT_A_NUMBER
+from coilset.meshes.compat import NOT_A_NUMBER
 from coilset.model.equilibrium.contact_limit import ContactLimit
 from coilset.model.equilibrium.control import NewtonControl
 from coilset.model.equilibrium.convergence import EquilibriumTest, Outcome, Reason, imbalance, reason_in_words

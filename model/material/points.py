@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
-from coilset.model.errors import InputError, SolveError
+from coilset.meshes.errors import InputError, SolveError
 from coilset.model.material.functions import CHANGE, KERNEL, TOLERANCE
 from coilset.model.material.heun import rod_heun, solid_heun
 from coilset.model.material.local import FAILED, TOO_HOT

@@ -13,9 +13,9 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from coilset.meshes.errors import InputError, SolveError
 from coilset.model.case.entry import Strict, Whole, check_entries, shortened
 from coilset.model.case.yaml import read_data
-from coilset.model.errors import InputError, SolveError
 from coilset.model.material.law import Law
 from coilset.model.material.points import initial_state, update
 

@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
+from coilset.meshes.errors import InputError
 from coilset.model.case import Case
 from coilset.model.equilibrium.continuation import Position
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.program import ProgramPosition
-from coilset.model.errors import InputError
 from coilset.model.results.folder import whole
 from coilset.model.results.record import Result, SeatReactions, Snapshot, Step
 from coilset.model.state import State

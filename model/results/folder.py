@@ -9,7 +9,7 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
-from coilset.model.errors import CoilsetError, InputError
+from coilset.meshes.errors import CoilsetError, InputError
 from coilset.model.results.record import SeatReactions, Step
 
 

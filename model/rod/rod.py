@@ -6,8 +6,8 @@ from dolfinx.fem.petsc import assemble_matrix
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from coilset.meshes.compat import geometry_dofs
 from coilset.meshes.line import LineMesh
-from coilset.model.compat import geometry_dofs
 from coilset.model.material.law import Law
 from coilset.model.material.points import initial_state
 from coilset.model.rod import forms

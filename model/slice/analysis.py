@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.section import section_mesh
 from coilset.meshes.section_shapes import Outline, round_wire
 from coilset.model.case import Case
-from coilset.model.errors import InputError, SolveError
 from coilset.model.material import library
 from coilset.model.slice.contact import SelfContact
 from coilset.model.slice.lattice import Lattice

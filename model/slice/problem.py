@@ -7,7 +7,7 @@ import numpy as np
 from dolfinx import fem
 from petsc4py import PETSc
 
-from coilset.model.errors import SolveError
+from coilset.meshes.errors import SolveError
 from coilset.model.slice.bordered import BorderedMatrix
 from coilset.model.slice.contact import SelfContact
 from coilset.model.slice.forms import RISE, TURN, assemble

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from dolfinx import fem
 
+from coilset.meshes.errors import InputError
 from coilset.meshes.section import SectionMesh
-from coilset.model.errors import InputError
 from coilset.model.material.law import Law
 from coilset.model.material.points import initial_state
 from coilset.model.slice.forms import RISE, TURN, SliceForms, assemble

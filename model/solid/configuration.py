@@ -5,7 +5,7 @@ import numpy as np
 import scipy.sparse
 from dolfinx import fem
 
-from coilset.model.compat import geometry_dofs
+from coilset.meshes.compat import geometry_dofs
 
 # The elements: 20-node hexahedra with 2 x 2 x 2 points, which neither lock in plastic flow nor have zero-energy modes
 # in any patch of 2 x 2 x 2 elements or more; 10-node tetrahedra with 4 points.

@@ -7,7 +7,7 @@ import dolfinx.plot
 import numpy as np
 import pyvista
 
-from coilset.model.compat import geometry_dofs
+from coilset.meshes.compat import geometry_dofs
 from coilset.model.results.folder import whole
 
 BAR = {

@@ -8,7 +8,7 @@ recovery, Zienkiewicz and Zhu, IJNME 33 (1992) 1331, with patches of points).
 import numpy as np
 from scipy.spatial import cKDTree
 
-from coilset.model.compat import geometry_dofs
+from coilset.meshes.compat import geometry_dofs
 
 NEIGHBOURS = 16  # integration points of a patch in each of the four planes of points about the section
 

@@ -6,8 +6,8 @@ from typing import Literal
 
 import numpy as np
 
+from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
-from coilset.model.errors import InputError
 
 SAME = 1e-9  # relative change of diameter and wire along a cylinder
 

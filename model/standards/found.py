@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 
 MIDDLE = (0.25, 0.75)  # share of the turns that is the body, away from the ends
 

@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 from scipy.stats import qmc
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 
 
 def rows(spec, base):

@@ -7,9 +7,9 @@ import time
 import traceback
 from dataclasses import asdict, fields
 
+from coilset.meshes.errors import CoilsetError, SolveError
 from coilset.model.analysis import Analysis
 from coilset.model.case import check
-from coilset.model.errors import CoilsetError, SolveError
 from coilset.model.results.record import Step
 from coilset.model.results.summary import summarise
 

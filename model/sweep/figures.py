@@ -6,7 +6,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 from coilset.model.results.figures import STYLE, save
 from coilset.model.sweep import spec as sp
 from coilset.model.sweep.sensitivity import rank_correlation, sobol_indices

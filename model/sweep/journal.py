@@ -6,7 +6,7 @@ import os
 import time
 from pathlib import Path
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 
 SYNC_SECONDS = 1.0
 

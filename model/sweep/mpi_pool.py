@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 from mpi4py.futures import MPICommExecutor
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 from coilset.model.sweep.evaluate import evaluate
 from coilset.model.sweep.pools import Pool
 

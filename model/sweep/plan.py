@@ -8,11 +8,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from coilset.meshes.errors import InputError
 from coilset.model.case import Case, check, read_case_data
 from coilset.model.case.entry import shown
 from coilset.model.case.settings import located, put
 from coilset.model.case.yaml import read_data
-from coilset.model.errors import InputError
 from coilset.model.material import library
 from coilset.model.sweep.design import rows
 from coilset.model.sweep.rehearsal import Rehearsal

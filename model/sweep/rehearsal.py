@@ -6,9 +6,9 @@ can be built is a mistake in the sweep file, and so is a sweep without any case 
 
 from typing import Any
 
+from coilset.meshes.errors import InputError
 from coilset.model.case import Case
 from coilset.model.case.entry import shown
-from coilset.model.errors import InputError
 from coilset.model.material import library
 from coilset.model.sweep.spec import SweepSpec, Values
 

@@ -4,8 +4,8 @@ import time
 
 import pytest
 
+from coilset.meshes.errors import InputError
 from coilset.model.case.yaml import load_yaml, read_data
-from coilset.model.errors import InputError
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 import pytest
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 from coilset.scripts.interactive import parse_phase
 
 

@@ -5,7 +5,7 @@ import os
 
 import pytest
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 from coilset.scripts.ranks import RULER, MpirunMessages, check
 
 

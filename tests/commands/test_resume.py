@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.errors import InputError
 from coilset.model.results import checkpoint as checkpoints
 from coilset.model.results.checkpoint import Checkpoint
 

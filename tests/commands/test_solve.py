@@ -8,8 +8,8 @@ import sys
 import pytest
 import yaml
 
+from coilset.meshes.errors import CoilsetError, InputError
 from coilset.model.case import read_case
-from coilset.model.errors import CoilsetError, InputError
 
 SHORT = ["--set", "loading=[{to: {travel: 6}, steps: 3}, {to: {force: 0}, steps: 2}]", "--no-pictures"]
 

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case import check
 from coilset.model.contact.base import SEAT_DOFS, TrialPositions
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.friction import CoilFriction, SeatFriction
 from coilset.model.contact.seat import Seat
-from coilset.model.errors import InputError
 from coilset.model.material import library
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.section.rules import polar

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case import check
 from coilset.model.contact.build import FREE_TILT_OF_BEDDING, MODULUS_OF_BEDDING
-from coilset.model.errors import InputError
 
 SPRING = {"wire_diameter": 4.0, "mean_diameter": 32.0, "turns": 7.5, "free_length": 75.0,
           "end_coils": {"form": "closed and ground"}}  # fmt: skip

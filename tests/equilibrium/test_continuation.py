@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from coilset.meshes.errors import SolveError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.errors import SolveError
 
 COARSE = ["mesh.elements_per_turn=10", "mesh.section.rule=abramowitz9"]
 

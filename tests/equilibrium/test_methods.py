@@ -5,11 +5,11 @@ import pytest
 from mpi4py import MPI
 from scipy.optimize import brentq
 
+from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.equilibrium.methods import METHODS, rod_method
 from coilset.model.equilibrium.newton import Newton
-from coilset.model.errors import InputError
 from coilset.model.material import library
 from coilset.model.section.rules import abramowitz9
 from coilset.verification.frame import Frame

@@ -7,7 +7,7 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 from coilset.model.material import library, points
 from coilset.model.material.identification import experiments, fit
 from coilset.scripts.material import app

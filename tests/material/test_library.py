@@ -8,7 +8,7 @@ import pytest
 import yaml
 from scipy.integrate import quad
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 from coilset.model.material import library, points
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 from coilset.model.material import library, points, programs
 
 TEMPERATURES = (293.15, 393.15, 593.15)

@@ -5,11 +5,11 @@ import meshio
 import numpy as np
 import pytest
 
+from coilset.meshes.errors import InputError
 from coilset.meshes.export import write_mesh
 from coilset.meshes.measured import MeasuredSpec
 from coilset.meshes.spring import SpringSpec
 from coilset.model.case import check
-from coilset.model.errors import InputError
 
 ENDS = {"form": "closed and ground"}
 FORMATS = [".msh", ".vtu", ".vtk", ".xdmf", ".inp", ".med", ".csv"]

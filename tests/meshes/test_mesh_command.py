@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from coilset.meshes.drawing import drawing
+from coilset.meshes.errors import InputError
 from coilset.meshes.spring import SpringSpec
-from coilset.model.errors import InputError
 from coilset.scripts.mesh import mesh
 
 SPRINGS = Path(__file__).parents[2] / "examples" / "springs"

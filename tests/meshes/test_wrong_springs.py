@@ -2,9 +2,9 @@
 
 import pytest
 
+from coilset.meshes.errors import InputError
 from coilset.meshes.spring import SpringSpec
 from coilset.model.case import check
-from coilset.model.errors import InputError
 
 RIGHT = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 6.0, "pitch": 12.0}
 CONE = {"shape": "cone", "bottom": 40.0, "top": 30.0}

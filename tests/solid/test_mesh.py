@@ -4,8 +4,8 @@ import ufl
 from dolfinx import fem
 from mpi4py import MPI
 
+from coilset.meshes.errors import InputError
 from coilset.meshes.solid import Helix, SectionGrid, coil_section, straight_wire
-from coilset.model.errors import InputError
 from coilset.model.solid.configuration import Configuration
 
 

@@ -5,9 +5,9 @@ import pytest
 from mpi4py import MPI
 from solid_laws import Elastic, IdealPlastic
 
+from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.solid import SectionGrid, coil_section, straight_wire
 from coilset.model.equilibrium.control import StepControl
-from coilset.model.errors import InputError, SolveError
 from coilset.model.material import library
 from coilset.model.solid.heads import Motion
 from coilset.model.solid.points import MaterialPoints

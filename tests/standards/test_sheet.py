@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 from coilset.model.standards import found, goodman
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.rows import sections

@@ -4,7 +4,7 @@ from itertools import pairwise
 
 import pytest
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 from coilset.model.standards.wires import names, wire
 from coilset.model.standards.wires.file import WireFile
 

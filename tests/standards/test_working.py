@@ -2,8 +2,8 @@
 
 import pytest
 
+from coilset.meshes.errors import InputError
 from coilset.meshes.spring import SpringSpec
-from coilset.model.errors import InputError
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.warnings import Warning
 from coilset.model.standards.wires import wire

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.errors import InputError
 from coilset.model.sweep.evaluate import evaluate
 from coilset.model.sweep.journal import Journal, read_records
 from coilset.model.sweep.mpi_pool import mpi_pool

@@ -16,9 +16,9 @@ import pytest
 import xarray as xr
 from mpi4py import MPI
 
+from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case import check
-from coilset.model.errors import InputError
 from coilset.model.material.library import FOLDER
 from coilset.model.results.summary import summarise
 from coilset.model.sweep import dataset, pools

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import tempfile
 
-from coilset.model.errors import CoilsetError
+from coilset.meshes.errors import CoilsetError
 from coilset.model.processes import MPI_SETTINGS, mpirun
 from coilset.verification.benchmarks.target import targets
 

@@ -16,7 +16,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.errors import SolveError
+from coilset.meshes.errors import SolveError
 from coilset.model.results.figures import STYLE
 from coilset.verification.chain import Z, chain, elastic
 from coilset.verification.references.rod_shooting import Stiffness, clamped_rod

@@ -14,7 +14,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.errors import SolveError
+from coilset.meshes.errors import SolveError
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
 from coilset.verification.chain import Y, chain, straight

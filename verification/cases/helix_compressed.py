@@ -15,10 +15,9 @@ from matplotlib.figure import Figure
 
 from coilset.meshes.placement import section_placement
 from coilset.meshes.spring import SpringSpec
-from coilset.model.rod.kinematics import chord_triads
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
-from coilset.model.rod.kinematics import GAUSS
+from coilset.model.rod.kinematics import GAUSS, chord_triads
 from coilset.verification.chain import TURN_X, TURN_Y, TURN_Z, X, Y, Z, chain, drive
 from coilset.verification.references.rod_shooting import Stiffness
 from coilset.verification.references.uniform_helix import deformed

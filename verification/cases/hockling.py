@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
-from coilset.model.errors import SolveError
+from coilset.meshes.errors import SolveError
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
 from coilset.verification.chain import ALL, TURN_X, TURN_Y, TURN_Z, X, Y, Z, chain, straight
@@ -46,7 +46,7 @@ class TwistedRod:
         if not outcome.converged:
             raise SolveError(f"T L/EI = {torque:g}: {outcome.reason}")
         self.torque = torque
-        return tangent(self.frame.system)
+        return tangent(self.frame.system, self.frame.continuation.newton.load)
 
     def critical(self, near):
         """T L/EI in the sections where the least eigenvalue vanishes, sought up to 4 % beside `near`."""

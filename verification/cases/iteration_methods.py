@@ -24,11 +24,11 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
+from coilset.meshes.errors import SolveError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.equilibrium.methods import METHODS, rod_method
 from coilset.model.equilibrium.newton import Newton, Start
-from coilset.model.errors import SolveError
 from coilset.model.examples import EXAMPLES
 from coilset.model.results.figures import STYLE
 

@@ -19,7 +19,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
 
-from coilset.model.errors import SolveError
+from coilset.meshes.errors import SolveError
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
 from coilset.verification.chain import ALL, TURN_X, TURN_Y, TURN_Z, chain, straight

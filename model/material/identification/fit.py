@@ -14,7 +14,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from scipy.optimize import least_squares
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 from coilset.model.material.identification.experiments import Test
 from coilset.model.material.identification.fitted_law import KINEMATIC, NORMALITY, FittedLaw, moved_by
 from coilset.model.material.identification.hardening import (

@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 from scipy.optimize import least_squares
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 from coilset.model.material import functions as fn
 from coilset.model.material.identification.experiments import Test
 from coilset.model.material.identification.fitted_law import KINEMATIC, NORMALITY, FittedLaw, Variables, moved_by

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import OptimizeResult
 from scipy.stats import norm
 
-from coilset.model.errors import SolveError
+from coilset.meshes.errors import SolveError
 from coilset.model.material import functions as fn
 from coilset.model.material.identification.experiments import Test
 from coilset.model.material.identification.fitted_law import LARGE, FittedLaw, Variables, moved_by

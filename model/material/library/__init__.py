@@ -4,8 +4,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
+from coilset.meshes.errors import InputError
 from coilset.model.case.entry import shortened
-from coilset.model.errors import InputError
 from coilset.model.material.file import read
 from coilset.model.material.law import Law
 

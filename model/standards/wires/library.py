@@ -4,8 +4,8 @@ from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 
+from coilset.meshes.errors import InputError
 from coilset.model.case import check, load_yaml
-from coilset.model.errors import InputError
 from coilset.model.standards.wires.file import WireFile
 from coilset.model.standards.wires.wire import Wire
 

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from coilset.model.errors import InputError
+from coilset.meshes.errors import InputError
 from coilset.model.standards.steel import Elastic
 from coilset.model.standards.wires.file import Endurance, Sourced, WireEntry
 
