@@ -1,13 +1,13 @@
 """Long clamped spring: the travel at which its straight axis is no longer stable, against Haringx
 
-Wire 5, D 40, 40 turns of pitch 12 between clamped heads, elastic. Haringx's column (`references/stability.py`) buckles at 39.16 mm
-and 96.51 N. Here the tangent of the free unknowns is looked at after each step: its least eigenvalue falls almost
-in proportion to the travel and no pivot is negative up to 38 mm; a parabola through its last three values gives the travel where it is
-zero, and the force there. It is not walked up to: the ends of a helix push to one side, and the axis goes off to
-that side near the critical travel.
+Wire 5, D 40, 40 turns of pitch 12 between clamped heads, elastic. Haringx's column (`references/stability.py`) buckles
+at 39.16 mm and 96.51 N. Here the tangent of the free unknowns is looked at after each step: its least eigenvalue falls
+almost in proportion to the travel and no pivot is negative up to 38 mm; a parabola through its last three values gives
+the travel where it is zero, and the force there. It is not walked up to: the ends of a helix push to one side, and the
+axis goes off to that side near the critical travel.
 
-Tolerance: 1.5 tan² α = 1.4 %, since Haringx leaves out the pitch's angle (tan α = 0.0955), which counts with its square in
-the stiffnesses; 8 rods a turn beside 16 show what is the mesh's.
+Tolerance: 1.5 tan² α = 1.4 %, since Haringx leaves out the pitch's angle (tan α = 0.0955), which counts with its
+square in the stiffnesses; 8 rods a turn beside 16 show what is the mesh's.
 """
 
 import matplotlib as mpl

@@ -1,12 +1,12 @@
 """Elastic helix pressed to 80 % of its height against the uniform rod's two nonlinear equations
 
 Two turns of wire 5, D 40 and pitch 12 and 30. Both ends are led as the uniform helix leads them (radius, rise,
-inclination; `references/uniform_helix.py`), so that no part of the spring knows of its ends: every node must then lie on
-the helix, and the ends bear the axial force F and the torque M about the axis that the equations give.
+inclination; `references/uniform_helix.py`), so that no part of the spring knows of its ends: every node must then lie
+on the helix, and the ends bear the axial force F and the torque M about the axis that the equations give.
 
 Tolerance: the sections lie on the true centre line, but the rods are straight; with φ the angle of a rod and h/R the
-slope, F was found to err by 0.033 φ² (h/R)² from 8 to 32 rods a turn: 0.045 φ² (h/R)². To it comes a tenth of the strain
-F/GA, 1.5e-4 and 3.6e-4, since the rod's strains are logarithmic and count per current length.
+slope, F was found to err by 0.033 φ² (h/R)² from 8 to 32 rods a turn: 0.045 φ² (h/R)². To it comes a tenth of the
+strain F/GA, 1.5e-4 and 3.6e-4, since the rod's strains are logarithmic and count per current length.
 """
 
 import matplotlib as mpl

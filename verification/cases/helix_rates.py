@@ -1,11 +1,12 @@
 """Initial rates of clamped springs, D/d 4 to 12 and pitch 5° to 20°, against Castigliano's integral of the curved rod
 
 Nine cylinders of 2.5 turns, 16 rods a turn. The reference integrates the complementary energy of the true centre
-line with the six reactions of a clamped head (`springs/curved_rod.py`); it knows no elements. The rate is that at no travel:
-forces at 5e-5 and 1e-4 of the free length are extrapolated to zero, so that the characteristic's curvature counts with
-its second order only, 1e-8.
+line with the six reactions of a clamped head (`springs/curved_rod.py`); it knows no elements. The rate is that at no
+travel: forces at 5e-5 and 1e-4 of the free length are extrapolated to zero, so that the characteristic's curvature
+counts with its second order only, 1e-8.
 
-Tolerance: 3e-5, of which 0.7 to 2.2e-5 was found. The row of the formula G d⁴/8 D³ n, which knows neither pitch nor heads, is for reading.
+Tolerance: 3e-5, of which 0.7 to 2.2e-5 was found. The row of the formula G d⁴/8 D³ n, which knows neither pitch nor
+heads, is for reading.
 """
 
 import matplotlib as mpl

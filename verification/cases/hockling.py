@@ -6,8 +6,8 @@ sections. Without tension T L/EI = 2 · 4.493409, under tension it follows from 
 (`references/stability.py`). One per cent below no pivot of the tangent is negative, one per cent above two are: the rod
 may give way to any side.
 
-Tolerance: 0.05 (TL/EI)²/n², for 80 rods; the factor is 1.1 to 1.4 times what was found, and the error falls by a factor of 6
-from 40 to 80 rods. r/L = 3e-3, so that shear counts with (r/2L)² (T L/EI)² E/G, up to 1e-3 of this.
+Tolerance: 0.05 (TL/EI)²/n², for 80 rods; the factor is 1.1 to 1.4 times what was found, and the error falls by a
+factor of 6 from 40 to 80 rods. r/L = 3e-3, so that shear counts with (r/2L)² (T L/EI)² E/G, up to 1e-3 of this.
 """
 
 import matplotlib as mpl

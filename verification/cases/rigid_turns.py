@@ -1,8 +1,8 @@
 """Curved rod turned rigidly four times about a skew axis: no stress, and back where it was
 
-One end of a stress-free helix is turned by 8π about the axis (1, 2, 3), which is no axis of anything; the other nodes are
-free. Every state is a rigid motion. Tolerance: 1e-9 MPa, some 1e-14 of the elastic modulus times the number of steps;
-positions to 1e-9 mm.
+One end of a stress-free helix is turned by 8π about the axis (1, 2, 3), which is no axis of anything; the other nodes
+are free. Every state is a rigid motion. Tolerance: 1e-9 MPa, some 1e-14 of the elastic modulus times the number of
+steps; positions to 1e-9 mm.
 """
 
 import matplotlib as mpl

@@ -6,8 +6,8 @@ point; in a bar γ grows with r, and force and torque are integrals over the rad
 with DOP853 at 40 radii. Without spin, whose second-order stress is another question (case elastic-strain-loop).
 
 Tolerance, of stresses over σ0 and of N and T over their fully plastic values, absolute: backward Euler's first order,
-0.8/steps for σ and N (found: up to 0.53) and 0.1/steps for τ and T (found: up to 0.03). With n rings 0.3/n² is added for
-N, which stands in the core alone: from 8 × 16 to 24 × 32 points it changes by 2e-3 for Ck 15, T by 3e-4.
+0.8/steps for σ and N (found: up to 0.53) and 0.1/steps for τ and T (found: up to 0.03). With n rings 0.3/n² is added
+for N, which stands in the core alone: from 8 × 16 to 24 × 32 points it changes by 2e-3 for Ck 15, T by 3e-4.
 """
 
 import matplotlib as mpl

@@ -1,7 +1,7 @@
 """Sections of plastic wire by integrals over the radius or the height, and points by a high-order integration in time.
 
-Nothing here knows of section rules, return maps or rods. Of the program only the material's functions k²(b*), ζ(b*), κ(b*)
-are used (`Law.functions`, tested by themselves).
+Nothing here knows of section rules, return maps or rods. Of the program only the material's functions k²(b*), ζ(b*),
+κ(b*) are used (`Law.functions`, tested by themselves).
 """
 
 import numpy as np
