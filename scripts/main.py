@@ -6,12 +6,11 @@ import sys
 import time
 from types import FrameType
 
-import typer
-
 from coilset.model.errors import CoilsetError
 from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.material import app as material
 from coilset.scripts.output import Output, output_closed
+from coilset.scripts.plain import typer
 
 HELP = """How far does a coil spring set, and what stress stays in it?
 

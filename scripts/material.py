@@ -4,9 +4,8 @@ import csv
 import os
 from pathlib import Path
 
-import typer
-
 from coilset.model.errors import InputError
+from coilset.scripts.plain import typer
 
 app = typer.Typer(help="Draw a material, test it at one point, or fit it to tests.", no_args_is_help=True)
 MATERIAL = typer.Argument(help="name in the library, or the path of a material file")

@@ -65,12 +65,15 @@ def launch(ranks: int, arguments: Sequence[str]) -> int:
     code = process.wait()
     for pump in pumps:
         pump.join()
-    if stops and code not in (0, INTERRUPTED):  # it came too early for the ranks to end by themselves
-        print("coilset: interrupted", file=sys.stderr)
+    if stops and code:
+        if not messages.interrupted:  # the signal came too early for the ranks to end by themselves
+            print("coilset: interrupted", file=sys.stderr)
         code = INTERRUPTED
     elif code not in OWN:
         messages.tell()
-    return OUTPUT_CLOSED if OUTPUT_CLOSED in stops and code == INTERRUPTED else code % 256
+    if code == INTERRUPTED and OUTPUT_CLOSED in stops:
+        return OUTPUT_CLOSED
+    return code if code >= 0 else 128 - code  # ended by a signal
 
 
 def _pump(source: BinaryIO, target: BinaryIO, closed: Callable[[], None]) -> threading.Thread:
@@ -93,10 +96,14 @@ def _pump(source: BinaryIO, target: BinaryIO, closed: Callable[[], None]) -> thr
 
 
 class MpirunMessages:
-    """Writes lines on, but keeps what mpirun says between two rulers, and its complaints of lost connections."""
+    """Writes lines on, but keeps what mpirun says between two rulers, and its complaints of lost connections.
+
+    Attributes:
+        interrupted: whether a rank has said that it was.
+    """
 
     def __init__(self, target: BinaryIO):
-        self.target, self.rest, self.kept, self.inside = target, b"", b"", False
+        self.target, self.rest, self.kept, self.inside, self.interrupted = target, b"", b"", False, False
 
     def write(self, data: bytes) -> None:
         """Sort whole lines; the last one waits for its end."""
@@ -108,6 +115,7 @@ class MpirunMessages:
             else:
                 self.target.write(line + b"\n")
             self.inside ^= ruler
+            self.interrupted |= line == b"coilset: interrupted"
 
     def flush(self) -> None:
         """Hand on what is written."""
