@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 
 from coilset.model.errors import InputError
+from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.plain import typer
 
 app = typer.Typer(help="Draw a material, test it at one point, or fit it to tests.", no_args_is_help=True)
@@ -43,6 +44,7 @@ def run_program(
 
     from coilset.model.material import figures, library, points, programs
 
+    announce_compiling()
     if integrator not in points.INTEGRATORS:
         raise InputError(f"'{integrator}' is none of {', '.join(points.INTEGRATORS)}", "--integrator")
     law, steps = library.load(material, spin=spin), programs.read(program)
@@ -81,6 +83,7 @@ def fit(
     from coilset.model.material.law import UNITS
     from coilset.model.results.folder import whole
 
+    announce_compiling()
     out = _folder(out, name)
     _refuse([out / f"{name}.yaml"], force)
     tests = [experiments.read_test(path) for path in data]
