@@ -67,6 +67,6 @@ def announce_compiling(say: Callable[[str], None] = _to_stderr) -> Announcement:
     logger = logging.getLogger("ffcx")
     logger.addHandler(announcement)
     logger.setLevel(logging.INFO)
-    logger.setLevel = lambda level: None  # FFCx sets it again for each form
+    logger.setLevel = lambda level: None  # type: ignore[method-assign]  # FFCx sets it again for each form
     logger.propagate = False
     return announcement

@@ -186,7 +186,7 @@ def run() -> None:
         if not hasattr(error, "format_message"):  # of click, which newer typers bring along under a name of their own
             _crash()
             raise
-        status = error.exit_code
+        status = getattr(error, "exit_code", 1)
         _complain(error.format_message())
     if status == INTERRUPTED and output_closed():
         status = 128 + signal.SIGPIPE  # as every program whose reader has gone

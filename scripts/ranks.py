@@ -13,7 +13,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Sequence
-from typing import BinaryIO
+from typing import IO, Protocol
 
 from coilset.model.errors import InputError
 from coilset.model.processes import end_with_parent, mpi_environment, mpirun
@@ -76,12 +76,22 @@ def launch(ranks: int, arguments: Sequence[str]) -> int:
     return code if code >= 0 else 128 - code  # ended by a signal
 
 
-def _pump(source: BinaryIO, target: BinaryIO, closed: Callable[[], None]) -> threading.Thread:
+class Sink(Protocol):
+    """Where bytes can be written."""
+
+    def write(self, data: bytes, /) -> object:
+        """Take them."""
+
+    def flush(self) -> object:
+        """Hand them on."""
+
+
+def _pump(source: IO[bytes] | None, target: Sink, closed: Callable[[], None]) -> threading.Thread:
     """Copy until the source ends, into nothing from when the target's reader is gone."""
 
     def copy() -> None:
         broken = False
-        while data := os.read(source.fileno(), 65536):
+        while source and (data := os.read(source.fileno(), 65536)):
             try:
                 if not broken:
                     target.write(data)
@@ -102,7 +112,7 @@ class MpirunMessages:
         interrupted: whether a rank has said that it was.
     """
 
-    def __init__(self, target: BinaryIO):
+    def __init__(self, target: Sink):
         self.target, self.rest, self.kept, self.inside, self.interrupted = target, b"", b"", False, False
 
     def write(self, data: bytes) -> None:
