@@ -32,3 +32,9 @@ def mpirun(ranks: int) -> list[str]:
 def mpi_environment() -> dict[str, str]:
     """Environment for `mpirun`: this process's own, with MPI_SETTINGS unless the user has set them."""
     return MPI_SETTINGS | os.environ
+
+
+def first_rank() -> bool:
+    """Whether this is rank 0 of a job, or no job at all; known before MPI is started, from what mpirun has set."""
+    names = ("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK")
+    return int(next((os.environ[name] for name in names if name in os.environ), "0")) == 0

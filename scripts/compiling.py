@@ -1,8 +1,12 @@
 """A word when something is compiled, which happens once and takes its time."""
 
 import logging
+import os
 import sys
 from collections.abc import Callable
+from pathlib import Path
+
+from coilset.model.processes import first_rank
 
 NOTICE = "coilset: compiling forms and kernels, once, about 20 s ..."
 
@@ -33,7 +37,15 @@ class Announcement(logging.Handler):
 
 
 def _to_stderr(line: str) -> None:
-    print(line, file=sys.stderr, flush=True)
+    if first_rank():
+        print(line, file=sys.stderr, flush=True)
+
+
+def announce_if_cold(say: Callable[[str], None] = _to_stderr) -> None:
+    """For commands whose work is done by other processes: say NOTICE if there are no kernels of this version yet."""
+    folder = Path(os.environ["NUMBA_CACHE_DIR"])  # see coilset.model.caches
+    if not any(folder.rglob("*.nbi")):
+        say(NOTICE)
 
 
 def announce_compiling(say: Callable[[str], None] = _to_stderr) -> Announcement:
@@ -55,6 +67,6 @@ def announce_compiling(say: Callable[[str], None] = _to_stderr) -> Announcement:
     logger = logging.getLogger("ffcx")
     logger.addHandler(announcement)
     logger.setLevel(logging.INFO)
-    logger.setLevel = lambda level: None  # FFCx sets it again for each form
+    logger.setLevel = lambda level: None  # type: ignore[method-assign]  # FFCx sets it again for each form
     logger.propagate = False
     return announcement

@@ -8,10 +8,10 @@
 
 modules="dolfinx petsc4py mpi4py gmsh meshio pyvista numba scipy pydantic typer rich xarray h5netcdf h5py yaml matplotlib pytest"
 ways="No Python with DOLFINx >= 0.9 is found. Ways to get one:
-  conda                      conda env create -f environment.yml; conda activate coilset
+  conda, no root needed      conda env create -f environment.yml; conda activate coilset
   Debian 13, Ubuntu 25.04    or later, as root: run any command, it installs the distribution's packages
   older Debian and Ubuntu    as root: run any command, it makes a private Debian 13 in $COILSET_CACHE (3 GB)
-  neither root nor conda     any Linux with Python >= 3.12 and a C compiler: docs/install.md says how, with pip"
+  neither root nor conda     install Miniforge into your home folder (no root needed), then as with conda"
 
 say() { printf 'coilset: %s\n' "$*" >&2; }
 fail() { say "$*"; exit 2; }

@@ -2,20 +2,16 @@
 
 from pathlib import Path
 
-from rich.console import Console
-from rich.table import Table
-
 from coilset.model import examples
 
 
 def show() -> None:
     """List the examples."""
-    table = Table(box=None, padding=(0, 2), show_header=False)
-    for name in examples.names():
-        table.add_row(name, examples.title(name))
-    console = Console(highlight=False)
-    console.print(table)
-    console.print("copy one with: coilset examples NAME")
+    names = examples.names()
+    width = max(map(len, names)) + 2
+    for name in names:
+        print(f"{name:{width}}{examples.title(name)}")
+    print("\ncopy one with: coilset examples NAME")
 
 
 def copy(name: str, out: str, force: bool) -> None:

@@ -1,5 +1,7 @@
 """`coilset solve --interactive`: watch each step, and change size, method and target before the next."""
 
+import signal
+
 from coilset.meshes.errors import InputError
 from coilset.model.case.entry import check_entries
 from coilset.model.case.phases import Phase
@@ -30,7 +32,7 @@ class Prompt:
         """Ask until the user lets the next step go."""
         while not self.free:
             try:
-                word, _, rest = self.ask("coilset> ").strip().partition(" ")
+                word, _, rest = self._answer().strip().partition(" ")
             except EOFError:
                 word, rest = "run", ""
             if word == "":
@@ -39,6 +41,14 @@ class Prompt:
                 self.obey(word, rest.strip())
             except (InputError, ValueError) as error:
                 self.say(str(error))
+
+    def _answer(self) -> str:
+        """The user's line. Ctrl-C ends the run at once: there is no step to be finished first."""
+        before = signal.signal(signal.SIGINT, signal.default_int_handler)
+        try:
+            return self.ask("coilset> ")
+        finally:
+            signal.signal(signal.SIGINT, before)
 
     def obey(self, word: str, rest: str) -> None:
         """Carry out one command.

@@ -6,17 +6,17 @@ import sys
 import time
 from types import FrameType
 
-import typer
-
 from coilset.meshes.errors import CoilsetError
-from coilset.scripts.compiling import announce_compiling
+from coilset.model.processes import first_rank
+from coilset.scripts.compiling import announce_compiling, announce_if_cold
 from coilset.scripts.material import app as material
 from coilset.scripts.output import Output, output_closed
+from coilset.scripts.plain import typer
 
 HELP = """How far does a coil spring set, and what stress stays in it?
 
-It needs DOLFINx >= 0.9, from conda (environment.yml), from Debian's or Ubuntu's packages or a private Debian
-(scripts/coilset installs them as root), or from PyPI without either (docs/install.md)."""
+It needs DOLFINx >= 0.9: from conda (environment.yml; Miniforge needs no root), from the packages of Debian 13 or
+Ubuntu 25.04, or in a private Debian 13 on older ones (scripts/coilset, as root, does both). See docs/install.md."""
 INTERRUPTED = 128 + signal.SIGINT
 ONE_SIGNAL = 0.5  # seconds in which several count as one: `timeout` sends to a process and to its group
 
@@ -141,6 +141,7 @@ def sweep(
     pictures: bool = typer.Option(True, help="draw the figures"),
 ):
     """Run a case many times with some of its entries varied."""
+    announce_if_cold()
     from coilset.scripts.sweep import sweep as run_sweep
 
     run_sweep(sweep_file, out, force, resume, retry, jobs, ranks_per_case, pictures)
@@ -170,6 +171,7 @@ def bench(
     cold: bool = typer.Option(False, "--cold", help="also time the compilers, from nothing"),
 ):
     """Measure time by stage, over elements and ranks, and cases per hour."""
+    announce_if_cold()
     from coilset.scripts.bench import bench as run_benchmarks
 
     run_benchmarks(out, full, cold)
@@ -224,7 +226,7 @@ def run() -> None:
         if not hasattr(error, "format_message"):  # of click, which newer typers bring along under a name of their own
             _crash()
             raise
-        status = error.exit_code
+        status = getattr(error, "exit_code", 1)
         _complain(error.format_message())
     if status == INTERRUPTED and output_closed():
         status = 128 + signal.SIGPIPE  # as every program whose reader has gone
@@ -265,5 +267,5 @@ def _crash() -> None:
 
 
 def _complain(line: str) -> None:
-    if int(os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK", "0"))) == 0:
+    if first_rank():
         print(f"coilset: {line}", file=sys.stderr)

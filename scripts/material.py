@@ -4,9 +4,9 @@ import csv
 import os
 from pathlib import Path
 
-import typer
-
 from coilset.meshes.errors import InputError
+from coilset.scripts.compiling import announce_compiling
+from coilset.scripts.plain import typer
 
 app = typer.Typer(help="Draw a material, test it at one point, or fit it to tests.", no_args_is_help=True)
 MATERIAL = typer.Argument(help="name in the library, or the path of a material file")
@@ -44,6 +44,7 @@ def run_program(
 
     from coilset.model.material import figures, library, points, programs
 
+    announce_compiling()
     if integrator not in points.INTEGRATORS:
         raise InputError(f"'{integrator}' is none of {', '.join(points.INTEGRATORS)}", "--integrator")
     law, steps = library.load(material, spin=spin), programs.read(program)
@@ -83,6 +84,7 @@ def fit(
     from coilset.model.material.identification import fit as fitting
     from coilset.model.results.folder import whole
 
+    announce_compiling()
     out = _folder(out, name)
     _refuse([out / f"{name}.yaml"], force)
     tests = [experiments.read_test(path) for path in data]

@@ -6,7 +6,7 @@ case "${COILSET_RELEASE:-trixie}" in
     *) private_root=$COILSET_CACHE/debian-$COILSET_RELEASE ;;
 esac
 record=/etc/coilset-packages # in the private root: what was installed there
-# Mirrors of releases in the making are often older than the week that their lists are valid for.
+# Mirrors of releases in the making are often older than the week that their lists are valid for. Kept in the root.
 may_be_old='Acquire::Check-Valid-Until "false"'
 
 private_root_complete() { # has the private root every package? It may have more: checkouts of all ages share it
@@ -54,7 +54,7 @@ add_all() {
             --setenv PATH /usr/sbin:/usr/bin:/sbin:/bin --setenv DEBIAN_FRONTEND noninteractive -- "$@"
     }
     # shellcheck disable=SC2046
-    in_root dpkg --configure -a && in_root apt-get -o "${may_be_old/ /=}" update &&
+    in_root dpkg --configure -a && in_root apt-get update &&
         in_root apt-get install -y --no-install-recommends $(packages) && in_root apt-get clean
 }
 

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Sequence
-from typing import BinaryIO
+from typing import IO, Protocol
 
 from coilset.meshes.errors import InputError
 from coilset.model.processes import end_with_parent, mpi_environment, mpirun
@@ -65,20 +65,33 @@ def launch(ranks: int, arguments: Sequence[str]) -> int:
     code = process.wait()
     for pump in pumps:
         pump.join()
-    if stops and code not in (0, INTERRUPTED):  # it came too early for the ranks to end by themselves
-        print("coilset: interrupted", file=sys.stderr)
+    if stops and code:
+        if not messages.interrupted:  # the signal came too early for the ranks to end by themselves
+            print("coilset: interrupted", file=sys.stderr)
         code = INTERRUPTED
     elif code not in OWN:
         messages.tell()
-    return OUTPUT_CLOSED if OUTPUT_CLOSED in stops and code == INTERRUPTED else code % 256
+    if code == INTERRUPTED and OUTPUT_CLOSED in stops:
+        return OUTPUT_CLOSED
+    return code if code >= 0 else 128 - code  # ended by a signal
 
 
-def _pump(source: BinaryIO, target: BinaryIO, closed: Callable[[], None]) -> threading.Thread:
+class Sink(Protocol):
+    """Where bytes can be written."""
+
+    def write(self, data: bytes, /) -> object:
+        """Take them."""
+
+    def flush(self) -> object:
+        """Hand them on."""
+
+
+def _pump(source: IO[bytes] | None, target: Sink, closed: Callable[[], None]) -> threading.Thread:
     """Copy until the source ends, into nothing from when the target's reader is gone."""
 
     def copy() -> None:
         broken = False
-        while data := os.read(source.fileno(), 65536):
+        while source and (data := os.read(source.fileno(), 65536)):
             try:
                 if not broken:
                     target.write(data)
@@ -93,10 +106,14 @@ def _pump(source: BinaryIO, target: BinaryIO, closed: Callable[[], None]) -> thr
 
 
 class MpirunMessages:
-    """Writes lines on, but keeps what mpirun says between two rulers, and its complaints of lost connections."""
+    """Writes lines on, but keeps what mpirun says between two rulers, and its complaints of lost connections.
 
-    def __init__(self, target: BinaryIO):
-        self.target, self.rest, self.kept, self.inside = target, b"", b"", False
+    Attributes:
+        interrupted: whether a rank has said that it was.
+    """
+
+    def __init__(self, target: Sink):
+        self.target, self.rest, self.kept, self.inside, self.interrupted = target, b"", b"", False, False
 
     def write(self, data: bytes) -> None:
         """Sort whole lines; the last one waits for its end."""
@@ -108,6 +125,7 @@ class MpirunMessages:
             else:
                 self.target.write(line + b"\n")
             self.inside ^= ruler
+            self.interrupted |= line == b"coilset: interrupted"
 
     def flush(self) -> None:
         """Hand on what is written."""

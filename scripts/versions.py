@@ -5,7 +5,7 @@ from importlib import metadata
 
 from coilset.model.version import __version__
 
-LIBRARIES = {"DOLFINx": ("fenics-dolfinx", "dolfinx-solver-real"), "PETSc": ("petsc4py", "dolfinx-solver-real"),
+LIBRARIES = {"DOLFINx": ("fenics-dolfinx", "dolfinx-solver-real"), "petsc4py": ("petsc4py",),
              "numba": ("numba",)}  # by the names of their packages, whose metadata costs no import  # fmt: skip
 
 

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from coilset.scripts.compiling import NOTICE
+
 LAUNCHER = Path(__file__).resolve().parents[2] / "scripts" / "coilset"
 CACHE = Path(os.environ.get("COILSET_CACHE", Path.home() / ".cache" / "coilset"))
 LONG = ["--no-pictures"] + [
@@ -33,13 +35,13 @@ in_private_root = pytest.mark.skipif(
 class Running:
     """A command under way in a folder; what it says goes to files there."""
 
-    def __init__(self, command, folder, **environment):
+    def __init__(self, command, folder, stdin=subprocess.DEVNULL, **environment):
         self.folder, self.mark = folder, f"COILSET_MARK={uuid.uuid4()}"
         name, value = self.mark.split("=")
         self.said, self.complaints = folder / "stdout", folder / "stderr"
         with open(self.said, "wb") as out, open(self.complaints, "wb") as err:
             self.process = subprocess.Popen(
-                command, cwd=folder, stdout=out, stderr=err, stdin=subprocess.DEVNULL, start_new_session=True,
+                command, cwd=folder, stdout=out, stderr=err, stdin=stdin, start_new_session=True,
                 env=os.environ | {name: value} | environment,
             )  # fmt: skip
 
@@ -117,7 +119,7 @@ def judge_gentle_end(running):
     assert running.process.returncode == 130, (said, complaints)
     assert "finishing this step" in said
     assert "--resume" in said
-    assert [line for line in complaints if "compiling" not in line] == ["coilset: interrupted"]
+    assert [line for line in complaints if line != NOTICE] == ["coilset: interrupted"]
     summary = json.loads((running.folder / "out" / "summary.json").read_text())
     assert summary["steps"] >= 3
     assert not summary["complete"]
@@ -151,7 +153,7 @@ def test_a_closed_output_is_a_gentle_end(start, example, ranks):
     running = start(["bash", "-c", f"{solve} | head -n 3; exit ${{PIPESTATUS[0]}}"])
     assert running.process.wait(PATIENCE) == 128 + signal.SIGPIPE
     complaints = running.complaints.read_text().strip().splitlines()
-    assert [line for line in complaints if "compiling" not in line] == []
+    assert set(complaints) <= {"coilset: interrupted", NOTICE}
     assert len(running.said.read_text().splitlines()) == 3
     assert not json.loads((running.folder / "out" / "summary.json").read_text())["complete"]
 
@@ -161,3 +163,12 @@ def test_errors_on_ranks_are_one_line(start):
     assert running.process.wait(PATIENCE) == 2
     assert len(running.complaints.read_text().strip().splitlines()) == 1
     assert "nowhere.yaml" in running.complaints.read_text()
+
+
+def test_ctrl_c_at_the_prompt_ends_the_run(start, example):
+    command = coilset("solve", example, "--out", "out", "--interactive", *LONG)
+    running = start(command, stdin=subprocess.PIPE)
+    running.wait_for("coilset> ")
+    os.kill(running.process.pid, signal.SIGINT)
+    assert running.process.wait(PATIENCE) == 130
+    assert json.loads((running.folder / "out" / "summary.json").read_text())["steps"] == 1

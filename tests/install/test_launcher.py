@@ -1,0 +1,68 @@
+"""scripts/coilset remembers the environment it has found, and says how to get one where there is none."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+LAUNCHER = Path(__file__).resolve().parents[2] / "scripts" / "coilset"
+
+
+def launch(*arguments, **environment):
+    command = [str(LAUNCHER), *arguments]
+    return subprocess.run(command, env=os.environ | environment, capture_output=True, text=True, check=False)
+
+
+@pytest.fixture
+def counted(tmp_path):
+    """A Python of its own that counts its starts, and the environment that has the launcher use it."""
+    python, log = tmp_path / "python3", tmp_path / "starts"
+    python.write_text(f'#!/bin/sh\necho start >> {log}\nexec {sys.executable} "$@"\n')
+    python.chmod(0o755)
+    environment = {"COILSET_PYTHON": str(python), "COILSET_CACHE": str(tmp_path / "cache"), "COILSET_RELEASE": ""}
+
+    def starts():
+        before = len(log.read_text().splitlines()) if log.exists() else 0
+        done = launch("--version", **environment)
+        assert done.stdout.startswith("coilset "), done.stderr
+        return len(log.read_text().splitlines()) - before
+
+    return python, starts
+
+
+def test_an_environment_is_looked_for_once(counted):
+    python, starts = counted
+    assert starts() == 2  # looked for, and run
+    assert starts() == 1
+    later = max(path.stat().st_mtime for path in python.parent.rglob("found-*")) + 10.0
+    os.utime(python, (later, later))
+    assert starts() == 1  # a script that starts Python is none of the facts, what it starts is
+    record = next(python.parent.rglob("found-*"))
+    earlier = 0.0
+    os.utime(record, (earlier, earlier))
+    assert starts() == 2  # the folders of modules are newer than the record
+    assert starts() == 1
+
+
+def test_a_record_of_what_is_gone_is_not_believed(counted):
+    python, starts = counted
+    assert starts() == 2
+    record = next(python.parent.rglob("found-*"))
+    record.write_text(record.read_text() + f"{python.parent / 'gone'}\n")
+    assert starts() == 2
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["-h"], ["--version"], []])
+def test_without_an_environment_help_names_the_ways_and_makes_none(tmp_path, arguments):
+    done = launch(*arguments, COILSET_RELEASE="nowhere", COILSET_CACHE=str(tmp_path))
+    assert done.returncode == 0
+    for way in ("conda env create", "Debian 13, Ubuntu 25.04", "older Debian and Ubuntu", "neither root nor conda"):
+        assert way in done.stdout
+    assert not list(tmp_path.glob("debian*"))
+
+
+def test_version_names_what_the_numbers_rest_on():
+    words = launch("--version").stdout
+    assert all(f"{name} " in words for name in ("coilset", "DOLFINx", "petsc4py", "numba", "Python"))
