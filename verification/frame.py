@@ -2,6 +2,7 @@
 
 import numpy as np
 from mpi4py import MPI
+from scipy.spatial.transform import Rotation
 
 from coilset.meshes.frame import frame_mesh
 from coilset.model.equilibrium.contact_limit import ContactLimit
@@ -30,11 +31,13 @@ class Frame:
         held: (node, components) pairs that stay where they are; components are 0-2 for x, y, z, 3-5 for turns.
         method, options: of coilset.model.equilibrium.methods, and more of PETSc's; the tolerance is the thesis's 1e-7.
         contacts: kinds of contact.
+        placement: of sections beside the chords, as for Rod.
     """
 
-    def __init__(self, nodes, pairs, radius, law, rule, held, method="newton", options=None, contacts=()):
+    def __init__(self, nodes, pairs, radius, law, rule, held, method="newton", options=None, contacts=(),
+                 placement=None):  # fmt: skip
         line = frame_mesh(nodes, pairs, MPI.COMM_SELF)
-        self.rod = Rod(line, np.broadcast_to(np.asarray(radius, float), len(pairs)), law, rule)
+        self.rod = Rod(line, np.broadcast_to(np.asarray(radius, float), len(pairs)), law, rule, placement)
         self.layout = LineLayout(self.rod)
         self.system = System(self.rod, self.layout, contacts, np.zeros(SEATS))
         # an arc by which every node moves by about the wire's radius
@@ -69,6 +72,10 @@ class Frame:
     def moved(self, node):
         """Displacement of a node since the start, mm."""
         return self.layout.gather(self.rod.x)[node] - self.rod.line.stations[node]
+
+    def turned(self, node):
+        """Rotation vector of a node since the start, up to a whole turn, rad."""
+        return Rotation.from_matrix(self.layout.gather(self.rod.R)[node]).as_rotvec()
 
     def force(self, dof):
         """Internal force at a dof, N or N mm; a support's reaction has the same sign."""

@@ -1,0 +1,87 @@
+"""Elastic helix pressed to 80 % of its height against the uniform rod's two nonlinear equations
+
+Two turns of wire 5, D 40 and pitch 12 and 30. Both ends are led as the uniform helix leads them (radius, rise,
+inclination; `references/uniform_helix.py`), so that no part of the spring knows of its ends: every node must then lie on
+the helix, and the ends bear the axial force F and the torque M about the axis that the equations give.
+
+Tolerance: the sections lie on the true centre line, but the rods are straight; with φ the angle of a rod and h/R the
+slope, F was found to err by 0.033 φ² (h/R)² from 8 to 32 rods a turn: 0.045 φ² (h/R)². To it comes a tenth of the strain
+F/GA, 1.5e-4 and 3.6e-4, since the rod's strains are logarithmic and count per current length.
+"""
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+
+from coilset.meshes.placement import section_placement
+from coilset.meshes.spring import SpringSpec
+from coilset.model.frames.rotations import triads
+from coilset.model.material import library
+from coilset.model.results.figures import STYLE
+from coilset.model.rod.kinematics import GAUSS
+from coilset.verification.chain import TURN_X, TURN_Y, TURN_Z, X, Y, Z, chain, drive
+from coilset.verification.references.rod_shooting import Stiffness
+from coilset.verification.references.uniform_helix import deformed
+
+FAST = True
+WIRE, DIAMETER, TURNS, PITCHES = 5.0, 40.0, 2, (12.0, 30.0)  # mm
+LEFT = 0.8  # of the height
+MESHES = (8, 16, 32, 64)  # rods a turn
+JUDGED = (16, 64)
+STEPS = 4
+
+
+def press(pitch, helix, mesh):
+    """Force, torque about the axis and the nodes' radii, N, N mm, mm."""
+    spring = SpringSpec(wire_diameter=WIRE, mean_diameter=DIAMETER, turns=TURNS, pitch=pitch).build()
+    turns = np.linspace(0.0, TURNS, TURNS * mesh + 1)
+    nodes, last = spring.centre_line(turns), TURNS * mesh
+    placement = section_placement(spring, turns, triads(np.diff(nodes, axis=0)), GAUSS)
+    frame = chain(nodes, 0.5 * WIRE, library.load("elastic"), held=(), placement=placement)
+    rise = pitch / (2.0 * np.pi)
+    tilt = helix.inclination - np.arctan2(rise, 0.5 * DIAMETER)
+    moves = {}
+    for node, sinks in ((0, 0.0), (last, TURNS * 2.0 * np.pi * (helix.rise - rise))):
+        way = {X: helix.radius - 0.5 * DIAMETER, Y: 0.0, Z: sinks, TURN_X: tilt, TURN_Y: 0.0, TURN_Z: 0.0}
+        moves |= {frame.dof(node, component): value for component, value in way.items()}
+    drive(frame, STEPS, moves)
+    frame.step(moves=dict.fromkeys(moves, 0.0))  # at rest: moments on turns belong to the chart, which starts anew here
+    force, torque = frame.force(frame.dof(last, Z)), frame.force(frame.dof(last, TURN_Z))
+    x = nodes + np.array([frame.moved(k) for k in range(last + 1)])
+    torque += x[-1, 0] * frame.force(frame.dof(last, Y)) - x[-1, 1] * frame.force(frame.dof(last, X))
+    return force, torque, np.hypot(x[:, 0], x[:, 1])
+
+
+def run(study):
+    """Force, torque and radius of both springs over the mesh."""
+    law, errors, rows = library.load("elastic"), {}, []
+    stiffness = Stiffness.of_round_wire(0.5 * WIRE, law.E, law.G)
+    for pitch in PITCHES:
+        rise, R = pitch / (2.0 * np.pi), 0.5 * DIAMETER
+        helix = deformed(stiffness, R, rise, LEFT * rise)
+        for mesh in MESHES:
+            force, torque, radii = press(pitch, helix, mesh)
+            off = np.abs(radii - helix.radius).max() / R
+            errors[pitch, mesh] = abs(force / helix.force - 1.0)
+            rows.append([pitch, mesh, -force, errors[pitch, mesh], torque / helix.torque - 1.0, off])
+            if mesh in JUDGED:
+                at = f"pitch {pitch:g}, {mesh} rods a turn"
+                tolerance = 0.045 * (2 * np.pi / mesh * rise / R) ** 2 + 0.1 * abs(helix.force) / stiffness.GA
+                study.check(f"axial force, N, {at}", -force, -helix.force, "uniform helix", tolerance)
+                study.check(f"torque, N mm, {at}", torque, helix.torque, "uniform helix", tolerance)
+                study.check(f"radius of the nodes, off by R, {at}", off, 0.0, "uniform helix", tolerance, "absolute")
+    columns = ["pitch", "rods a turn", "force, N", "its error", "error of the torque", "radius, off by R"]
+    study.table(f"pressed to {100 * LEFT:g} % of the height", columns, rows)
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(5.2, 3.6), layout="constrained")
+        axes = figure.add_subplot()
+        for pitch, colour in zip(PITCHES, ("C0", "C3"), strict=True):
+            slope = pitch / (np.pi * DIAMETER)
+            axes.loglog(MESHES, [errors[pitch, n] for n in MESHES], "o-", color=colour, ms=4, lw=1, label=f"pitch {pitch:g}")
+            axes.loglog(MESHES, 0.045 * (2 * np.pi / np.array(MESHES) * slope) ** 2, ":", color=colour, lw=0.9)
+        axes.set_xticks(MESHES, [str(n) for n in MESHES])
+        axes.minorticks_off()
+        axes.set(xlabel="rods a turn", ylabel="error of the force", title="Helix at 80 % of its height; dotted: h²")
+        axes.grid(lw=0.3)
+        axes.legend(fontsize=8)
+    study.figure("helix_compressed", figure)

@@ -1,0 +1,68 @@
+"""Chains of rods, as most benchmarks have them: nodes one after the other, driven in equal steps."""
+
+import numpy as np
+
+from coilset.model.errors import SolveError
+from coilset.model.material import library
+from coilset.model.material.law import Law, MaterialFile
+from coilset.model.section.rules import DiskRule, polar
+from coilset.verification.frame import Frame
+
+ALL = range(6)  # components of a node
+X, Y, Z, TURN_X, TURN_Y, TURN_Z = ALL
+
+
+def elastic(E: float, nu: float) -> Law:
+    """An elastic law of other moduli than the library's; E in MPa."""
+    data = library.load("elastic").data.model_dump()
+    data["temperatures"][0]["elasticity"] |= {"G": E / (2.0 * (1.0 + nu)), "nu": nu}
+    return Law(MaterialFile.model_validate(data))
+
+
+def chain(nodes: np.ndarray, radius: float, law: Law, rule: DiskRule | None = None, held=((0, ALL),), **options) -> Frame:
+    """A Frame whose rods join each node with the next one.
+
+    Args:
+        nodes: shape (n, 3), mm.
+        radius: mm.
+        law: material law.
+        rule: of the section; default 2 × 8 points, exact for an elastic one.
+        held: as for Frame; default: the first node is clamped.
+        options: further ones of Frame.
+    """
+    pairs = [(k, k + 1) for k in range(len(nodes) - 1)]
+    return Frame(nodes, pairs, radius, law, rule or polar(2, 8), held, **options)
+
+
+def straight(length: float, elements: int) -> np.ndarray:
+    """Nodes along x, shape (elements + 1, 3), mm."""
+    return np.linspace([0.0, 0.0, 0.0], [length, 0.0, 0.0], elements + 1)
+
+
+def drive(frame: Frame, steps: int, moves=None, forces=None, begin: float = 0.0, after=lambda: None) -> list[int]:
+    """Go in equal steps; each but the first starts from the last one's increments.
+
+    Args:
+        frame: Frame.
+        steps: number of steps.
+        moves: dof → displacement over all steps, mm or rad.
+        forces: dof → force at the end of the steps, N or N mm.
+        begin: share of the forces that acts already.
+        after: called after each step.
+
+    Returns:
+        Iterations of each step.
+
+    Raises:
+        SolveError: if a step does not converge.
+    """
+    counts = []
+    for k in range(1, steps + 1):
+        part = {dof: value / steps for dof, value in (moves or {}).items()}
+        loads = {dof: value * (begin + (1.0 - begin) * k / steps) for dof, value in (forces or {}).items()}
+        outcome = frame.step(moves=part, forces=loads, share=None if k == 1 else 1.0)
+        if not outcome.converged:
+            raise SolveError(f"step {k} of {steps}: {outcome.reason}")
+        counts.append(outcome.iterations)
+        after()
+    return counts

@@ -1,0 +1,35 @@
+"""Is an equilibrium stable? From the tangent of a system: negative pivots and the lowest eigenvalue."""
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import eigsh, splu
+
+from coilset.model.problem.system import System
+
+
+def tangent(system: System) -> sparse.csc_array:
+    """Symmetric part of the tangent at the last equilibrium, rows and columns of the free unknowns.
+
+    It is symmetric by itself where the charts of the turns start, but for rounding.
+    """
+    start, matrix = system.vector(), system.matrix()
+    system.tangent(None, start, matrix, matrix)
+    indptr, indices, values = matrix.getValuesCSR()
+    full = sparse.csr_array((values, indices, indptr))
+    free = np.setdiff1d(np.arange(full.shape[0]), list(system.fixed))
+    free = full[free][:, free]
+    return sparse.csc_array(0.5 * (free + free.T))
+
+
+def negative_pivots(matrix: sparse.csc_array) -> int:
+    """Number of negative eigenvalues of a symmetric matrix, by Sylvester's law from L D Lᵀ without row exchange."""
+    order = sparse.csgraph.reverse_cuthill_mckee(sparse.csr_matrix(matrix), symmetric_mode=True)
+    banded = sparse.csc_matrix(matrix[order][:, order])
+    options = {"permc_spec": "NATURAL", "diag_pivot_thresh": 0.0, "options": {"SymmetricMode": True}}
+    return int((splu(banded, **options).U.diagonal() < 0.0).sum())
+
+
+def lowest_eigenvalue(matrix: sparse.csc_array) -> float:
+    """The least eigenvalue of a symmetric matrix with not more than three negative ones; its zero is what is sought."""
+    start = np.random.default_rng(0).standard_normal(matrix.shape[0])
+    return float(eigsh(matrix, k=4, sigma=0.0, v0=start, return_eigenvectors=False).min())
