@@ -4,7 +4,8 @@ import numpy as np
 
 from coilset.model.errors import SolveError
 from coilset.model.material import library
-from coilset.model.material.law import Law, MaterialFile
+from coilset.model.material.file import MaterialFile
+from coilset.model.material.law import Law
 from coilset.model.section.rules import DiskRule, polar
 from coilset.verification.frame import Frame
 
@@ -19,7 +20,9 @@ def elastic(E: float, nu: float) -> Law:
     return Law(MaterialFile.model_validate(data))
 
 
-def chain(nodes: np.ndarray, radius: float, law: Law, rule: DiskRule | None = None, held=((0, ALL),), **options) -> Frame:
+def chain(
+    nodes: np.ndarray, radius: float, law: Law, rule: DiskRule | None = None, held=((0, ALL),), **options
+) -> Frame:
     """A Frame whose rods join each node with the next one.
 
     Args:

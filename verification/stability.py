@@ -4,19 +4,21 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import eigsh, splu
 
-from coilset.model.problem.system import System
+from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.matrix import TangentMatrix
+from coilset.model.equilibrium.system import System
 
 
-def tangent(system: System) -> sparse.csc_array:
-    """Symmetric part of the tangent at the last equilibrium, rows and columns of the free unknowns.
+def tangent(system: System, load: Load) -> sparse.csc_array:
+    """Symmetric part of the tangent at the last equilibrium, rows and columns of the unknowns that `load` leaves free.
 
-    It is symmetric by itself where the charts of the turns start, but for rounding.
+    It is symmetric by itself where the charts of the rotations start, but for rounding. One rank only.
     """
-    start, matrix = system.vector(), system.matrix()
-    system.tangent(None, start, matrix, matrix)
-    indptr, indices, values = matrix.getValuesCSR()
+    matrix = TangentMatrix(system.body, system.layout)
+    system.tangent(system.layout.vector(), load, matrix, at_step_start=True)
+    indptr, indices, values = matrix.mat.getValuesCSR()
     full = sparse.csr_array((values, indices, indptr))
-    free = np.setdiff1d(np.arange(full.shape[0]), list(system.fixed))
+    free = np.setdiff1d(np.arange(full.shape[0]), load.held)
     free = full[free][:, free]
     return sparse.csc_array(0.5 * (free + free.T))
 

@@ -2,13 +2,13 @@
 
 The problem of K.-J. Bathe and S. Bolourchi, Large displacement analysis of three-dimensional beam structures, Int. J.
 Num. Meth. Eng. 14 (1979) 961: an eighth of a circle of radius R = 100, clamped, with the dead force P = 300, 450, 600
-across its plane at the tip; E = 1e7, ν = 0, a square section of 1 × 1. Here the wire is round with the same EI; with
-ν = 0 its torsional stiffness is GJ = EI, 18 % above the square's true one. The reference is therefore computed for this wire
-(`references/rod_shooting.py`), and itself compared with the displacements that the paper gives for P = 600, (−23.5, −13.4, 53.4):
-2 %, for eight elements, three digits and another torsional stiffness.
+across its plane at the tip; E = 1e7, ν = 0, a square section of 1 × 1. Here the wire is round with the same EI; with ν
+= 0 its torsional stiffness is GJ = EI, 18 % above the square's true one. The reference is therefore computed for this
+wire (`references/rod_shooting.py`), and itself compared with the displacements that the paper gives for P = 600,
+(−23.5, −13.4, 53.4): 2 %, for eight elements, three digits and another torsional stiffness.
 
-Tolerance: a polygon of n rods errs by φ² = (π/4n)²; the factor 0.1 is 1.4 times what was found at n = 8. To it comes the
-axial strain P/EA, 6e-5, since the rod's strains are logarithmic and count per current length, the reference's per
+Tolerance: a polygon of n rods errs by φ² = (π/4n)²; the factor 0.1 is 1.4 times what was found at n = 8. To it comes
+the axial strain P/EA, 6e-5, since the rod's strains are logarithmic and count per current length, the reference's per
 length at rest. The order is judged from 8, 16 and 32 elements.
 """
 
@@ -68,7 +68,11 @@ def run(study):
     slope = -np.polyfit(np.log(MESHES[:3]), [np.log(error[n][600.0]) for n in MESHES[:3]], 1)[0]
     study.check("order of the tip's error, 8 to 32 rods", slope, 2.0, "straight rods", 0.3, "absolute")
     rows = [[n, *(f"{error[n][P]:.1e}" for P in JUDGED), " + ".join(map(str, found[n][1]))] for n in MESHES]
-    study.table("distance of the tip from the reference, over R", ["rods", *(f"P = {P:g}" for P in JUDGED), "iterations, four steps"], rows)
+    study.table(
+        "distance of the tip from the reference, over R",
+        ["rods", *(f"P = {P:g}" for P in JUDGED), "iterations, four steps"],
+        rows,
+    )
     draw(study, found[FINE][0], error)
 
 

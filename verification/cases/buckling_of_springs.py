@@ -1,13 +1,13 @@
 """Long clamped spring: the travel at which its straight axis is no longer stable, against Haringx
 
-Wire 5, D 40, 40 turns of pitch 12 between clamped heads, elastic. Haringx's column (`references/stability.py`) buckles at 39.16 mm
-and 96.51 N. Here the tangent of the free unknowns is looked at after each step: its least eigenvalue falls almost
-in proportion to the travel and no pivot is negative up to 38 mm; a parabola through its last three values gives the travel where it is
-zero, and the force there. It is not walked up to: the ends of a helix push to one side, and the axis goes off to
-that side near the critical travel.
+Wire 5, D 40, 40 turns of pitch 12 between clamped heads, elastic. Haringx's column (`references/stability.py`) buckles
+at 39.16 mm and 96.51 N. Here the tangent of the free unknowns is looked at after each step: its least eigenvalue falls
+almost in proportion to the travel and no pivot is negative up to 38 mm; a parabola through its last three values gives
+the travel where it is zero, and the force there. It is not walked up to: the ends of a helix push to one side, and the
+axis goes off to that side near the critical travel.
 
-Tolerance: 1.5 tan² α = 1.4 %, since Haringx leaves out the pitch's angle (tan α = 0.0955), which counts with its square in
-the stiffnesses; 8 rods a turn beside 16 show what is the mesh's.
+Tolerance: 1.5 tan² α = 1.4 %, since Haringx leaves out the pitch's angle (tan α = 0.0955), which counts with its
+square in the stiffnesses; 8 rods a turn beside 16 show what is the mesh's.
 """
 
 import matplotlib as mpl
@@ -36,7 +36,7 @@ def press(mesh):
     analysis, rows = Analysis(case, MPI.COMM_SELF), []
 
     def keep(step):
-        matrix = tangent(analysis.system)
+        matrix = tangent(analysis.system, analysis.control.to_height(analysis.control.height))
         rows.append((step.travel_mm, step.force_N, lowest_eigenvalue(matrix), negative_pivots(matrix)))
 
     analysis.run(keep)
@@ -69,7 +69,9 @@ def run(study):
             axes.plot(rows[:, 0], rows[:, 2] / rows[0, 2], marker, ms=4, mfc="none", label=f"{mesh} rods a turn")
             axes.plot([rows[-1, 0], ours[mesh][0]], [rows[-1, 2] / rows[0, 2], 0.0], "k:", lw=0.8)
         axes.axvline(travel, color="C3", lw=0.9, label=f"Haringx, {travel:.2f} mm")
-        axes.set(xlabel="travel in mm", ylabel="least eigenvalue over that at 2 mm", title="40 turns between clamped heads")
+        axes.set(
+            xlabel="travel in mm", ylabel="least eigenvalue over that at 2 mm", title="40 turns between clamped heads"
+        )
         axes.grid(lw=0.3)
         axes.legend(fontsize=8)
     study.figure("buckling_of_springs", figure)

@@ -1,15 +1,16 @@
 """Closed loop of elastic strain, with the material's spin and without: what remains, against the rate equations
 
-A bar is stretched by 1 %, twisted to 2 % at its surface, shortened and twisted back. Hooke's law leaves nothing. With the
-spin (5.2.33) the law is one of rates after Zaremba and Jaumann, which no energy stands behind: something remains even if it is
-integrated without error (M. Kojić and K.-J. Bathe, Computers and Structures 26 (1987) 175). At the shear angle γ the rates are
+A bar is stretched by 1 %, twisted to 2 % at its surface, shortened and twisted back. Hooke's law leaves nothing. With
+the spin (5.2.33) the law is one of rates after Zaremba and Jaumann, which no energy stands behind: something remains
+even if it is integrated without error (M. Kojić and K.-J. Bathe, Computers and Structures 26 (1987) 175). At the shear
+angle γ the rates are
 
     σ′ = −τ,  τ′ = G + ½ σ:    s = σ + 2G turns with γ/√2,   s = s0 cos(γ/√2) − √2 τ0 sin(γ/√2),
                                                               τ = τ0 cos(γ/√2) + s0/√2 sin(γ/√2),
 
-so that ½ E ε γ remains to first order, 21.0 MPa here where σ rose to 2,100 MPa: 1 %. The program takes the spin of the stress at
-the step's start; both components must go to the closed form as 1/steps. Tolerance: 40 MPa/steps for σ (found 33) and 0.003 MPa/steps
-for τ (found 0.002).
+so that ½ E ε γ remains to first order, 21.0 MPa here where σ rose to 2,100 MPa: 1 %. The program takes the spin of the
+stress at the step's start; both components must go to the closed form as 1/steps. Tolerance: 40 MPa/steps for σ (found
+33) and 0.003 MPa/steps for τ (found 0.002).
 """
 
 import matplotlib as mpl
@@ -24,7 +25,9 @@ from coilset.verification.chain import ALL, TURN_X, X, chain, drive, straight
 FAST = True
 LENGTH, RADIUS, STRETCH, SHEAR = 10.0, 1.0, 0.01, 0.02
 STEPS = (10, 40, 160)  # of each of the four parts
-RING = DiskRule(np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]]), np.full(4, 0.25), "four points of the surface")
+RING = DiskRule(
+    np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]]), np.full(4, 0.25), "four points of the surface"
+)
 
 
 def loop(law, steps):
@@ -36,7 +39,7 @@ def loop(law, steps):
     more = twist * np.expm1(STRETCH)
 
     def keep():
-        rows.append((frame.rod.history[0, 0, 0, 0], frame.rod.history[0, 0, 0, 2]))
+        rows.append((frame.rod.point_state[0, 0, 0, 0], frame.rod.point_state[0, 0, 0, 2]))
 
     for way, angle in ((length, 0.0), (0.0, twist + more), (-length, -more), (0.0, -twist)):
         drive(frame, steps, {pull: way, turn: angle}, after=keep)
@@ -47,7 +50,7 @@ def closed_form(law):
     """σ and τ at the start and at the ends of the four parts, MPa, shape (5, 2)."""
 
     def twisted(state, γ):
-        (σ, τ), turn = state + (2.0 * law.G, 0.0), γ / np.sqrt(2.0)
+        (σ, τ), turn = np.add(state, (2.0 * law.G, 0.0)), γ / np.sqrt(2.0)
         end = σ * np.cos(turn) - np.sqrt(2.0) * τ * np.sin(turn), τ * np.cos(turn) + σ / np.sqrt(2.0) * np.sin(turn)
         return np.array(end) - (2.0 * law.G, 0.0)
 
@@ -71,7 +74,9 @@ def run(study):
     left = np.abs(loop(none, STEPS[1])[-1]).max()
     study.check("stress that remains without spin, MPa", left, 0.0, "Hooke's law", 1e-9, "absolute")
     study.table("with spin, MPa", ["steps a part", "σ", "τ", "error of σ", "error of τ"], rows)
-    study.note(f"With spin {exact[-1, 1]:.2f} MPa of shear remain in the rates themselves, however small the steps are.")
+    study.note(
+        f"With spin {exact[-1, 1]:.2f} MPa of shear remain in the rates themselves, however small the steps are."
+    )
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(5.2, 3.8), layout="constrained")
         axes = figure.add_subplot()

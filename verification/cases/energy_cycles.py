@@ -5,14 +5,14 @@ A spring of Ck 15 (wire 5, D 40, 2.5 turns of pitch 12) is pressed and let go to
 
     W = ∫ (½ σ²/E + ½ τ²/G) dV + ∫∫ B:dεp dV + ∫ b* dV,    b* = ∫ (σ′ − B):dεp,
 
-the elastic energy of the stress that stays, the work against the back stress, and the plastic work measure. With Ḃ = ζ ε̇p
-the second part is ∫ d(¾ B11² + B12² + B13²)/ζ, taken step by step. Contacts have given back what they stored: no force is left.
-F ds is taken by trapezia and dεp by backward Euler, so that the sum hangs on the steps; the points' volumes are those of the
-wire at rest, the program's those of its straight rods, as they stand.
+the elastic energy of the stress that stays, the work against the back stress, and the plastic work measure. With Ḃ = ζ
+ε̇p the second part is ∫ d(¾ B11² + B12² + B13²)/ζ, taken step by step. Contacts have given back what they stored: no
+force is left. F ds is taken by trapezia and dεp by backward Euler, so that the sum hangs on the steps; the points'
+volumes are those of the wire at rest, the program's those of its straight rods, as they stand.
 
-Tolerance: 1e-4 between clamped heads and 3e-4 to block at 100 steps each way and 16 rods a turn. Between the heads the sum was
-found off by 6.4e-4, 2.0e-4, 8.8e-5 and 6.0e-5 with 25, 50, 100 and 200 steps, to block by 3.1e-4, 3.0e-4, 1.6e-4 and 1.3e-4; with 8
-rods a turn by 2.0e-4 and 4.2e-4 at 100 steps.
+Tolerance: 1e-4 between clamped heads and 3e-4 to block at 100 steps each way and 16 rods a turn. Between the heads the
+sum was found off by 6.4e-4, 2.0e-4, 8.8e-5 and 6.0e-5 with 25, 50, 100 and 200 steps, to block by 3.1e-4, 3.0e-4,
+1.6e-4 and 1.3e-4; with 8 rods a turn by 2.0e-4 and 4.2e-4 at 100 steps.
 """
 
 import matplotlib as mpl
@@ -36,17 +36,17 @@ class Ledger:
     """Work and energies of an Analysis, brought up to date by `keep` after each step; N mm."""
 
     def __init__(self, analysis):
-        self.analysis, rod = analysis, analysis.rod
-        _, _, length = gauss_points(analysis.spring, analysis.turns[:-1], analysis.turns[1:], GAUSS)
-        section = np.pi * analysis.wire_radius[:, None] ** 2 * 0.5 * length
-        self.volume = section[..., None] * rod.rule.weights
+        self.analysis, turns = analysis, analysis.setup.turns
+        _, _, length = gauss_points(analysis.spring, turns[:-1], turns[1:], GAUSS)
+        section = np.pi * analysis.setup.wire_radius[:, None] ** 2 * 0.5 * length
+        self.volume = section[..., None] * analysis.rod.rule.weights
         self.history = np.zeros((*self.volume.shape, analysis.law.n_state))
         self.travel = self.force = self.work = self.back = 0.0
         self.rows = []
 
     def keep(self, step):
         """After a step: travel, work, elastic energy, work against the back stress, plastic work."""
-        law, history = self.analysis.law, self.analysis.snapshot("step").history
+        law, history = self.analysis.law, self.analysis.snapshot("step").point_state
         ζ = law.functions(history[..., 6])[2]
         self.back += (self.volume * (squares(history) - squares(self.history)) / ζ).sum()
         self.work += 0.5 * (self.force + step.force_N) * (step.travel_mm - self.travel)

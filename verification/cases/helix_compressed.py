@@ -1,12 +1,12 @@
 """Elastic helix pressed to 80 % of its height against the uniform rod's two nonlinear equations
 
 Two turns of wire 5, D 40 and pitch 12 and 30. Both ends are led as the uniform helix leads them (radius, rise,
-inclination; `references/uniform_helix.py`), so that no part of the spring knows of its ends: every node must then lie on
-the helix, and the ends bear the axial force F and the torque M about the axis that the equations give.
+inclination; `references/uniform_helix.py`), so that no part of the spring knows of its ends: every node must then lie
+on the helix, and the ends bear the axial force F and the torque M about the axis that the equations give.
 
 Tolerance: the sections lie on the true centre line, but the rods are straight; with φ the angle of a rod and h/R the
-slope, F was found to err by 0.033 φ² (h/R)² from 8 to 32 rods a turn: 0.045 φ² (h/R)². To it comes a tenth of the strain
-F/GA, 1.5e-4 and 3.6e-4, since the rod's strains are logarithmic and count per current length.
+slope, F was found to err by 0.033 φ² (h/R)² from 8 to 32 rods a turn: 0.045 φ² (h/R)². To it comes a tenth of the
+strain F/GA, 1.5e-4 and 3.6e-4, since the rod's strains are logarithmic and count per current length.
 """
 
 import matplotlib as mpl
@@ -15,10 +15,9 @@ from matplotlib.figure import Figure
 
 from coilset.meshes.placement import section_placement
 from coilset.meshes.spring import SpringSpec
-from coilset.model.frames.rotations import triads
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
-from coilset.model.rod.kinematics import GAUSS
+from coilset.model.rod.kinematics import GAUSS, chord_triads
 from coilset.verification.chain import TURN_X, TURN_Y, TURN_Z, X, Y, Z, chain, drive
 from coilset.verification.references.rod_shooting import Stiffness
 from coilset.verification.references.uniform_helix import deformed
@@ -36,7 +35,7 @@ def press(pitch, helix, mesh):
     spring = SpringSpec(wire_diameter=WIRE, mean_diameter=DIAMETER, turns=TURNS, pitch=pitch).build()
     turns = np.linspace(0.0, TURNS, TURNS * mesh + 1)
     nodes, last = spring.centre_line(turns), TURNS * mesh
-    placement = section_placement(spring, turns, triads(np.diff(nodes, axis=0)), GAUSS)
+    placement = section_placement(spring, turns, chord_triads(np.diff(nodes, axis=0)), GAUSS)
     frame = chain(nodes, 0.5 * WIRE, library.load("elastic"), held=(), placement=placement)
     rise = pitch / (2.0 * np.pi)
     tilt = helix.inclination - np.arctan2(rise, 0.5 * DIAMETER)
@@ -77,7 +76,9 @@ def run(study):
         axes = figure.add_subplot()
         for pitch, colour in zip(PITCHES, ("C0", "C3"), strict=True):
             slope = pitch / (np.pi * DIAMETER)
-            axes.loglog(MESHES, [errors[pitch, n] for n in MESHES], "o-", color=colour, ms=4, lw=1, label=f"pitch {pitch:g}")
+            axes.loglog(
+                MESHES, [errors[pitch, n] for n in MESHES], "o-", color=colour, ms=4, lw=1, label=f"pitch {pitch:g}"
+            )
             axes.loglog(MESHES, 0.045 * (2 * np.pi / np.array(MESHES) * slope) ** 2, ":", color=colour, lw=0.9)
         axes.set_xticks(MESHES, [str(n) for n in MESHES])
         axes.minorticks_off()

@@ -1,11 +1,12 @@
 """Initial rates of clamped springs, D/d 4 to 12 and pitch 5° to 20°, against Castigliano's integral of the curved rod
 
-Nine cylinders of 2.5 turns, 16 rods a turn. The reference integrates the complementary energy of the true centre
-line with the six reactions of a clamped head (`springs/curved_rod.py`); it knows no elements. The rate is that at no travel:
-forces at 5e-5 and 1e-4 of the free length are extrapolated to zero, so that the characteristic's curvature counts with
-its second order only, 1e-8.
+Nine cylinders of 2.5 turns, 16 rods a turn. The reference integrates the complementary energy of the true centre line
+with the six reactions of a clamped head (`springs/curved_rod.py`); it knows no elements. The rate is that at no
+travel: forces at 5e-5 and 1e-4 of the free length are extrapolated to zero, so that the characteristic's curvature
+counts with its second order only, 1e-8.
 
-Tolerance: 3e-5, of which 0.7 to 2.2e-5 was found. The row of the formula G d⁴/8 D³ n, which knows neither pitch nor heads, is for reading.
+Tolerance: 3e-5, of which 0.7 to 2.2e-5 was found. The row of the formula G d⁴/8 D³ n, which knows neither pitch nor
+heads, is for reading.
 """
 
 import matplotlib as mpl
@@ -45,7 +46,10 @@ def run(study):
         for m, angle in enumerate(ANGLES):
             ours, exact, _ = found[k, m]
             study.check(f"rate, D/d = {index:g}, pitch {angle:g}°, N/mm", ours, exact, "Castigliano", 3e-5)
-    rows = [[angle, *(100 * (found[k, m, 2] / found[k, m, 1] - 1) for k in range(len(INDICES)))] for m, angle in enumerate(ANGLES)]
+    rows = [
+        [angle, *(100 * (found[k, m, 2] / found[k, m, 1] - 1) for k in range(len(INDICES)))]
+        for m, angle in enumerate(ANGLES)
+    ]
     study.table("G d⁴/(8 D³ n) over Castigliano, %", ["pitch, °", *(f"D/d = {i:g}" for i in INDICES)], rows)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(5.4, 3.6), layout="constrained")

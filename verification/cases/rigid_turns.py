@@ -1,8 +1,8 @@
 """Curved rod turned rigidly four times about a skew axis: no stress, and back where it was
 
-One end of a stress-free helix is turned by 8π about the axis (1, 2, 3), which is no axis of anything; the other nodes are
-free. Every state is a rigid motion. Tolerance: 1e-9 MPa, some 1e-14 of the elastic modulus times the number of steps;
-positions to 1e-9 mm.
+One end of a stress-free helix is turned by 8π about the axis (1, 2, 3), which is no axis of anything; the other nodes
+are free. Every state is a rigid motion. Tolerance: 1e-9 MPa, some 1e-14 of the elastic modulus times the number of
+steps; positions to 1e-9 mm.
 """
 
 import matplotlib as mpl
@@ -25,7 +25,7 @@ def turn(steps):
     nodes = np.stack([20.0 * np.cos(angle), 20.0 * np.sin(angle), 2.0 * angle], axis=1)
     frame, stress = chain(nodes, RADIUS, library.load("elastic"), held=()), []
     moves = {frame.dof(0, X + k): 0.0 for k in range(3)} | {frame.dof(0, TURN_X + k): ANGLE * AXIS[k] for k in range(3)}
-    counts = drive(frame, steps, moves, after=lambda: stress.append(np.abs(frame.rod.history[..., :3]).max()))
+    counts = drive(frame, steps, moves, after=lambda: stress.append(np.abs(frame.rod.point_state[..., :3]).max()))
     back = max(np.linalg.norm(frame.moved(node)) for node in range(ELEMENTS + 1))
     return np.array(stress), back, counts
 
@@ -44,7 +44,9 @@ def run(study):
         figure = Figure(figsize=(5.2, 3.4), layout="constrained")
         axes = figure.add_subplot()
         for steps, stress in found.items():
-            axes.semilogy(ANGLE / np.pi * np.arange(1, steps + 1) / steps, stress, "o-", ms=3, lw=0.8, label=f"{steps} steps")
+            axes.semilogy(
+                ANGLE / np.pi * np.arange(1, steps + 1) / steps, stress, "o-", ms=3, lw=0.8, label=f"{steps} steps"
+            )
         axes.axhline(1e-9, color="0.5", lw=0.8, ls="--", label="tolerance")
         axes.set(xlabel="angle over π", ylabel="greatest stress in MPa", title="Helix turned rigidly")
         axes.grid(lw=0.3)

@@ -1,17 +1,18 @@
 """Straight rod bent and twisted to a helix of ten turns by an end moment, against the closed form
 
-A moment m of fixed direction at the end of a clamped round rod is constant along it: with a = m/EI and c = (1/GJ − 1/EI) m·t
+A moment m of fixed direction at the end of a clamped round rod is constant along it: with a = m/EI and c = (1/GJ −
+1/EI) m·t
 
     R(s) = exp(a s) exp(c s e1),    t(s) = exp(a s) e1,
 
-the axis is a helix about m, ten turns for |m| L/EI = 20π (Kirchhoff; A. E. H. Love, § 270). Its equilibrium is unstable
-from one turn on, as a free end can unwind through space, and a moment on turns belongs to the chart of the last
-equilibrium. So all nodes are led along the closed form in 40 steps, on a helix as much wider as keeps the chords' length; then
-all are let go but the tip's turn, and the moment is the reaction to it. The law is without spin: γ is 3 % here, and the spin's second-order axial
-stress is no elastic answer (case elastic-strain-loop).
+the axis is a helix about m, ten turns for |m| L/EI = 20π (Kirchhoff; A. E. H. Love, § 270). Its equilibrium is
+unstable from one turn on, as a free end can unwind through space, and a moment on turns belongs to the chart of the
+last equilibrium. So all nodes are led along the closed form in 40 steps, on a helix as much wider as keeps the chords'
+length; then all are let go but the tip's turn, and the moment is the reaction to it. The law is without spin: γ is 3 %
+here, and the spin's second-order axial stress is no elastic answer (case elastic-strain-loop).
 
-Tolerance: the rods are straight, φ = 20π/n. The tip was found off by 0.014 φ² L, the moment by 0.022 φ²: 0.02 and
-0.03 φ²; the order is judged over 200 to 400 rods.
+Tolerance: the rods are straight, φ = 20π/n. The tip was found off by 0.014 φ² L, the moment by 0.022 φ²: 0.02 and 0.03
+φ²; the order is judged over 200 to 400 rods.
 """
 
 import matplotlib as mpl
@@ -52,7 +53,9 @@ def wind(elements):
         led, turned, _ = closed_form(k / STEPS, s, law)
         led = keep_length(led, LENGTH / elements)
         way = np.hstack([led - x, (turned * turn.inv()).as_rotvec()])
-        moves = {frame.dof(node, component): way[node, component] for node in range(1, elements + 1) for component in ALL}
+        moves = {
+            frame.dof(node, component): way[node, component] for node in range(1, elements + 1) for component in ALL
+        }
         let(frame, moves)
         x, turn = led, turned
     hold = {frame.dof(elements, component): 0.0 for component in (TURN_X, TURN_Y, TURN_Z)}
@@ -88,7 +91,9 @@ def run(study):
         rows.append([n, far[-1], off])
     φ2 = (2.0 * np.pi * TURNS / MESHES[-1]) ** 2
     study.check(f"distance of the tip over L, {MESHES[-1]} rods", far[-1], 0.0, "closed form", 0.02 * φ2, "absolute")
-    study.check(f"distance of the end's moment over m, {MESHES[-1]} rods", off, 0.0, "closed form", 0.03 * φ2, "absolute")
+    study.check(
+        f"distance of the end's moment over m, {MESHES[-1]} rods", off, 0.0, "closed form", 0.03 * φ2, "absolute"
+    )
     slope = -np.polyfit(np.log(MESHES), np.log(far), 1)[0]
     study.check("order of the tip's distance", slope, 2.0, "straight rods", 0.1, "absolute")
     study.table("errors", ["rods", "tip, over L", "moment, over m"], rows)
@@ -96,7 +101,7 @@ def run(study):
         figure = Figure(figsize=(5.4, 4.4), layout="constrained")
         axes = figure.add_subplot(projection="3d")
         axes.plot(*x.T, "-", lw=1.0, label=f"coilset, {MESHES[-1]} rods")
-        axes.plot(*exact[:: 4].T, "o", ms=2, color="C3", label="closed form")
+        axes.plot(*exact[::4].T, "o", ms=2, color="C3", label="closed form")
         axes.set(xlabel="x in mm", ylabel="y in mm", zlabel="z in mm", title="Straight rod wound to ten turns")
         axes.set_aspect("equal")
         axes.legend(fontsize=8)

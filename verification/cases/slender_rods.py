@@ -1,10 +1,11 @@
 """Slender rods, r/L = 1e-3 and 1e-4, 8 to 128 elements: elastica and two circles in ten steps, iterations a step
 
-The same problems as in the cases elastica and two-circles, where the wire's radius is 1e-2 L. After a correction with finite rotations
-the axial and shear forces are wrong by EA ½ w′², which grows with (L/r)²: the tangent is built with these forces, and Newton's method
-creeps or fails. Other elements take these steps in about as many iterations at any slenderness
-(D. Magisano, L. Leonetti, G. Garcea, Int. J. Num. Meth. Eng. 112 (2017) 1685, mixed integration point); wanted are
-at most 8 a step. The values, where they are reached, are judged as in the other two cases; at r/L = 1e-3 shear counts with 6.5e-6.
+The same problems as in the cases elastica and two-circles, where the wire's radius is 1e-2 L. After a correction with
+finite rotations the axial and shear forces are wrong by EA ½ w′², which grows with (L/r)²: the tangent is built with
+these forces, and Newton's method creeps or fails. Other elements take these steps in about as many iterations at any
+slenderness (D. Magisano, L. Leonetti, G. Garcea, Int. J. Num. Meth. Eng. 112 (2017) 1685, mixed integration point);
+wanted are at most 8 a step. The values, where they are reached, are judged as in the other two cases; at r/L = 1e-3
+shear counts with 6.5e-6.
 """
 
 import matplotlib as mpl
@@ -49,7 +50,7 @@ def circles(slenderness, elements):
     plane = [(node, (Z, TURN_X, TURN_Y)) for node in range(1, elements + 1)]
     frame = chain(straight(LENGTH, elements), slenderness * LENGTH, library.load("elastic"), held=[(0, ALL), *plane])
     counts, done = walk(frame, moves={frame.dof(elements, TURN_Z): 4.0 * np.pi})
-    return counts, done, np.linalg.norm(frame.moved(elements) + [LENGTH, 0.0, 0.0]) / LENGTH
+    return counts, done, np.linalg.norm(np.add(frame.moved(elements), [LENGTH, 0.0, 0.0])) / LENGTH
 
 
 def run(study):
@@ -61,7 +62,13 @@ def run(study):
                 counts, done, value = solve(slenderness, n)
                 at = f"{name}, r/L = {slenderness:g}, {n} rods"
                 most[name, slenderness, n] = max(counts) if done else np.inf
-                study.check(f"greatest iterations of a step, {at}", max(counts) if done else np.inf, WANTED, "wanted", kind="at_most")
+                study.check(
+                    f"greatest iterations of a step, {at}",
+                    max(counts) if done else np.inf,
+                    WANTED,
+                    "wanted",
+                    kind="at_most",
+                )
                 if done and name == "elastica":
                     exact = cantilever(LOAD)[1]
                     study.check(f"v/L, {at}", value, exact, "elliptic integrals", 0.02 * LOAD / n**2 + 1e-5, "absolute")
@@ -71,7 +78,10 @@ def run(study):
     study.table(f"iterations, {STEPS} steps", ["problem", "r/L", "rods", "iterations a step"], rows)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(5.4, 3.4), layout="constrained")
-        axes, names = figure.add_subplot(), [f"{name}\nr/L = {s:g}" for name in ("elastica", "two circles") for s in SLENDERNESS]
+        axes, names = (
+            figure.add_subplot(),
+            [f"{name}\nr/L = {s:g}" for name in ("elastica", "two circles") for s in SLENDERNESS],
+        )
         values = np.array(list(most.values())).reshape(4, len(MESHES))
         top = max(WANTED, values[np.isfinite(values)].max(initial=0.0))
         for k, n in enumerate(MESHES):

@@ -1,8 +1,8 @@
 """Shipped springs to block and back in 12, 24, 48 and 96 steps: force at block and set against Richardson's limit
 
 Once coils touch, torsion turns into bending, and backward Euler's first order shows (Ck 15's steep ζ). Each spring is
-pressed to block in so many equal steps and let go in as many. From the last three values the limit and the observed order
-follow after Richardson: with the differences d1 and d2 of a sequence, q = d1/d2, the limit is v + d2/(q − 1).
+pressed to block in so many equal steps and let go in as many. From the last three values the limit and the observed
+order follow after Richardson: with the differences d1 and d2 of a sequence, q = d1/d2, the limit is v + d2/(q − 1).
 
 Judged is that the sequence closes in (the last difference is less than the one before it) and that 96 steps are within
 1 % of the limit; the table says how far 12 steps are off, which is the default.
@@ -39,7 +39,7 @@ def press(file, steps):
     except SolveError:
         return np.nan, np.nan
     force = [step.force_N for step in result.steps if step.phase == 0][-1]
-    return force, summarise(analysis, result)["set_mm"]
+    return force, summarise(analysis.setup, result)["set_mm"]
 
 
 def limit(values):
@@ -58,7 +58,9 @@ def run(study):
             end, order = limit(values)
             rows.append([name, quantity, *values, end, order, 100.0 * (values[0] / end - 1.0)])
             change = abs((values[-1] - values[-2]) / (values[-2] - values[-3]))
-            study.check(f"{name}, {quantity}: last change over the one before", change, 1.0, "convergence", kind="at_most")
+            study.check(
+                f"{name}, {quantity}: last change over the one before", change, 1.0, "convergence", kind="at_most"
+            )
             study.check(f"{name}, {quantity}, {STEPS[-1]} steps", values[-1], end, "Richardson's limit", 0.01)
     columns = ["spring", "quantity", *(f"{steps} steps" for steps in STEPS), "limit", "order", "12 steps off, %"]
     study.table("to block and back in equal steps", columns, rows)

@@ -1,13 +1,14 @@
 """Bar stretched by 1 % and then twisted to 2 %, and a thin tube likewise, against integrals of the law's rates
 
 At constant length the twist takes the axial force away: on the yield surface σ = σ0 cos θ, τ = σ0/√3 sin θ, and for an
-ideally plastic point θ(γ) has a closed form (`references/section_integrals.py`, after R. Hill). A thin tube is one such
-point; in a bar γ grows with r, and force and torque are integrals over the radius. For Ck 15 the rates are integrated
-with DOP853 at 40 radii. Without spin, whose second-order stress is another question (case elastic-strain-loop).
+ideally plastic point θ(γ) has a closed form (`references/section_integrals.py`, after R. Hill). A thin tube is one
+such point; in a bar γ grows with r, and force and torque are integrals over the radius. For Ck 15 the rates are
+integrated with DOP853 at 40 radii. Without spin, whose second-order stress is another question (case
+elastic-strain-loop).
 
 Tolerance, of stresses over σ0 and of N and T over their fully plastic values, absolute: backward Euler's first order,
-0.8/steps for σ and N (found: up to 0.53) and 0.1/steps for τ and T (found: up to 0.03). With n rings 0.3/n² is added for
-N, which stands in the core alone: from 8 × 16 to 24 × 32 points it changes by 2e-3 for Ck 15, T by 3e-4.
+0.8/steps for σ and N (found: up to 0.53) and 0.1/steps for τ and T (found: up to 0.03). With n rings 0.3/n² is added
+for N, which stands in the core alone: from 8 × 16 to 24 × 32 points it changes by 2e-3 for Ck 15, T by 3e-4.
 """
 
 import matplotlib as mpl
@@ -50,7 +51,9 @@ def point(law, shears):
         angles = [brentq(lambda a, γ=γ: tube_shear(law.yield_stress, law.E, law.G, a) - γ, 0.0, top) for γ in shears]
         return law.yield_stress * np.stack([np.cos(angles), np.sin(angles) / np.sqrt(3.0)], axis=1)
     limit = law.yield_stress / law.E
-    start = plastic_path(law, [law.yield_stress, 0, 0, 0, 0], np.array([1.0, 0.0]), np.array([0.0, STRETCH - limit]))[-1]
+    start = plastic_path(law, [law.yield_stress, 0, 0, 0, 0], np.array([1.0, 0.0]), np.array([0.0, STRETCH - limit]))[
+        -1
+    ]
     return plastic_path(law, start, np.array([0.0, 1.0]), np.append(0.0, shears))[1:, :2]
 
 
@@ -70,25 +73,47 @@ def run(study):
         (σ, τ), bar = exact(law)
         full = law.yield_stress * np.array([area, 2.0 * np.pi / 3.0 / np.sqrt(3.0) * RADIUS**3])
         tube = pull_and_twist(law, TUBE) / (area, area * RADIUS)
-        study.check(f"tube, {name}: σ/σ0", tube[-1, 0] / law.yield_stress, σ / law.yield_stress, "rates", 0.8 / STEPS, "absolute")
-        study.check(f"tube, {name}: τ/σ0", tube[-1, 1] / law.yield_stress, τ / law.yield_stress, "rates", 0.1 / STEPS, "absolute")
+        study.check(
+            f"tube, {name}: σ/σ0",
+            tube[-1, 0] / law.yield_stress,
+            σ / law.yield_stress,
+            "rates",
+            0.8 / STEPS,
+            "absolute",
+        )
+        study.check(
+            f"tube, {name}: τ/σ0",
+            tube[-1, 1] / law.yield_stress,
+            τ / law.yield_stress,
+            "rates",
+            0.1 / STEPS,
+            "absolute",
+        )
         for rule in RULES:
             curves[name, rule] = found = pull_and_twist(law, polar(*rule)) / full
             if rule == RULES[-1]:
                 tolerance = 0.8 / STEPS + 0.3 / rule[0] ** 2
-                study.check(f"bar, {name}: N/N0", found[-1, 0], bar[0] / full[0], "integral over r", tolerance, "absolute")
-                study.check(f"bar, {name}: T/T0", found[-1, 1], bar[1] / full[1], "integral over r", 0.1 / STEPS, "absolute")
+                study.check(
+                    f"bar, {name}: N/N0", found[-1, 0], bar[0] / full[0], "integral over r", tolerance, "absolute"
+                )
+                study.check(
+                    f"bar, {name}: T/T0", found[-1, 1], bar[1] / full[1], "integral over r", 0.1 / STEPS, "absolute"
+                )
             rows.append([name, "{} × {}".format(*rule), *(f"{e:+.1e}" for e in found[-1] - bar / full)])
     study.table(f"bar, {STEPS} steps: error over the fully plastic value", ["material", "points", "N", "T"], rows)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(5.6, 3.8), layout="constrained")
         axes = figure.add_subplot()
         shears = 100 * np.linspace(0.0, SHEAR, STEPS + 1)
-        for (name, colour) in (("ideal_plastic", "C0"), ("ck15", "C3")):
+        for name, colour in (("ideal_plastic", "C0"), ("ck15", "C3")):
             found = curves[name, RULES[-1]]
             axes.plot(shears, found[:, 0], "-", color=colour, lw=1.2, label=f"N/N0, {name}")
             axes.plot(shears, found[:, 1], "--", color=colour, lw=1.2, label=f"T/T0, {name}")
-        axes.set(xlabel="γ at the surface in %", ylabel="over the fully plastic value", title="Stretched by 1 %, then twisted")
+        axes.set(
+            xlabel="γ at the surface in %",
+            ylabel="over the fully plastic value",
+            title="Stretched by 1 %, then twisted",
+        )
         axes.grid(lw=0.3)
         axes.legend(fontsize=8)
     study.figure("tension_then_torsion", figure)

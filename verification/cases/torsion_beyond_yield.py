@@ -1,14 +1,15 @@
 """Round bar twisted far beyond yield and let go: torque and springback against the integral over the radius
 
-A bar of radius 2.5 is twisted to γ = 2 % at its surface. Ideally plastic, A. Nadai's torque 2π/3 τy (R³ − c³/4) with the
-elastic core's radius c is closed; for linear isotropic hardening and for Ck 15 it is 2π ∫ τ(ϑr) r² dr, with τ(γ) by
-a high-order integration of the law's rates (`references/section_integrals.py`). Let go, a bar that does not yield anew turns back by
-T/GJ; Ck 15 would, so that its springback is not asked for. Without spin, which would add axial stress to pure shear.
+A bar of radius 2.5 is twisted to γ = 2 % at its surface. Ideally plastic, A. Nadai's torque 2π/3 τy (R³ − c³/4) with
+the elastic core's radius c is closed; for linear isotropic hardening and for Ck 15 it is 2π ∫ τ(ϑr) r² dr, with τ(γ)
+by a high-order integration of the law's rates (`references/section_integrals.py`). Let go, a bar that does not yield
+anew turns back by T/GJ; Ck 15 would, so that its springback is not asked for. Without spin, which would add axial
+stress to pure shear.
 
-Tolerance: n rings are Gauss's points in r², and τ has a kink at the core's edge: 0.06/n², of which up to 0.053 was found
-from 4 to 32 rings. Backward Euler meets a straight line of hardening whatever the steps are; along the curve of Ck 15 it
-errs by 0.07/steps, of which 0.066 was found at 20 and 80 steps. The springback's error is that of the torque times
-T/GJ over the angle that stays.
+Tolerance: n rings are Gauss's points in r², and τ has a kink at the core's edge: 0.06/n², of which up to 0.053 was
+found from 4 to 32 rings. Backward Euler meets a straight line of hardening whatever the steps are; along the curve of
+Ck 15 it errs by 0.07/steps, of which 0.066 was found at 20 and 80 steps. The springback's error is that of the torque
+times T/GJ over the angle that stays.
 """
 
 import matplotlib as mpl
@@ -33,7 +34,7 @@ def twist(law, rings):
     frame, torques = chain(straight(LENGTH, 1), RADIUS, law, polar(rings, 12), held), [0.0]
     end = frame.dof(1, TURN_X)
     drive(frame, STEPS, {end: SHEAR / RADIUS * LENGTH}, after=lambda: torques.append(frame.force(end)))
-    stress = np.hypot(*frame.rod.history[0, 0, ::12, 1:3].T)
+    stress = np.hypot(*frame.rod.point_state[0, 0, ::12, 1:3].T)
     drive(frame, 2, forces={end: 0.0})
     return np.array(torques), frame.turned(1)[0] / LENGTH, stress
 
@@ -58,7 +59,9 @@ def run(study):
         study.check(f"torque, {name}, N mm", runs[FINE][0][-1], exact, source, tolerance)
         if name != "ck15":
             back = exact / (0.5 * np.pi * law.G * RADIUS**4)
-            study.check(f"twist that stays, {name}, 1/mm", runs[FINE][1], ϑ - back, "T/GJ", tolerance * back / (ϑ - back))
+            study.check(
+                f"twist that stays, {name}, 1/mm", runs[FINE][1], ϑ - back, "T/GJ", tolerance * back / (ϑ - back)
+            )
         rows.append([name, *(f"{runs[rings][0][-1] / exact - 1:+.1e}" for rings in RINGS)])
     study.table(f"error of the torque, {STEPS} steps", ["material", *(f"{rings} rings" for rings in RINGS)], rows)
     draw(study, found)
@@ -82,8 +85,14 @@ def draw(study, found):
             right.plot(radii, curve, "-", color=colour, lw=0.9)
             points = RADIUS * np.hypot(*polar(FINE, 12).points[::12].T)
             right.plot(points, stress, "o", color=colour, ms=3.5, mfc="none", label=f"{name}, coilset")
-        left.set(xlabel="γ at the surface in %", ylabel="torque in N m", title="Torsion beyond yield; circles: integral over r")
-        right.set(xlabel="radius in mm", ylabel="τ in MPa", title=f"γ = {100 * SHEAR:g} % at the surface; lines: reference")
+        left.set(
+            xlabel="γ at the surface in %",
+            ylabel="torque in N m",
+            title="Torsion beyond yield; circles: integral over r",
+        )
+        right.set(
+            xlabel="radius in mm", ylabel="τ in MPa", title=f"γ = {100 * SHEAR:g} % at the surface; lines: reference"
+        )
         for axes in (left, right):
             axes.grid(lw=0.3)
             axes.legend(fontsize=8)

@@ -2,10 +2,11 @@
 
 An end moment bends a straight rod to a circle of curvature M/EI; at M = 4π EI/L it closes twice. The tip is turned by
 4π about the axis across the plane and free in it; the moment is what it takes. (Out of the plane all nodes are held: a
-rod whose end was turned by 4π can unwind through space, and the plane state is unstable from 1.2 circles on.) Straight rods of length l = L/n form
-a polygon of equal angles φ = 4π/n with M = EI φ/l: tip and moment are those of the circle whatever n is, up to the axial
-strain, which is none. Tolerance: the iteration's, 1e-7. The polygon's corners lie on a circle of radius
-l/(2 sin(φ/2)) in the place of l/φ: the rod's greatest height 2R is too large by φ²/24, and the tolerance is φ²/20.
+rod whose end was turned by 4π can unwind through space, and the plane state is unstable from 1.2 circles on.) Straight
+rods of length l = L/n form a polygon of equal angles φ = 4π/n with M = EI φ/l: tip and moment are those of the circle
+whatever n is, up to the axial strain, which is none. Tolerance: the iteration's, 1e-7. The polygon's corners lie on a
+circle of radius l/(2 sin(φ/2)) in the place of l/φ: the rod's greatest height 2R is too large by φ²/24, and the
+tolerance is φ²/20.
 """
 
 import matplotlib as mpl
@@ -46,7 +47,9 @@ def run(study):
         angle, height = 4.0 * np.pi / n, np.ptp(shapes[-1][:, 1])
         study.check(f"M L/EI, {n} rods", moment, 4.0 * np.pi, "M = EI κ", 1e-6)
         tip = np.linalg.norm(shapes[-1][-1]) / LENGTH
-        study.check(f"distance of the tip from the clamp over L, {n} rods", tip, 0.0, "closed circles", 1e-6, "absolute")
+        study.check(
+            f"distance of the tip from the clamp over L, {n} rods", tip, 0.0, "closed circles", 1e-6, "absolute"
+        )
         study.check(f"height over L, {n} rods", height / LENGTH, 0.5 / np.pi, "2R = L/2π", angle**2 / 20.0)
         rows.append([n, max(counts), sum(counts)])
     study.table(f"iterations, {STEPS} steps, r/L = 1e-2", ["rods", "most of a step", "all"], rows)
@@ -56,6 +59,8 @@ def run(study):
         for k in range(1, STEPS, 3):
             axes.plot(*shapes[k][:, :2].T, "-", color="C0", lw=0.5 + 0.05 * k, alpha=0.35 + 0.03 * k)
         axes.plot(*shapes[-1][:, :2].T, "C3-", lw=1.5, label="M = 4π EI/L")
-        axes.set(aspect="equal", xlabel="x in mm", ylabel="y in mm", title=f"Rolled up to two circles, {MESHES[-1]} rods")
+        axes.set(
+            aspect="equal", xlabel="x in mm", ylabel="y in mm", title=f"Rolled up to two circles, {MESHES[-1]} rods"
+        )
         axes.legend(fontsize=8)
     study.figure("two_circles", figure)

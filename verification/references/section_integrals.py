@@ -1,7 +1,7 @@
 """Sections of plastic wire by integrals over the radius or the height, and points by a high-order integration in time.
 
-Nothing here knows of section rules, return maps or rods. Of the program only the material's functions k²(b*), ζ(b*), κ(b*)
-are used (`Law.functions`, tested by themselves).
+Nothing here knows of section rules, return maps or rods. Of the program only the material's functions k²(b*), ζ(b*),
+κ(b*) are used (`Law.functions`, tested by themselves).
 """
 
 import numpy as np
@@ -96,8 +96,8 @@ def bending_moment(yield_stress: float, E: float, radius: float, curvature: floa
 def tube_shear(yield_stress: float, E: float, G: float, angle: float) -> float:
     """Shear angle γ of an ideally plastic thin tube, stretched beyond yield and then twisted at constant length.
 
-    On the yield surface σ = σ0 cos θ, τ = σ0/√3 sin θ, and the rates above integrate to (R. Hill, The mathematical theory
-    of plasticity, IV.2, there for an incompressible tube)
+    On the yield surface σ = σ0 cos θ, τ = σ0/√3 sin θ, and the rates above integrate to (R. Hill, The mathematical
+    theory of plasticity, IV.2, there for an incompressible tube)
 
         γ = σ0/(√3 G) [sin θ + 3G/E (ln(sec θ + tan θ) − sin θ)].
     """
