@@ -78,7 +78,7 @@ class Frame:
 
     def turned(self, node):
         """Rotation vector of a node since the start, up to a whole turn, rad."""
-        return Rotation.from_matrix(self.layout.gather(self.rod.R)[node]).as_rotvec()
+        return Rotation.from_matrix(self.layout.gather(self.system.state["R"].trial)[node]).as_rotvec()
 
     def force(self, dof):
         """Internal force at a dof, N or N mm; a support's reaction has the same sign."""
