@@ -153,6 +153,7 @@ def verify(
     out: str = typer.Option("results/verify", help="folder of the records and figures; what is there is replaced"),
     fast: bool = typer.Option(False, "--fast", help="only cases that take seconds"),
     show: bool = typer.Option(False, "--list", help="list the cases"),
+    page: str = typer.Option(None, "--page", help="also write the page of all records here, as docs/verification.md"),
 ):
     """Compare with tables, closed solutions and finer models; exits 1 if a value is off."""
     from coilset.scripts import verify as verification
@@ -161,7 +162,7 @@ def verify(
         verification.show()
     else:
         announce_compiling()
-        raise typer.Exit(verification.verify(names, out, fast))
+        raise typer.Exit(verification.verify(names, out, fast, page))
 
 
 @app.command()

@@ -1,4 +1,4 @@
-"""`coilset verify`: run cases of verification, print and keep what they found."""
+"""`coilset verify`: run cases of verification, print and keep what they found, all numbers in one table at the end."""
 
 import os
 import sys
@@ -10,14 +10,22 @@ from rich.console import Console
 from rich.table import Table
 
 from coilset.meshes.errors import CoilsetError, InputError
+from coilset.model.results.folder import whole
 from coilset.verification import registry
+from coilset.verification.page import page, percent
 from coilset.verification.study import Study
 
-WIDTH = 140  # columns where the output goes to a file
+WIDTH = 200  # columns where the output goes to a file
 
 
-def verify(names, out, fast):
+def verify(names, out, fast, page_file=None):
     """Run the named cases, all if none is named; returns 1 if a value is off, else 0.
+
+    Args:
+        names: of cases.
+        out: folder of the records and figures.
+        fast: only cases that take seconds.
+        page_file: where the page of all records in `out` goes, those of earlier runs included.
 
     Raises:
         InputError: for a name that is no case.
@@ -28,8 +36,19 @@ def verify(names, out, fast):
     if fast:
         cases = [case for case in cases if case.fast]
     console = Console(highlight=False, width=None if sys.stdout.isatty() else WIDTH)
-    off = [case.name for case in cases if not _run(case, Path(out) / case.name, console)]
-    console.print(f"[red]off: {', '.join(off)}[/]" if off else f"[green]{len(cases)} case(s), all within tolerance[/]")
+    began = time.perf_counter()
+    found = {case.name: _run(case, Path(out) / case.name, console) for case in cases}
+    console.print(_all_checks(found))
+    judged = [check for study, _ in found.values() for check in study.checks if check.judged]
+    shown = sum(not check.judged for study, _ in found.values() for check in study.checks)
+    met = sum(check.passed for check in judged)
+    console.print(f"{len(cases)} case(s) in {time.perf_counter() - began:.0f} s; {len(judged)} numbers judged: "
+                  f"{met} met, {len(judged) - met} not met; {shown} shown but not judged")  # fmt: skip
+    if page_file:
+        with whole(Path(page_file)) as path:
+            path.write_text(page(out), encoding="utf-8")
+    off = [name for name, (study, problem) in found.items() if problem or not study.passed]
+    console.print(f"[red]off: {', '.join(off)}[/]" if off else "[green]all judged numbers within tolerance[/]")
     return 1 if off else 0
 
 
@@ -44,39 +63,48 @@ def show():
 
 
 def _run(case, folder, console):
+    """The Study of a case, and what went wrong, in words."""
     console.rule(f"[bold]{case.name}[/]: {case.title}", align="left")
-    study, began = Study(folder), time.perf_counter()
+    study, began, problem = Study(folder), time.perf_counter(), ""
     try:
         case.run(study)
-    except CoilsetError as error:
-        console.print(f"[red]{error}[/]")
-        return False
+    except (CoilsetError, RuntimeError) as error:
+        problem = str(error)
+        console.print(f"[red]{problem}[/]")
     study.write(case.name)
     for table in study.tables:
         console.print(_plain_table(table))
-    console.print(_check_table(study.checks))
     for note in study.notes:
         console.print(note)
     files = ", ".join([*study.figures, "record.json"])
     console.print(f"{time.perf_counter() - began:.1f} s; {files} in {folder}{os.sep}\n")
-    return study.passed
+    return study, problem
 
 
-def _check_table(checks):
-    table = Table(box=None, padding=(0, 2), header_style="bold")
-    for column in ("quantity", "ours", "reference", "deviation", "tolerance", "source"):
-        table.add_column(column, justify="left" if column in ("quantity", "source") else "right")
-    for check in checks:
-        if check.kind == "at_most":
-            limits = ["", f"≤ {_number(check.reference + check.tolerance)}"]
-        elif check.kind == "relative":
-            limits = [f"{100 * check.deviation:+.3g} %", f"{100 * check.tolerance:.3g} %"]
-        else:
-            limits = [f"{check.deviation:+.3g}", f"{check.tolerance:.3g}"]
-        style = "" if check.passed else "red"
-        row = [check.quantity, _number(check.ours), _number(check.reference), *limits, check.source]
-        table.add_row(*row, style=style)
+def _all_checks(found):
+    """Every number of every case: what, computed, reference, deviation, tolerance, verdict."""
+    table = Table(box=None, padding=(0, 1), header_style="bold")
+    for column in ("case", "quantity", "computed", "reference", "deviation", "tolerance", "verdict", "source"):
+        table.add_column(
+            column, justify="right" if column in ("computed", "reference", "deviation", "tolerance") else "left"
+        )
+    for name, (study, problem) in found.items():
+        for check in study.checks:
+            style = "" if check.judged and check.passed else "red" if check.judged else "yellow"
+            row = [name, check.quantity, _number(check.ours), *_limits(check), check.verdict, check.source]
+            table.add_row(*row, style=style)
+        if problem:
+            table.add_row(name, "", "", "", "", "", f"stopped: {problem}", "", style="red")
     return table
+
+
+def _limits(check):
+    """Reference, deviation and tolerance, in words."""
+    if check.kind == "at_most":
+        return f"≤ {_number(check.reference + check.tolerance)}", "", ""
+    number = percent if check.kind == "relative" else lambda value: f"{value:+.3g}"
+    tolerance = number(check.tolerance).lstrip("+") if check.judged else "–"
+    return _number(check.reference), number(check.deviation), tolerance
 
 
 def _plain_table(content):

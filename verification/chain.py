@@ -4,7 +4,8 @@ import numpy as np
 
 from coilset.meshes.errors import SolveError
 from coilset.model.material import library
-from coilset.model.material.law import Law, MaterialFile
+from coilset.model.material.file import MaterialFile
+from coilset.model.material.law import Law
 from coilset.model.section.rules import DiskRule, polar
 from coilset.verification.frame import Frame
 

@@ -32,6 +32,9 @@ class Frame:
         method, options: of coilset.model.equilibrium.methods, and more of PETSc's; the tolerance is the thesis's 1e-7.
         contacts: kinds of contact.
         placement: of sections beside the chords, as for Rod.
+
+    Attributes:
+        load: Load of the last step, which knows what is held.
     """
 
     def __init__(self, nodes, pairs, radius, law, rule, held, method="newton", options=None, contacts=(),
@@ -46,7 +49,7 @@ class Frame:
         self.continuation = Continuation(Newton(self.system, rod_method(method, 1, options, arc), 1e-7, limit=limit))
         self.held = {int(dof): 0.0 for dof in self.layout.seat_dofs}
         self.held |= {self.dof(node, component): 0.0 for node, components in held for component in components}
-        self._stepped = False
+        self._stepped, self.load = False, Load.of(self.layout, self.held, {})
 
     def dof(self, node, component):
         """Number of a node's dof in the system."""
@@ -63,7 +66,7 @@ class Frame:
         Returns:
             Outcome; where it has not converged, the frame is back at the last equilibrium.
         """
-        load = Load.of(self.layout, self.held | (moves or {}), forces or {})
+        self.load = load = Load.of(self.layout, self.held | (moves or {}), forces or {})
         start = Start() if share is None or not self._stepped else self.continuation.scaled_last(share)
         outcome = self.continuation.attempt(load, [start])
         self._stepped = self._stepped or outcome.converged

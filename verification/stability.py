@@ -10,12 +10,12 @@ from coilset.model.equilibrium.system import System
 
 
 def tangent(system: System, load: Load) -> sparse.csc_array:
-    """Symmetric part of the tangent at the last equilibrium, rows and columns of the free unknowns.
+    """Symmetric part of the tangent at the last equilibrium, rows and columns of the unknowns that `load` leaves free.
 
-    It is symmetric by itself where the charts of the turns start, but for rounding.
+    It is symmetric by itself where the charts of the rotations start, but for rounding. One rank only.
     """
-    start, matrix = system.layout.vector(), TangentMatrix(system.body, system.layout)
-    system.tangent(start, load, matrix)
+    matrix = TangentMatrix(system.body, system.layout)
+    system.tangent(system.layout.vector(), load, matrix, at_step_start=True)
     indptr, indices, values = matrix.mat.getValuesCSR()
     full = sparse.csr_array((values, indices, indptr))
     free = np.setdiff1d(np.arange(full.shape[0]), load.held)

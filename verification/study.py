@@ -23,6 +23,7 @@ class Check:
         source: where the reference comes from.
         tolerance: greatest deviation.
         kind: `relative`: |ours/reference − 1|; `absolute`: |ours − reference|; `at_most`: ours − reference.
+        reason: why the number is shown but not judged; empty if it is judged.
     """
 
     quantity: str
@@ -31,6 +32,7 @@ class Check:
     source: str
     tolerance: float
     kind: str = "relative"
+    reason: str = ""
 
     def __post_init__(self):
         if self.kind not in KINDS:
@@ -46,9 +48,21 @@ class Check:
 
     @property
     def passed(self):
-        """Within the tolerance; never for NaN."""
+        """Within the tolerance; never for NaN. Says nothing of a number that is not judged."""
         deviation = self.deviation if self.kind == "at_most" else abs(self.deviation)
         return bool(deviation <= self.tolerance)
+
+    @property
+    def judged(self) -> bool:
+        """Does the verdict hang on it?"""
+        return not self.reason
+
+    @property
+    def verdict(self) -> str:
+        """`met`, `not met`, or `not judged` with the reason."""
+        if not self.judged:
+            return f"not judged: {self.reason}"
+        return "met" if self.passed else "not met"
 
 
 class Study:
@@ -67,6 +81,11 @@ class Study:
         """Judge a number; see Check."""
         self.checks.append(Check(quantity, float(ours), float(reference), source, float(tolerance), kind))
 
+    def shown(self, quantity: str, ours: float, reference: float, source: str, reason: str):
+        """Keep a number beside its reference that is not judged, with the reason; see Check."""
+        kind = "relative" if reference else "absolute"
+        self.checks.append(Check(quantity, float(ours), float(reference), source, float("nan"), kind, reason))
+
     def table(self, title, columns, rows):
         """Keep a table for reading; its rows hold numbers and texts, None for an empty place."""
         rows = [[plain(value) for value in row] for row in rows]
@@ -83,12 +102,13 @@ class Study:
 
     @property
     def passed(self):
-        """All numbers are within their tolerances, and there is at least one."""
-        return bool(self.checks) and all(check.passed for check in self.checks)
+        """All numbers that are judged are within their tolerances, and there is at least one."""
+        judged = [check for check in self.checks if check.judged]
+        return bool(judged) and all(check.passed for check in judged)
 
     def write(self, name):
         """record.json."""
-        checks = [asdict(check) | {"deviation": check.deviation, "passed": check.passed} for check in self.checks]
+        checks = [asdict(check) | {"deviation": check.deviation, "verdict": check.verdict} for check in self.checks]
         record = {"case": name, "passed": self.passed, "checks": checks, "tables": self.tables, "notes": self.notes,
                   "figures": self.figures}  # fmt: skip
         with whole(self.folder / "record.json") as path:

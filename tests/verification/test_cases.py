@@ -1,8 +1,11 @@
 """The fast cases of verification are part of the tests; and a case that is off is said to be."""
 
+from pathlib import Path
+
 import pytest
 
 from coilset.verification import registry
+from coilset.verification.page import page
 from coilset.verification.study import Study
 
 FAST = [name for name in registry.names() if registry.load(name).fast]
@@ -16,8 +19,9 @@ def test_the_tables_of_the_thesis_are_among_the_fast_ones():
 def test_fast_cases_are_within_tolerance(name, tmp_path):
     study = Study(tmp_path)
     registry.load(name).run(study)
-    assert study.checks
-    off = [f"{check.quantity}: {check.ours} instead of {check.reference}" for check in study.checks if not check.passed]
+    judged = [check for check in study.checks if check.judged]
+    off = [f"{check.quantity}: {check.ours} instead of {check.reference}" for check in judged if not check.passed]
+    assert judged
     assert not off
     assert study.figures
 
@@ -34,3 +38,38 @@ def test_a_number_that_is_off_does_not_pass(tmp_path, ours, reference, tolerance
     study = Study(tmp_path)
     study.check("a number", ours, reference, "by hand", tolerance, kind)
     assert study.checks[0].passed is good
+
+
+def test_a_number_that_is_shown_is_not_judged(tmp_path):
+    study = Study(tmp_path)
+    study.shown("a number", 2.0, 1.0, "by hand", "nobody knows it better")
+    assert study.checks[0].verdict == "not judged: nobody knows it better"
+    assert not study.passed  # nothing is judged
+    study.check("another", 1.0, 1.0, "by hand")
+    assert study.passed
+    study.check("a third", 2.0, 1.0, "by hand", 0.5)
+    assert study.checks[-1].verdict == "not met"
+    assert not study.passed
+
+
+def test_the_page_tells_what_uses_most_of_its_tolerance(tmp_path):
+    study = Study(tmp_path / "two-circles")
+    study.check("close", 1.001, 1.0, "closed", 0.1)
+    study.check("closer to its limit", 1.05, 1.0, "closed", 0.1)
+    study.check("off", 3.0, 1.0, "open", 1.0, "absolute")
+    study.shown("odd", 2.0, 1.0, "closed", "unknown")
+    study.write("two-circles")
+    rows = [line for line in page(tmp_path).splitlines() if line.startswith("| `two-circles`")]
+    assert rows == [
+        "| `two-circles` | closed | 2 | closer to its limit | 1.05 | 1 | +5 % | 10 % | met |",
+        "| `two-circles` | open | 1 | off | 3 | 1 | +2 | 1 | 1 of 1 not met |",
+        "| `two-circles` | closed | 1 | odd | 2 | 1 | +100 % | – | not judged: unknown |",
+    ]
+    assert "| `elastica` |  |  |  |  |  |  |  | not run |" in page(tmp_path)
+
+
+def test_the_page_in_docs_names_every_case():
+    text = (Path(__file__).resolve().parents[2] / "docs" / "verification.md").read_text(encoding="utf-8")
+    for case in map(registry.load, registry.names()):
+        assert f"- **{case.name}**" in text
+        assert case.title in text

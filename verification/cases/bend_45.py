@@ -2,9 +2,9 @@
 
 The problem of K.-J. Bathe and S. Bolourchi, Large displacement analysis of three-dimensional beam structures, Int. J.
 Num. Meth. Eng. 14 (1979) 961: an eighth of a circle of radius R = 100, clamped, with the dead force P = 300, 450, 600
-across its plane at the tip; E = 1e7, ν = 0, a square section of 1 × 1. Here the wire is round with the same EI; with
-ν = 0 its torsional stiffness is GJ = EI, 18 % above the square's true one. The reference is therefore computed for
-this wire (`references/rod_shooting.py`), and itself compared with the displacements that the paper gives for P = 600,
+across its plane at the tip; E = 1e7, ν = 0, a square section of 1 × 1. Here the wire is round with the same EI; with ν
+= 0 its torsional stiffness is GJ = EI, 18 % above the square's true one. The reference is therefore computed for this
+wire (`references/rod_shooting.py`), and itself compared with the displacements that the paper gives for P = 600,
 (−23.5, −13.4, 53.4): 2 %, for eight elements, three digits and another torsional stiffness.
 
 Tolerance: a polygon of n rods errs by φ² = (π/4n)²; the factor 0.1 is 1.4 times what was found at n = 8. To it comes

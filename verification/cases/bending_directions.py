@@ -1,9 +1,9 @@
 """Ideally plastic bar bent about several axes: moment against the integral, for section rules of 12 to 48 angles
 
-A round wire has no direction, a rule with equal angles has. A bar is bent to 2, 5 and 20 times the curvature at
-yield, about axes from 0° to 30°; the reference is ∫ σ z dA with σ = min(E κ z, σy). The kinks at the edge of the
-elastic core cross the rule's rings: the error is proportional to the square of the angle between points, 2π/n, and
-depends on where the axis lies between them.
+A round wire has no direction, a rule with equal angles has. A bar is bent to 2, 5 and 20 times the curvature at yield,
+about axes from 0° to 30°; the reference is ∫ σ z dA with σ = min(E κ z, σy). The kinks at the edge of the elastic core
+cross the rule's rings: the error is proportional to the square of the angle between points, 2π/n, and depends on where
+the axis lies between them.
 
 Tolerance: 0.08 (2π/n)² (0.5 % with 24, 0.14 % with 48 angles), of which two thirds to nine tenths were found. The rows
 show that the default, 12 angles, knows plastic bending up to 2 %.

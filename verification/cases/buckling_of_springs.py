@@ -36,7 +36,7 @@ def press(mesh):
     analysis, rows = Analysis(case, MPI.COMM_SELF), []
 
     def keep(step):
-        matrix = tangent(analysis.system, analysis.newton.load)
+        matrix = tangent(analysis.system, analysis.control.to_height(analysis.control.height))
         rows.append((step.travel_mm, step.force_N, lowest_eigenvalue(matrix), negative_pivots(matrix)))
 
     analysis.run(keep)

@@ -50,7 +50,7 @@ def closed_form(law):
     """σ and τ at the start and at the ends of the four parts, MPa, shape (5, 2)."""
 
     def twisted(state, γ):
-        (σ, τ), turn = state + np.array([2.0 * law.G, 0.0]), γ / np.sqrt(2.0)
+        (σ, τ), turn = np.add(state, (2.0 * law.G, 0.0)), γ / np.sqrt(2.0)
         end = σ * np.cos(turn) - np.sqrt(2.0) * τ * np.sin(turn), τ * np.cos(turn) + σ / np.sqrt(2.0) * np.sin(turn)
         return np.array(end) - (2.0 * law.G, 0.0)
 

@@ -1,7 +1,7 @@
 """Initial rates of clamped springs, D/d 4 to 12 and pitch 5° to 20°, against Castigliano's integral of the curved rod
 
-Nine cylinders of 2.5 turns, 16 rods a turn. The reference integrates the complementary energy of the true centre
-line with the six reactions of a clamped head (`springs/curved_rod.py`); it knows no elements. The rate is that at no
+Nine cylinders of 2.5 turns, 16 rods a turn. The reference integrates the complementary energy of the true centre line
+with the six reactions of a clamped head (`springs/curved_rod.py`); it knows no elements. The rate is that at no
 travel: forces at 5e-5 and 1e-4 of the free length are extrapolated to zero, so that the characteristic's curvature
 counts with its second order only, 1e-8.
 

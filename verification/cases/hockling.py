@@ -1,10 +1,10 @@
 """Torque at which a straight clamped rod leaves its axis (hockling), without and under tension, against Greenhill
 
-A straight wire is clamped at both ends; one end moves along and turns about the axis. Under tension of 0, ¼, ½ and ¾ of
-4π² EI/L² it is twisted until the least eigenvalue of the tangent's symmetric part is zero; there T is read off the
+A straight wire is clamped at both ends; one end moves along and turns about the axis. Under tension of 0, ¼, ½ and ¾
+of 4π² EI/L² it is twisted until the least eigenvalue of the tangent's symmetric part is zero; there T is read off the
 sections. Without tension T L/EI = 2 · 4.493409, under tension it follows from a transcendental equation
-(`references/stability.py`). One per cent below no pivot of the tangent is negative, one per cent above two are: the rod
-may give way to any side.
+(`references/stability.py`). One per cent below no pivot of the tangent is negative, one per cent above two are: the
+rod may give way to any side.
 
 Tolerance: 0.05 (TL/EI)²/n², for 80 rods; the factor is 1.1 to 1.4 times what was found, and the error falls by a
 factor of 6 from 40 to 80 rods. r/L = 3e-3, so that shear counts with (r/2L)² (T L/EI)² E/G, up to 1e-3 of this.
@@ -46,7 +46,7 @@ class TwistedRod:
         if not outcome.converged:
             raise SolveError(f"T L/EI = {torque:g}: {outcome.reason}")
         self.torque = torque
-        return tangent(self.frame.system, self.frame.continuation.newton.load)
+        return tangent(self.frame.system, self.frame.load)
 
     def critical(self, near):
         """T L/EI in the sections where the least eigenvalue vanishes, sought up to 4 % beside `near`."""

@@ -1,9 +1,10 @@
 """Bar stretched by 1 % and then twisted to 2 %, and a thin tube likewise, against integrals of the law's rates
 
 At constant length the twist takes the axial force away: on the yield surface σ = σ0 cos θ, τ = σ0/√3 sin θ, and for an
-ideally plastic point θ(γ) has a closed form (`references/section_integrals.py`, after R. Hill). A thin tube is one such
-point; in a bar γ grows with r, and force and torque are integrals over the radius. For Ck 15 the rates are integrated
-with DOP853 at 40 radii. Without spin, whose second-order stress is another question (case elastic-strain-loop).
+ideally plastic point θ(γ) has a closed form (`references/section_integrals.py`, after R. Hill). A thin tube is one
+such point; in a bar γ grows with r, and force and torque are integrals over the radius. For Ck 15 the rates are
+integrated with DOP853 at 40 radii. Without spin, whose second-order stress is another question (case
+elastic-strain-loop).
 
 Tolerance, of stresses over σ0 and of N and T over their fully plastic values, absolute: backward Euler's first order,
 0.8/steps for σ and N (found: up to 0.53) and 0.1/steps for τ and T (found: up to 0.03). With n rings 0.3/n² is added

@@ -1,10 +1,10 @@
 """Round bar twisted far beyond yield and let go: torque and springback against the integral over the radius
 
 A bar of radius 2.5 is twisted to γ = 2 % at its surface. Ideally plastic, A. Nadai's torque 2π/3 τy (R³ − c³/4) with
-the elastic core's radius c is closed; for linear isotropic hardening and for Ck 15 it is 2π ∫ τ(ϑr) r² dr, with τ(γ) by
-a high-order integration of the law's rates (`references/section_integrals.py`). Let go, a bar that does not yield anew
-turns back by T/GJ; Ck 15 would, so that its springback is not asked for. Without spin, which would add axial stress to
-pure shear.
+the elastic core's radius c is closed; for linear isotropic hardening and for Ck 15 it is 2π ∫ τ(ϑr) r² dr, with τ(γ)
+by a high-order integration of the law's rates (`references/section_integrals.py`). Let go, a bar that does not yield
+anew turns back by T/GJ; Ck 15 would, so that its springback is not asked for. Without spin, which would add axial
+stress to pure shear.
 
 Tolerance: n rings are Gauss's points in r², and τ has a kink at the core's edge: 0.06/n², of which up to 0.053 was
 found from 4 to 32 rings. Backward Euler meets a straight line of hardening whatever the steps are; along the curve of

@@ -1,13 +1,13 @@
 """The elastic rod that is a uniform helix before and after: two nonlinear equations (Kirchhoff and Cosserat).
 
-A helix of radius R and rise h per radian (j² = R² + h²) goes over into one of radius R̄, rise h̄ and λ radians for one;
-its section has the inclination ϑ (A. E. H. Love, Mathematical theory of elasticity, § 271, with shear and extension
-after S. S. Antman). In the section's triad d1 = cos ϑ eθ + sin ϑ ez, d3 = −sin ϑ eθ + cos ϑ ez,
+A helix of radius R and rise h per radian (j² = R² + h²) goes over into one of radius R̄, rise h̄ and λ radians for
+one; its section has the inclination ϑ (A. E. H. Love, Mathematical theory of elasticity, § 271, with shear and
+extension after S. S. Antman). In the section's triad d1 = cos ϑ eθ + sin ϑ ez, d3 = −sin ϑ eθ + cos ϑ ez,
 
     x′ = (λ R̄ eθ + h̄ ez)/j,   Γ1 = x′·d1 − 1,  Γ3 = x′·d3,   K1 = λ sin ϑ/j − h/j²,  K3 = λ cos ϑ/j − R/j²,
 
-and the energy per length ½ (EA Γ1² + GA Γ3² + GJ K1² + EI K3²) is stationary in R̄ and ϑ. Its derivative by the rise per
-length of wire is the axial force F, by λ the axial torque M.
+and the energy per length ½ (EA Γ1² + GA Γ3² + GJ K1² + EI K3²) is stationary in R̄ and ϑ. Its derivative by the rise
+per length of wire is the axial force F, by λ the axial torque M.
 """
 
 from dataclasses import dataclass

@@ -1,0 +1,74 @@
+"""The page docs/verification.md, made from the records of the cases."""
+
+import json
+from pathlib import Path
+
+from coilset.verification import registry
+
+HEAD = """# Verification: what is compared, and how far it is off
+
+`coilset verify` runs these cases, or those that are named; `--fast` those that take seconds, which are part of
+the tests; `--list` names them. It ends with one table of every number: computed, reference, deviation,
+tolerance and verdict. A number that is shown for reading but cannot be judged says why. The references are
+closed solutions, published tables, integrals, or integrations of other equations by other means
+(`verification/references/`); each case's docstring says where they come from and what its tolerance rests on.
+
+This page is written by `coilset verify --page docs/verification.md` from the records in `results/verify/`. Of the
+numbers with one source the one that uses most of its tolerance is given; *n* counts them.
+
+| case | against | n | the closest number | computed | reference | deviation | tolerance | verdict |
+|---|---|---|---|---|---|---|---|---|
+"""
+
+
+def page(folder: str | Path) -> str:
+    """The page in Markdown.
+
+    Args:
+        folder: with a record.json for each case, in a folder of its name; a case without one is named as not run.
+    """
+    rows, texts = [], []
+    for name in registry.names():
+        case, file = registry.load(name), Path(folder) / name / "record.json"
+        speed = "" if case.fast else " *(slow)*"
+        texts.append(f"- **{name}**{speed}: {case.title}")
+        checks = json.loads(file.read_text(encoding="utf-8"))["checks"] if file.exists() else []
+        if not checks or "verdict" not in checks[0]:  # a record of before there were verdicts is as good as none
+            rows.append([f"`{name}`", "", "", "", "", "", "", "", "not run"])
+            continue
+        groups = {}
+        for check in checks:
+            groups.setdefault((check["source"], bool(check["reason"])), []).append(check)
+        for (source, _), group in groups.items():
+            worst = max(group, key=_used)
+            failed = sum(check["verdict"] == "not met" for check in group)
+            verdict = f"{failed} of {len(group)} not met" if failed else worst["verdict"]
+            rows.append([f"`{name}`", source, str(len(group)), worst["quantity"], *_numbers(worst), verdict])
+    lines = ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows]
+    return HEAD + "\n".join(lines) + "\n\n## The cases\n\n" + "\n".join(texts) + "\n"
+
+
+def _used(check):
+    """The share of its tolerance that a number uses; of a number that is not judged, its deviation."""
+    deviation = check["deviation"]
+    if deviation is None:
+        return float("inf")
+    if check["kind"] == "at_most":
+        return deviation
+    return abs(deviation) / (check["tolerance"] or 1.0)
+
+
+def _numbers(check):
+    """Computed, reference, deviation and tolerance as text."""
+    ours = "–" if check["ours"] is None else f"{check['ours']:.6g}"
+    if check["kind"] == "at_most":
+        return ours, f"≤ {check['reference'] + check['tolerance']:.6g}", "", ""
+    number = percent if check["kind"] == "relative" else lambda value: f"{value:+.2g}"
+    tolerance = "–" if check["tolerance"] is None else number(check["tolerance"]).lstrip("+")
+    deviation = "–" if check["deviation"] is None else number(check["deviation"])
+    return ours, f"{check['reference']:.6g}", deviation, tolerance
+
+
+def percent(value: float) -> str:
+    """A part of one in percent, signed."""
+    return f"{100.0 * value:+.3g} %"
