@@ -7,7 +7,6 @@ import numpy as np
 from scipy.interpolate import PPoly
 
 from coilset.meshes import functions
-from coilset.meshes.checks import objections
 from coilset.meshes.ends import OPEN, EndCoils, touching_pitch
 from coilset.meshes.stations import stations
 
@@ -188,11 +187,6 @@ class Spring:
         rest = np.abs(self.height(along[i - 1 : i + 1]) - level) - 0.5 * self.wire(along[i - 1 : i + 1])
         last = along[i - 1] - rest[0] * (along[i] - along[i - 1]) / (rest[1] - rest[0])
         return float(abs(last - along[0]))
-
-    @cached_property
-    def warnings(self):
-        """What a spring maker would warn of: a list of lines with numbers."""
-        return [finding.text for finding in objections(self) if not finding.fatal]
 
     def stations(self, elements_per_turn=16, sagitta=None):
         """Increasing turns of the nodes of a line mesh, see `coilset.meshes.stations.stations`."""

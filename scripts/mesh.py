@@ -7,12 +7,13 @@ from mpi4py import MPI
 from rich.console import Console
 from rich.table import Table
 
-from coilset.meshes.data import spring_data
-from coilset.meshes.steel import STEEL, Elastic
 from coilset.model.case import read_case
 from coilset.model.errors import InputError
 from coilset.model.material import library
 from coilset.model.results.folder import whole
+from coilset.model.standards.data import spring_data
+from coilset.model.standards.steel import STEEL, Elastic
+from coilset.model.standards.warnings import spring_warnings
 
 FILES = ("drawing.png", "spring.png")
 
@@ -44,8 +45,8 @@ def mesh(case_file, out=None, force=False, settings=(), write=(), pictures=True)
     except InputError as error:
         raise InputError(error.problem, error.place, error.file or case_file) from None
     console.print(_table(spring_data(spring, Elastic(law.G, law.E, getattr(law, "density", STEEL.density))), turns))
-    for warning in spring.warnings:
-        console.print(f"[yellow]warning:[/] {warning}")
+    for warning in spring_warnings(spring):
+        console.print(f"[yellow]warning:[/] {warning.text}")
     for path in write:
         from coilset.meshes.export import write_mesh
 

@@ -15,6 +15,7 @@ from coilset.model.errors import CoilsetError, InputError, SolveError
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.folder import prepare, write_history, write_seats, write_summary
 from coilset.model.results.summary import summarise
+from coilset.model.standards.warnings import spring_warnings
 from coilset.scripts.interactive import Prompt
 from coilset.scripts.interrupt import Interrupt
 
@@ -66,7 +67,8 @@ def _begin(analysis, out, resume):
 
 
 def _announce(console, analysis, case_file, resume):
-    for warning in [*analysis.case.notices(), *analysis.spring.warnings]:
+    about_spring = [warning.text for warning in spring_warnings(analysis.spring)]
+    for warning in [*analysis.case.notices(), *about_spring]:
         console.print(f"[yellow]warning:[/] {warning}")
     targets = ", ".join(phase.label for phase in analysis.case.loading)
     elements, ranks = len(analysis.setup.turns) - 1, analysis.comm.size

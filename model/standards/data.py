@@ -4,26 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coilset.meshes import functions
-from coilset.meshes.checks import buckling_travel
-from coilset.meshes.steel import STEEL
-
-
-def torsion_rate(spring, shear_modulus):
-    """Initial rate if only the wire's torsion counts and the pitch is small, N/mm.
-
-    Castigliano's `1/R = 64/G ∫ r³/d⁴ dt` over the active turns: R = G d⁴/(8 D³ n) of EN 13906-1 for a cylinder, and
-    R = G d⁴/(2 n (D1 + D2)(D1² + D2²)) for a cone (Wahl, Mechanical Springs, chapter on conical springs).
-
-    Args:
-        spring: `Spring`.
-        shear_modulus: G, MPa.
-    """
-    start, end = spring.bottom.end_turns, spring.turns - spring.top.end_turns
-    breaks = np.concatenate([[start], spring.breaks[(spring.breaks > start) & (spring.breaks < end)], [end]])
-    return shear_modulus / (
-        64 * functions.integral(lambda t: spring.mean_radius(t) ** 3 / spring.wire_diameter(t) ** 4, breaks).sum()
-    )
+from coilset.meshes.geometry import Spring
+from coilset.model.standards.buckling import buckling_travel
+from coilset.model.standards.rate import torsion_rate
+from coilset.model.standards.steel import STEEL, Elastic
 
 
 @dataclass(frozen=True)
@@ -48,11 +32,11 @@ class SpringData:
     rate: float
 
     @property
-    def is_cylinder(self):
+    def is_cylinder(self) -> bool:
         """Whether diameter and wire do not change, so that the rate is that of EN 13906-1."""
         return all(high - low < 1e-9 * high for low, high in (self.wire_diameter, self.mean_diameter))
 
-    def rows(self):
+    def rows(self) -> list[tuple[str, str, str]]:
         """Label, text and unit of every entry, for a table."""
 
         def span(pair):
@@ -82,7 +66,7 @@ class SpringData:
         ]
 
 
-def spring_data(spring, material=STEEL):
+def spring_data(spring: Spring, material: Elastic = STEEL) -> SpringData:
     """The data of a spring.
 
     Args:
@@ -113,6 +97,6 @@ def spring_data(spring, material=STEEL):
         mass=spring.volume * material.density,
         index=span(D / d),
         slenderness=spring.free_length / float(D.min()),
-        buckling_travel=float(buckling_travel(spring, material.shear_modulus / material.young_modulus)),
-        rate=float(torsion_rate(spring, material.shear_modulus)),
+        buckling_travel=buckling_travel(spring, material.shear_modulus / material.young_modulus),
+        rate=torsion_rate(spring, material.shear_modulus),
     )

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.checks import buckling_travel
-from coilset.meshes.data import spring_data, torsion_rate
 from coilset.meshes.spring import SpringSpec
-from coilset.meshes.steel import STEEL
+from coilset.model.standards.buckling import buckling_travel
+from coilset.model.standards.data import spring_data
+from coilset.model.standards.rate import torsion_rate
+from coilset.model.standards.steel import STEEL
 
 G = 81500.0
 

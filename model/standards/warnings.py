@@ -1,0 +1,116 @@
+"""What a spring maker would warn of, each warning with its numbers; nothing here forbids a spring."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from coilset.meshes.checks import TOUCH
+from coilset.meshes.ends import touching_pitch
+from coilset.meshes.geometry import Spring
+from coilset.model.standards.buckling import buckling_travel
+
+INDEX_USUAL = (4.0, 20.0)  # EN 15800, table 1: cold coiled springs
+ACTIVE_LEAST = 2.0  # EN 13906-1: number of active coils
+TIP_LEAST = 0.25  # of the wire's diameter
+
+
+@dataclass(frozen=True)
+class Warning:
+    """One thing to think about before the spring is made.
+
+    Attributes:
+        code: short name of the kind of warning, such as `index` or `buckling`.
+        place: entry of the case file that it is about.
+        text: one line for people, with its numbers.
+        numbers: the same numbers by name, with the unit in the name, for programs.
+    """
+
+    code: str
+    place: str
+    text: str
+    numbers: dict[str, float] = field(default_factory=dict)
+
+
+def spring_warnings(spring: Spring) -> list[Warning]:
+    """All warnings about the unloaded spring itself."""
+    return [warning for check in (_index, _solid_coils, _active, _ground, _buckling) for warning in check(spring)]
+
+
+def _index(spring: Spring) -> Iterator[Warning]:
+    t = spring.breaks
+    index = 2 * spring.mean_radius(t) / spring.wire_diameter(t)
+    low, high = INDEX_USUAL
+    i = np.argmin(index) if index.min() < low else np.argmax(index)
+    if not low <= index[i] <= high:
+        yield Warning(
+            "index",
+            "spring.mean_diameter",
+            f"D/d = {index[i]:.3g} at turn {t[i]:.3g} is outside of the "
+            f"{low:g} to {high:g} usual in cold coiling (EN 15800)",
+            {"index": float(index[i]), "turn": float(t[i]), "least": low, "greatest": high},
+        )
+
+
+def _solid_coils(spring: Spring) -> Iterator[Warning]:
+    t = spring.breaks
+    body = (t >= spring.bottom.end_turns + spring.bottom.transition_turns) & (
+        t <= spring.turns - spring.top.end_turns - spring.top.transition_turns
+    )
+    play = spring.pitch(t) - touching_pitch(spring.wire_diameter(t), spring.slope(t))
+    solid = t[body & (play < TOUCH * spring.wire_diameter(t))]
+    if spring.turns >= 1 and len(solid) > 1:
+        pitch = float(spring.pitch(solid).min())
+        yield Warning(
+            "solid coils",
+            "spring.pitch",
+            "coils of the body are solid before any load, between the turns "
+            f"{solid[0]:.3g} and {solid[-1]:.3g}; their pitch is {pitch:.4g} mm",
+            {"first_turn": float(solid[0]), "last_turn": float(solid[-1]), "pitch_mm": pitch},
+        )
+
+
+def _active(spring: Spring) -> Iterator[Warning]:
+    if spring.active_turns < ACTIVE_LEAST:
+        yield Warning(
+            "active turns",
+            "spring.turns",
+            f"only {spring.active_turns:.3g} active turns; formulas for rate "
+            f"and stress need {ACTIVE_LEAST:g} or more (EN 13906-1)",
+            {"active_turns": spring.active_turns, "least": ACTIVE_LEAST},
+        )
+
+
+def _ground(spring: Spring) -> Iterator[Warning]:
+    for end, name, turn in ((spring.bottom, "bottom", 0.0), (spring.top, "top", spring.turns)):
+        d = float(spring.wire_diameter(turn))
+        if end.tip_thickness < TIP_LEAST:
+            yield Warning(
+                "ground tip",
+                "spring.end_coils",
+                f"the ground {name} end is {end.tip_thickness * d:.3g} mm "
+                f"thin at its tip, less than a quarter of the wire ({TIP_LEAST * d:.3g} mm)",
+                {"tip_mm": end.tip_thickness * d, "least_mm": TIP_LEAST * d},
+            )
+        flat = spring.flat_turns(name)
+        if flat > end.end_turns + 1e-9:
+            yield Warning(
+                "ground flat",
+                "spring.end_coils",
+                f"the flat of the {name} end runs over {flat:.3g} turns "
+                f"and cuts into the transition; its end turns are {end.end_turns:.3g}",
+                {"flat_turns": flat, "end_turns": end.end_turns},
+            )
+
+
+def _buckling(spring: Spring) -> Iterator[Warning]:
+    travel, limit = spring.free_length - spring.block_height, buckling_travel(spring)
+    if limit < travel:
+        slender = spring.free_length / float(2 * np.min(spring.mean_radius(spring.breaks)))
+        yield Warning(
+            "buckling",
+            "spring.free_length",
+            f"slender, L0/D = {slender:.3g}: unguided it buckles at "
+            f"{limit:.3g} mm of travel on parallel seats, before its block at {travel:.3g} mm (EN 13906-1)",
+            {"slenderness": slender, "buckling_travel_mm": limit, "block_travel_mm": travel},
+        )
