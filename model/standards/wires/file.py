@@ -1,0 +1,223 @@
+"""Schema of the files of wires: numbers over the wire's diameter, each with its sources and how sure it is."""
+
+import math
+from bisect import bisect_left
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+Sure = Literal["checked against a second source", "one source", "estimate"]
+Text = Annotated[str, Field(min_length=1)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Numbers = Annotated[tuple[Positive, ...], Field(min_length=1)]
+Decade = tuple[Positive, Positive]  # value at 1 mm, decrease per decade of the diameter
+
+
+class Entry(BaseModel):
+    """A part of a file of wires."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Sourced(Entry):
+    """What every number says of itself: keys of the file's sources, and how sure it is."""
+
+    sources: tuple[Text, ...]
+    sure: Sure
+    remark: Text = ""
+
+    @model_validator(mode="after")
+    def _has_sources(self):
+        needed = {"checked against a second source": 2, "one source": 1, "estimate": 0}[self.sure]
+        if len(self.sources) < needed:
+            raise ValueError(f"'{self.sure}' needs {needed} source(s), {len(self.sources)} given")
+        return self
+
+
+class Number(Sourced):
+    """A number that is the same for all diameters (`value`), or one for each range of diameters, mm."""
+
+    value: Positive | None = None
+    up_to: Numbers | None = None
+    values: Numbers | None = None
+
+    @model_validator(mode="after")
+    def _one_of_both(self):
+        table = self.up_to is not None and self.values is not None
+        if (self.value is None) != table or (self.up_to is None) != (self.values is None):
+            raise ValueError("give value, or up_to and values")
+        _same_length(self.up_to, self.values)
+        return self
+
+    def at(self, diameter: float) -> float:
+        """The number at a diameter, mm; the last range goes on without end."""
+        if self.value is not None:
+            return self.value
+        return self.values[min(bisect_left(self.up_to, diameter), len(self.values) - 1)]
+
+
+class Tolerance(Sourced):
+    """Tolerance of the wire's diameter, mm, by ranges of diameters."""
+
+    up_to: Numbers
+    plus_minus: Numbers
+
+    @model_validator(mode="after")
+    def _fits(self):
+        _same_length(self.up_to, self.plus_minus)
+        return self
+
+    def at(self, diameter: float) -> float | None:
+        """Tolerance at a diameter, mm; None above the last range."""
+        i = bisect_left(self.up_to, diameter)
+        return self.plus_minus[i] if i < len(self.plus_minus) else None
+
+
+class _Piece(Entry):
+    diameters: tuple[Positive, Positive]
+
+    def covers(self, diameter: float) -> bool:
+        """Whether the diameter is in the range of this piece, both ends included."""
+        return self.diameters[0] <= diameter <= self.diameters[1]
+
+
+class Logarithm(_Piece):
+    """Rm = a − b lg(d / 1 mm)."""
+
+    form: Literal["logarithm"]
+    at_1_mm: Positive  # a, N/mm²
+    per_decade: Positive  # b, N/mm²
+
+    def at(self, diameter: float) -> float:
+        """Strength, N/mm²."""
+        return self.at_1_mm - self.per_decade * math.log10(diameter)
+
+
+class Power(_Piece):
+    """Rm = A / (d / 1 mm)^m."""
+
+    form: Literal["power"]
+    at_1_mm: Positive  # A, N/mm²
+    exponent: Positive  # m
+
+    def at(self, diameter: float) -> float:
+        """Strength, N/mm²."""
+        return self.at_1_mm / diameter**self.exponent
+
+
+class Table(_Piece):
+    """Values at diameters, in between linear over lg d."""
+
+    form: Literal["table"]
+    at_: Annotated[Numbers, Field(alias="at")]
+    values: Numbers
+
+    @model_validator(mode="after")
+    def _fits(self):
+        _same_length(self.at_, self.values)
+        return self
+
+    def at(self, diameter: float) -> float:
+        """Strength, N/mm²."""
+        return float(np.interp(math.log10(diameter), np.log10(self.at_), self.values))
+
+
+class Steps(_Piece):
+    """One value for each range of diameters, its upper end included."""
+
+    form: Literal["steps"]
+    up_to: Numbers
+    values: Numbers
+
+    @model_validator(mode="after")
+    def _fits(self):
+        _same_length(self.up_to, self.values)
+        if self.up_to[-1] != self.diameters[1]:
+            raise ValueError("the last of up_to must be the last of diameters")
+        return self
+
+    def at(self, diameter: float) -> float:
+        """Strength, N/mm²."""
+        return self.values[bisect_left(self.up_to, diameter)]
+
+
+class Strength(Sourced):
+    """Least tensile strength Rm over the diameter, in pieces."""
+
+    pieces: Annotated[
+        tuple[Annotated[Logarithm | Power | Table | Steps, Field(discriminator="form")], ...], Field(min_length=1)
+    ]
+    greatest: Positive | None = None  # N/mm²
+
+    def at(self, diameter: float) -> float | None:
+        """Rm at a diameter in mm, N/mm²; None where no piece covers it."""
+        for piece in self.pieces:
+            if piece.covers(diameter):
+                return min(piece.at(diameter), self.greatest or math.inf)
+        return None
+
+
+class Endurance(Sourced):
+    """Line of the Goodman diagram of corrected stresses: values a, b of a − b lg(d / 1 mm), N/mm².
+
+    From the upper stress `at_zero` over lower stress 0 straight to `limit` over `knee`, from there on `limit`.
+    """
+
+    surface: Literal["as coiled", "shot peened"]
+    cycles: Positive
+    at_zero: Decade
+    knee: Decade
+    limit: Decade
+
+
+class WireEntry(Entry):
+    """One wire; moduli and strengths in N/mm², density in kg/mm³, decrease of G in 1/K, the others shares of Rm."""
+
+    grade: Text
+    young_modulus: Number
+    shear_modulus: Number
+    density: Number
+    shear_modulus_decrease: Number | None = None
+    strength: Strength
+    block_stress: Number
+    elastic_limit: Number
+    proof_stress: Number
+    diameter_tolerance: Tolerance | None = None
+    endurance: tuple[Endurance, ...] = ()
+
+    def sourced(self) -> list[tuple[str, Sourced]]:
+        """All sourced entries by name."""
+        found = [(name, value) for name, value in self if isinstance(value, Sourced)]
+        return found + [(f"endurance, {line.surface}", line) for line in self.endurance]
+
+
+class WireFile(Entry):
+    """A whole file: the sources, what all its wires have in common, the wires, and what could not be found."""
+
+    standard: Text
+    title: Text
+    sources: dict[str, Text]
+    wires: Annotated[tuple[WireEntry, ...], Field(min_length=1)]
+    missing: tuple[Text, ...] = ()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _with_common(cls, data):
+        data = dict(data)
+        common = data.pop("common", {})
+        return data | {"wires": [common | wire for wire in data.get("wires", [])]}
+
+    @model_validator(mode="after")
+    def _known_sources(self):
+        for wire in self.wires:
+            for name, entry in wire.sourced():
+                for key in entry.sources:
+                    if key not in self.sources:
+                        raise ValueError(f"{wire.grade}, {name}: the source '{key}' is not among the file's sources")
+        return self
+
+
+def _same_length(first, second):
+    if first is not None and len(first) != len(second):
+        raise ValueError(f"{len(first)} diameters but {len(second)} values")

@@ -1,0 +1,52 @@
+"""The wires that come with coilset."""
+
+from difflib import get_close_matches
+from functools import cache
+from pathlib import Path
+
+from coilset.model.case import check, load_yaml
+from coilset.model.errors import InputError
+from coilset.model.standards.wires.file import WireFile
+from coilset.model.standards.wires.wire import Wire
+
+FOLDER = Path(__file__).parent
+
+
+@cache
+def files() -> dict[str, WireFile]:
+    """The checked files by the name of their standard."""
+    read = {}
+    for path in sorted(FOLDER.glob("*.yaml")):
+        file = check(load_yaml(path.read_text(encoding="utf-8"), path), path, WireFile)
+        read[file.standard] = file
+    return read
+
+
+@cache
+def _wires():
+    return {f"{standard} {entry.grade}": (file, entry) for standard, file in files().items() for entry in file.wires}
+
+
+def names() -> list[str]:
+    """Names of all wires, such as `EN 10270-1 SH` or `ASTM A228`."""
+    return list(_wires())
+
+
+def wire(name: str) -> Wire:
+    """A wire by its name; letters' case and the number of spaces do not matter.
+
+    Raises:
+        InputError: if there is no such wire.
+    """
+    by_key = {_key(known): known for known in names()}
+    if _key(name) not in by_key:
+        near = [by_key[key] for key in get_close_matches(_key(name), by_key, 1, 0.7)]
+        known = f"is {near[0]} meant?" if near else f"known are {', '.join(names())}"
+        raise InputError(f"'{name}' is no wire; {known}", "material.wire")
+    name = by_key[_key(name)]
+    file, entry = _wires()[name]
+    return Wire(name, entry, file.sources)
+
+
+def _key(name):
+    return "".join(str(name).split()).casefold()

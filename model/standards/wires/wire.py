@@ -1,0 +1,76 @@
+"""A spring wire of a standard: its properties at a diameter, and where each number comes from."""
+
+from dataclasses import dataclass
+
+from coilset.model.errors import InputError
+from coilset.model.standards.steel import Elastic
+from coilset.model.standards.wires.file import Endurance, Sourced, WireEntry
+
+ROOM_TEMPERATURE = 293.15  # K
+
+
+@dataclass(frozen=True)
+class Wire:
+    """A wire of a standard.
+
+    Attributes:
+        name: standard and grade, such as `EN 10270-1 SH`.
+        entry: its numbers with their sources.
+        sources: what the keys of the sources stand for.
+    """
+
+    name: str
+    entry: WireEntry
+    sources: dict[str, str]
+
+    def strength(self, diameter: float) -> float:
+        """Least tensile strength Rm at a diameter in mm, N/mm².
+
+        Raises:
+            InputError: if the diameter is outside of what is known.
+        """
+        value = self.entry.strength.at(diameter)
+        if value is None:
+            ranges = " and ".join(f"{low:g} to {high:g}" for low, high in self.ranges)
+            raise InputError(f"the strength of '{self.name}' is not known at {diameter:g} mm; known for {ranges} mm",
+                             "material.wire")  # fmt: skip
+        return value
+
+    @property
+    def ranges(self) -> list[tuple[float, float]]:
+        """Ranges of diameters for which the strength is known, mm; ranges that touch are one."""
+        joined: list[tuple[float, float]] = []
+        for low, high in sorted(piece.diameters for piece in self.entry.strength.pieces):
+            if joined and low <= joined[-1][1]:
+                joined[-1] = (joined[-1][0], max(high, joined[-1][1]))
+            else:
+                joined.append((low, high))
+        return joined
+
+    def elastic(self, diameter: float) -> Elastic:
+        """Moduli in MPa and density in kg/mm³ at a diameter in mm, 20 °C."""
+        entry = self.entry
+        return Elastic(*(number.at(diameter) for number in (entry.shear_modulus, entry.young_modulus, entry.density)))
+
+    def shear_modulus_factor(self, temperature: float) -> float | None:
+        """G at a temperature in K over G at 20 °C, G = G20 (1 − r (θ − 20 °C)); None if r is not known."""
+        decrease = self.entry.shear_modulus_decrease
+        return None if decrease is None else 1 - decrease.at(1.0) * (temperature - ROOM_TEMPERATURE)
+
+    def block_stress(self, diameter: float) -> float:
+        """Uncorrected shear stress that is allowed at block, N/mm²."""
+        return self.entry.block_stress.at(diameter) * self.strength(diameter)
+
+    def diameter_tolerance(self, diameter: float) -> float | None:
+        """Tolerance of the wire's diameter, mm; None if it is not known."""
+        tolerance = self.entry.diameter_tolerance
+        return None if tolerance is None else tolerance.at(diameter)
+
+    def endurance(self, surface: str = "as coiled") -> Endurance | None:
+        """Line of the Goodman diagram of a surface, `as coiled` or `shot peened`; None if it is not known."""
+        return next((line for line in self.entry.endurance if line.surface == surface), None)
+
+    def citation(self, entry: Sourced) -> str:
+        """How sure a number is, its sources and its remark, in one line."""
+        parts = [entry.sure, "; ".join(self.sources[key] for key in entry.sources), entry.remark]
+        return ": ".join(part for part in parts if part)
