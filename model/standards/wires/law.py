@@ -1,0 +1,68 @@
+"""The law of a wire by its name: elasticity of the standard, hardening estimated from its least strength."""
+
+from coilset.model.material.law import Law, MaterialFile
+from coilset.model.standards.steel import Elastic
+from coilset.model.standards.wires.hardening import Curve, curve
+from coilset.model.standards.wires.library import wire
+from coilset.model.standards.wires.wire import ROOM_TEMPERATURE, Wire
+
+ASSUMPTIONS = (
+    "estimate, until a test of the wire is given: saturating isotropic hardening (Voce, in the plastic work) through "
+    "the elastic limit {elastic:.4g} and the 0.2 % proof stress {proof:.4g} to the least strength {strength:.4g} "
+    "N/mm²; a uniform plastic strain of {uniform:.2g} % follows from it. The same in torsion after von Mises; no Bauschinger "
+    "effect, which makes residual stresses of strongly preset springs too high; no stresses from drawing and coiling, "
+    "no change by tempering; delivered wire is stronger than the least strength, in EN 10270-1 by up to 17 %"
+)
+
+
+def hardening_curve(wire: Wire, diameter: float) -> Curve:
+    """The estimated hardening curve of a wire at a diameter, mm."""
+    strength, elastic, entry = wire.strength(diameter), wire.elastic(diameter), wire.entry
+    nu = poisson_ratio(elastic)
+    shares = entry.elastic_limit.at(diameter), entry.proof_stress.at(diameter)
+    return curve(shares[0] * strength, shares[1] * strength, strength, elastic.young_modulus, nu)
+
+
+def poisson_ratio(elastic: Elastic) -> float:
+    """ν = E/(2G) − 1 of the two moduli that a standard gives; for some wires it is no property of theirs."""
+    return elastic.young_modulus / (2 * elastic.shear_modulus) - 1
+
+
+def wire_law(name: str, diameter: float) -> Law:
+    """The law of a wire at a diameter, marked as an estimate.
+
+    Args:
+        name: name of a wire, as in `coilset.model.standards.wires.names()`.
+        diameter: of the wire, mm.
+
+    Returns:
+        Law at 20 °C; its validity ends at the plastic work of the uniform strain.
+
+    Raises:
+        InputError: no such wire, or a diameter for which its strength is not known.
+    """
+    known = wire(name)
+    elastic, found = known.elastic(diameter), hardening_curve(known, diameter)
+    peak, strength = found.stress_at_greatest_force, known.strength(diameter)
+    start, saturation = found.start**2 / 1.5, found.saturation**2 / 1.5
+    remark = ASSUMPTIONS.format(
+        elastic=known.entry.elastic_limit.at(diameter) * strength,
+        proof=known.entry.proof_stress.at(diameter) * strength,
+        strength=strength, uniform=100 * found.uniform_strain,
+    )  # fmt: skip
+    data = {
+        "name": f"{known.name}, {diameter:g} mm",
+        "description": f"Spring wire {known.name} of {diameter:g} mm; hardening is an estimate",
+        "source": "strength " + known.citation(known.entry.strength),
+        "units": "N, mm, K",
+        "validity": {"plastic_work": found.work(peak), "remark": remark},
+        "temperatures": [{
+            "temperature": ROOM_TEMPERATURE,
+            "elasticity": {"G": elastic.shear_modulus, "nu": poisson_ratio(elastic)},
+            "isotropic": {"k0_squared": start, "saturation": {
+                "b1": 0.0, "k1_squared": start, "k_inf_squared": saturation, "a4": found.rate}},
+            "kinematic": "none",
+            "non_normality": "none",
+        }],
+    }  # fmt: skip
+    return Law(MaterialFile.model_validate(data))

@@ -1,0 +1,64 @@
+"""The estimated hardening of a wire: the tensile test of its law gives back the numbers it was made from."""
+
+import numpy as np
+import pytest
+
+from coilset.model.errors import InputError
+from coilset.model.material.points import initial_state, update
+from coilset.model.standards.wires import wire
+from coilset.model.standards.wires.hardening import curve
+from coilset.model.standards.wires.law import wire_law
+
+
+def tensile_test(law, strain_end=0.04, steps=4000):
+    """Logarithmic plastic strain and test stress of a rod point that is pulled, by the return mapping."""
+    state, rows = initial_state(law, 1), []
+    increment = np.array([[strain_end / steps, 0.0, 0.0]])
+    for step in range(1, steps + 1):
+        state = update(law, state, increment)[0]
+        stress = state[0, 0]
+        plastic = step * strain_end / steps - stress / law.E
+        # section: exp(−εp) by plastic strain, (1 − ν σ/E)² by elastic strain, written otherwise than in the curve
+        rows.append((plastic, stress * np.exp(-plastic) * (1 - law.nu * stress / law.E) ** 2))
+    return np.array(rows).T
+
+
+@pytest.mark.parametrize(("name", "diameter"), [("EN 10270-1 SH", 3.0), ("EN 10270-2 VDSiCr", 4.0)])
+def test_tensile_test_of_the_law(name, diameter):
+    law, known = wire_law(name, diameter), wire(name)
+    plastic, stress = tensile_test(law)
+    strength = known.strength(diameter)
+    assert stress.max() == pytest.approx(strength, rel=1e-3)
+    assert np.interp(0.002, plastic, stress) == pytest.approx(known.entry.proof_stress.value * strength, rel=1e-3)
+    first = stress[plastic > 1e-9][0]
+    assert first == pytest.approx(known.entry.elastic_limit.value * strength, rel=5e-3)
+
+
+def test_validity_ends_with_the_uniform_strain():
+    law = wire_law("EN 10270-1 DM", 2.0)
+    plastic, stress = tensile_test(law)
+    peak = stress.argmax()
+    # ∫ σ dεp up to the greatest force, with the true stress σ = s exp(εp) (1 + …)
+    true = stress[:peak] * np.exp(plastic[:peak]) / (1 - law.nu * stress[:peak] / law.E) ** 2
+    assert law.validity.plastic_work == pytest.approx(np.trapezoid(true, plastic[:peak]), rel=2e-2)
+
+
+def test_law_says_that_it_is_an_estimate():
+    law = wire_law("EN 10270-1 SH", 3.0)
+    assert law.validity.remark.startswith("estimate")
+    assert (law.G, round(law.E)) == (81500.0, 206000)
+    assert law.name == "EN 10270-1 SH, 3 mm"
+
+
+def test_stronger_wire_yields_later():
+    assert wire_law("EN 10270-1 SH", 1.0).yield_stress > wire_law("EN 10270-1 SH", 5.0).yield_stress
+
+
+def test_curve_wants_ascending_numbers():
+    with pytest.raises(ValueError, match="must ascend"):
+        curve(900.0, 800.0, 1000.0, 206e3, 0.3)
+
+
+def test_unknown_diameter_is_refused():
+    with pytest.raises(InputError, match=r"is not known at 30 mm; known for 0\.3 to 20 mm"):
+        wire_law("EN 10270-1 SH", 30.0)

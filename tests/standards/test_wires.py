@@ -1,0 +1,123 @@
+"""Wires by name against printed tables, and what a user can get wrong."""
+
+from itertools import pairwise
+
+import pytest
+
+from coilset.model.errors import InputError
+from coilset.model.standards.wires import names, wire
+from coilset.model.standards.wires.file import WireFile
+
+# Least strengths of EN 10270-1, N/mm², some rows of the tables of springcalc 0.1.24, which are rounded to 10
+TABLES = {
+    "SL": {1.0: 1720, 1.25: 1660, 1.6: 1590, 2.1: 1510, 2.8: 1420,
+           3.4: 1370, 4.5: 1290, 6.0: 1210, 8.0: 1120, 10.0: 1060},
+    "SM": {0.3: 2370, 0.4: 2270, 0.6: 2140, 1.0: 1980, 1.6: 1830,
+           2.5: 1690, 4.0: 1530, 6.3: 1390, 10.0: 1240, 20.0: 1020},
+    "DM": {0.34: 2330, 0.5: 2200, 0.75: 2070, 1.2: 1920, 1.9: 1770,
+           3.0: 1630, 5.0: 1460, 8.0: 1310, 13.0: 1160, 17.0: 1070},
+    "SH": {0.3: 2660, 0.4: 2560, 0.6: 2410, 1.0: 2230, 1.6: 2060,
+           2.5: 1900, 4.0: 1740, 6.3: 1570, 10.0: 1410, 20.0: 1160},
+    "DH": {0.1: 2800, 0.2: 2800, 0.25: 2720, 0.28: 2680, 0.5: 2480,
+           1.2: 2170, 3.0: 1840, 5.0: 1660, 9.0: 1450, 16.0: 1240},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("grade", TABLES)
+def test_patented_wire_is_the_table_within_its_rounding(grade):
+    found = wire(f"EN 10270-1 {grade}")
+    for diameter, strength in TABLES[grade].items():
+        assert found.strength(diameter) == pytest.approx(strength, abs=5)
+
+
+def test_other_printed_values():
+    assert wire("EN 10270-1 DM").strength(5.0) == pytest.approx(1460, abs=5)  # HeliSpring, spring S.198
+    assert wire("EN 10270-3 1.4310 HS").strength(1.6) == pytest.approx(1910, abs=5)  # HeliSpring, spring S.202
+    # Metalle Schmidt, least strengths at 0.5 mm
+    for grade, strength in {"FDC": 1900, "FDSiCr": 2100, "FDSiCrV": 2280, "TDSiCr": 2080, "VDSiCrV": 2230}.items():
+        assert wire(f"EN 10270-2 {grade}").strength(0.5) == strength
+    # Cecchi, EN 10270-3, 1.4310: 0.4 < d ≤ 0.5 and 4.25 < d ≤ 5.0
+    stainless = wire("EN 10270-3 1.4310")
+    assert [stainless.strength(d) for d in (0.4, 0.41, 0.5, 4.25, 4.3, 5.0)] == [2100, 2050, 2050, 1500, 1450, 1450]
+
+
+# Shigley's A and m of Rm = A/d^m, the range of diameters, and how far the files' tables may be from it (their remarks)
+SHIGLEY = {
+    "A228": (2211, 0.145, (0.1016, 6.35), (0.93, 0.995)), "A227": (1783, 0.190, (0.7, 12.7), (0.97, 1.015)),
+    "A231": (2005, 0.168, (0.8, 11.1), (0.96, 1.01)), "A313 302": (1867, 0.146, (0.3, 2.03), (0.97, 1.03)),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("grade", SHIGLEY)
+def test_tables_of_astm_lie_near_the_handbook(grade):
+    A, m, (low, high), (least, greatest) = SHIGLEY[grade]
+    for i in range(11):
+        diameter = low * (high / low) ** (i / 10)
+        assert least < wire(f"ASTM {grade}").strength(diameter) / (A / diameter**m) < greatest
+
+
+def test_strength_falls_with_the_diameter_and_moduli_are_those_of_steel():
+    for name in names():
+        found = wire(name)
+        for low, high in found.ranges:
+            values = [found.strength(low * (high / low) ** (i / 50)) for i in range(51)]
+            assert all(b <= a + 1e-9 for a, b in pairwise(values)), name
+            assert 800 < values[-1] <= values[0] < 3200
+        elastic = found.elastic(found.ranges[0][0])
+        assert 65e3 < elastic.shear_modulus < 85e3
+        assert 0.2 < elastic.young_modulus / (2 * elastic.shear_modulus) - 1 < 0.4
+        assert 7.8e-6 < elastic.density < 8.01e-6
+
+
+def test_each_number_says_how_sure_it_is():
+    for name in names():
+        found = wire(name)
+        for _, entry in found.entry.sourced():
+            assert found.citation(entry).startswith(entry.sure)
+    assert wire("EN 10270-2 TDC").entry.strength.sure == "one source"
+
+
+def test_modulus_over_temperature():
+    # 0.25 ‰ a kelvin: 1 − 0.00025 · 80 at 100 °C
+    assert wire("EN 10270-1 SH").shear_modulus_factor(373.15) == pytest.approx(0.98)
+    assert wire("EN 10270-3 1.4310").shear_modulus_factor(373.15) == pytest.approx(0.968)
+    assert wire("ASTM A228").shear_modulus_factor(373.15) is None
+
+
+def test_name_is_found_however_it_is_spaced():
+    assert wire("en10270-1  sh") is not None
+    assert wire("en10270-1  sh").name == "EN 10270-1 SH"
+
+
+WRONG = [
+    (lambda: wire("EN 10270-1 SX"), "material.wire: 'EN 10270-1 SX' is no wire; is EN 10270-1 "),
+    (lambda: wire("copper"), "material.wire: 'copper' is no wire; known are ASTM A228, "),
+    (lambda: wire("EN 10270-1 SL").strength(0.5),
+     "material.wire: the strength of 'EN 10270-1 SL' is not known at 0.5 mm; known for 1 to 10 mm"),
+    (lambda: wire("EN 10270-3 1.4401").strength(1.2),
+     "material.wire: the strength of 'EN 10270-3 1.4401' is not known at 1.2 mm; known for 0.05 to 1 and 1.5 to 6 mm"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("ask", "message"), WRONG)
+def test_wrong_wires_have_one_line(ask, message):
+    with pytest.raises(InputError) as error:
+        ask()
+    assert str(error.value).startswith(message)
+
+
+def test_numbers_without_their_sources_are_refused():
+    number = {"value": 1.0, "sources": ["a"], "sure": "one source"}
+    strength = {"pieces": [{"form": "power", "diameters": [1, 2], "at_1_mm": 1, "exponent": 1}], **number}
+    strength.pop("value")
+    common = {name: number for name in ("young_modulus", "shear_modulus", "density", "block_stress", "elastic_limit",
+                                        "proof_stress")}  # fmt: skip
+    file = {"standard": "S", "title": "T", "sources": {"a": "A"}, "common": common,
+            "wires": [{"grade": "G", "strength": strength}]}  # fmt: skip
+    assert WireFile.model_validate(file).wires[0].strength.at(2.0) == 0.5
+    with pytest.raises(ValueError, match="the source 'b' is not among"):
+        WireFile.model_validate(file | {"common": common | {"density": number | {"sources": ["b"]}}})
+    with pytest.raises(ValueError, match=r"needs 2 source\(s\), 1 given"):
+        WireFile.model_validate(
+            file | {"common": common | {"density": number | {"sure": "checked against a second source"}}}
+        )
