@@ -1,5 +1,7 @@
 """The rate of a spring from its wire's torsion alone."""
 
+from typing import Literal
+
 import numpy as np
 
 from coilset.meshes import functions
@@ -20,3 +22,25 @@ def torsion_rate(spring: Spring, shear_modulus: float) -> float:
     breaks = np.concatenate([[start], spring.breaks[(spring.breaks > start) & (spring.breaks < end)], [end]])
     compliance = functions.integral(lambda t: spring.mean_radius(t) ** 3 / spring.wire_diameter(t) ** 4, breaks).sum()
     return float(shear_modulus / (64 * compliance))
+
+
+def pitch_compliance(angle: float, nu: float, ends: Literal["turning", "held"] = "turning") -> float:
+    """Compliance of a cylindrical spring over that of R = G d⁴/(8 D³ n), because its wire rises.
+
+    An axial force F on a helix of radius r and pitch angle α twists the wire by F r cos α and bends it by F r sin α,
+    over the length 2π r n/cos α. With EI = (1 + ν) G Ip of round wire, Castigliano gives for ends that may turn
+
+        cos α (1 + tan²α/(1 + ν)) = 1 + tan²α (1 − ν)/(2 (1 + ν)) + O(α⁴).
+
+    Ends that are held add a couple T about the axis, which makes the rotation zero; the moments are F r cos α + T sin α
+    and F r sin α − T cos α, and what remains is 1/[cos α (cos²α + (1 + ν) sin²α)] = 1 + tan²α (½ − ν) + O(α⁴).
+
+    Args:
+        angle: pitch angle α, rad; tan α = pitch/(π D).
+        nu: Poisson's ratio.
+        ends: whether the ends may turn about the axis.
+    """
+    s, c = np.sin(angle), np.cos(angle)
+    if ends == "turning":
+        return float(c + s**2 / ((1 + nu) * c))
+    return float(1 / (c * (c**2 + (1 + nu) * s**2)))

@@ -1,0 +1,111 @@
+"""Compression springs of round wire after EN 13906-1: each formula a function, with its source or its derivation.
+
+Symbols of the standard: d wire diameter, D mean coil diameter, w = D/d, n active and n_t all turns, s travel, F force,
+L0 free and Lc block length. N, mm, MPa, kg; frequency in Hz.
+"""
+
+from math import pi, sqrt
+from typing import Literal
+
+from coilset.model.standards.buckling import critical_travel
+
+Ends = Literal["closed and ground", "closed"]
+
+__all__ = [
+    "block_length", "critical_travel", "energy", "gap_sum", "mass", "natural_frequency",
+    "outer_diameter_growth", "rate", "stress", "stress_correction", "wire_length",
+]  # fmt: skip
+
+DYNAMIC_GAPS = 1.5  # EN 13906-1: Sa of cold coiled springs under alternating load over that at rest
+
+
+def rate(shear_modulus: float, d: float, D: float, n: float) -> float:
+    """Spring rate R = G d⁴/(8 D³ n), N/mm.
+
+    Castigliano for the wire's torsion alone: the moment F D/2 on the length π D n with G π d⁴/32.
+    """
+    return shear_modulus * d**4 / (8 * D**3 * n)
+
+
+def stress(force: float, d: float, D: float) -> float:
+    """Uncorrected shear stress τ = 8 D F/(π d³), MPa: that of the moment F D/2 at the surface of a straight wire."""
+    return 8 * D * force / (pi * d**3)
+
+
+def stress_correction(w: float) -> float:
+    """Stress correction k = (w + 0.5)/(w − 0.75) for the curvature of the wire and the direct shear (Bergsträsser).
+
+    τk = k τ is the stress at the inside of the coil. The factors of Wahl and of Göhner lie within 2 % for w of 4 to 20.
+    """
+    return (w + 0.5) / (w - 0.75)
+
+
+def block_length(ends: Ends, turns: float, greatest_d: float) -> float:
+    """Upper bound of the block length of a cold coiled spring, mm.
+
+    Lc = n_t d_max for closed and ground ends, (n_t + 1.5) d_max for closed ends that are not ground.
+
+    Args:
+        ends: form of the ends; the standard has no block length for open ends of cold coiled springs.
+        turns: n_t, all turns.
+        greatest_d: d_max, wire diameter with its tolerance, mm.
+    """
+    return (turns if ends == "closed and ground" else turns + 1.5) * greatest_d
+
+
+def gap_sum(d: float, D: float, n: float, dynamic: bool = False) -> float:
+    """Least sum of the gaps between the active coils of a cold coiled spring, Sa = n (0.0015 D²/d + 0.1 d), mm.
+
+    It stays free at the smallest working length Ln = Lc + Sa; under alternating load 1.5 times as much.
+    """
+    return n * (0.0015 * D**2 / d + 0.1 * d) * (DYNAMIC_GAPS if dynamic else 1.0)
+
+
+def energy(spring_rate: float, travel: float) -> float:
+    """Work stored in a linear spring, W = R s²/2, N mm."""
+    return 0.5 * spring_rate * travel**2
+
+
+def wire_length(D: float, turns: float) -> float:
+    """Length of the wire without the pitch, l = π D n_t, mm; a helix is longer by 1/cos α."""
+    return pi * D * turns
+
+
+def mass(density: float, d: float, length: float) -> float:
+    """Mass of the wire, m = ρ π d² l/4, kg, with ρ in kg/mm³."""
+    return density * 0.25 * pi * d**2 * length
+
+
+def natural_frequency(shear_modulus: float, density: float, d: float, D: float, n: float) -> float:
+    """First natural frequency of a spring whose both ends are held, f = d/(2π n D²) √(G/(2ρ)), Hz.
+
+    A standing wave of half a length: f = ½ √(R/m) with the mass m of the active turns. With G in MPa, ρ in kg/dm³ and
+    mm this is the standard's f = 3560 d/(n D²) √(G/ρ): 10⁶ √10⁻³ /(2√2 π) = 3559.
+
+    Args:
+        shear_modulus: G, MPa.
+        density: ρ, kg/mm³.
+        d: wire diameter, mm.
+        D: mean diameter, mm.
+        n: active turns.
+    """
+    return d / (2 * pi * n * D**2) * sqrt(1e3 * shear_modulus / (2 * density))  # MPa mm²/kg · mm = 10³ mm²/s²
+
+
+def outer_diameter_growth(d: float, D: float, pitch: float, nu: float = 0.25) -> float:
+    """Growth of the diameter from the free spring to its block if the ends may turn, mm.
+
+    Derivation: by the twist the pitch angle goes from α0 = m/(π D) to α = d/(π D), with the force F r² = G Ip (α0 − α);
+    its moment F r sin α bends the wire by F r α/(EI). From κ = cos²α/r follows, to the second order,
+
+        ΔD = [m² − m d/(1 + ν) − d² ν/(1 + ν)]/(π² D).
+
+    The standard's ΔDe = 0.1 (m² − 0.8 m d − 0.2 d²)/D is this with ν = ¼ and 1/π² ≈ 0.1.
+
+    Args:
+        d: wire diameter, mm.
+        D: mean diameter, mm.
+        pitch: m of the free spring, mm.
+        nu: Poisson's ratio.
+    """
+    return (pitch**2 - pitch * d / (1 + nu) - d**2 * nu / (1 + nu)) / (pi**2 * D)

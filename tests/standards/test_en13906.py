@@ -1,0 +1,132 @@
+"""Formulas of EN 13906-1 against printed sheets of springs and against derivations that do not use them."""
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from coilset.model.standards import en13906
+from coilset.model.standards.buckling import critical_travel
+from coilset.model.standards.rate import pitch_compliance
+
+G, E, ν = 81500.0, 206000.0, 206000.0 / 163000.0 - 1
+
+
+def test_printed_sheet_of_helispring():
+    # HeliSpring, DIN EN 13906-1, spring S.198: De 39.6, d 5, n 9.5, F1 280 N, F2 620 N, alternating load
+    d, D, n = 5.0, 34.6, 9.5
+    rate = en13906.rate(G, d, D, n)
+    assert rate == pytest.approx(16.181, abs=5e-4)
+    assert 280 / rate == pytest.approx(17.3, abs=0.05)
+    assert 620 / rate == pytest.approx(38.3, abs=0.05)
+    assert en13906.gap_sum(d, D, n, dynamic=True) == pytest.approx(12.3, abs=0.06)  # printed to 0.1, rounded up
+
+
+def test_printed_sheet_of_a_catalogue_spring():
+    # Gutekunst D-313J-02: d 3.6, De 31.6, L0 53.9, R 14.172, smallest length Ln 30.78, Fn 327.71, 300.88 if alternating
+    d, D, n = 3.6, 28.0, 5.5
+    rate = en13906.rate(G, d, D, n)
+    assert rate == pytest.approx(14.172, abs=5e-4)
+    block = en13906.block_length("closed and ground", n + 2, d)
+    smallest = block + en13906.gap_sum(d, D, n)
+    assert smallest == pytest.approx(30.78, abs=5e-3)
+    assert rate * (53.9 - smallest) == pytest.approx(327.71, abs=0.1)
+    assert rate * (53.9 - block - en13906.gap_sum(d, D, n, dynamic=True)) == pytest.approx(300.88, abs=0.1)
+
+
+def test_stress_is_that_of_the_moment_and_fits_the_travel():
+    d, D, n, s = 4.0, 32.0, 6.0, 25.0
+    force = en13906.rate(G, d, D, n) * s
+    moment, section = force * D / 2, np.pi * d**3 / 16
+    assert en13906.stress(force, d, D) == pytest.approx(moment / section)
+    assert en13906.stress(force, d, D) == pytest.approx(G * d * s / (np.pi * n * D**2))  # the standard's second form
+
+
+@pytest.mark.parametrize("w", [4.0, 5.0, 6.3, 8.0, 12.0, 20.0])
+def test_stress_correction_agrees_with_others(w):
+    wahl = (4 * w - 1) / (4 * w - 4) + 0.615 / w
+    göhner = 1 + 5 / (4 * w) + 7 / (8 * w**2) + 1 / w**3
+    assert en13906.stress_correction(w) == pytest.approx(wahl, rel=0.02)
+    assert en13906.stress_correction(w) == pytest.approx(göhner, rel=0.02)
+
+
+def haringx(length, D, seating, d=1.0, n=10.0):
+    """Travel at which F (1 + F/S) = π² B/(ν L)², by its rigidities and a root of this equation alone."""
+    C = en13906.rate(G, d, D, n) * length
+    inertia, polar = np.pi * d**4 / 64, np.pi * d**4 / 32
+    per_length = length / (np.pi * D * n)  # height for a length of wire
+    B = per_length * 2 / (1 / (E * inertia) + 1 / (G * polar))  # half of the turns is bent, half is twisted
+    # a coil that is pushed sideways bends in its own plane: ∫ (r cos φ)² r dφ/(EI) = π r³/(EI) a turn
+    S = length / n / (np.pi * (D / 2) ** 3 / (E * inertia))
+
+    def excess(ξ):
+        F, b, s = C * ξ, B * (1 - ξ), S * (1 - ξ)
+        return F * (1 + F / s) - np.pi**2 * b / (seating * length * (1 - ξ)) ** 2
+
+    return length * brentq(excess, 1e-9, 0.5 / (1 - G / E))
+
+
+@pytest.mark.parametrize(("slenderness", "seating"), [(5.4, 0.5), (8.0, 0.5), (15.0, 0.5), (3.0, 1.0), (6.0, 2.0)])
+def test_buckling_is_haringx_with_the_square(slenderness, seating):
+    found = critical_travel(slenderness * 10.0, 10.0, G / E, seating)
+    assert found == pytest.approx(haringx(slenderness * 10.0, 10.0, seating), rel=1e-8)
+
+
+def test_short_springs_do_not_buckle():
+    limit = np.pi / 0.5 * np.sqrt((1 - G / E) / (0.5 + G / E))
+    assert limit == pytest.approx(5.16, abs=0.01)
+    assert critical_travel(0.999 * limit * 10.0, 10.0, G / E) == np.inf
+    assert critical_travel(1.001 * limit * 10.0, 10.0, G / E) < 0.5 / (1 - G / E) * limit * 10.0
+
+
+def test_natural_frequency_is_that_of_a_half_wave():
+    d, D, n, ρ = 4.0, 32.0, 6.0, 7.85e-6
+    rate = en13906.rate(G, d, D, n) * 1e3  # N/m
+    mass = en13906.mass(ρ, d, en13906.wire_length(D, n))
+    assert en13906.natural_frequency(G, ρ, d, D, n) == pytest.approx(0.5 * np.sqrt(rate / mass), rel=1e-12)
+    # the standard's number, ρ in kg/dm³
+    assert en13906.natural_frequency(G, ρ, d, D, n) == pytest.approx(
+        3560 * d / (n * D**2) * np.sqrt(G / 7.85), rel=1e-3
+    )
+
+
+def test_growth_of_the_diameter_is_the_standards():
+    d, D, m = 4.0, 32.0, 10.0
+    assert en13906.outer_diameter_growth(d, D, m) == pytest.approx(
+        0.1 * (m**2 - 0.8 * m * d - 0.2 * d**2) / D, rel=0.014
+    )
+
+
+def helix_compliance(angle, held):
+    """Travel for a force of 1 of a helix of radius 1, by the moments of force and couple along the wire, as vectors."""
+    φ = np.linspace(0, 2 * np.pi, 2001)
+    zero = np.zeros_like(φ)
+    tangent = np.stack([-np.cos(angle) * np.sin(φ), np.cos(angle) * np.cos(φ), np.sin(angle) + zero], axis=1)
+    arm = np.stack([np.cos(φ), np.sin(φ), zero], axis=1)
+    axis = np.array([0.0, 0.0, 1.0])
+    ds = (φ[1] - φ[0]) / np.cos(angle)
+
+    def work(first, second):
+        """∫ (Mt Mt′/G Ip + Mb Mb′/EI) ds with G Ip = 1, EI = 1 + ν."""
+        t1, t2 = (first * tangent).sum(1), (second * tangent).sum(1)
+        integrand = t1 * t2 + ((first * second).sum(1) - t1 * t2) / (1 + ν)
+        return 0.5 * (integrand[1:] + integrand[:-1]).sum() * ds
+
+    by_force, by_couple = np.cross(arm, axis), np.broadcast_to(axis, arm.shape)
+    travel = work(by_force, by_force)
+    if held:
+        travel -= work(by_force, by_couple) ** 2 / work(by_couple, by_couple)
+    return travel
+
+
+@pytest.mark.parametrize("ends", ["turning", "held"])
+@pytest.mark.parametrize("angle", [0.05, 0.15, 0.4])
+def test_pitch_compliance_by_castigliano(angle, ends):
+    found = helix_compliance(angle, ends == "held") / helix_compliance(0.0, False)
+    assert pitch_compliance(angle, ν, ends) == pytest.approx(found, rel=1e-9)
+
+
+def test_pitch_compliance_to_the_second_order():
+    t = np.tan(0.1)
+    assert pitch_compliance(0.1, ν) == pytest.approx(1 + t**2 * (1 - ν) / (2 * (1 + ν)), abs=t**4)
+    assert pitch_compliance(0.1, ν, "held") == pytest.approx(1 + t**2 * (0.5 - ν), abs=t**4)
+    assert pitch_compliance(0.1, ν) > 1.002
