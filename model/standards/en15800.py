@@ -1,8 +1,8 @@
 """Tolerances of cold coiled compression springs after EN 15800 (formerly DIN 2095), in three grades.
 
-The table of the coil diameter was found in three sources (SpringOne; Gutekunst's blog, grades 1 to 3; Industrial Springs,
-grade 2). The formulas of force and free length were found in one (SpringOne); the tolerance that they give for the
-spring D-313J-02 is 2.3 % above the ±1.44 mm that its maker prints.
+The table of the coil diameter was found in three sources (SpringOne; Gutekunst's blog; Industrial Springs for grade 2).
+The formulas of force and free length were found in one (SpringOne); the tolerance that they give for the spring
+D-313J-02 is 2.3 % above the ±1.44 mm that its maker prints.
 """
 
 from bisect import bisect_left

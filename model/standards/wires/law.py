@@ -11,7 +11,8 @@ ASSUMPTIONS = (
     "the elastic limit {elastic:.4g} and the 0.2 % proof stress {proof:.4g} to the least strength {strength:.4g} "
     "N/mm²; a uniform plastic strain of {uniform:.2g} % follows from it. The same in torsion after von Mises; no "
     "Bauschinger effect, which makes residual stresses of strongly preset springs too high; no stresses from drawing "
-    "and coiling, no change by tempering; delivered wire is stronger than the least strength, in EN 10270-1 by up to 17 %"
+    "and coiling, no change by tempering; delivered wire is stronger than the least strength, by up to 17 % in "
+    "EN 10270-1"
 )
 
 

@@ -1,0 +1,67 @@
+"""The cylindrical spring of one wire that EN 13906-1 is about, read off a spring's geometry."""
+
+from dataclasses import dataclass
+from math import atan, pi
+from typing import Literal
+
+import numpy as np
+
+from coilset.meshes.geometry import Spring
+from coilset.model.errors import InputError
+
+SAME = 1e-9  # relative change of diameter and wire along a cylinder
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """A cylindrical compression spring; lengths in mm.
+
+    Attributes:
+        d: wire diameter.
+        D: mean coil diameter.
+        turns: all turns n_t.
+        n: active turns.
+        length: free length L0.
+        pitch: mean rise of an active turn.
+        ends: form of both ends; `mixed` if they differ.
+        solid: block length of the geometry, every coil on the next.
+    """
+
+    d: float
+    D: float
+    turns: float
+    n: float
+    length: float
+    pitch: float
+    ends: Literal["open", "closed", "closed and ground", "mixed"]
+    solid: float
+
+    @classmethod
+    def of(cls, spring: Spring) -> "Cylinder":
+        """The cylinder that a spring is.
+
+        Raises:
+            InputError: if its coil or wire diameter changes.
+        """
+        t = spring.breaks
+        d, D = spring.wire_diameter(t), 2 * spring.mean_radius(t)
+        for values, name, place in ((D, "mean diameter", "mean_diameter"), (d, "wire diameter", "wire_diameter")):
+            low, high = float(values.min()), float(values.max())
+            if high - low > SAME * high:
+                raise InputError(f"EN 13906-1 is for cylinders of one wire; the {name} goes from {low:.4g} to "
+                                 f"{high:.4g} mm", f"spring.{place}")  # fmt: skip
+        start, end = spring.bottom.end_turns, spring.turns - spring.top.end_turns
+        pitch = float(spring.height(end) - spring.height(start)) / spring.active_turns
+        ends = spring.bottom.form if spring.bottom.form == spring.top.form else "mixed"
+        return cls(float(np.mean(d)), float(np.mean(D)), spring.turns, spring.active_turns, spring.free_length, pitch,
+                   ends, spring.block_height)  # fmt: skip
+
+    @property
+    def index(self) -> float:
+        """w = D/d."""
+        return self.D / self.d
+
+    @property
+    def pitch_angle(self) -> float:
+        """α of the active turns, rad."""
+        return atan(self.pitch / (pi * self.D))

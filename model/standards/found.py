@@ -1,0 +1,108 @@
+"""What a results folder says about the quantities that the formulas give."""
+
+import csv
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from coilset.model.errors import InputError
+
+MIDDLE = (0.25, 0.75)  # share of the turns that is the body, away from the ends
+
+
+@dataclass(frozen=True)
+class Found:
+    """Numbers of a run, N, mm, MPa; None where the run did not reach what is asked.
+
+    Attributes:
+        summary: summary.json.
+        heights, forces: of the seats after each step, shape (steps,).
+        residual: shear stress about the wire's axis in the released spring, mean over the outermost ring of section
+            points and over the middle half of the turns; negative if it opposes the load's stress.
+        ring: radius of that ring over the wire's radius.
+    """
+
+    summary: dict[str, Any]
+    heights: np.ndarray
+    forces: np.ndarray
+    residual: float | None
+    ring: float | None
+
+    def get(self, name: str) -> float | None:
+        """An entry of the summary; None if it is not there."""
+        value = self.summary.get(name)
+        return None if value is None else float(value)
+
+    def force_at(self, length: float) -> float | None:
+        """Force when the spring last passed a length; None if it never did."""
+        high, low = np.maximum(self.heights[1:], self.heights[:-1]), np.minimum(self.heights[1:], self.heights[:-1])
+        passed = np.flatnonzero((low <= length) & (length <= high) & (high > low))
+        if len(passed) == 0:
+            return None
+        i = passed[-1]
+        share = (length - self.heights[i]) / (self.heights[i + 1] - self.heights[i])
+        return float(self.forces[i] + share * (self.forces[i + 1] - self.forces[i]))
+
+    def work_to(self, length: float) -> float | None:
+        """Work of the first compression to a length, ∫ F ds, N mm; None if it was not reached so."""
+        first = int(np.argmin(self.heights)) + 1
+        heights, forces = self.heights[:first], self.forces[:first]
+        if length < heights[-1] - 1e-9 or np.any(np.diff(heights) > 0):
+            return None
+        grid = np.append(heights[heights > length], length)
+        values = np.interp(-grid, -heights, forces)
+        return float(0.5 * np.sum((values[1:] + values[:-1]) * -np.diff(grid)))
+
+
+def read(folder: str | Path) -> Found:
+    """Read a results folder of `coilset solve`.
+
+    Raises:
+        InputError: if it holds no summary or history that can be read.
+    """
+    folder = Path(folder)
+    summary = _read(folder / "summary.json", lambda file: json.load(file))
+    rows = _read(folder / "history.csv", lambda file: list(csv.DictReader(file)))
+    try:
+        heights = [summary["free_length_before_mm"], *(float(row["seat_height_mm"]) for row in rows)]
+        forces = [0.0, *(float(row["force_N"]) for row in rows)]
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(f"is no result of coilset solve ({error})", "--results", folder) from None
+    residual, ring = _residual(folder / "points.nc")
+    return Found(summary, np.array(heights), np.array(forces), residual, ring)
+
+
+def _read(path, parse):
+    try:
+        with open(path, encoding="utf-8", newline="") as file:
+            return parse(file)
+    except (OSError, UnicodeDecodeError, ValueError, csv.Error) as error:
+        raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", "--results", path) from None
+
+
+def _residual(path):
+    """Residual shear about the wire's axis, signed by the load's, and the radius of its ring over the wire's."""
+    if not path.exists():
+        return None, None
+    with xr.open_dataset(path, engine="h5netcdf") as data:
+        force = data["force"].values
+        loaded = int(np.argmax(np.abs(force)))
+        if not force[loaded] or abs(force[-1]) > 1e-6 * abs(force[loaded]):
+            return None, None
+        turn = data["turn"].values
+        middle = 0.5 * (turn[1:] + turn[:-1]) / turn[-1]
+        body = (middle > MIDDLE[0]) & (middle < MIDDLE[1])
+        y, z = data["y"].values, data["z"].values
+        distance = np.hypot(y, z)
+        outer = distance[0] > (1 - 1e-6) * distance[0].max()
+        state = data["history"].values[[loaded, -1]]
+    across = (state[..., 2] * y[:, None] - state[..., 1] * z[:, None]) / np.maximum(distance, 1e-300)[:, None]
+    at_load, released = across[:, body][..., outer].mean(axis=(1, 2, 3))
+    # the rule's points on the unit disk: Σ w r² = ½ for a wire of radius 1
+    with xr.open_dataset(path, engine="h5netcdf") as data:
+        radius = np.sqrt(2 * float((data["weight"].values * distance[0] ** 2).sum()))
+    return float(released * np.sign(at_load)), float(distance[0].max() / radius)

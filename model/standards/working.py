@@ -1,0 +1,54 @@
+"""What a spring maker would warn of at the working lengths and about presetting; `warnings` is on the spring itself."""
+
+from collections.abc import Sequence
+
+from coilset.model.standards import en13906
+from coilset.model.standards.cylinder import Cylinder
+from coilset.model.standards.warnings import Warning
+from coilset.model.standards.wires.wire import Wire
+
+PRESETTING_LEAST = 0.1  # of the travel to block; a rule of thumb without a source
+
+
+def gap_warnings(spring: Cylinder, lengths: Sequence[float], dynamic: bool = False) -> list[Warning]:
+    """Working lengths, mm, at which the gaps between the coils add up to less than Sa of EN 13906-1."""
+    needed = en13906.gap_sum(spring.d, spring.D, spring.n, dynamic)
+    return [
+        Warning("gap", "loading", f"at {length:.4g} mm the gaps between the coils add up to "
+                f"{length - spring.solid:.3g} mm, less than the {needed:.3g} mm of EN 13906-1", {
+                    "length_mm": length, "gap_mm": length - spring.solid, "least_mm": needed})
+        for length in lengths if length - spring.solid < needed
+    ]  # fmt: skip
+
+
+def stress_warnings(spring: Cylinder, shear_modulus: float, lengths: Sequence[float], wire: Wire) -> list[Warning]:
+    """Lengths, mm, at which the nominal uncorrected stress is above what the wire is allowed at block."""
+    allowed = wire.block_stress(spring.d)
+    rate = en13906.rate(shear_modulus, spring.d, spring.D, spring.n)
+    found = []
+    for length in lengths:
+        stress = en13906.stress(rate * (spring.length - length), spring.d, spring.D)
+        if stress > allowed:
+            found.append(
+                Warning("stress", "loading", f"at {length:.4g} mm the nominal shear stress is {stress:.4g} N/mm², "
+                        f"above the {allowed:.4g} N/mm² that {wire.name} is allowed", {
+                            "length_mm": length, "stress_MPa": stress, "allowed_MPa": allowed})
+            )  # fmt: skip
+    return found
+
+
+def presetting_warning(set_mm: float, travel: float) -> Warning | None:
+    """Presetting that takes less than a tenth of the travel to block.
+
+    Such a spring goes on setting in service. The bound is a rule of thumb for which no source was found.
+
+    Args:
+        set_mm: shortening of the free spring by presetting, mm.
+        travel: from the free length before presetting to block, mm.
+    """
+    if set_mm >= PRESETTING_LEAST * travel:
+        return None
+    share = set_mm / travel
+    return Warning("presetting", "loading", f"presetting takes {set_mm:.3g} mm, {100 * share:.2g} % of the travel to "
+                   f"block; {100 * PRESETTING_LEAST:g} % or more is usual",
+                   {"set_mm": set_mm, "travel_mm": travel, "least_share": PRESETTING_LEAST})  # fmt: skip

@@ -1,0 +1,66 @@
+"""Warnings at working lengths and about presetting, each just on either side of its bound."""
+
+import pytest
+
+from coilset.meshes.spring import SpringSpec
+from coilset.model.errors import InputError
+from coilset.model.standards.cylinder import Cylinder
+from coilset.model.standards.warnings import Warning
+from coilset.model.standards.wires import wire
+from coilset.model.standards.working import gap_warnings, presetting_warning, stress_warnings
+
+SPEC = {
+    "wire_diameter": 4.0,
+    "mean_diameter": 32.0,
+    "turns": 7.5,
+    "free_length": 60.0,
+    "end_coils": "closed and ground",
+}
+
+
+def cylinder(**entries):
+    return Cylinder.of(SpringSpec.model_validate(SPEC | entries).build())
+
+
+def test_cylinder_of_a_spring():
+    found = cylinder()
+    assert (found.d, found.D, found.turns, found.n, found.ends) == (4.0, 32.0, 7.5, 5.5, "closed and ground")
+    assert found.length == pytest.approx(60.0)
+    assert found.solid == pytest.approx(28.0)
+    # ground tips take 2 · 0.25 · 4 mm off the rise of the centre line, end coils rise by 4 mm each: 60 + 2 = 2 · 4 + 5.5 m
+    assert found.pitch == pytest.approx((60.0 + 2.0 - 8.0) / 5.5)
+
+
+def test_other_shapes_are_refused():
+    with pytest.raises(InputError) as error:
+        cylinder(mean_diameter={"shape": "cone", "bottom": 40.0, "top": 30.0}, end_coils="open")
+    assert str(error.value) == (
+        "spring.mean_diameter: EN 13906-1 is for cylinders of one wire; the mean diameter goes from 30 to 40 mm"
+    )
+
+
+def test_gap():
+    # Sa = 5.5 (0.0015 · 32²/4 + 0.4) = 4.312 mm over the block length of 28 mm
+    assert gap_warnings(cylinder(), [50.0, 32.32]) == []
+    (found,) = gap_warnings(cylinder(), [50.0, 32.3])
+    assert found.text == "at 32.3 mm the gaps between the coils add up to 4.3 mm, less than the 4.31 mm of EN 13906-1"
+    assert found.numbers["least_mm"] == pytest.approx(4.312)
+    assert len(gap_warnings(cylinder(), [32.32], dynamic=True)) == 1
+
+
+def test_stress():
+    # R = 81500 · 4⁴/(8 · 32³ · 5.5) = 14.47 N/mm; τ = 8 D R s/(π d³) = 18.42 s; 0.56 (2230 − 820 lg 4) = 972.3 N/mm²
+    known = wire("EN 10270-1 SH")
+    bound = 972.35 / 18.425
+    assert stress_warnings(cylinder(free_length=90.0), 81500.0, [90 - bound + 0.1], known) == []
+    (found,) = stress_warnings(cylinder(free_length=90.0), 81500.0, [90 - bound - 0.1], known)
+    assert found.code == "stress"
+    assert found.numbers["allowed_MPa"] == pytest.approx(972.3, abs=0.1)
+    assert "EN 10270-1 SH is allowed" in found.text
+
+
+def test_presetting():
+    assert presetting_warning(3.3, 32.0) is None
+    found = presetting_warning(1.6, 32.0)
+    assert isinstance(found, Warning)
+    assert found.text == "presetting takes 1.6 mm, 5 % of the travel to block; 10 % or more is usual"
