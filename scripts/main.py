@@ -56,6 +56,30 @@ def mesh(
 
 
 @app.command()
+def sheet(
+    case: str = typer.Argument(None, help="case file (YAML)"),
+    results: str = typer.Option(None, help="results folder of the case, to show what was found beside the formulas"),
+    wire: str = typer.Option(None, help='wire of a standard, such as "EN 10270-1 SH"; default: the case\'s material'),
+    length: list[float] = typer.Option([], help="working length, mm; give it twice for a cycle; default: the case's"),
+    grade: int = typer.Option(2, min=1, max=3, help="of EN 15800"),
+    surface: str = typer.Option("as coiled", help='"as coiled" or "shot peened", for the endurance'),
+    dynamic: bool = typer.Option(False, "--dynamic", help="the load alternates: larger gaps between the coils"),
+    out: str = typer.Option(None, help="folder of the Goodman diagram; default results/NAME-OF-CASE"),
+    force: bool = typer.Option(False, "--force", help="replace a figure that is there"),
+    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
+    wires: bool = typer.Option(False, "--wires", help="list the wires that are known"),
+    pictures: bool = typer.Option(True, help="draw the Goodman diagram"),
+):
+    """Print rate, stresses, lengths and tolerances of the standards, beside what a run found."""
+    from coilset.scripts import sheet as sheets
+
+    if wires:
+        sheets.list_wires()
+    else:
+        sheets.sheet(case, results, wire, length, grade, surface, dynamic, out, force, settings, pictures)
+
+
+@app.command()
 def sweep(
     sweep_file: str = typer.Argument(metavar="SWEEP", help="sweep file (YAML)"),
     out: str = typer.Option(None, help="results folder; default results/NAME-OF-SWEEP"),

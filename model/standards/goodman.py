@@ -11,6 +11,8 @@ from matplotlib.figure import Figure
 from coilset.model.results.figures import STYLE, save
 from coilset.model.standards.wires.file import Endurance
 
+SUPERSCRIPT = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
+
 
 @dataclass(frozen=True)
 class Line:
@@ -21,6 +23,12 @@ class Line:
     limit: float
     cycles: float
     surface: str
+
+    @property
+    def times(self) -> str:
+        """The number of cycles in words, as 10⁷."""
+        power = round(log10(self.cycles))
+        return f"10{str(power).translate(SUPERSCRIPT)}" if 10.0**power == self.cycles else f"{self.cycles:g}"
 
     def upper(self, lower: float) -> float:
         """Upper stress that is endured over a lower one; below zero the line goes on."""
@@ -60,7 +68,7 @@ def draw(path: Path, title: str, endured: Line, cycle: Cycle, residual: float | 
         figure = Figure(figsize=(6.0, 5.4), layout="constrained")
         axes = figure.add_subplot()
         axes.plot(lower, [endured.upper(x) for x in lower], "k-", lw=1.4,
-                  label=f"endured {endured.cycles:.0e} times, {endured.surface}")  # fmt: skip
+                  label=f"endured {endured.times} times, {endured.surface}")  # fmt: skip
         axes.plot([low, endured.limit], [low, endured.limit], "k:", lw=0.9, label="at rest, τk2 = τk1")
         _mark(axes, cycle, "C0", "working cycle, nominal")
         if residual is not None:

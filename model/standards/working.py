@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
+from coilset.model.standards.goodman import Cycle, Line
 from coilset.model.standards.warnings import Warning
 from coilset.model.standards.wires.wire import Wire
 
@@ -35,6 +36,16 @@ def stress_warnings(spring: Cylinder, shear_modulus: float, lengths: Sequence[fl
                             "length_mm": length, "stress_MPa": stress, "allowed_MPa": allowed})
             )  # fmt: skip
     return found
+
+
+def endurance_warnings(cycle: Cycle, endured: Line) -> list[Warning]:
+    """A cycle of corrected stresses whose range is greater than the wire endures over its lower stress."""
+    spread, allowed = cycle.upper - cycle.lower, endured.stress_range(cycle.lower)
+    if spread <= allowed:
+        return []
+    return [Warning("endurance", "loading", f"the corrected stress varies by {spread:.4g} N/mm² over {cycle.lower:.4g} "
+                    f"N/mm²; {allowed:.4g} N/mm² is endured {endured.times} times, {endured.surface}",
+                    {"range_MPa": spread, "lower_MPa": cycle.lower, "endured_MPa": allowed})]  # fmt: skip
 
 
 def presetting_warning(set_mm: float, travel: float) -> Warning | None:

@@ -27,7 +27,7 @@ def test_cylinder_of_a_spring():
     assert (found.d, found.D, found.turns, found.n, found.ends) == (4.0, 32.0, 7.5, 5.5, "closed and ground")
     assert found.length == pytest.approx(60.0)
     assert found.solid == pytest.approx(28.0)
-    # ground tips take 2 · 0.25 · 4 mm off the rise of the centre line, end coils rise by 4 mm each: 60 + 2 = 2 · 4 + 5.5 m
+    # ground tips take 2 · 0.25 · 4 mm off the rise, end coils rise by 4 mm each: 60 + 2 = 2 · 4 + 5.5 m
     assert found.pitch == pytest.approx((60.0 + 2.0 - 8.0) / 5.5)
 
 

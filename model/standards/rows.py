@@ -1,0 +1,188 @@
+"""Rows of a spring's sheet: quantities by formula, how it was checked, what a run found, and why they differ."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import degrees, isfinite, sqrt
+
+from coilset.model.standards import en13906, en15800
+from coilset.model.standards.buckling import critical_travel
+from coilset.model.standards.rate import pitch_compliance
+from coilset.model.standards.sheet import Sheet
+from coilset.model.standards.wires.law import poisson_ratio
+
+DERIVED, TWO, ONE, GIVEN = "derived", "two sources", "one source", "given"
+SHORT = {"checked against a second source": TWO, "one source": ONE, "estimate": "estimate"}
+AT_BLOCK = 0.01  # of the wire: nearer to the block length of the geometry a run was at block
+
+
+@dataclass(frozen=True)
+class Row:
+    """A line of the sheet.
+
+    Attributes:
+        label, unit: what it is.
+        value: by the formula; None if it cannot be said, and `why` says it.
+        formula: in the letters of the standard.
+        sure: how the formula or number was checked.
+        found: by the run.
+        why: why the two differ, or why there is no value.
+    """
+
+    label: str
+    value: float | None
+    unit: str = ""
+    formula: str = ""
+    sure: str = ""
+    found: float | None = None
+    why: str = ""
+
+
+def sections(sheet: Sheet) -> list[tuple[str, list[Row]]]:
+    """All rows under their headings; headings without rows are left out."""
+    parts = {
+        "Dimensions": _dimensions,
+        "Rate, block and buckling": _spring,
+        "Stresses at block": _stresses,
+        "Working lengths": _working,
+        "Frequency and energy": _dynamics,
+        "Endurance": _endurance,
+        f"Tolerances, EN 15800 grade {sheet.grade}": _tolerances,
+    }
+    return [(title, rows) for title, part in parts.items() if (rows := list(part(sheet)))]
+
+
+def _dimensions(sheet: Sheet) -> Iterator[Row]:
+    s, ρ = sheet.spring, sheet.elastic.density
+    after, set_mm = sheet.at_run("free_length_after_mm"), sheet.at_run("set_mm")
+    nominal = en13906.wire_length(s.D, s.turns)
+    helix = sheet.helix if sheet.found else None
+    mass = None if helix is None else 1e3 * en13906.mass(ρ, s.d, helix)
+    yield Row("wire diameter d", s.d, "mm", "", GIVEN)
+    yield Row("mean diameter D", s.D, "mm", "", GIVEN)
+    yield Row("spring index w", s.index, "", "D/d", DERIVED)
+    yield Row("active turns n", s.n, "", f"of {s.turns:g}, ends {s.ends}", GIVEN)
+    yield Row("free length L0", s.length, "mm", "", GIVEN, after, f"set {set_mm:.4g} mm" if after else "")
+    yield Row("wire length l", nominal, "mm", "π D n_t", DERIVED, helix, "the helix is longer by 1/cos α")
+    yield Row("mass m", 1e3 * en13906.mass(ρ, s.d, nominal), "g", "ρ π d² l/4", DERIVED, mass, "as the wire length")
+    growth = en13906.outer_diameter_growth(s.d, s.D, s.pitch)
+    yield Row("growth of D to block", growth, "mm", "0.1 (m² − 0.8 m d − 0.2 d²)/D", DERIVED)
+
+
+def _spring(sheet: Sheet) -> Iterator[Row]:
+    s, e = sheet.spring, sheet.elastic
+    rate, solid = sheet.rate, s.solid
+    softer = pitch_compliance(s.pitch_angle, poisson_ratio(e), "held" if sheet.clamped else "turning")
+    yield Row("rate R", rate, "N/mm", "G d⁴/(8 D³ n)", DERIVED, sheet.at_run("rate_N_per_mm"),
+              "at first touch, where end turns bear, too; with curvature and direct shear")  # fmt: skip
+    held = "(½ − ν)" if sheet.clamped else "(1 − ν)/(2 (1 + ν))"
+    formula = f"R/(1 + tan²α {held} + …), α = {degrees(s.pitch_angle):.1f}°"
+    yield Row("R of a rising wire", rate / softer, "N/mm", formula, DERIVED)
+    formula = {"closed and ground": "n_t d_max", "closed": "(n_t + 1.5) d_max"}.get(s.ends, "")
+    why = "the formula is an upper bound; the geometry's coils touch"
+    if sheet.block is None:
+        why = f"EN 13906-1 has none for {s.ends} ends"
+    yield Row("block length Lc", sheet.block, "mm", formula, ONE, sheet.at_run("block_height_mm"), why)
+    force = sheet.at_run("force_max_N") if _was_at_block(sheet) else None
+    yield Row("force at block Fc", rate * (s.length - solid), "N", f"R (L0 − {solid:.4g} mm)", DERIVED, force,
+              _why_block(sheet))  # fmt: skip
+    travel = critical_travel(s.length, s.D, e.shear_modulus / e.young_modulus)
+    formula = f"Haringx, ν = 0.5; to block {s.length - solid:.4g} mm"
+    yield Row("travel to buckling", travel if isfinite(travel) else None, "mm", formula, DERIVED, why="never buckles")
+
+
+def _was_at_block(sheet):
+    return sheet.found is not None and sheet.found.heights.min() < sheet.spring.solid + AT_BLOCK * sheet.spring.d
+
+
+def _why_block(sheet):
+    if not _was_at_block(sheet) or not sheet.yield_stress:
+        return ""
+    first = sheet.yield_stress / sqrt(3)
+    if sheet.stress(sheet.spring.solid) <= first:
+        return "coils lie down before block"
+    return f"plastic: τc is above the first yield of {first:.4g} MPa"
+
+
+def _stresses(sheet: Sheet) -> Iterator[Row]:
+    s, wire = sheet.spring, sheet.wire
+    k, τ = en13906.stress_correction(s.index), sheet.stress(s.solid)
+    found = sheet.at_run("shear_max_MPa") if _was_at_block(sheet) else None
+    yield Row("stress τc", τ, "MPa", "8 D Fc/(π d³)", DERIVED, found, "greatest true shear stress at a section point")
+    yield Row("stress correction k", k, "", "(w + 0.5)/(w − 0.75)", TWO)
+    yield Row("corrected stress τkc", k * τ, "MPa", "k τc", TWO)
+    if wire is None:
+        yield Row("allowed at block", None, "MPa", why="the material is no wire of a standard; give --wire")
+        return
+    strength, share = wire.entry.strength, wire.entry.block_stress
+    yield Row("least strength Rm", wire.strength(s.d), "MPa", wire.name, SHORT[strength.sure])
+    yield Row("allowed at block", wire.block_stress(s.d), "MPa", f"{share.at(s.d):g} Rm", SHORT[share.sure])
+
+
+def _working(sheet: Sheet) -> Iterator[Row]:
+    s, k = sheet.spring, en13906.stress_correction(sheet.spring.index)
+    gaps = en13906.gap_sum(s.d, s.D, s.n, sheet.dynamic)
+    yield Row("least sum of gaps Sa", gaps, "mm", f"{'1.5 ' * sheet.dynamic}n (0.0015 D²/d + 0.1 d)", TWO)
+    if sheet.block is not None:
+        yield Row("smallest length Ln", sheet.block + gaps, "mm", "Lc + Sa", TWO)
+    for length in sorted(sheet.lengths, reverse=True):
+        τ, force = sheet.stress(length), sheet.found.force_at(length) if sheet.found else None
+        real = None if force is None else en13906.stress(force, s.d, s.D)
+        yield Row(f"force at {length:.5g} mm", sheet.force(length), "N", "R (L0 − L)", DERIVED, force,
+                  _why_force(sheet, length))  # fmt: skip
+        yield Row("  stress τ", τ, "MPa", "8 D F/(π d³)", DERIVED, real, "nominal, of the force found")
+        yield Row("  corrected stress τk", k * τ, "MPa", "k τ", TWO, None if real is None else k * real, "the same")
+        yield Row("  sum of gaps", length - s.solid, "mm", f"L − {s.solid:.4g} mm", DERIVED)
+
+
+def _why_force(sheet, length):
+    after = sheet.at_run("free_length_after_mm")
+    if after is None:
+        return ""
+    if after <= length:
+        return f"before the spring has set; set to {after:.4g} mm it does not reach this length"
+    return f"after setting R (L0 − L) is {sheet.rate * (after - length):.4g} N"
+
+
+def _dynamics(sheet: Sheet) -> Iterator[Row]:
+    s, e = sheet.spring, sheet.elastic
+    f = en13906.natural_frequency(e.shear_modulus, e.density, s.d, s.D, s.n)
+    yield Row("natural frequency", f, "Hz", "d/(2π n D²) √(G/(2ρ)), ends held", DERIVED)
+    work = sheet.found.work_to(s.solid + AT_BLOCK * s.d) if _was_at_block(sheet) else None
+    yield Row("work to block", 1e-3 * en13906.energy(sheet.rate, s.length - s.solid), "J", "R s²/2", DERIVED,
+              None if work is None else 1e-3 * work, "∫ F ds of the first compression, plastic work in it")  # fmt: skip
+
+
+def _endurance(sheet: Sheet) -> Iterator[Row]:
+    cycle, endured = sheet.cycle, sheet.endured
+    if cycle is None:
+        return
+    yield Row("lower stress τk1", cycle.lower, "MPa", "k τ", TWO)
+    yield Row("range τkh", cycle.upper - cycle.lower, "MPa", "τk2 − τk1", TWO)
+    if endured is None:
+        why = f"no line of {sheet.wire.name}, {sheet.surface}, was found" if sheet.wire else "give --wire"
+        yield Row("range that is endured", None, "MPa", why=why)
+        return
+    residual = sheet.found.residual if sheet.found else None
+    shifted = None if residual is None else endured.stress_range(cycle.shifted(residual).lower)
+    why = "" if residual is None else (
+        f"with the residual {residual:.1f} MPa; the lines hold for set springs, so it may count twice"
+    )  # fmt: skip
+    formula = f"Goodman, {endured.times} times, {endured.surface}"
+    yield Row("range that is endured", endured.stress_range(cycle.lower), "MPa", formula, ONE, shifted, why)
+
+
+def _tolerances(sheet: Sheet) -> Iterator[Row]:
+    s, grade = sheet.spring, sheet.grade
+    reason = en15800.outside(s.d, s.D, s.n, s.length)
+    if reason:
+        yield Row("all", None, why=f"EN 15800 does not cover it: {reason}")
+        return
+    found = en15800.tolerances(grade, sheet.elastic.shear_modulus, s.d, s.D, s.n, s.length)
+    yield Row("mean diameter ±", found.coil_diameter, "mm", "table", TWO)
+    yield Row("free length ±", found.free_length, "mm", "a_F k_f Q/R", ONE)
+    for length in sorted(sheet.lengths, reverse=True):
+        spread = en15800.force_tolerance(grade, s.d, s.D, s.n, sheet.force(length))
+        yield Row(f"force at {length:.5g} mm ±", spread, "N", "(a_F k_f + 0.015 F) Q", ONE)
+    yield Row("lean e1", found.lean, "mm", f"{en15800.LEAN[grade]:g} L0", ONE)
+    if s.ends == "closed and ground":
+        yield Row("parallelism e2", found.parallelism, "mm", f"{en15800.PARALLELISM[grade]:g} De", ONE)

@@ -1,0 +1,109 @@
+"""The sheet of a spring: what the formulas of EN 13906-1 and EN 15800 are given, and the values that rows share."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from coilset.model.loading.program import Phase
+from coilset.model.standards import en13906, en15800, goodman
+from coilset.model.standards.cylinder import Cylinder
+from coilset.model.standards.found import Found
+from coilset.model.standards.steel import Elastic
+from coilset.model.standards.wires.wire import Wire
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """What the sheet is made from; lengths in mm.
+
+    Attributes:
+        spring: the cylinder.
+        elastic: moduli and density.
+        helix: true length of the wire's centre line, mm.
+        wire: wire of a standard, for strength, allowed stress and endurance; None if the material is no such wire.
+        lengths: working lengths.
+        grade: of EN 15800.
+        surface: `as coiled` or `shot peened`, for the endurance.
+        dynamic: whether the load alternates, for Sa.
+        found: of a run; None without one.
+        clamped: whether the ends of the run were clamped.
+        yield_stress: of the run's material in tension, MPa; None if it is not known or elastic.
+    """
+
+    spring: Cylinder
+    elastic: Elastic
+    helix: float
+    wire: Wire | None = None
+    lengths: Sequence[float] = ()
+    grade: en15800.Grade = 2
+    surface: str = "as coiled"
+    dynamic: bool = False
+    found: Found | None = None
+    clamped: bool = False
+    yield_stress: float | None = None
+
+    @property
+    def rate(self) -> float:
+        """R, N/mm."""
+        return en13906.rate(self.elastic.shear_modulus, self.spring.d, self.spring.D, self.spring.n)
+
+    def force(self, length: float) -> float:
+        """Nominal force at a length, N."""
+        return self.rate * (self.spring.length - length)
+
+    def stress(self, length: float) -> float:
+        """Nominal uncorrected shear stress at a length, MPa."""
+        return en13906.stress(self.force(length), self.spring.d, self.spring.D)
+
+    @property
+    def block(self) -> float | None:
+        """Lc of the standard, mm; None for ends that it has no formula for."""
+        s = self.spring
+        if s.ends not in ("closed and ground", "closed"):
+            return None
+        return en13906.block_length(s.ends, s.turns, s.d + self.tolerance_of_wire)
+
+    @property
+    def tolerance_of_wire(self) -> float:
+        """Tolerance of d that counts in d_max, mm; 0 if it is not known."""
+        return (self.wire.diameter_tolerance(self.spring.d) if self.wire else None) or 0.0
+
+    @property
+    def cycle(self) -> goodman.Cycle | None:
+        """Corrected stresses between the longest and the shortest working length; None with less than two."""
+        if len(self.lengths) < 2:
+            return None
+        k = en13906.stress_correction(self.spring.index)
+        return goodman.Cycle(k * self.stress(max(self.lengths)), k * self.stress(min(self.lengths)))
+
+    @property
+    def endured(self) -> goodman.Line | None:
+        """Endurance of the wire; None if it is not known."""
+        endurance = self.wire.endurance(self.surface) if self.wire else None
+        return goodman.line(endurance, self.spring.d) if endurance else None
+
+    def at_run(self, name: str) -> float | None:
+        """An entry of the run's summary; None without a run, or if the run did not reach it."""
+        return self.found.get(name) if self.found else None
+
+
+def working_lengths(phases: Sequence[Phase], free_length: float, rate: float, block: float) -> list[float]:
+    """Lengths that a load program goes to, mm: without block, the unloaded spring, and what is beyond both.
+
+    Args:
+        phases: the case's `loading`.
+        free_length: L0, mm.
+        rate: R, for targets that are forces, N/mm.
+        block: block length of the geometry, mm.
+    """
+    found = []
+    for phase in phases:
+        if phase.to == "block":
+            continue
+        target = phase.to
+        if target.height is not None:
+            length = target.height
+        else:
+            length = free_length - (target.travel if target.travel is not None else target.force / rate)
+        if block < length < free_length and all(abs(length - other) > 1e-9 for other in found):
+            found.append(length)
+    return found

@@ -1,0 +1,117 @@
+"""`coilset sheet`: the formulas of the standards for a case's spring, beside what a run found."""
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+from mpi4py import MPI
+from rich.console import Console
+
+from coilset.model.case import read_case
+from coilset.model.errors import InputError
+from coilset.model.material import library
+from coilset.model.standards import found, goodman
+from coilset.model.standards.cylinder import Cylinder
+from coilset.model.standards.rows import sections
+from coilset.model.standards.sheet import Sheet, working_lengths
+from coilset.model.standards.steel import STEEL, Elastic
+from coilset.model.standards.warnings import spring_warnings
+from coilset.model.standards.wires import names, wire
+from coilset.model.standards.working import endurance_warnings, gap_warnings, presetting_warning, stress_warnings
+
+FIGURE = "goodman.png"
+
+
+def sheet(case_file, results=None, wire_name=None, lengths=(), grade=2, surface="as coiled", dynamic=False, out=None,
+          force=False, settings=(), pictures=True):  # fmt: skip
+    """Print the sheet of a spring and draw its Goodman diagram; see `coilset sheet --help`.
+
+    Raises:
+        InputError: wrong input, a spring that is no cylinder, or a figure that is there already.
+    """
+    if MPI.COMM_WORLD.rank:
+        return  # nothing here is worth dividing
+    console = Console(highlight=False)
+    if case_file is None:
+        raise InputError("name a case file, or give --wires to list the wires", "coilset sheet")
+    case = read_case(case_file, settings)
+    out = Path(out or Path("results") / Path(case_file).stem)
+    run = found.read(results) if results else None
+    try:
+        spring = case.spring.build()
+        made = _sheet(case, spring, run, wire_name, lengths, grade, surface, dynamic)
+    except InputError as error:
+        raise InputError(error.problem, error.place, error.file or case_file) from None
+    drawn = pictures and made.cycle is not None and made.endured is not None
+    if drawn and (out / FIGURE).exists() and not force:
+        raise InputError("is there already; give --force to replace it", "", out / FIGURE)
+    for title, rows in sections(made):
+        console.print(f"[bold]{title}[/]")
+        for line in _lines(rows, run is not None):
+            console.print(line, soft_wrap=True)
+    if run and made.wire:
+        console.print(f"the run was made with the material {run.summary.get('material')}, not with {made.wire.name}")
+    for warning in _warnings(spring, made):
+        console.print(f"[yellow]warning:[/] {warning.text}")
+    if drawn:
+        out.mkdir(parents=True, exist_ok=True)
+        title = f"{made.wire.name}, {made.spring.d:g} mm"
+        goodman.draw(out / FIGURE, title, made.endured, made.cycle, run.residual if run else None)
+        console.print(f"Goodman diagram in {out}{os.sep}{FIGURE}")
+
+
+def list_wires():
+    """Print the wires that are known, the range of their diameters, and how sure their strength is."""
+    console = Console(highlight=False)
+    for name in names():
+        known = wire(name)
+        ranges = ", ".join(f"{low:.4g} to {high:.4g}" for low, high in known.ranges)
+        console.print(f"{name:28} {ranges + ' mm':24} {known.entry.strength.sure}", soft_wrap=True)
+
+
+def _sheet(case, spring, run, wire_name, lengths, grade, surface, dynamic):
+    law, cylinder = library.load(case.material), Cylinder.of(spring)
+    known = wire(wire_name) if wire_name else None
+    elastic = known.elastic(cylinder.d) if known else Elastic(law.G, law.E, getattr(law, "density", STEEL.density))
+    for length in lengths:
+        if not cylinder.solid < length < cylinder.length:
+            raise InputError(
+                f"{length:g} mm is no working length; must be between the block length {cylinder.solid:.4g} and the "
+                f"free length {cylinder.length:.4g} mm", "--length",
+            )  # fmt: skip
+    made = Sheet(cylinder, elastic, spring.wire_length, known, tuple(lengths), grade, surface, dynamic, run,
+                 case.ends == "clamped", law.yield_stress)  # fmt: skip
+    if lengths:
+        return made
+    planned = working_lengths(case.loading, cylinder.length, made.rate, cylinder.solid)
+    return replace(made, lengths=tuple(planned))
+
+
+def _warnings(spring, made):
+    cylinder, warnings = made.spring, spring_warnings(spring)
+    warnings += gap_warnings(cylinder, made.lengths, made.dynamic)
+    if made.wire:
+        lengths = [*made.lengths, cylinder.solid]
+        warnings += stress_warnings(cylinder, made.elastic.shear_modulus, lengths, made.wire)
+    if made.cycle and made.endured:
+        warnings += endurance_warnings(made.cycle, made.endured)
+    set_mm = made.at_run("set_mm")
+    if set_mm is not None:
+        warnings += filter(None, [presetting_warning(set_mm, cylinder.length - cylinder.solid)])
+    return warnings
+
+
+def _lines(rows, beside):
+    """Text of a section: label, value, unit, what was found, formula and how it was checked; reasons on lines below."""
+    width = max(len(row.label) for row in rows)
+    for row in rows:
+        found = _number(row.found) if row.found is not None else ""
+        parts = [f"  {row.label:{width}} {_number(row.value):>9} {row.unit:5}", f"{found:>9}  " if beside else "",
+                 f"{row.formula}  " if row.formula else "", f"[dim]{row.sure}[/]" if row.sure else ""]  # fmt: skip
+        yield "".join(parts).rstrip()
+        if row.why and (row.found is not None or row.value is None):
+            yield f"  {'':{width}} [dim]{row.why}[/]"
+
+
+def _number(value):
+    return "-" if value is None else f"{value:.5g}"

@@ -1,0 +1,154 @@
+"""The sheet of a spring: the printed sheet of another program, what a run found beside it, and the command."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from coilset.model.errors import InputError
+from coilset.model.standards import found, goodman
+from coilset.model.standards.cylinder import Cylinder
+from coilset.model.standards.rows import sections
+from coilset.model.standards.sheet import Sheet
+from coilset.model.standards.wires import wire
+from coilset.scripts.sheet import list_wires, sheet
+
+# HeliSpring, spring S.198: wire DM of 5 mm, De 39.6, n 9.5, n_t 11.5, L0 105.8, 280 N at 88.5 mm, 620 N at 67.5 mm
+PRINTED = Cylinder(5.0, 34.6, 11.5, 9.5, 105.8, 9.547, "closed and ground", 57.5)
+DM = wire("EN 10270-1 DM")
+
+
+def rows(made):
+    return {row.label.strip(): row for _, part in sections(made) for row in part}
+
+
+def test_printed_sheet_of_another_program():
+    made = Sheet(PRINTED, DM.elastic(5.0), 1260.0, DM, (88.5, 67.5), dynamic=True)
+    shown = rows(made)
+    assert shown["spring index w"].value == pytest.approx(6.92)
+    assert shown["least strength Rm"].value == pytest.approx(1460, abs=5)
+    assert shown["rate R"].value == pytest.approx(16.181, abs=5e-4)
+    assert shown["force at 88.5 mm"].value == pytest.approx(280, abs=0.1)
+    assert shown["force at 67.5 mm"].value == pytest.approx(620, abs=0.4)
+    assert shown["least sum of gaps Sa"].value == pytest.approx(12.3, abs=0.06)
+    assert shown["block length Lc"].value == pytest.approx(11.5 * 5.035)  # d_max with the tolerance of EN 10270-1
+    # τ = 8 · 34.6 · 280/(π 125) = 197.4, k = 7.42/6.17
+    assert shown["lower stress τk1"].value == pytest.approx(1.2026 * 197.4, rel=1e-3)
+    assert shown["range that is endured"].value is None  # no endurance of DM is known
+    assert all(row.sure or row.value is None for row in shown.values())
+
+
+def run_folder(folder, residual=-60.0):
+    """A results folder with a spring that was pressed to 60 mm and released to 100 mm, as `coilset solve` writes it."""
+    folder.mkdir()
+    summary = {"free_length_before_mm": 105.8, "free_length_after_mm": 100.0, "set_mm": 5.8, "rate_N_per_mm": 16.0,
+               "force_max_N": 700.0, "shear_max_MPa": 500.0, "block_height_mm": 57.5, "material": "steel"}  # fmt: skip
+    (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    history = "seat_height_mm,force_N\n80,400\n60,700\n80,350\n100,0\n"
+    (folder / "history.csv").write_text(history, encoding="utf-8")
+    # two snapshots, eight elements, one Gauss section, a ring of four points at 0.9 of a wire of radius 2.5
+    angle = np.arange(4) * np.pi / 2
+    y, z = np.broadcast_to(2.25 * np.cos(angle), (8, 4)), np.broadcast_to(2.25 * np.sin(angle), (8, 4))
+    state = np.zeros((2, 8, 1, 4, 7))
+    for i, shear in enumerate((-400.0, -residual)):  # about the axis; the load's is negative here
+        state[i, ..., 1], state[i, ..., 2] = -shear * np.sin(angle), shear * np.cos(angle)
+    state[:, [0, -1]] = 1e3  # the ends do not count
+    xr.Dataset(
+        {"history": (("snapshot", "element", "gauss", "point", "component"), state),
+         "y": (("element", "point"), y), "z": (("element", "point"), z), "force": ("snapshot", [700.0, 0.0]),
+         "weight": ("point", np.full(4, 0.25 * 0.5 / 0.9**2))},
+        coords={"turn": ("station", np.linspace(0, 11.5, 9))},
+    ).to_netcdf(folder / "points.nc", engine="h5netcdf")  # fmt: skip
+    return folder
+
+
+def test_what_a_run_found(tmp_path):
+    run = found.read(run_folder(tmp_path / "run"))
+    assert run.residual == pytest.approx(-60.0)
+    assert run.ring == pytest.approx(0.9)
+    assert run.force_at(90.0) == pytest.approx(175.0)  # on release, the last time it passed
+    assert run.force_at(103.0) == pytest.approx(400 * 2.8 / 25.8)  # only on the way down
+    assert run.force_at(50.0) is None
+    assert run.work_to(80.0) == pytest.approx(0.5 * 400 * 25.8)
+    assert run.work_to(55.0) is None
+
+
+def test_values_that_were_found_stand_beside_the_formulas(tmp_path):
+    run = found.read(run_folder(tmp_path / "run"))
+    shown = rows(Sheet(PRINTED, DM.elastic(5.0), 1260.0, wire("EN 10270-1 DH"), (88.5, 67.5), found=run))
+    assert shown["rate R"].found == 16.0
+    assert shown["free length L0"].found == 100.0
+    assert shown["force at 67.5 mm"].found == pytest.approx(700 - 350 * 7.5 / 20)
+    assert shown["force at 67.5 mm"].why == "after setting R (L0 − L) is 525.9 N"
+    assert shown["wire length l"].found == 1260.0
+    assert shown["force at block Fc"].found is None  # it was not pressed to block
+    endured = shown["range that is endured"]
+    line = goodman.line(wire("EN 10270-1 DH").endurance(), 5.0)
+    assert endured.value == pytest.approx(line.stress_range(shown["lower stress τk1"].value))
+    assert endured.found == pytest.approx(line.stress_range(shown["lower stress τk1"].value - 60.0))
+    assert endured.found > endured.value
+
+
+def test_line_of_the_goodman_diagram():
+    line = goodman.line(wire("EN 10270-1 SH").endurance("shot peened"), 10.0)
+    # a − b lg 10
+    assert (line.at_zero, line.knee, line.limit) == (601 - 193, 698 - 273, 1119 - 409)
+    assert line.upper(0.0) == 408
+    assert line.upper(425.0) == pytest.approx(710)
+    assert line.upper(600.0) == 710
+    assert line.stress_range(650.0) == 60
+    assert line.stress_range(800.0) == 0
+    assert line.times == "10⁷"
+
+
+CASE = """spring: {wire_diameter: 4.0, mean_diameter: 32.0, turns: 7.5, free_length: 60.0, end_coils: closed and ground}
+material: elastic
+loading:
+  - {to: block}
+  - {to: {height: 52.0}}
+  - {to: {travel: 20.0}}
+  - {to: {force: 0}}
+"""
+
+
+@pytest.fixture
+def case(tmp_path):
+    path = tmp_path / "case.yaml"
+    path.write_text(CASE, encoding="utf-8")
+    return path
+
+
+def test_command_prints_and_draws(case, tmp_path, capsys):
+    sheet(case, wire_name="EN 10270-1 SH", surface="shot peened", out=tmp_path / "out")
+    printed = capsys.readouterr().out
+    assert "force at 52 mm" in printed  # the working lengths of the load program
+    assert "force at 40 mm" in printed
+    assert "972.33 MPa" in printed
+    assert (tmp_path / "out" / "goodman.png").stat().st_size > 10_000
+    with pytest.raises(InputError, match="is there already; give --force"):
+        sheet(case, wire_name="EN 10270-1 SH", surface="shot peened", out=tmp_path / "out")
+
+
+def test_command_draws_nothing_without_a_wire(case, tmp_path, capsys):
+    sheet(case, out=tmp_path / "out")
+    assert "the material is no wire of a standard; give --wire" in capsys.readouterr().out
+    assert not (tmp_path / "out").exists()
+
+
+def test_wires_are_listed(capsys):
+    list_wires()
+    assert "EN 10270-2 VDSiCr" in capsys.readouterr().out
+
+
+def test_wrong_questions(case, tmp_path):
+    with pytest.raises(InputError, match=r"--length: 20 mm is no working length; must be between the block length 28"):
+        sheet(case, lengths=[20.0], out=tmp_path / "out")
+    with pytest.raises(InputError, match="--results: cannot be read"):
+        sheet(case, results=tmp_path, out=tmp_path / "out")
+    folder = run_folder(tmp_path / "run")
+    (folder / "history.csv").write_text("a,b\n1,2\n", encoding="utf-8")
+    with pytest.raises(InputError, match="is no result of coilset solve"):
+        found.read(folder)
+    shutil.rmtree(folder)
