@@ -95,7 +95,7 @@ def working_lengths(phases: Sequence[Phase], free_length: float, rate: float, bl
         rate: R, for targets that are forces, N/mm.
         block: block length of the geometry, mm.
     """
-    found = []
+    found: list[float] = []
     for phase in phases:
         if phase.to == "block":
             continue
