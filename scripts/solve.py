@@ -67,7 +67,8 @@ def _begin(analysis, out, resume):
 
 
 def _announce(console, analysis, case_file, resume):
-    for warning in [*analysis.case.notices(), *(one.text for one in spring_warnings(analysis.spring))]:
+    about_spring = [warning.text for warning in spring_warnings(analysis.spring)]
+    for warning in [*analysis.case.notices(), *about_spring]:
         console.print(f"[yellow]warning:[/] {warning}")
     targets = ", ".join(phase.label for phase in analysis.case.loading)
     elements, ranks = len(analysis.setup.turns) - 1, analysis.comm.size

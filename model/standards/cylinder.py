@@ -9,6 +9,7 @@ import numpy as np
 from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
 
+CylinderEnds = Literal["open", "closed", "closed and ground", "mixed"]
 SAME = 1e-9  # relative change of diameter and wire along a cylinder
 
 
@@ -33,7 +34,7 @@ class Cylinder:
     n: float
     length: float
     pitch: float
-    ends: Literal["open", "closed", "closed and ground", "mixed"]
+    ends: CylinderEnds
     solid: float
 
     @classmethod
@@ -52,7 +53,7 @@ class Cylinder:
                                  f"{high:.4g} mm", f"spring.{place}")  # fmt: skip
         start, end = spring.bottom.end_turns, spring.turns - spring.top.end_turns
         pitch = float(spring.height(end) - spring.height(start)) / spring.active_turns
-        ends = spring.bottom.form if spring.bottom.form == spring.top.form else "mixed"
+        ends: CylinderEnds = spring.bottom.form if spring.bottom.form == spring.top.form else "mixed"
         return cls(float(np.mean(d)), float(np.mean(D)), spring.turns, spring.active_turns, spring.free_length, pitch,
                    ends, spring.block_height)  # fmt: skip
 

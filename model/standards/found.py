@@ -53,7 +53,7 @@ class Found:
         heights, forces = self.heights[:first], self.forces[:first]
         if length < heights[-1] - 1e-9 or np.any(np.diff(heights) > 0):
             return None
-        grid = np.append(heights[heights > length], length)
+        grid: np.ndarray = np.append(heights[heights > length], length)
         values = np.interp(-grid, -heights, forces)
         return float(0.5 * np.sum((values[1:] + values[:-1]) * -np.diff(grid)))
 

@@ -147,7 +147,7 @@ def _dynamics(sheet: Sheet) -> Iterator[Row]:
     s, e = sheet.spring, sheet.elastic
     f = en13906.natural_frequency(e.shear_modulus, e.density, s.d, s.D, s.n)
     yield Row("natural frequency", f, "Hz", "d/(2π n D²) √(G/(2ρ)), ends held", DERIVED)
-    work = sheet.found.work_to(s.solid + AT_BLOCK * s.d) if _was_at_block(sheet) else None
+    work = sheet.found.work_to(s.solid + AT_BLOCK * s.d) if sheet.found and _was_at_block(sheet) else None
     yield Row("work to block", 1e-3 * en13906.energy(sheet.rate, s.length - s.solid), "J", "R s²/2", DERIVED,
               None if work is None else 1e-3 * work, "∫ F ds of the first compression, plastic work in it")  # fmt: skip
 

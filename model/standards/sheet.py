@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from coilset.model.case.phases import Phase
+from coilset.model.loading.program import Phase
 from coilset.model.standards import en13906, en15800, goodman
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.found import Found
@@ -95,7 +95,7 @@ def working_lengths(phases: Sequence[Phase], free_length: float, rate: float, bl
         rate: R, for targets that are forces, N/mm.
         block: block length of the geometry, mm.
     """
-    found = []
+    found: list[float] = []
     for phase in phases:
         if phase.to == "block":
             continue

@@ -52,8 +52,8 @@ class Number(Sourced):
 
     def at(self, diameter: float) -> float:
         """The number at a diameter, mm; the last range goes on without end."""
-        if self.value is not None:
-            return self.value
+        if self.up_to is None or self.values is None:
+            return float(self.value or 0.0)  # never 0: one of both is given
         return self.values[min(bisect_left(self.up_to, diameter), len(self.values) - 1)]
 
 
