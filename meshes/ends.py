@@ -1,6 +1,7 @@
 """End coils: how a spring begins and ends, and what that makes of its pitch."""
 
-from typing import Annotated, Any, Literal
+from collections.abc import Callable
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
@@ -35,12 +36,12 @@ class EndCoils(Strict):
 
     @model_validator(mode="before")
     @classmethod
-    def _from_word(cls, value):
+    def _from_word(cls, value: Any) -> Any:
         """`closed` in short for `{form: closed}`."""
         return {"form": value} if isinstance(value, str) else value
 
     @model_validator(mode="after")
-    def _belongs(self):
+    def _belongs(self) -> Self:
         if self.form == "open" and (self.turns is not None or self.transition is not None):
             raise ValueError("open ends have no end turns and no transition; leave these out or make the form closed")
         if self.form != "closed and ground" and self.tip is not None:
@@ -48,22 +49,22 @@ class EndCoils(Strict):
         return self
 
     @property
-    def is_closed(self):
+    def is_closed(self) -> bool:
         """Whether the end turns lie on each other."""
         return self.form != "open"
 
     @property
-    def end_turns(self):
+    def end_turns(self) -> float:
         """Number of end turns, 0 for open ends."""
         return (self.turns or CLOSED_TURNS) if self.is_closed else 0.0
 
     @property
-    def transition_turns(self):
+    def transition_turns(self) -> float:
         """Number of turns over which the pitch goes from the end coil's to the body's, 0 for open ends."""
         return (self.transition or CLOSED_TRANSITION) if self.is_closed else 0.0
 
     @property
-    def tip_thickness(self):
+    def tip_thickness(self) -> float:
         """What is left of the wire at its end, in wire diameters; 1 where it is not ground."""
         return (self.tip or GROUND_TIP) if self.form == "closed and ground" else 1.0
 
@@ -91,12 +92,12 @@ Ends = Annotated[
 """The ends of a spring as the case file gives them."""
 
 
-def bottom_and_top(ends):
+def bottom_and_top(ends: EndCoils | BothEnds) -> tuple[EndCoils, EndCoils]:
     """Bottom and top `EndCoils` of an entry `Ends`."""
     return (ends.bottom, ends.top) if isinstance(ends, BothEnds) else (ends, ends)
 
 
-def touching_pitch(diameter, slope):
+def touching_pitch(diameter: np.ndarray, slope: np.ndarray) -> np.ndarray:
     """Pitch at which a coil lies on its neighbour: the centres are a wire's diameter apart, d² = p² + r′².
 
     Coils whose radius changes by more than a wire's diameter in a turn pass each other: 0.
@@ -108,7 +109,9 @@ def touching_pitch(diameter, slope):
     return np.sqrt(np.maximum(diameter**2 - slope**2, 0.0))
 
 
-def pitch_with_ends(body, bottom, top, touching):
+def pitch_with_ends(
+    body: functions.PPoly, bottom: EndCoils, top: EndCoils, touching: Callable[[float, float], float]
+) -> functions.PPoly:
     """The pitch over the turns: end turns, transitions (cubic, with continuous slope) and body.
 
     Args:

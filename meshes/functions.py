@@ -1,5 +1,6 @@
 """Functions of the turn: piecewise polynomials, so that slopes and integrals are exact."""
 
+from collections.abc import Callable, Iterable, Sequence
 from math import factorial
 
 import numpy as np
@@ -10,7 +11,7 @@ DEGREE = 3
 INTERPOLATIONS = ("linear", "monotone", "spline")
 
 
-def polynomial(coefficients, start, end):
+def polynomial(coefficients: Sequence[float] | np.ndarray, start: float, end: float) -> PPoly:
     """One polynomial on an interval.
 
     Args:
@@ -26,12 +27,12 @@ def polynomial(coefficients, start, end):
     return PPoly(padded, [start, end])
 
 
-def constant(value, turns):
+def constant(value: float, turns: float) -> PPoly:
     """The same value at every turn from 0 to `turns`."""
     return polynomial([value], 0.0, turns)
 
 
-def tabulated(turn, value, interpolation):
+def tabulated(turn: np.ndarray, value: np.ndarray, interpolation: str) -> PPoly:
     """A function through the points of a table.
 
     Args:
@@ -55,7 +56,7 @@ def tabulated(turn, value, interpolation):
     return PPoly(pieces.c, pieces.x)
 
 
-def smoothed(turn, value, noise):
+def smoothed(turn: np.ndarray, value: np.ndarray, noise: float) -> PPoly:
     """A cubic spline with as few pieces as the noise of the values allows (FITPACK's smoothing spline).
 
     Args:
@@ -71,25 +72,25 @@ def smoothed(turn, value, noise):
     return PPoly(pieces.c[:, real], np.append(pieces.x[:-1][real], pieces.x[-1]))
 
 
-def added(left, right, factor=1.0):
+def added(left: PPoly, right: PPoly, factor: float = 1.0) -> PPoly:
     """The function `left` + `factor` · `right`; both begin and end at the same turns."""
     breaks = np.union1d(left.x, right.x)
     return PPoly(_coefficients(left, breaks) + factor * _coefficients(right, breaks), breaks)
 
 
-def restricted(function, start, end):
+def restricted(function: PPoly, start: float, end: float) -> PPoly:
     """The part of a function between two turns."""
     breaks = np.array([start, *function.x[(function.x > start) & (function.x < end)], end])
     return PPoly(_coefficients(function, breaks), breaks)
 
 
-def _coefficients(function, breaks):
+def _coefficients(function: PPoly, breaks: np.ndarray) -> np.ndarray:
     """Of a function between breaks, its own among them, by Taylor's expansion at the left of every piece."""
     terms = [function.derivative(k)(breaks[:-1]) / factorial(k) for k in range(DEGREE, 0, -1)]
     return np.array([*terms, function(breaks[:-1])])
 
 
-def blended(left, right, start, end):
+def blended(left: PPoly, right: PPoly, start: float, end: float) -> PPoly:
     """A cubic from one function to another, with the values and slopes of both at the two ends."""
     length = end - start
     y0, s0 = left(start), left.derivative()(start) * length
@@ -98,14 +99,16 @@ def blended(left, right, start, end):
     return polynomial(in_unit / length ** np.arange(DEGREE + 1), start, end)
 
 
-def joined(parts):
+def joined(parts: Iterable[PPoly]) -> PPoly:
     """Functions that follow each other, as one; parts of no length are left out."""
     parts = [part for part in parts if part.x[-1] > part.x[0]]
     breaks = np.concatenate([parts[0].x[:1], *(part.x[1:] for part in parts)])
     return PPoly(np.hstack([part.c for part in parts]), breaks)
 
 
-def integral(integrand, breaks, points=6):
+def integral(
+    integrand: Callable[[np.ndarray], np.ndarray], breaks: np.ndarray, points: int = 6
+) -> np.ndarray:
     """Integrals over every interval between breaks, by Gauss's rule.
 
     Args:

@@ -36,11 +36,11 @@ class MeasuredSpec(Strict):
 
     @field_validator("file")
     @classmethod
-    def _from_folder(cls, file, info: ValidationInfo):
+    def _from_folder(cls, file: str, info: ValidationInfo) -> str:
         """The path counts from the folder of the case file, where the validation's context has one."""
         return str(Path((info.context or {}).get("folder", "")) / file)
 
-    def build(self):
+    def build(self) -> Spring:
         """The geometry.
 
         Returns:
@@ -73,7 +73,7 @@ class MeasuredSpec(Strict):
         return refuse(spring, "", path)
 
 
-def read_centre_line(path):
+def read_centre_line(path: str | Path) -> tuple[np.ndarray, np.ndarray | None]:
     """Points along a wire and its diameters, from a CSV file or by meshio.
 
     Args:

@@ -1,6 +1,6 @@
 """How a quantity runs over the turns: a number, a table, or one of the shapes that spring makers draw."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
@@ -12,7 +12,7 @@ SHORTEST, LONGEST = 1e-3, 1e5  # mm
 CLOSEST = 1e-3  # turns
 
 
-def _of_a_spring(length):
+def _of_a_spring(length: float) -> float:
     if not SHORTEST <= length <= LONGEST:
         raise ValueError(f"{length:g} is no length of a spring; must be {SHORTEST:g} to {LONGEST:g}")
     return length
@@ -35,7 +35,7 @@ class Table(Strict):
     ]
 
     @model_validator(mode="after")
-    def _fits(self):
+    def _fits(self) -> Self:
         if len(self.turns) != len(self.values):
             raise ValueError(f"has {len(self.turns)} turns but {len(self.values)} values; give one value for each turn")
         if np.any(np.diff(self.turns) < CLOSEST):
@@ -44,7 +44,7 @@ class Table(Strict):
             raise ValueError(f"must begin at turn 0, not at {self.turns[0]:g}")
         return self
 
-    def function(self, turns):
+    def function(self, turns: float) -> functions.PPoly:
         """The table as a function of the turn; raises ValueError if it does not end at the last turn."""
         if abs(self.turns[-1] - turns) > 1e-9 * turns:
             raise ValueError(f"ends at turn {self.turns[-1]:g}, but the spring has {turns:g} turns")
@@ -57,7 +57,7 @@ class Cylinder(Strict):
     shape: Literal["cylinder"]
     diameter: Annotated[Length, Field(description="mean coil diameter, mm")]
 
-    def function(self, turns):
+    def function(self, turns: float) -> functions.PPoly:
         """The diameter as a function of the turn, mm."""
         return functions.constant(self.diameter, turns)
 
@@ -69,7 +69,7 @@ class Cone(Strict):
     bottom: Annotated[Length, Field(description="mean coil diameter at the bottom end, mm")]
     top: Annotated[Length, Field(description="mean coil diameter at the top end, mm")]
 
-    def function(self, turns):
+    def function(self, turns: float) -> functions.PPoly:
         """The diameter as a function of the turn, mm."""
         return functions.polynomial([self.bottom, (self.top - self.bottom) / turns], 0.0, turns)
 
@@ -82,7 +82,7 @@ class Funnel(Strict):
     neck: Annotated[Length, Field(description="mean coil diameter of the cylinder, mm")]
     cone_turns: Annotated[float, Field(ge=0.1, allow_inf_nan=False, strict=True, description="turns of the cone")]
 
-    def function(self, turns):
+    def function(self, turns: float) -> functions.PPoly:
         """The diameter as a function of the turn, mm; raises ValueError if the cone has too many turns."""
         if self.cone_turns >= turns:
             raise ValueError(
@@ -104,7 +104,7 @@ class DoubleCone(_Waisted):
 
     shape: Literal["double cone"]
 
-    def function(self, turns):
+    def function(self, turns: float) -> functions.PPoly:
         """The diameter as a function of the turn, mm."""
         return functions.tabulated(
             np.array([0, turns / 2, turns]), np.array([self.ends, self.middle, self.ends]), "linear"
@@ -112,7 +112,7 @@ class DoubleCone(_Waisted):
 
 
 class _Parabola(_Waisted):
-    def function(self, turns):
+    def function(self, turns: float) -> functions.PPoly:
         """The diameter as a function of the turn, mm: a parabola with its vertex in the middle."""
         rise = self.middle - self.ends
         return functions.polynomial([self.ends, 4 * rise / turns, -4 * rise / turns**2], 0.0, turns)
@@ -124,7 +124,7 @@ class Barrel(_Parabola):
     shape: Literal["barrel"]
 
     @model_validator(mode="after")
-    def _is_wide(self):
+    def _is_wide(self) -> Self:
         if self.middle <= self.ends:
             raise ValueError(
                 f"a barrel is wider in its middle ({self.middle:g} mm) than at its ends "
@@ -139,7 +139,7 @@ class Hourglass(_Parabola):
     shape: Literal["hourglass"]
 
     @model_validator(mode="after")
-    def _is_narrow(self):
+    def _is_narrow(self) -> Self:
         if self.middle >= self.ends:
             raise ValueError(
                 f"an hourglass is narrower in its middle ({self.middle:g} mm) than at its ends "
@@ -191,6 +191,6 @@ DiameterProfile = Annotated[
 """The mean coil diameter over the turns: a number in mm, a table, or a shape."""
 
 
-def profile_function(profile, turns):
+def profile_function(profile: Any, turns: float) -> functions.PPoly:
     """A number, table or shape as a function of the turn."""
     return functions.constant(profile, turns) if isinstance(profile, float | int) else profile.function(turns)

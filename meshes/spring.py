@@ -96,7 +96,7 @@ class SpringSpec(Strict):
             )
         return self._refuse(built)
 
-    def _refuse(self, spring):
+    def _refuse(self, spring: Spring) -> Spring:
         """Refuse what cannot be a spring; what is wrong with the diameter is said of the entry that gives it."""
         try:
             return refuse(spring)
@@ -104,7 +104,7 @@ class SpringSpec(Strict):
             place = error.place.replace("mean_diameter", self.diameter_entry)
             raise InputError(error.problem, place, error.file) from None
 
-    def _mean_diameter(self, wire):
+    def _mean_diameter(self, wire: functions.PPoly) -> functions.PPoly:
         """D = De − d = Di + d as a function of the turn, mm."""
         given = self._function(self.diameter_entry)
         factor = DIAMETERS[self.diameter_entry]
@@ -115,7 +115,7 @@ class SpringSpec(Strict):
             raise InputError("the coil is no wider than its wire", f"spring.{self.diameter_entry}")
         return mean
 
-    def _function(self, entry):
+    def _function(self, entry: str) -> functions.PPoly:
         try:
             return profile_function(getattr(self, entry), self.turns)
         except ValueError as error:

@@ -40,7 +40,7 @@ class Prompt:
             except (InputError, ValueError) as error:
                 self.say(str(error))
 
-    def obey(self, word, rest):
+    def obey(self, word: str, rest: str) -> None:
         """Carry out one command.
 
         Raises:
@@ -64,7 +64,7 @@ class Prompt:
             self.say(HELP)
 
 
-def parse_phase(text):
+def parse_phase(text: str) -> Phase:
     """A Phase from `{height: 20}, steps: 8` or `block`.
 
     Raises:
