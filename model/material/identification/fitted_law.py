@@ -1,0 +1,102 @@
+"""The law as a function of the variables that are fitted: positive numbers, changed by their logarithms.
+
+The two branches of k² meet at b1* with the same slope, as with the thesis's constants: k1² and a4 follow from the
+others.
+"""
+
+import math
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+from numba import njit
+
+from coilset.model.material import functions as fn
+from coilset.model.material.heun import ROD_METRIC, integrate
+from coilset.model.material.identification.experiments import Test
+
+SUBSTEP = 1e-3  # greatest strain increment of the simulation
+LARGE = 1e3  # residual of a law that cannot follow a test
+# The variables. gain: k∞² − k1²; start, rest: a5 a7 and a5 a6, ζ over sqrt(6 k²) at b* = 0 and for large b*.
+HARDENING, KINEMATIC, NORMALITY = ("k0", "a1", "a2", "a3", "b1", "gain"), ("start", "rest", "a7"), ("a",)
+COLUMNS_USED = {"tension": [0], "torsion": [1], "combined": [0, 1]}
+
+Variables = Mapping[str, float]
+
+
+@njit(**fn.KERNEL)
+def _simulate(p, strain, stress):
+    """Stress along a strain path, by Heun's method with sub-steps of fixed size, smooth in the constants.
+
+    Returns:
+        b* at the end, -1 if the law cannot follow the path.
+    """
+    y, d, w = np.zeros(9), np.zeros(3), np.array(ROD_METRIC)
+    e = g = 0.0
+    for i in range(strain.shape[0]):
+        de, dg = strain[i, 0] - e, strain[i, 1] - g
+        e, g = strain[i, 0], strain[i, 1]
+        n = max(1, math.ceil(max(abs(de), abs(dg)) / SUBSTEP))
+        d[0], d[1] = de / n, 0.5 * dg / n
+        for _ in range(n):
+            if integrate(p, y, w, d, 0.0, (0.0, 0.0))[0] < 0:
+                return -1.0
+        stress[i, 0], stress[i, 1] = 1.5 * y[0], y[1]
+    return y[6]
+
+
+class FittedLaw:
+    """The law as a function of the fit's variables.
+
+    Args:
+        G, nu: elastic constants, N/mm².
+        saturates: whether k² has its second branch.
+
+    Attributes:
+        hardening, names: names of the variables of k², and of all.
+    """
+
+    def __init__(self, G: float, nu: float, saturates: bool) -> None:
+        self.G, self.nu = G, nu
+        self.hardening = [name for name in HARDENING if saturates or name not in ("b1", "gain")]
+        self.names = [*self.hardening, *KINEMATIC, *NORMALITY]
+
+    def row(self, values: Variables) -> np.ndarray:
+        """A row of the parameter array, and k1², a4."""
+        v = {"b1": math.inf, "gain": math.inf, "start": 0.0, "rest": 0.0, "a7": 1.0, "a": 0.0} | dict(values)
+        row = np.zeros(fn.ROW_LENGTH)
+        row[[fn.ROW_T, fn.YOUNG, fn.SHEAR]] = 293.15, 2 * self.G * (1 + self.nu), self.G
+        row[[fn.K0, fn.A1, fn.A2, fn.A3, fn.B1]] = v["k0"], v["a1"], v["a2"], v["a3"], v["b1"]
+        if math.isfinite(v["b1"]):
+            fading = math.exp(-v["a3"] * v["b1"])
+            k1 = v["k0"] + v["a1"] * (1 + v["a2"] * v["b1"] - fading)
+            slope = v["a1"] * (v["a2"] + v["a3"] * fading)
+            row[[fn.K1, fn.KINF, fn.A4]] = k1, k1 + v["gain"], slope / v["gain"]
+        row[[fn.A5, fn.A6, fn.A7]] = v["start"] / v["a7"], v["rest"] * v["a7"] / max(v["start"], 1e-12), v["a7"]
+        row[fn.KAPPA] = v["a"] / (2 * self.G)
+        return row
+
+    def parameters(self, values: Variables) -> np.ndarray:
+        """Parameter array of the kernels."""
+        head = np.zeros(fn.ROWS_START)
+        head[[fn.SPIN, fn.TEMPERATURE, fn.TOLERANCE, fn.N_ROWS]] = 1, 293.15, np.inf, 1
+        return np.concatenate([head, self.row(values)])
+
+    def follow(self, values: Variables, test: Test) -> tuple[np.ndarray, float]:
+        """Stress along a test, infinite if the law cannot follow it, and b* at its end."""
+        stress = np.zeros_like(test.stress)
+        work = _simulate(self.parameters(values), test.strain, stress)
+        if work < 0:
+            stress[:] = np.inf
+        return stress, work
+
+    def residual(self, values: Variables, tests: Iterable[Test]) -> np.ndarray:
+        """Difference of stress to the tests over the greatest stress of each, all in one vector."""
+        parts = [(self.follow(values, test)[0] - test.stress) / np.abs(test.stress).max() for test in tests]
+        # A tension test says nothing by its vanishing shear stress; a torsion test's axial one depends on κ, of step 3.
+        used = [part[:, COLUMNS_USED[test.kind]] for part, test in zip(parts, tests, strict=True)]
+        return np.nan_to_num(np.concatenate([part.ravel() for part in used]), nan=LARGE, posinf=LARGE, neginf=-LARGE)
+
+
+def moved_by(start: Variables, x: np.ndarray) -> dict[str, float]:
+    """Variables of which the logarithms changed by `x`."""
+    return {name: value * math.exp(change) for (name, value), change in zip(start.items(), x, strict=True)}

@@ -1,0 +1,102 @@
+"""Hardening from the tests themselves, and the shapes of it from which the fit starts."""
+
+import itertools
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+
+import numpy as np
+from numba import njit
+from scipy.optimize import least_squares
+
+from coilset.model.errors import InputError
+from coilset.model.material import functions as fn
+from coilset.model.material.identification.experiments import Test
+from coilset.model.material.identification.fitted_law import KINEMATIC, NORMALITY, FittedLaw, Variables, moved_by
+
+NO_BACK_STRESS = {"start": 0.0, "rest": 0.0, "a7": 1.0}
+Starts = Callable[[float, float], Iterable[dict[str, float]]]  # variables from reach, N/mm², and greatest k², N²/mm⁴
+
+
+@njit(**fn.KERNEL)
+def _follow(start, rest, a7, plastic, stress, work, k2):
+    """Plastic work and n:n along a measured path, with the back stress of (3.1.7) and (3.1.8).
+
+    `plastic` are the plastic strains ε11 and γ12; ζ is (rest + start exp(−a7 b*)) sqrt(6 n:n), with the measured n.
+    """
+    back, b, nn = np.zeros(2), 0.0, 0.0
+    for i in range(plastic.shape[0]):
+        if i > 0:
+            zeta = (rest + start * math.exp(-a7 * b)) * math.sqrt(6.0 * nn)
+            de, dg = plastic[i, 0] - plastic[i - 1, 0], plastic[i, 1] - plastic[i - 1, 1]
+            b += 1.5 * (stress[i, 0] / 1.5 - back[0]) * de + (stress[i, 1] - back[1]) * dg
+            b = max(b, 0.0)
+            back[0] += zeta * de
+            back[1] += 0.5 * zeta * dg
+        nn = 1.5 * (stress[i, 0] / 1.5 - back[0]) ** 2 + 2.0 * (stress[i, 1] - back[1]) ** 2
+        work[i], k2[i] = b, nn
+
+
+def hardening(
+    model: FittedLaw, tests: Sequence[Test], kinematic: Variables, starts: Starts, held: Sequence[str] = ()
+) -> tuple[dict[str, float], float]:
+    """k² over the plastic work as the tests themselves have it, for given ζ; `held` variables stay; and its reach."""
+    moduli = np.array([2 * model.G * (1 + model.nu), model.G])
+    points = []
+    for test in tests:
+        plastic = test.strain - test.stress / moduli
+        work, k2 = np.empty(len(plastic)), np.empty(len(plastic))
+        _follow(*(kinematic[name] for name in KINEMATIC), plastic, test.stress, work, k2)
+        length = np.linalg.norm(np.diff(plastic, axis=0, prepend=0), axis=1).cumsum()
+        flows = (length > 5e-4) & (work > 0) & (k2 > 0.85 * np.maximum.accumulate(k2))
+        points.append((work[flows], k2[flows]))
+    work, k2 = np.hstack(points)
+    if work.size < 10:
+        raise InputError(f"the tests {', '.join(test.name for test in tests)} show no yielding; is G right?")
+    values = np.empty((6, work.size))
+
+    def moved(start, x):
+        return start | moved_by({name: value for name, value in start.items() if name not in held}, x)
+
+    def residual(x, start):
+        fn.many(model.parameters(moved(start, x)), work, 0.0, values)
+        return (values[0] - k2) / k2.max()
+
+    found = [
+        (least_squares(residual, np.zeros(len(start) - len(held)), args=(start,), bounds=(-6, 6), max_nfev=100), start)
+        for start in starts(work.max(), k2.max())
+    ]
+    best, start = min(found, key=lambda pair: pair[0].cost)
+    return moved(start, best.x) | dict(kinematic), float(work.max())
+
+
+def first_starts(model: FittedLaw) -> Starts:
+    """Shapes of k² from which step 1 starts."""
+
+    def starts(reach, top):
+        for a3, share in itertools.product((3, 10, 30), (0.3, 0.5, 0.7) if "b1" in model.hardening else (1.0,)):
+            start = {"k0": 0.5 * top, "a1": 0.5 * top, "a2": 1 / reach, "a3": a3 / reach}
+            yield start | ({"b1": share * reach, "gain": 0.2 * top} if "b1" in model.hardening else {})
+
+    return starts
+
+
+def kinematic_starts(
+    model: FittedLaw, values: Variables, tests: Sequence[Test], reach: float
+) -> Iterator[dict[str, float]]:
+    """Step 2 starts from back stresses of several sizes, with the k² that the tests have with each of them."""
+    base = {name: values[name] for name in model.hardening}
+    for size, a7, rest in itertools.product((0.05, 0.2, 0.6), (5 / reach, 25 / reach, 125 / reach), (0.02, 0.2)):
+        k = math.sqrt(values["k0"])
+        kinematic = {"start": size * a7 * k, "rest": rest * k / reach, "a7": a7}
+        yield hardening(model, tests, kinematic, lambda *_: [base])[0]
+
+
+def bend_starts(
+    model: FittedLaw, values: dict[str, float], tests: Sequence[Test], reach: float
+) -> Iterator[dict[str, float]]:
+    """The bend b1* of k² elsewhere: least squares does not find it from afar."""
+    yield values
+    others = {name: values[name] for name in (*KINEMATIC, *NORMALITY)}
+    for share in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8) if "b1" in values else ():
+        base = {name: values[name] for name in model.hardening} | {"b1": share * reach}
+        yield hardening(model, tests, others, lambda *_, base=base: [base], ["b1"])[0]

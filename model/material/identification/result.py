@@ -1,0 +1,117 @@
+"""What a fit has found: the constants as a material file has them, and how sure they are."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.optimize import OptimizeResult
+from scipy.stats import norm
+
+from coilset.model.errors import SolveError
+from coilset.model.material import functions as fn
+from coilset.model.material.identification.experiments import Test
+from coilset.model.material.identification.fitted_law import LARGE, FittedLaw, Variables, moved_by
+
+CONFIDENCE = 0.95
+Minimum = tuple[dict[str, float], OptimizeResult]  # variables, and what least squares says of them
+
+
+@dataclass(frozen=True)
+class Fit:
+    """The result of `fit`.
+
+    Attributes:
+        G, nu, temperature: as given.
+        constants: by their names in a material file.
+        standard: standard deviation of each.
+        uncertainty: all constants lie within these distances with 95 % confidence.
+        tests: as given.
+        stress: of the law along each test, shape (rows, 2), N/mm².
+        scatter: rms residual of each test, N/mm².
+        work: greatest b* of the tests, N/mm².
+    """
+
+    G: float
+    nu: float
+    temperature: float
+    constants: dict[str, float]
+    standard: dict[str, float]
+    uncertainty: dict[str, float]
+    tests: tuple[Test, ...]
+    stress: tuple[np.ndarray, ...]
+    scatter: tuple[float, ...]
+    work: float
+
+    def material(self, name: str) -> dict[str, Any]:
+        """Content of a material file."""
+        c = self.constants
+        isotropic = {key: c[key] for key in ("k0_squared", "a1", "a2", "a3")}
+        if "b1" in c:
+            isotropic["saturation"] = {key: c[key] for key in ("b1", "k1_squared", "k_inf_squared", "a4")}
+        at = {
+            "temperature": self.temperature,
+            "elasticity": {"G": self.G, "nu": self.nu},
+            "isotropic": isotropic,
+            "kinematic": {key: c[key] for key in ("a5", "a6", "a7")},
+            "non_normality": {"a": c["a"]},
+        }
+        return {
+            "name": name,
+            "description": "Constants identified from tests",
+            "source": "coilset material fit: " + ", ".join(test.name for test in self.tests),
+            "units": "N, mm, K",
+            "validity": {"plastic_work": float(f"{self.work:.3g}"), "remark": "As far as the tests went."},
+            "temperatures": [at],
+        }
+
+
+def result(model: FittedLaw, minima: Sequence[Minimum], tests: tuple[Test, ...], temperature: float) -> Fit:
+    """The deepest minimum; others that the scatter of the tests does not exclude widen the uncertainties."""
+    best, found = minima[0]
+    if not found.cost < LARGE:
+        raise SolveError("no constants were found with which the law can follow these tests; are their units right?")
+    constants = _constants(model, best)
+    value = np.array(list(constants.values()))
+    spread = _spread(model, best, found)
+    variance = 2 * found.cost / (found.fun.size - len(model.names))
+    coverage = norm.isf(0.5 * (1 - CONFIDENCE) / len(model.names))  # Bonferroni's, for all constants together
+    uncertainty = coverage * spread
+    for other, local in minima[1:]:
+        if 2 * (local.cost - found.cost) < coverage**2 * variance:
+            away = abs(np.array(list(_constants(model, other).values())) - value)
+            uncertainty = np.maximum(uncertainty, away + coverage * _spread(model, other, local))
+    followed = [model.follow(best, test) for test in tests]
+    stress = tuple(stress for stress, _ in followed)
+    scatter = tuple(float(np.sqrt(np.mean((s - t.stress) ** 2))) for s, t in zip(stress, tests, strict=True))
+    standard, uncertainty = (dict(zip(constants, v.tolist(), strict=True)) for v in (spread, uncertainty))
+    work = max(work for _, work in followed)
+    return Fit(model.G, model.nu, temperature, constants, standard, uncertainty, tests, stress, scatter, work)
+
+
+def _constants(model: FittedLaw, values: Variables) -> dict[str, float]:
+    """The material file's constants."""
+    row = model.row(values)
+    names = {"k0_squared": fn.K0, "a1": fn.A1, "a2": fn.A2, "a3": fn.A3}
+    if "b1" in model.names:
+        names |= {"b1": fn.B1, "k1_squared": fn.K1, "k_inf_squared": fn.KINF, "a4": fn.A4}
+    names |= {"a5": fn.A5, "a6": fn.A6, "a7": fn.A7}
+    return {name: float(row[place]) for name, place in names.items()} | {"a": float(values["a"])}
+
+
+def _spread(model: FittedLaw, values: Variables, found: OptimizeResult) -> np.ndarray:
+    """Standard deviations of the file's constants.
+
+    The covariance of the variables' logarithms is robust against scatter that differs from test to test.
+    """
+    J = found.jac
+    weighted = J * found.fun[:, None]
+    try:
+        inverse = np.linalg.inv(J.T @ J)
+    except np.linalg.LinAlgError as error:
+        raise SolveError("these tests cannot tell the constants apart; other paths are needed") from error
+    covariance = inverse @ (weighted.T @ weighted) @ inverse * J.shape[0] / (J.shape[0] - J.shape[1])
+    start = {name: values[name] for name in model.names}
+    moved = [list(_constants(model, moved_by(start, step)).values()) for step in 1e-6 * np.eye(len(start))]
+    gradient = (np.array(moved) - list(_constants(model, start).values())).T / 1e-6
+    return np.sqrt(np.einsum("ij,jk,ik->i", gradient, covariance, gradient))
