@@ -12,11 +12,12 @@ from coilset.model.results.summary import summarise
 from coilset.verification.springs.torsion import CoilByCoil
 
 BALANCE = 1e-7  # of the greatest force, and of it times the greatest diameter; (6.3.1) is solved to 1e-9
-EARLY = 0.8  # of the way to block: before the last coils lie down, which contact between the ends decides
-BACK = 0.1  # deviation of what springs back: the end coils, bending and direct shear, which the formula leaves out
-# deviation of force and travel; in the tapered wire the thin coils flow while the thick ones hardly give way
-FORCE, TAPERED = 0.05, 0.08
-
+# The formula leaves out bending, direct shear, and what seats do to the end coils. Found are 4 % of force, 8 % in the
+# first step of the closed and ground spring, whose end coils still lie down, and 8 % of what springs back.
+FORCE, FIRST, BACK = 0.05, 0.1, 0.1
+# Part of the way to block over which forces are judged: later the last coils lie down, one against the other. In the
+# tapered wire the thin coils do so early, and force rises at once.
+EARLY, TAPERED = 0.8, 0.5
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 SHIPPED = [EXAMPLES / "ck15_presetting.yaml", *sorted((EXAMPLES / "springs").glob("*.yaml"))]
@@ -42,11 +43,12 @@ def test_pressed_to_block_and_released(file):
     assert lack_of_force < BALANCE * force.max()
     assert lack_of_moment < BALANCE * force.max() * 2 * spring.mean_radius(analysis.setup.turns).max()
 
-    by_hand, early = CoilByCoil(spring, analysis.law), travel < EARLY * (spring.free_length - spring.block_height)
-    off = TAPERED if np.ptp(analysis.setup.wire_radius) > 0.1 else FORCE
-    low, high = ((1 + sign * off) * by_hand.travel((1 + sign * off) * force) for sign in (-1, 1))
-    assert np.all((low < travel) & (travel < high) | ~early), np.stack([low, travel, high])
-    assert np.count_nonzero(early) >= 9
-    assert by_hand.block_travel() == pytest.approx(spring.free_length - spring.block_height, rel=1e-3)
+    by_hand, way = CoilByCoil(spring, analysis.law), spring.free_length - spring.block_height
+    early = travel < way * (TAPERED if np.ptp(analysis.setup.wire_radius) > 0.1 else EARLY)
+    off = (force / by_hand.force(travel) - 1)[early]
+    assert abs(off[0]) < FIRST
+    assert np.abs(off[1:]).max() < FORCE
+    assert len(off) >= 5
+    assert by_hand.block_travel() == pytest.approx(way, rel=1e-3)
     back = by_hand.block_travel() - summary["set_mm"]
     assert back == pytest.approx(by_hand.spring_back(), rel=BACK)

@@ -47,11 +47,21 @@ class CoilByCoil:
         shear = np.interp(np.asarray(forces)[:, None] * self.r / self.a**3, self.moment, self.shear)
         return np.minimum(2 * np.pi * self.r**2 / self.a * shear, self.way) @ self.weight
 
+    def force(self, travels: np.ndarray) -> np.ndarray:
+        """The reverse of `travel`, by interpolation between 2000 forces, N; the greatest from block on."""
+        at_block = self.a**3 * self._moment_at_block() / self.r
+        forces = np.linspace(0.0, at_block.max(), 2000)
+        return np.interp(travels, self.travel(forces), forces)
+
     def block_travel(self) -> float:
         """Travel at which every coil lies on the next, mm."""
         return float(self.way @ self.weight)
 
     def spring_back(self) -> float:
         """What comes back from block, elastically: ∫ 2π r² T/(G I_p) dt with the torque of each coil at block, mm."""
-        torque = self.a**3 * np.interp(self.way * self.a / (2 * np.pi * self.r**2), self.shear, self.moment)
+        torque = self.a**3 * self._moment_at_block()
         return float((2 * np.pi * self.r**2 * torque / (self.G * 0.5 * np.pi * self.a**4)) @ self.weight)
+
+    def _moment_at_block(self) -> np.ndarray:
+        """m at the places along the wire when all coils lie on each other, MPa."""
+        return np.interp(self.way * self.a / (2 * np.pi * self.r**2), self.shear, self.moment)
