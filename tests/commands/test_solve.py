@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 import subprocess
 import sys
 
@@ -31,7 +32,13 @@ def test_solve_writes_what_the_readme_says(example, tmp_path):
     assert summary["force_max_N"] == pytest.approx(max(float(row["force_N"]) for row in rows), rel=1e-12)
     assert summary["block_height_mm"] == pytest.approx(17.5, rel=1e-12)  # (2.5 + 1) wires of 5 mm
     assert summary["complete"]
-    assert "set" in done.stdout
+    printed = dict(re.findall(r"^ *(.*?)  +(\S+)(?: \S+)? *$", done.stdout, re.MULTILINE))
+    for words, entry in (("set", "set_mm"), ("free length before", "free_length_before_mm"),
+                         ("free length after", "free_length_after_mm"), ("initial rate", "rate_N_per_mm"),
+                         ("block height", "block_height_mm")):  # fmt: skip
+        assert printed[words] == f"{summary[entry]:.4f}"
+    assert printed["greatest force"] == f"{summary['force_max_N']:.2f}"
+    assert printed["greatest residual shear stress"] == f"{summary['residual_shear_max_MPa']:.2f}"
     again = coilset("solve", example, "--out", "here", *SHORT, cwd=tmp_path)
     assert again.returncode == 2
     assert "--force" in again.stderr

@@ -1,0 +1,32 @@
+"""What README.md shows is what comes out: its Python snippet, run, prints the numbers under "What comes out"."""
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+README = (Path(__file__).resolve().parents[2] / "README.md").read_text(encoding="utf-8")
+
+
+def stated(words):
+    """The number that README gives for a line of the summary."""
+    return float(re.search(rf"^ +{words} +(\S+)", README, re.MULTILINE)[1])
+
+
+def test_the_python_snippet_gives_the_stated_numbers(tmp_path):
+    """As README says: saved in a file and run. Force in N and travel in mm of every step, then set and stress."""
+    (snippet,) = re.findall(r"^```python\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)
+    (tmp_path / "set.py").write_text(snippet, encoding="utf-8")
+    done = subprocess.run([sys.executable, "set.py"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    *steps, (set_mm, residual) = [tuple(map(float, line.split())) for line in done.stdout.splitlines()]
+    assert len(steps) == 24
+    assert max(force for _, force in steps) == pytest.approx(stated("greatest force"), abs=0.005)
+    assert set_mm == pytest.approx(stated("set"), abs=5e-5)
+    assert residual == pytest.approx(stated("greatest residual shear stress"), abs=0.005)
+    assert stated("free length before") - stated("free length after") == pytest.approx(stated("set"), abs=1e-4)
+    assert steps[11][0] == pytest.approx(stated("free length before") - stated("block height"), abs=1e-9)
+    # the initial rate is the tangent, before the wire flows: the chord of the first step, 1.46 mm, lies below it
+    assert 0.8 * stated("initial rate") < steps[0][1] / steps[0][0] < stated("initial rate")
