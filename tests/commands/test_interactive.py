@@ -1,33 +1,12 @@
-<<<<<<< HEAD
-"""Targets that are typed at the prompt are read as those of a case file."""
-
-import pytest
-
-from coilset.meshes.errors import InputError
-from coilset.scripts.interactive import parse_phase
-
-
-def test_targets_are_phases():
-    assert parse_phase("block").to == "block"
-    phase = parse_phase("{height: 20}, steps: 8")
-    assert (phase.to.height, phase.steps) == (20.0, 8)
-
-
-@pytest.mark.parametrize("text", ["blok", "{height: yes}", "{height: 20, height: 21}", "{height: [", "{" * 2000, ""])
-def test_other_targets_get_one_short_line(text):
-    with pytest.raises(InputError, match="a target is block") as caught:
-        parse_phase(text)
-    assert "\n" not in str(caught.value)
-    assert len(str(caught.value)) < 300
-=======
 """`coilset solve --interactive`: what is typed after a step is done in the next one; what is wrong changes nothing."""
 
 import pytest
 from mpi4py import MPI
 
+from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.scripts.interactive import HELP, Prompt
+from coilset.scripts.interactive import HELP, Prompt, parse_phase
 
 SETTINGS = ["ends=clamped", "mesh.elements_per_turn=8", "mesh.section={radial: 2, angular: 6}",
             "loading=[{to: {travel: 4}, steps: 4}, {to: {force: 0}, steps: 2}]"]  # fmt: skip
@@ -143,4 +122,17 @@ def test_what_is_wrong_is_said_and_changes_nothing(typed, undisturbed, line, wor
     assert len(said) == 1
     assert words in said[0]
     assert forces(analysis) == forces(undisturbed)
->>>>>>> numbers
+
+
+def test_targets_are_phases():
+    assert parse_phase("block").to == "block"
+    phase = parse_phase("{height: 20}, steps: 8")
+    assert (phase.to.height, phase.steps) == (20.0, 8)
+
+
+@pytest.mark.parametrize("text", ["blok", "{height: yes}", "{height: 20, height: 21}", "{height: [", "{" * 2000, ""])
+def test_other_targets_get_one_short_line(text):
+    with pytest.raises(InputError, match="a target is block") as caught:
+        parse_phase(text)
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 300
