@@ -129,8 +129,8 @@ class SliceProblem:
 
     def _assemble(self):
         forms, scale = self.body.forms, self._scale
-        free, moves = [self._force is not None, self.free_ends], [True, self.free_ends]
-        columns = [assemble(forms["column", k]) / scale[k] if moves[k] else None for k in (RISE, TURN)]
+        free, moves = [self._force is not None, self.free_ends], [True, self._turns]
+        self._columns = columns = [assemble(forms["column", k]) / scale[k] if moves[k] else None for k in (RISE, TURN)]
         rows = [assemble(forms["row", k]) / scale[k] if free[k] else None for k in (RISE, TURN)]
         corner = np.eye(2)
         for i, j in itertools.product((RISE, TURN), repeat=2):
@@ -157,13 +157,17 @@ class SliceProblem:
 
     # ---- steps -----------------------------------------------------------------------------------------------------
 
-    def go_to_rise(self, rise: float) -> Effort:
+    def go_to_rise(self, rise: float, turn: float | None = None) -> Effort:
         """Find the equilibrium at a rise h̄, mm/rad; a step that does not converge is cut in halves.
+
+        Args:
+            rise: h̄ at the end of the step.
+            turn: λ at the end of the step, where the ends are turned; not with free ends.
 
         Raises:
             SolveError: if there is none even after `MAX_CUTS` cuts; the last equilibrium is kept.
         """
-        return self._go(lambda: self.body.rise, rise, by_force=False)
+        return self._go(lambda: self.body.rise, rise, by_force=False, turn=turn)
 
     def go_to_force(self, force: float) -> Effort:
         """Find the equilibrium under an axial force, compression positive, N; else as `go_to_rise`."""
@@ -181,15 +185,16 @@ class SliceProblem:
         self.body.restore()
         return force, stress
 
-    def _go(self, where, target, by_force):
+    def _go(self, where, target, by_force, turn=None):
         begin, done, part, iterations, cuts = where(), 0.0, 1.0, 0, 0
+        turned = 0.0 if turn is None else turn - self.body.turn
         while done < 1.0:
             end = min(done + part, 1.0)
             value = target if end >= 1.0 else begin + end * (target - begin)
             direction = np.sign(value - self.force) if by_force else np.sign(self.body.rise - value)
             if direction * self._direction < 0.0:
                 self.body.start_elastic()
-            converged = self._attempt(value, by_force)
+            converged = self._attempt(value, by_force, (end - done) * turned)
             iterations += 1 + self.snes.getIterationNumber()
             if converged and self._sinks_in():
                 self.body.restore()
@@ -220,24 +225,37 @@ class SliceProblem:
         if self.touching and not self.pressure.bearing:
             self._let_touch(False)
 
-    def _attempt(self, value, by_force):
+    def _attempt(self, value, by_force, turning):
         """Newton's method from the linear answer at the last moduli, K Δu = −R − ∂R/∂h̄ Δh̄; whether it converged."""
-        self._linear_answer(value, by_force)
+        self._linear_answer(value, by_force, turning)
+        if by_force and self.contact is not None and not self.touching:
+            self._hold_back(value)
         self.snes.solve(None, self._X)
         return self.snes.getConvergedReason() > 0 and self._set(self._X)
 
-    def _linear_answer(self, value, by_force):
-        self._force = value if by_force else None
+    def _hold_back(self, value):
+        """Begin where coils have just come to bear, if a force without their contact would press them in deeper."""
+        falls = -2.0 * np.pi * self._X.getArray(readonly=True)[-2] / self.body.turn
+        reach = self.pressure.gap + 2.0 * self.contact.onset
+        if falls > reach:
+            self._let_touch(True)
+            self._linear_answer(value, by_force=True)
+            self._X.scale(reach / falls)
+
+    def _linear_answer(self, value, by_force, turning=0.0):
+        self._force, self._turns = value if by_force else None, self.free_ends or turning != 0.0
         self._at, self._good = np.zeros(self._n + 2), True
         if self.touching:
             self._pressure = self.contact.evaluate()
         rest = self._rest()
         self._assemble()
-        b = -rest
+        b, self._load = -rest, np.linalg.norm(rest)
         if not by_force:
             b[-2] = value - self.body.rise
-            pull = assemble(self.body.forms["column", RISE])
-        self._load = np.linalg.norm(rest) if by_force else np.linalg.norm(pull) * abs(b[-2])
+            self._load = np.linalg.norm(self._columns[RISE]) * abs(b[-2])
+        if turning:
+            b[-1] = turning * self._scale[TURN]
+            self._load += np.linalg.norm(self._columns[TURN]) * abs(b[-1])
         diagonal = self._matrix.petsc.getDiagonal().array[:-2]
         self._floor = 0.5 * np.finfo(float).eps * np.linalg.norm(diagonal * self.body.x.ravel())
         ksp = self.snes.getKSP()

@@ -28,8 +28,8 @@ def summarise(analysis: SliceAnalysis) -> dict:
         "rate_N_per_mm": result.rate,
         "force_max_N": greatest,
         "block_height_mm": spring.block_height,
-        "residual_shear_max_MPa": float(shear(last.stress).max()) if released else None,
-        "shear_max_MPa": max(float(shear(shot.stress).max()) for shot in result.snapshots),
+        "residual_shear_max_MPa": _greatest_shear(last) if released else None,
+        "shear_max_MPa": max(map(_greatest_shear, result.snapshots)),
         "steps": len(result.steps),
         "iterations": sum(step.iterations for step in result.steps),
         "material": analysis.law.name,
@@ -46,6 +46,10 @@ def summarise(analysis: SliceAnalysis) -> dict:
         "loaded": at_surface(analysis, loaded),
         "released": at_surface(analysis, last) if released else None,
     }
+
+
+def _greatest_shear(shot):
+    return float(shear(np.concatenate([shot.stress, shot.line])).max())
 
 
 def at_surface(analysis: SliceAnalysis, shot: SliceSnapshot) -> dict:

@@ -1,0 +1,78 @@
+"""`coilset slice`: what it writes, its summary beside that of `solve`, and one line for what it refuses."""
+
+import csv
+import json
+
+import pytest
+
+from coilset.model.analysis import Analysis
+from coilset.model.case import read_case
+from coilset.model.errors import InputError
+from coilset.model.results import summary as of_spring
+from coilset.model.slice.analysis import SliceAnalysis
+from coilset.model.slice.summary import summarise
+from coilset.scripts.slice import slice_case
+
+SHORT = ["loading=[{to: {travel: 6}, steps: 3}, {to: {force: 0}, steps: 2}]", "ends=clamped"]
+
+
+def test_files_and_summary(example, tmp_path):
+    slice_case(example, tmp_path / "here", settings=SHORT, across=3.0)
+    summary = json.loads((tmp_path / "here" / "summary.json").read_text())
+    rows = list(csv.DictReader((tmp_path / "here" / "history.csv").read_text().splitlines()))
+    assert [float(row["travel_mm"]) for row in rows[:3]] == pytest.approx([2, 4, 6], abs=1e-9)
+    assert summary["set_mm"] == pytest.approx(float(rows[-1]["travel_mm"]), rel=1e-12)
+    assert summary["force_max_N"] == pytest.approx(max(float(row["force_N"]) for row in rows), rel=1e-12)
+    assert summary["complete"]
+    assert summary["released"]["surface_shear_max_MPa"] <= summary["residual_shear_max_MPa"]
+    assert (tmp_path / "here" / "section.png").read_bytes().startswith(b"\x89PNG")
+    assert len(list((tmp_path / "here" / "fields").glob("*.vtu"))) == 3
+    with pytest.raises(InputError, match="--force"):
+        slice_case(example, tmp_path / "here", settings=SHORT, across=3.0)
+
+
+def test_summary_has_the_entries_of_a_springs_run(example):
+    settings = ["loading=[{to: {travel: 1}, steps: 1}, {to: {force: 0}, steps: 1}]", "ends=clamped",
+                "mesh.elements_per_turn=8", "material=elastic"]  # fmt: skip
+    case = read_case(example, settings)
+    spring, coil = Analysis(case), SliceAnalysis(case, across=3.0)
+    spring.run()
+    coil.run()
+    theirs, ours = of_spring.summarise(spring, spring.result), summarise(coil)
+    assert set(theirs) <= set(ours)
+    for entry in ("free_length_before_mm", "block_height_mm", "steps", "material", "ends"):
+        assert ours[entry] == theirs[entry]
+    # the rod's chords of 8 in a turn and its plane section: 1 % in the rate
+    assert ours["rate_N_per_mm"] == pytest.approx(theirs["rate_N_per_mm"], rel=0.02)
+    assert ours["inside_factor"] == pytest.approx(1.16, abs=0.02)
+    assert abs(ours["set_mm"]) < 1e-6
+
+
+def test_block_is_where_the_coils_touch(example):
+    coil = SliceAnalysis(read_case(example, ["loading=[{to: block, steps: 4}]"]))
+    steps = coil.run().steps
+    assert coil.problem.pressure.gap == pytest.approx(0.0, abs=1e-6)
+    assert steps[-1].seat_height_mm > coil.spring.block_height  # by the wire's inclination
+    assert steps[-1].seat_height_mm == pytest.approx(coil.spring.block_height, abs=0.05)
+    assert steps[-1].force_N == max(step.force_N for step in steps)
+
+
+@pytest.mark.parametrize(
+    ("settings", "section", "problem"),
+    [
+        (["spring.mean_diameter={shape: cone, bottom: 40, top: 50}"], None, "spring.mean_diameter: 40.*cylindrical"),
+        (["spring.end_coils=closed", "spring.turns=6"], None, "spring.pitch: .*leave end_coils out"),
+        (["loading=[{to: {height: 17}}]"], None, "loading.0.to: .*below block"),
+        (["loading=[{to: {travel: 30}}]"], None, "loading.0.to: .*below block"),
+        ([], "oval:4:6", "spring.wire_diameter: 5 mm, but the section is 6 mm high"),
+        ([], "ring", "--section"),
+        (["material=none"], None, "material"),
+        (["seats={hold: groove, top: {turn: 100}}"], None, "seats.top.turn"),
+    ],
+)
+def test_what_it_refuses(example, tmp_path, settings, section, problem):
+    with pytest.raises(InputError, match=problem) as caught:
+        slice_case(example, tmp_path / "here", settings=settings, section=section)
+    assert "\n" not in str(caught.value)
+    assert caught.value.exit_code == 2
+    assert not (tmp_path / "here").exists()

@@ -1,0 +1,114 @@
+"""The uniform rod: closed solutions, its derivatives, ways to drive it, and the slice."""
+
+import math
+
+import numpy as np
+import pytest
+
+from coilset.model import uniform
+from coilset.model.errors import SolveError
+from coilset.model.material import library
+from coilset.model.section.rules import polar, upper_half
+from coilset.model.section.uniform import Rod, integrate, residual_and_tangent, strains
+
+COIL = np.array([5.0, 40.0, 12.0, 2.5])
+
+
+def rod(law, free=True):
+    rule, R, h = polar(), 20.0, 12.0 / (2 * np.pi)
+    y, z = 2.5 * np.ascontiguousarray(rule.points.T)
+    return Rod(law.parameters(), R, h, math.hypot(R, h), y, z, np.pi * 6.25 * rule.weights, True, free)
+
+
+def forces(case, q, old_E, points):
+    """∂W/∂q and its derivative at q, from the state at `old_E`."""
+    E, S, T, f, K = np.empty(4), np.empty(4), np.empty((4, 4)), np.empty(4), np.empty((4, 4))
+    new = np.empty_like(points)
+    strains(case, q, E)
+    assert integrate(case, E, old_E, points, new, np.empty((3, 3)), S, T)
+    residual_and_tangent(case, q, S, T, f, K)
+    return f, K, E, new
+
+
+def test_tangent_in_a_plastic_state():
+    law = library.load("ck15")
+    case = rod(law)
+    start = np.array([20.0, math.atan2(case.h, 20.0), case.h, 1.0])
+    points = uniform.unloaded(COIL, law, polar()).points[0]
+    q = start + np.array([0.02, -0.02, -0.4, 0.005])
+    _, _, E, points = forces(case, q, np.zeros(4), points)
+    assert (points[:, 6] > 0).all()
+    q = q + np.array([0.01, -0.005, -0.1, 0.002])
+    f, K, _, _ = forces(case, q, E, points)
+    direction = np.array([0.05, 0.01, 0.2, 0.01])
+    steps = np.array([4e-2, 2e-2, 1e-2])
+    rest = [np.linalg.norm(forces(case, q + s * direction, E, points)[0] - f - s * K @ direction) for s in steps]
+    assert np.polyfit(np.log(steps), np.log(rest), 1)[0] == pytest.approx(2.0, abs=0.1)
+    assert rest[-1] < 0.05 * steps[-1] * np.linalg.norm(K @ direction)
+
+
+def test_elastic_rate_is_that_of_the_plane_section():
+    # slender coil without pitch: G d⁴/(8 D³ n), corrections of order (d/D)² = 1e-4
+    law = library.load("elastic")
+    coil = np.array([5.0, 500.0, 1e-6, 3.0])
+    force, _ = uniform.press(coil, law, travels=[1e-3])
+    assert force[0, 0] / 1e-3 == pytest.approx(law.G * 5**4 / (8 * 500**3 * 3), rel=2e-4)
+
+
+def test_near_the_slice():
+    # 185.708 N and 4.47451 mm of the slice with 602 unknowns, as in verification slice-uniform: +0.09 % and −0.03 %
+    law = library.load("ck15")
+    force, state = uniform.press([5.0, 40.0, 12.0, 1.0], law, travels=6.3 * np.arange(1, 13) / 12)
+    back, state = uniform.press(state, law, forces=[0.0])
+    assert force[0, -1] == pytest.approx(185.708, rel=3e-3)
+    assert back[0, 0] == pytest.approx(4.47451, rel=1e-3)
+    assert abs(state.force[0]) < 1e-6
+    assert state.travel[0] == pytest.approx(back[0, 0], rel=1e-12)
+
+
+def test_half_of_a_symmetric_rule_is_the_whole():
+    law = library.load("ck15")
+    travels = np.linspace(2, 12, 6)
+    whole, half = (uniform.press(COIL, law, travels=travels, rule=r)[0] for r in (polar(), upper_half(polar())))
+    assert half == pytest.approx(whole, rel=1e-12)
+
+
+def test_travel_and_force_drive_alike():
+    law = library.load("ck15")
+    travels = np.array([2.0, 4.0, 8.0])
+    found, state = uniform.press(COIL, law, travels=travels)
+    back, other = uniform.press(COIL, law, forces=found[0])
+    assert back[0] == pytest.approx(travels, rel=1e-6)  # 1e-9 of the force, at a slope that flow has made small
+    assert other.torque == pytest.approx(state.torque, rel=1e-7)
+
+
+def test_free_ends_bear_no_torque():
+    law = library.load("ck15")
+    travels = np.linspace(2, 12, 6)
+    held, state = uniform.press(COIL, law, travels=travels)
+    free, other = uniform.press(COIL, law, travels=travels, free_ends=True)
+    assert abs(other.torque[0]) < 1e-6 * state.torque[0]
+    assert other.q[0, 3] < 1.0 == state.q[0, 3]
+    assert free[0, -1] < held[0, -1]
+
+
+def test_many_coils_are_each_their_own_and_the_state_given_stays():
+    law = library.load("ck15")
+    coils = np.tile(COIL, (3, 1))
+    coils[:, 2] = 11.0, 12.0, 13.0
+    travels = np.linspace(1, 10, 5)
+    together, state = uniform.press(coils, law, travels=travels)
+    alone = [uniform.press(coil, law, travels=travels)[0][0] for coil in coils]
+    assert together == pytest.approx(np.array(alone), rel=1e-12)
+    before = state.copy()
+    uniform.press(state, law, forces=[0.0])
+    assert np.array_equal(before.q, state.q)
+    assert np.array_equal(before.points, state.points)
+
+
+def test_what_cannot_be_is_said():
+    law = library.load("ideal_plastic")
+    with pytest.raises(SolveError, match="no equilibrium of the uniform coil"):
+        uniform.press(COIL, law, forces=[1e5])
+    with pytest.raises(ValueError, match="either"):
+        uniform.press(COIL, law)

@@ -1,0 +1,1 @@
+"""The helical slice against closed solutions and against the solid."""

@@ -1,0 +1,73 @@
+"""Runs of the slice that the cases share."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from coilset.meshes.section import section_mesh
+from coilset.meshes.section_shapes import Outline, round_wire
+from coilset.model.material import library
+from coilset.model.material.law import Law
+from coilset.model.slice.problem import SliceProblem
+from coilset.model.slice.slice import Coil, Slice
+from coilset.model.slice.watch import Watch
+
+WIRE = 5.0  # mm
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """Linear answer of a coil without pitch: unknowns, force per travel of a turn (N/mm), τ13 at places over force."""
+
+    unknowns: int
+    rate: float
+    shear: np.ndarray
+
+
+def elastic(outline: Outline, diameter: float, law: Law, across: float, degree: int, places: np.ndarray) -> Elastic:
+    """Linear answer of a ring's turns that are pressed together, shear per force at the places (ξ, η), 1/mm²."""
+    body = Slice(section_mesh(outline, across, degree), Coil(0.5 * diameter, 0.0), law)
+    watch, rise = Watch(body, places), 1e-7 * diameter
+    force, stress = SliceProblem(body).probe(-rise, watch)
+    return Elastic(body.u.size + 2, force / (2.0 * np.pi * rise), np.abs(stress[:, 4]) / force)
+
+
+@dataclass(frozen=True)
+class Pressed:
+    """A turn of a round wire pressed to nine tenths of the way to block and released.
+
+    Attributes:
+        unknowns, seconds: of the processor for the steps, the pressing's and the release's.
+        travel, force: of all steps, mm and N; set_mm: travel at no force.
+        full, released: τ13 at ξ = −0.9, 0.9 of the wire's radius, MPa, under the greatest force and after release.
+    """
+
+    unknowns: int
+    seconds: float
+    travel: np.ndarray
+    force: np.ndarray
+    set_mm: float
+    full: np.ndarray
+    released: np.ndarray
+
+
+def pressed(index: float, pitch: float, travel: float, across: float = 6.5, degree: int = 2, steps: int = 12,
+            material: str = "ck15") -> Pressed:  # fmt: skip
+    """Press a turn in equal steps and release it in one."""
+    coil = Coil(0.5 * index * WIRE, pitch)
+    body = Slice(section_mesh(round_wire(WIRE), across, degree), coil, library.load(material))
+    watch = Watch(body, [[-0.45 * WIRE, 0.0], [0.45 * WIRE, 0.0]])
+    problem = SliceProblem(body)
+    problem.probe(coil.rise * (1 - 1e-9), watch)  # compiles what is not
+    began, travels, forces = time.process_time(), [0.0], [0.0]
+    for part in np.arange(1, steps + 1) / steps:
+        problem.go_to_rise(coil.rise - part * travel / (2 * np.pi))
+        travels.append(part * travel)
+        forces.append(problem.force)
+    full = watch.section_stress()[:, 4]
+    problem.go_to_force(0.0)
+    seconds = time.process_time() - began
+    back = 2 * np.pi * (coil.rise - body.rise)
+    return Pressed(body.u.size + 2, seconds, np.array(travels), np.array(forces), back, full,
+                   watch.section_stress()[:, 4])  # fmt: skip
