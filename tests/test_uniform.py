@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from coilset.meshes.errors import SolveError
 from coilset.model import uniform
-from coilset.model.errors import SolveError
 from coilset.model.material import library
 from coilset.model.section.rules import polar, upper_half
 from coilset.model.section.uniform import Rod, integrate, residual_and_tangent, strains

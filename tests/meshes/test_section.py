@@ -5,9 +5,9 @@ import pytest
 import ufl
 from dolfinx import fem
 
+from coilset.meshes.errors import InputError
 from coilset.meshes.section import section_mesh
 from coilset.meshes.section_shapes import Curve, Oval, Trapezoid, parse, rectangle, round_wire
-from coilset.model.errors import InputError
 
 
 def area(section):

@@ -5,9 +5,9 @@ import json
 
 import pytest
 
+from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.errors import InputError
 from coilset.model.results import summary as of_spring
 from coilset.model.slice.analysis import SliceAnalysis
 from coilset.model.slice.summary import summarise

@@ -5,8 +5,8 @@ import itertools
 import numpy as np
 import pytest
 
+from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.section_shapes import Trapezoid
-from coilset.model.errors import InputError, SolveError
 from coilset.model.slice.contact import SelfContact
 from coilset.model.slice.problem import SliceProblem
 from coilset.model.slice.watch import Watch, equivalent
