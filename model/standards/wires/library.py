@@ -5,7 +5,8 @@ from functools import cache
 from pathlib import Path
 
 from coilset.meshes.errors import InputError
-from coilset.model.case import check, load_yaml
+from coilset.model.case import check
+from coilset.model.case.yaml import read_data
 from coilset.model.standards.wires.file import WireFile
 from coilset.model.standards.wires.wire import Wire
 
@@ -17,7 +18,7 @@ def files() -> dict[str, WireFile]:
     """The checked files by the name of their standard."""
     read = {}
     for path in sorted(FOLDER.glob("*.yaml")):
-        file = check(load_yaml(path.read_text(encoding="utf-8"), path), path, WireFile)
+        file = check(read_data(path), path, WireFile)
         read[file.standard] = file
     return read
 
