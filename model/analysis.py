@@ -20,6 +20,7 @@ from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.methods import rod_method
 from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.program import LoadProgram, ProgramPosition, Stage, StepTaken
+from coilset.model.equilibrium.stability import Stability
 from coilset.model.equilibrium.system import System
 from coilset.model.material import library
 from coilset.model.results.balance import imbalance
@@ -76,7 +77,8 @@ class Analysis:
             (case.seats.bottom.held(), case.seats.top.held()),
         )  # fmt: skip
         limit = case.contact.penetration_limit * 2.0 * float(radius.min())
-        self.continuation = Continuation(self.newton, case.solver.control.steps, limit)
+        self.stability = Stability(self.newton)
+        self.continuation = Continuation(self.newton, case.solver.control.steps, limit, stability=self.stability)
         self.program = LoadProgram(self.control, self.continuation)
         records = tuple(
             ContactRecord(one.name, one.end, one.points and one.points.turns, getattr(one, "tip", 0))
