@@ -140,6 +140,10 @@ class Continuation:
         reason = f"the equilibrium is unstable: {negative} of the tangent's eigenvalues are negative"
         return replace(outcome, converged=False, reason=reason)
 
+    def _is_cut_enough(self, size: float) -> bool:
+        """Is the way to an unstable state so short that the path must be left here?"""
+        return self.position.cuts >= self.control.unstable_cuts or self.control.cut * size < self.control.smallest
+
     def _leave_branch(self, load: Load, size: float) -> Outcome:
         """Solve again a step that ends unstable, and go off along the weakest mode until a stable state is found.
 
@@ -208,7 +212,7 @@ class Continuation:
                 size = min(size, int(position.done + 1e-9) + 1 - position.done)
             load = path.load(position.done + size)
             outcome = self.attempt(load, self.starts(load, size))
-            if outcome.negative_pivots > self.negative_pivots and position.cuts >= self.control.unstable_cuts:
+            if outcome.negative_pivots > self.negative_pivots and self._is_cut_enough(size):
                 outcome = self._leave_branch(load, size)
             if outcome.converged:
                 self.number += 1

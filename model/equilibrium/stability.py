@@ -85,20 +85,14 @@ class Stability:
         return factors
 
     def _scale(self, load: Load) -> PETSc.Vec:
-        """Weights of the unknowns in the norm of a mode: 1 for displacements, the coil's radius squared for
-       
-       
-       
-        rotations.""" assert isinstance(self.layout, LineLayout)
-        n, radius = len(self.layout.station_dofs), self.system.body.extent natural =
-        np.ones(self.layout.size) natural[: 6 * n].reshape(n, 6)[:, 3:] = (0.1 * radius)
-      
-       
-      
-       
-        ** 2 scale =
-        self.layout.from_order(natural) scale[load.held] = 0.0 return
-        self.layout.vector(scale.copy())
+        """Weights of unknowns in a mode's norm: 1 for displacements, a tenth of the extent squared for rotations."""
+        assert isinstance(self.layout, LineLayout)
+        n, extent = len(self.layout.station_dofs), self.system.body.extent
+        natural = np.ones(self.layout.size)
+        natural[: 6 * n].reshape(n, 6)[:, 3:] = (0.1 * extent) ** 2
+        scale = self.layout.from_order(natural)
+        scale[load.held] = 0.0
+        return self.layout.vector(scale.copy())
 
     def _start_block(self) -> list[PETSc.Vec]:
         """Vectors to begin with, the same on any number of ranks."""
