@@ -98,11 +98,16 @@ def run(study):
     study.check("order of the tip's distance", slope, 2.0, "straight rods", 0.1, "absolute")
     study.table("errors", ["rods", "tip, over L", "moment, over m"], rows)
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(5.4, 4.4), layout="constrained")
-        axes = figure.add_subplot(projection="3d")
-        axes.plot(*x.T, "-", lw=1.0, label=f"coilset, {MESHES[-1]} rods")
-        axes.plot(*exact[::4].T, "o", ms=2, color="C3", label="closed form")
-        axes.set(xlabel="x in mm", ylabel="y in mm", zlabel="z in mm", title="Straight rod wound to ten turns")
-        axes.set_aspect("equal")
-        axes.legend(fontsize=8)
+        figure = Figure(figsize=(9.0, 3.0), layout="constrained")
+        side, end = figure.subplots(1, 2, width_ratios=(3, 1))
+        axis = np.array([np.sin(OUT_OF_PLANE), 0.0, np.cos(OUT_OF_PLANE)])
+        frame = np.stack([axis, np.cross([0.0, 1.0, 0.0], axis), [0.0, 1.0, 0.0]])
+        for places, style, name in ((x, "-", f"coilset, {MESHES[-1]} rods"), (exact[::4], "o", "closed form")):
+            along, right, up = frame @ places.T
+            side.plot(along, up, style, ms=2.5, lw=1.0, label=name)
+            end.plot(right, up, style, ms=2.5, lw=1.0)
+        side.set(aspect="equal", xlabel="along the moment in mm", ylabel="across in mm", title="Rod wound to ten turns")
+        end.set(aspect="equal", xlabel="across in mm", title="along the moment")
+        side.set_ylim(-3.0, 52.0)
+        side.legend(fontsize=8, loc="upper left", ncols=2)
     study.figure("rod_to_helix", figure)
