@@ -2,11 +2,11 @@
 
 An end moment bends a straight rod to a circle of curvature M/EI; at M = 4π EI/L it closes twice. The tip is turned by
 4π about the axis across the plane and free in it; the moment is what it takes. (Out of the plane all nodes are held: a
-rod whose end was turned by 4π can unwind through space, and the plane state is unstable from 1.2 circles on.) Straight
-rods of length l = L/n form a polygon of equal angles φ = 4π/n with M = EI φ/l: tip and moment are those of the circle
-whatever n is, up to the axial strain, which is none. Tolerance: the iteration's, 1e-7. The polygon's corners lie on a
-circle of radius l/(2 sin(φ/2)) in the place of l/φ: the rod's greatest height 2R is too large by φ²/24, and the
-tolerance is φ²/20.
+rod whose end was turned by 4π can unwind through space, and with the other nodes free the tangent has a negative pivot
+from 0.8 circles on.) Straight rods of length l = L/n form a polygon of equal angles φ = 4π/n with M = EI φ/l: tip and
+moment are those of the circle whatever n is, up to the axial strain, which is none. Tolerance: the iteration's, 1e-7.
+The polygon's corners lie on a circle of radius l/(2 sin(φ/2)) in the place of l/φ: the rod's greatest height 2R is too
+large by φ²/24, and the tolerance is φ²/20.
 """
 
 import matplotlib as mpl
