@@ -25,7 +25,7 @@ from scipy.spatial.transform import Rotation
 from coilset.meshes.errors import SolveError
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
-from coilset.verification.chain import ALL, TURN_X, TURN_Y, TURN_Z, chain, straight
+from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, chain, straight
 
 FAST = True
 LENGTH, RADIUS, TURNS, STEPS = 1000.0, 2.0, 10, 40  # mm
@@ -60,7 +60,7 @@ def wind(elements):
         }
         let(frame, moves)
         x, turn = led, turned
-    hold = {frame.dof(elements, component): 0.0 for component in (TURN_X, TURN_Y, TURN_Z)}
+    hold = {frame.dof(elements, component): 0.0 for component in (ROTATION_X, ROTATION_Y, ROTATION_Z)}
     let(frame, hold)  # the tip does not turn in this step: its moments are those of the fixed frame
     moment = np.array([frame.force(dof) for dof in hold])
     return nodes + np.array([frame.moved(node) for node in range(elements + 1)]), moment

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
-from coilset.verification.chain import ALL, TURN_X, TURN_Y, TURN_Z, Y, Z, chain, drive, straight
+from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, Y, Z, chain, drive, straight
 from coilset.verification.references.section_integrals import nadai_torque, shear_curve, torque
 
 FAST = True
@@ -29,13 +29,13 @@ MATERIALS = ("ideal_plastic", "linear_isotropic", "ck15")
 
 def twist(law, rings):
     """Torques at the steps, N mm, the twist per length that stays once it is let go, 1/mm, and τ over r at the end."""
-    held = [(0, ALL), (1, (Y, Z, TURN_Y, TURN_Z))]
+    held = [(0, ALL), (1, (Y, Z, ROTATION_Y, ROTATION_Z))]
     frame, torques = chain(straight(LENGTH, 1), RADIUS, law, polar(rings, 12), held), [0.0]
-    end = frame.dof(1, TURN_X)
+    end = frame.dof(1, ROTATION_X)
     drive(frame, STEPS, {end: SHEAR / RADIUS * LENGTH}, after=lambda: torques.append(frame.force(end)))
     stress = np.hypot(*frame.rod.point_state[0, 0, ::12, 1:3].T)
     drive(frame, 2, forces={end: 0.0})
-    return np.array(torques), frame.turned(1)[0] / LENGTH, stress
+    return np.array(torques), frame.rotation(1)[0] / LENGTH, stress
 
 
 def reference(law, ϑ):

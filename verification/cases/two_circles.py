@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
-from coilset.verification.chain import ALL, TURN_X, TURN_Y, TURN_Z, Z, chain, drive, straight
+from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, Z, chain, drive, straight
 
 FAST = True
 LENGTH, RADIUS = 100.0, 1.0  # mm
@@ -26,9 +26,9 @@ MESHES = (16, 32, 64)
 def roll(elements):
     """M L/EI, positions of all nodes after half and after all of the steps, and iterations of the steps."""
     law, nodes, shapes = library.load("elastic"), straight(LENGTH, elements), []
-    plane = [(node, (Z, TURN_X, TURN_Y)) for node in range(1, elements + 1)]
+    plane = [(node, (Z, ROTATION_X, ROTATION_Y)) for node in range(1, elements + 1)]
     frame = chain(nodes, RADIUS, law, held=[(0, ALL), *plane])
-    turn = frame.dof(elements, TURN_Z)
+    turn = frame.dof(elements, ROTATION_Z)
     counts = drive(frame, STEPS, {turn: 4.0 * np.pi}, after=lambda: shapes.append(positions(frame, nodes)))
     EI = law.E * np.pi * RADIUS**4 / 4.0
     return frame.force(turn) * LENGTH / EI, shapes, counts
