@@ -87,6 +87,7 @@ class Continuation:
         self.penetration_limit, self.starts = penetration_limit, starts or self.from_last_step
         self.stability, self.negative_pivots = stability, 0
         self.position, self.number, self._attempts = Position(), 0, 0
+        self._unstable = 0.0  # size of the step in progress at which it ended unstable
 
     # ---- one solve -------------------------------------------------------------------------------------------------
 
@@ -212,10 +213,13 @@ class Continuation:
                 size = min(size, int(position.done + 1e-9) + 1 - position.done)
             load = path.load(position.done + size)
             outcome = self.attempt(load, self.starts(load, size))
-            if outcome.negative_pivots > self.negative_pivots and self._is_cut_enough(size):
-                outcome = self._leave_branch(load, size)
+            if outcome.negative_pivots > self.negative_pivots:
+                self._unstable = size
+            if not outcome.converged and self._unstable and self._is_cut_enough(size):
+                size = self._unstable
+                outcome = self._leave_branch(path.load(position.done + size), size)
             if outcome.converged:
-                self.number += 1
+                self.number, self._unstable = self.number + 1, 0.0
                 self.position = Position(position.done + size, self._following(path, outcome, size), 0, size)
                 return outcome, position.cuts
             self._cut(path, outcome, size)
