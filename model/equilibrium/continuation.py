@@ -186,7 +186,7 @@ class Continuation:
 
     def begin(self) -> None:
         """Stand at the start of a path."""
-        self.position, self._attempts = Position(), 0
+        self.position, self._attempts, self._unstable = Position(), 0, 0.0
 
     def resize(self, size: float) -> None:
         """Make the next step as large as `size` regular steps."""
