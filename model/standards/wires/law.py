@@ -1,6 +1,7 @@
 """The law of a wire by its name: elasticity of the standard, hardening estimated from its least strength."""
 
-from coilset.model.material.law import Law, MaterialFile
+from coilset.model.material.file import MaterialFile
+from coilset.model.material.law import Law
 from coilset.model.standards.steel import Elastic
 from coilset.model.standards.wires.hardening import Curve, curve
 from coilset.model.standards.wires.library import wire
