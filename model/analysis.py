@@ -22,7 +22,6 @@ from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.program import LoadProgram, ProgramPosition, Stage, StepTaken
 from coilset.model.equilibrium.stability import Stability
 from coilset.model.equilibrium.system import System
-from coilset.model.material import library
 from coilset.model.results.balance import imbalance
 from coilset.model.results.buckling import axis_offset, buckling
 from coilset.model.results.checkpoint import Saved
@@ -31,6 +30,7 @@ from coilset.model.results.seat_reactions import seat_reactions
 from coilset.model.rod.kinematics import GAUSS, chord_triads
 from coilset.model.rod.rod import Rod
 from coilset.model.standards.buckling import buckling_travel
+from coilset.model.standards.wires.law import case_law
 from coilset.model.state import State
 
 
@@ -62,7 +62,7 @@ class Analysis:
         self.case, self.comm = case, comm
         self.spring = spring = case.spring.build()
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
-        self.law = library.load(case.material)
+        self.law = case_law(case, spring)
         line = line_mesh(spring.centre_line(turns), comm)
         radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
         placement = None

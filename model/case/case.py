@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
 
-from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
 from coilset.meshes.spring import SpringEntry
 from coilset.meshes.stations import ElementsPerTurn
@@ -112,11 +112,26 @@ class SolverSpec(Strict):
     control: ControlSpec = ControlSpec()
 
 
+class NamedWire(Strict):
+    """A wire of a standard in the place of a material; it takes the wire's diameter from the spring."""
+
+    wire: Annotated[str, Field(description="name of a wire, such as EN 10270-1 SH; `coilset sheet --wires` lists them")]
+
+
+Material = Annotated[
+    Annotated[str, Tag("(name)")] | Annotated[NamedWire, Tag("(wire)")],
+    Discriminator(lambda value: "(wire)" if isinstance(value, dict | NamedWire) else "(name)"),
+]
+"""A material by its name or file, or a wire by its name."""
+
+
 class Case(Strict):
     """A whole case; units mm, N, MPa, K."""
 
     spring: Annotated[SpringEntry, Field(description="the spring's drawing, or the file of a measured one")]
-    material: Annotated[str, Field(description="name in the library, or path of a material file")] = "ck15"
+    material: Annotated[
+        Material, Field(description="name in the library, path of a material file, or {wire: name of a wire}")
+    ] = "ck15"
     temperature: Annotated[
         float | None, Field(gt=0, description="of the spring throughout, K; default: the material file's first")
     ] = None
@@ -129,10 +144,10 @@ class Case(Strict):
 
     @field_validator("material")
     @classmethod
-    def _from_folder(cls, material: str, info: ValidationInfo) -> str:
+    def _from_folder(cls, material: str | NamedWire, info: ValidationInfo) -> str | NamedWire:
         """The path of a material file counts from the folder of the case file, where the context has one."""
         folder = (info.context or {}).get("folder")
-        return material if folder is None else located("material", material, folder)
+        return material if folder is None or isinstance(material, NamedWire) else located("material", material, folder)
 
     @model_validator(mode="after")
     def _seats_belong(self) -> Self:

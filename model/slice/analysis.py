@@ -9,12 +9,12 @@ from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.section import section_mesh
 from coilset.meshes.section_shapes import Outline, round_wire
 from coilset.model.case import Case
-from coilset.model.material import library
 from coilset.model.slice.contact import SelfContact
 from coilset.model.slice.lattice import Lattice
 from coilset.model.slice.problem import SliceProblem
 from coilset.model.slice.slice import Coil, Slice
 from coilset.model.slice.watch import Watch
+from coilset.model.standards.wires.law import case_law
 
 ACROSS = 6.5  # triangles across the section: 600 unknowns of a round wire
 AUTOMATIC = 16  # equal steps of a phase whose steps are `auto`
@@ -97,7 +97,7 @@ class SliceAnalysis:
 
     def __init__(self, case: Case, outline: Outline | None = None, across: float = ACROSS, degree: int = 2):
         self.case, self.spring = case, case.spring.build()
-        self.law = library.load(case.material)
+        self.law = case_law(case, self.spring)
         d, D, pitch = (_same_in_all_turns(self.spring, name) for name in ("wire_diameter", "mean_diameter", "pitch"))
         self.wire_diameter, self.mean_diameter, self.is_round = d, D, outline is None
         self.coil, self.turns = Coil(0.5 * D, pitch), self.spring.turns
