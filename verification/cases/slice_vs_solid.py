@@ -1,12 +1,12 @@
 """The helical slice against the solid: one clamped turn of Ck 15, pressed nearly to block and released
 
-The solid is one turn between heads that do not turn, wire 5 mm, D/d = 4, 6, 8 and 12 (solid-vs-rod); the slice is a coil
-without ends. What the ends do is told by two rods that have the same plain section, one of a clamped turn and one
-uniform: the clamped turn bears 0.6, 0.2, 0.0 and −0.1 % more. Their ratio takes the ends out of the solid's numbers. The
-fine solids are the recorded ones of docs/solid.md (14,844 and 33,987 unknowns, minutes to an hour each), whose own last
-refinement changes force by 0.03 and set by 0.001 %; the solid of 4,719 unknowns is run here. The tolerances for the
-recorded ones, 0.08 % in force and 0.02 % in set, hold that refinement and the digits of the record; the coarse one's
-force is 0.2 % from the finest.
+The solid is one turn between heads that do not turn, wire 5 mm, D/d = 4, 6, 8 and 12 (solid-vs-rod); the slice is a
+coil without ends. What the ends do is told by two rods that have the same plain section, one of a clamped turn and one
+uniform: the clamped turn bears 0.6, 0.2, 0.0 and −0.1 % more. Their ratio takes the ends out of the solid's numbers.
+The fine solids are the recorded ones of docs/solid.md (14,844 and 33,987 unknowns, minutes to an hour each), whose own
+last refinement changes force by 0.03 and set by 0.001 %; the solid of 4,719 unknowns is run here. The tolerances for
+the recorded ones, 0.08 % in force and 0.02 % in set, hold that refinement and the digits of the record; the coarse
+one's force is 0.2 % from the finest.
 """
 
 import shutil
