@@ -17,8 +17,9 @@ MAX_ITERATIONS = 25
 PRECISION = 1e-9  # out-of-balance force over that which the step puts on the coil
 ROUNDING = 1e-13  # below which, times the greatest resultant, nothing is out of balance
 
-# One coil and how it is driven: constants of the law; radius R, rise h, j = √(R² + h²); places and areas of the points.
-Rod = namedtuple("Rod", "p R h j y z area by_force free")
+# One coil and how it is driven: constants of the law; radius R, rise h, j = √(R² + h²); places and areas of the points;
+# dm/dy, R/j² or, for a plain section, 0.
+Rod = namedtuple("Rod", "p R h j y z area bend by_force free")
 
 
 @njit(**INLINE)
@@ -66,7 +67,7 @@ def integrate(rod, E, old_E, old, new, C, S, T):
     T[:] = 0.0
     for k in range(len(rod.y)):
         y, z = rod.y[k], rod.z[k]
-        m = 1.0 + y * rod.R / rod.j**2
+        m = 1.0 + y * rod.bend
         stretched, before = m + E[0] + y * E[3], m + old_E[0] + y * old_E[3]
         if not stretched > 0.0:
             return False
