@@ -32,7 +32,8 @@ class Snapshot:
         x: station positions, shape (n + 1, 3), mm.
         triads: element triads (columns), shape (n, 3, 3).
         resultants: N, Q2, Q3, Mt, M2, M3 at the Gauss sections, shape (n, 2, 6), N and N mm.
-        history: σ11, τ12, τ13, B11, B12, B13, b* at the section points, shape (n, 2, points, n_state), MPa.
+        history: state at the section points, shape (n, 2, points, n_state), MPa; the rod's sections name its columns.
+        surface: the same at the points on the wire's surface, shape (n, 2, surface points, n_state), MPa.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Snapshot:
     triads: np.ndarray
     resultants: np.ndarray
     history: np.ndarray
+    surface: np.ndarray
 
     @property
     def shear(self):
@@ -81,10 +83,13 @@ class Analysis:
         self.law = library.load(case.material)
         line = line_mesh(self.spring.centre_line(self.turns), comm)
         self.wire_radius = 0.5 * self.spring.wire_diameter(0.5 * (self.turns[1:] + self.turns[:-1]))
-        placement = None
+        section, placement = case.mesh.section, None
         if case.mesh.axis == "curved":
-            placement = section_placement(self.spring, self.turns, triads(np.diff(line.stations, axis=0)), GAUSS)
-        self.rod = Rod(line, self.wire_radius, self.law, case.mesh.section.build(), placement, case.temperature)
+            chords = triads(np.diff(line.stations, axis=0))
+            placement = section_placement(self.spring, self.turns, chords, GAUSS, section.kind != "plane")
+        self.rod = Rod(
+            line, self.wire_radius, self.law, section.build(), placement, case.temperature, section.kind, section.degree
+        )
         top = self.spring.free_length
         contacts = build_contacts(case, self.spring, self.turns, line.stations, self.law.E)
         self.system = System(self.rod, contacts, seats=(0.0, top))
@@ -148,9 +153,10 @@ class Analysis:
     def snapshot(self, name):
         """The spring as it stands, gathered on rank 0."""
         rod = self.rod
-        fields = [rod.line.in_order(values) for values in (rod.E.values, rod.s.values, rod.history)]
+        parts = (rod.E.values, rod.s.values, rod.history, rod.points["surface"])
+        fields = [rod.line.in_order(values) for values in parts]
         if self.comm.rank:
-            fields = [np.empty(0)] * 3
+            fields = [np.empty(0)] * len(parts)
         return Snapshot(name, self.drive.height, self.drive.force, self.system.gather(rod.x), *fields)
 
     def outer_length(self, x):

@@ -17,8 +17,14 @@ from coilset.model.solvers.methods import METHODS
 
 
 class SectionSpec(Strict):
-    """Quadrature of the wire's cross-section."""
+    """The wire's cross-section: what it may do, and its quadrature."""
 
+    kind: Annotated[
+        Literal["plane", "curved", "warping"],
+        Field(description="plane as in the thesis; curved: plane, with fibres as long as the curved wire makes them; "
+                          "warping: free to warp, with all six stresses"),
+    ] = "plane"
+    degree: Annotated[int, Field(ge=1, le=7, description="of the polynomials of a section that warps")] = 3
     rule: Annotated[
         Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")
     ] = "polar"
@@ -44,6 +50,12 @@ class MeshSpec(Strict):
         Field(description="curved: the rods' sections lie on the true centre line; chords: the thesis's polygon"),
     ] = "curved"
     section: SectionSpec = SectionSpec()
+
+    @model_validator(mode="after")
+    def _curvature_belongs(self):
+        if self.axis == "chords" and self.section.kind != "plane":
+            raise ValueError(f"chords are straight; give section.kind: plane, or axis: curved for {self.section.kind}")
+        return self
 
 
 class FrictionSpec(Strict):

@@ -14,7 +14,7 @@ from coilset.model.loading.stepper import Step, Walk
 from coilset.model.results.folder import whole
 from coilset.model.results.seats import Resultants
 
-NODAL, CELLWISE = ("x", "R"), ("chord", "shear", "strain", "history")
+NODAL, CELLWISE = ("x", "R"), ("chord", "shear", "strain")  # and the arrays of the sections
 # what must be the same to go on
 SPRING_ENTRIES = ("spring", "material", "temperature", "ends", "seats", "mesh", "contact")
 
@@ -37,7 +37,7 @@ class Checkpoint:
         """Write the state after a converged step; collective."""
         rod, system, stepper = analysis.rod, analysis.system, analysis.stepper
         state = {name: system.gather(rod.equilibrium[name]) for name in NODAL}
-        state |= {name: rod.line.in_order(rod.equilibrium[name]) for name in CELLWISE}
+        state |= {name: rod.line.in_order(rod.equilibrium[name]) for name in (*CELLWISE, *rod.points)}
         state |= {"guess": system.to_order(stepper.guess), "reactions": system.to_order(system.reaction_start)}
         if analysis.comm.rank:
             return
@@ -99,7 +99,7 @@ class Checkpoint:
         rod, system, stepper, drive = analysis.rod, analysis.system, analysis.stepper, analysis.drive
         for name in NODAL:
             rod.equilibrium[name] = loaded[name][rod.line.node].copy()
-        for name in CELLWISE:
+        for name in (*CELLWISE, *rod.points):
             rod.equilibrium[name] = loaded[name][rod.line.element[: rod.line.owned_cells]].copy()
         system.seats_start = loaded["seats"].copy()
         for k, memory in enumerate(system.memories):
@@ -134,7 +134,7 @@ class Checkpoint:
         for name, kind in (("name", str), ("height", float), ("force", float)):
             fields[name] = kind(fields[name])
         if rank:
-            fields |= {name: np.empty(0) for name in ("triads", "resultants", "history")}
+            fields |= {name: np.empty(0) for name in ("triads", "resultants", "history", "surface")}
         return Snapshot(**fields)
 
     def _compare(self, about):

@@ -7,14 +7,14 @@ without touching the equilibrium, `commit` makes the trial state the equilibrium
 import numpy as np
 from dolfinx import fem
 
+from coilset.meshes.placement import Placement
 from coilset.model.frames.rotations import triads, turn_nodes
-from coilset.model.material.points import initial_state
 from coilset.model.rod import forms
 from coilset.model.rod.kinematics import GAUSS, section_strains
-from coilset.model.section.update import update_sections
+from coilset.model.section.kinds import make_sections
 
-STRAIGHT = np.eye(6)[None, None].repeat(2, axis=1)  # section placement of a straight rod
-STRAIGHT_STRETCH = np.ones((1, 2))
+# placement of the sections of straight rods, one row for all
+STRAIGHT = Placement(np.eye(6)[None, None].repeat(2, axis=1), np.ones((1, 2)), np.zeros((1, 2)), np.zeros((1, 2)))
 
 
 class CellField:
@@ -37,28 +37,33 @@ class Rod:
         radius: wire radius of every element in the order of the elements, shape (elements,), mm.
         law: material law (`coilset.model.material.library.load`).
         rule: quadrature of the wire's disk, DiskRule.
-        placement: where the true sections lie in relation to the chords, `(matrices, stretch)` with shapes
-            (elements, 2, 6, 6) and (elements, 2); None for straight rods.
+        placement: Placement of the true sections in relation to the chords, in the order of the elements; None for
+            straight rods.
         temperature: of the rod, K; where plastic work heats it, at the start. None: the material's first.
+        kind: of the sections, see `coilset.model.section.kinds`, and `degree` of those that warp.
 
     Raises:
         InputError: if the temperature lies outside the material's table.
 
     Attributes:
-        x, chord, R, shear, strain, history: trial state of the local nodes and owned cells; x in mm, strain shape
-            (cells, 2, 6), history shape (cells, 2, points, n_state).
+        x, chord, R, shear, strain: trial state of the local nodes and owned cells; x in mm, strain shape (cells, 2, 6).
+        points: trial state of the sections, a dict of arrays of shape (cells, 2, ...); `history`, shape
+            (cells, 2, points, n_state), is always among them.
         equilibrium: the same at the last equilibrium, a dict.
     """
 
-    def __init__(self, line, radius, law, rule, placement=None, temperature=None):
+    def __init__(self, line, radius, law, rule, placement=None, temperature=None, kind="plane", degree=3):
         self.line, self.law, self.rule = line, law, rule
         mesh, n = line.mesh, line.owned_cells
         self.mesh, self.parameters = mesh, law.parameters(temperature)
         element = line.element[:n]
         self.radius = np.ascontiguousarray(np.asarray(radius, float)[element])
-        self.placement, self.stretch = STRAIGHT, STRAIGHT_STRETCH
+        self.placement = STRAIGHT
         if placement is not None:
-            self.placement, self.stretch = (np.ascontiguousarray(part[element]) for part in placement)
+            self.placement = Placement(*(np.ascontiguousarray(part[element]) for part in placement))
+        self.sections = make_sections(
+            kind, law, self.parameters, rule, self.radius, self.placement, temperature, degree
+        )
 
         self.V = fem.functionspace(mesh, forms.rod_element())
         self.increment = fem.Function(self.V)
@@ -84,7 +89,7 @@ class Rod:
         self.forms = forms.RodForms(mesh, self.V, *(field.function for field in fields))
         self._residual = fem.form(self.forms.residual)
         self._tangent = fem.form(self.forms.material_stiffness + self.forms.frame_stiffness)
-        self._start(x, temperature)
+        self._start(x)
 
     def _number_dofs(self):
         """Local dofs of the nodes' displacements and turns, shape (nodes, 3), and of the cells' shear angles."""
@@ -96,18 +101,23 @@ class Rod:
             self.turn_dofs[geometry.dofmap, i] = nodal.sub(i + 3).dofmap.list
         self.shear_dofs = np.stack([shear.sub(i).dofmap.list[: self.line.owned_cells, 0] for i in range(2)], axis=1)
 
-    def _start(self, x, temperature):
+    @property
+    def history(self):
+        """Trial state of the section points, shape (cells, 2, points, n_state)."""
+        return self.points["history"]
+
+    def _start(self, x):
         """The stress-free state."""
-        n, points = len(self.cells), len(self.rule)
+        n = len(self.cells)
         self.x = x  # the mesh's own coordinates: the forms are integrated on the current configuration
         self.chord = x[self.cells[:, 1]] - x[self.cells[:, 0]]
         self.R = np.tile(np.eye(3), (len(x), 1, 1))
         self.chart = np.tile(np.eye(3), (len(x), 1, 1))
         self.shear = np.zeros((n, 2))
         self.strain = self.e.values
-        self.history = np.tile(initial_state(self.law, 1, temperature=temperature), (n, 2, points, 1))
+        self.points = self.sections.initial_state()
         self.equilibrium = {}
-        self.commit()
+        self._keep()
         self.update()
 
     def update(self):
@@ -128,21 +138,23 @@ class Rod:
             self.E.values, self.P.values, self.W.values, self.strain,
         )  # fmt: skip
         self.T.values[:] = self.chart[self.cells]
-        y, z = np.ascontiguousarray(self.rule.points.T)
-        status = update_sections(
-            self.parameters, y, z, self.rule.weights, self.radius, self.strain - start["strain"],
-            self.placement, self.stretch, start["history"], self.history, self.s.values, self.D.values,
-        )  # fmt: skip
-        return status == 0
+        return self.sections.update(self.strain, start, self.points, self.s.values, self.D.values)
 
     def commit(self):
         """Make the trial state the equilibrium and set the increments to zero."""
-        for name in ("x", "chord", "R", "shear", "strain", "history"):
-            self.equilibrium[name] = getattr(self, name).copy()
+        self.sections.update_surface(self.strain, self.equilibrium, self.points)
+        self._keep()
+
+    def _keep(self):
+        self.equilibrium = {name: getattr(self, name).copy() for name in ("x", "chord", "R", "shear", "strain")}
+        self.equilibrium |= {name: rows.copy() for name, rows in self.points.items()}
+        self.sections.reset()
         self.increment.x.array[:] = 0.0
 
     def restore(self):
         """Go back to the last equilibrium."""
+        self.sections.reset()
+        self.points["surface"][:] = self.equilibrium["surface"]
         self.increment.x.array[:] = 0.0
         return self.update()
 

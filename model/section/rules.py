@@ -40,3 +40,12 @@ def polar(radial=4, angular=12):
     angle = 2.0 * np.pi * (np.arange(angular) + 0.5) / angular
     points = np.stack([np.outer(r, np.cos(angle)), np.outer(r, np.sin(angle))], axis=-1).reshape(-1, 2)
     return DiskRule(points, np.repeat(0.5 * w / angular, angular), f"polar {radial} × {angular}")
+
+
+SURFACE_POINTS = 24
+
+
+def rim(points: int = SURFACE_POINTS) -> np.ndarray:
+    """Points (y, z) of the unit circle at equal angles from the y axis, shape (points, 2)."""
+    angle = 2.0 * np.pi * np.arange(points) / points
+    return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
