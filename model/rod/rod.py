@@ -148,12 +148,10 @@ class Rod:
     def _keep(self):
         self.equilibrium = {name: getattr(self, name).copy() for name in ("x", "chord", "R", "shear", "strain")}
         self.equilibrium |= {name: rows.copy() for name, rows in self.points.items()}
-        self.sections.reset()
         self.increment.x.array[:] = 0.0
 
     def restore(self):
         """Go back to the last equilibrium."""
-        self.sections.reset()
         self.points["surface"][:] = self.equilibrium["surface"]
         self.increment.x.array[:] = 0.0
         return self.update()

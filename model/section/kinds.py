@@ -1,7 +1,8 @@
 """The kinds of sections: what a wire's cross-section may do, and what it knows of the wire's curvature.
 
 - plane: the thesis's; it stays plane and knows nothing of the curvature,
-- curved: it stays plane, and its fibres are as long as the curved wire makes them.
+- curved: it stays plane, and its fibres are as long as the curved wire makes them,
+- warping: it warps as the curved and twisted wire asks, and bears all six stresses.
 """
 
 from typing import Protocol
@@ -9,8 +10,9 @@ from typing import Protocol
 import numpy as np
 
 from coilset.model.section.plane import PlaneSections
+from coilset.model.section.warping import WarpingSections
 
-KINDS = ("plane", "curved")
+KINDS = ("plane", "curved", "warping")
 
 
 class Sections(Protocol):
@@ -20,17 +22,18 @@ class Sections(Protocol):
     initial_state: object
     update: object
     update_surface: object
-    reset: object
 
 
 def make_sections(kind, law, parameters, rule, radius, placement, temperature=None, degree=3):
-    """The sections of a kind; arguments as in `PlaneSections`.
+    """The sections of a kind; arguments as in `PlaneSections` and, for the degree, `WarpingSections`.
 
     Raises:
         ValueError: if there is no such kind.
     """
     if kind not in KINDS:
         raise ValueError(f"kind '{kind}' is none of {', '.join(KINDS)}")
+    if kind == "warping":
+        return WarpingSections(law, parameters, rule, radius, placement, temperature, degree)
     if kind == "plane":
         placement = placement._replace(curvature=np.zeros_like(placement.curvature))
     return PlaneSections(law, parameters, rule, radius, placement, temperature)

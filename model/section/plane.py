@@ -101,9 +101,6 @@ class PlaneSections:
             place.matrices, start["surface"], trial["surface"],
         )  # fmt: skip
 
-    def reset(self) -> None:
-        """Nothing is kept from one evaluation to the next."""
-
 
 @njit(cache=True)
 def update_sections(p, y, z, w, radius, curvature, de, placement, stretch, old, new, s, D):

@@ -39,7 +39,6 @@ class Section:
     def update(self, de):
         """Resultants and tangent after the strain increment; the trial state stays beside the start."""
         self.trial = {name: np.full_like(rows, np.nan) for name, rows in self.sections.initial_state().items()}
-        self.sections.reset()
         s, D = np.empty((1, 2, 6)), np.empty((1, 2, 6, 6))
         strain = self.start["strain"] + de
         assert self.sections.update(strain, self.start, self.trial, s, D)
