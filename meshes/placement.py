@@ -81,6 +81,12 @@ class Placement(NamedTuple):
     torsion: np.ndarray
 
 
+def straight(elements):
+    """The placement of sections that lie on their straight rods, two for each."""
+    zero = np.zeros((elements, 2))
+    return Placement(np.tile(np.eye(6), (elements, 2, 1, 1)), np.ones_like(zero), zero, zero.copy())
+
+
 def section_placement(spring, turns, triads, abscissae, curved=False):
     """How the sections of the curved wire hang on the chords between the nodes.
 

@@ -6,7 +6,7 @@ import numpy as np
 from mpi4py import MPI
 
 from coilset.meshes.line import line_mesh
-from coilset.meshes.placement import section_placement
+from coilset.meshes.placement import section_placement, straight
 from coilset.model.contact.build import build_contacts
 from coilset.model.errors import SolveError
 from coilset.model.frames.rotations import triads
@@ -17,6 +17,7 @@ from coilset.model.problem.system import System
 from coilset.model.results.seats import Resultants, observe
 from coilset.model.rod.kinematics import GAUSS
 from coilset.model.rod.rod import Rod
+from coilset.model.section import surface
 from coilset.model.solvers.solver import Solver
 
 PROBE = 1e-3  # travel by which the initial rate is measured, in free lengths
@@ -32,8 +33,9 @@ class Snapshot:
         x: station positions, shape (n + 1, 3), mm.
         triads: element triads (columns), shape (n, 3, 3).
         resultants: N, Q2, Q3, Mt, M2, M3 at the Gauss sections, shape (n, 2, 6), N and N mm.
-        history: state at the section points, shape (n, 2, points, n_state), MPa; the rod's sections name its columns.
+        history: state at the section points, shape (n, 2, points, n_state), MPa.
         surface: the same at the points on the wire's surface, shape (n, 2, surface points, n_state), MPa.
+        components: names of the columns of both.
     """
 
     name: str
@@ -44,11 +46,12 @@ class Snapshot:
     resultants: np.ndarray
     history: np.ndarray
     surface: np.ndarray
+    components: tuple[str, ...]
 
     @property
     def shear(self):
         """Magnitude of the shear stress at the section points, shape (n, 2, points), MPa."""
-        return np.hypot(self.history[..., 1], self.history[..., 2])
+        return surface.shear(self.history, self.components)
 
 
 @dataclass
@@ -83,13 +86,12 @@ class Analysis:
         self.law = library.load(case.material)
         line = line_mesh(self.spring.centre_line(self.turns), comm)
         self.wire_radius = 0.5 * self.spring.wire_diameter(0.5 * (self.turns[1:] + self.turns[:-1]))
-        section, placement = case.mesh.section, None
+        section, self.placement = case.mesh.section, straight(len(self.turns) - 1)
         if case.mesh.axis == "curved":
             chords = triads(np.diff(line.stations, axis=0))
-            placement = section_placement(self.spring, self.turns, chords, GAUSS, section.kind != "plane")
-        self.rod = Rod(
-            line, self.wire_radius, self.law, section.build(), placement, case.temperature, section.kind, section.degree
-        )
+            self.placement = section_placement(self.spring, self.turns, chords, GAUSS, section.kind != "plane")
+        self.rod = Rod(line, self.wire_radius, self.law, section.build(), self.placement, case.temperature,
+                       section.kind, section.degree)  # fmt: skip
         top = self.spring.free_length
         contacts = build_contacts(case, self.spring, self.turns, line.stations, self.law.E)
         self.system = System(self.rod, contacts, seats=(0.0, top))
@@ -153,11 +155,22 @@ class Analysis:
     def snapshot(self, name):
         """The spring as it stands, gathered on rank 0."""
         rod = self.rod
-        parts = (rod.E.values, rod.s.values, rod.history, rod.points["surface"])
+        parts = (rod.E.values, rod.s.values, rod.history, rod.points["surface_state"])
         fields = [rod.line.in_order(values) for values in parts]
         if self.comm.rank:
             fields = [np.empty(0)] * len(parts)
-        return Snapshot(name, self.drive.height, self.drive.force, self.system.gather(rod.x), *fields)
+        return Snapshot(name, self.drive.height, self.drive.force, self.system.gather(rod.x), *fields,
+                        rod.sections.components)  # fmt: skip
+
+    @property
+    def section_turns(self):
+        """Turns at which the Gauss sections stand, shape (n, 2)."""
+        return self.turns[:-1, None] + np.diff(self.turns)[:, None] * GAUSS
+
+    @property
+    def inside(self):
+        """Where the inside of the coil is on the wire's surface, a `coilset.model.section.surface.Inside`."""
+        return surface.Inside.of(self.case.mesh.section.kind != "plane", self.spring.hand)
 
     def outer_length(self, x):
         """Height of the wire between two planes across the axis that just touch it, mm."""

@@ -133,6 +133,7 @@ class Checkpoint:
             fields = {name: file[name] for name in file.files}
         for name, kind in (("name", str), ("height", float), ("force", float)):
             fields[name] = kind(fields[name])
+        fields["components"] = tuple(str(name) for name in fields["components"])
         if rank:
             fields |= {name: np.empty(0) for name in ("triads", "resultants", "history", "surface")}
         return Snapshot(**fields)

@@ -7,19 +7,27 @@ import numpy as np
 import xarray as xr
 
 from coilset.model.results.folder import whole
+from coilset.model.section.rules import SURFACE_POINTS
+from coilset.model.section.surface import component, shear
 
-COMPONENTS = ["s11", "t12", "t13", "B11", "B12", "B13", "b"]
 RESULTANTS = ["N", "Q2", "Q3", "Mt", "M2", "M3"]
 
 
 def point_state(analysis, snapshots):
     """All section points at all snapshots as an xarray data set with units and coordinates."""
     rule, radius = analysis.rod.rule, analysis.wire_radius
-    names = COMPONENTS + ["temperature"] * (analysis.law.n_state - len(COMPONENTS))
+    names = list(analysis.rod.sections.components)
+    names += ["temperature"] * analysis.law.is_adiabatic
+    place = analysis.placement
     history = ("snapshot", "element", "gauss", "point", "component")
     data = xr.Dataset(
         {
             "history": (history, np.stack([shot.history for shot in snapshots]), {"units": "MPa"}),
+            "surface": (
+                ("snapshot", "element", "gauss", "angle", "component"),
+                np.stack([shot.surface for shot in snapshots]),
+                {"units": "MPa", "about": "points on the wire's surface; the angle is counted from y to z"},
+            ),
             "resultants": (
                 ("snapshot", "element", "gauss", "resultant"),
                 np.stack([shot.resultants for shot in snapshots]),
@@ -33,15 +41,19 @@ def point_state(analysis, snapshots):
             "y": (("element", "point"), np.outer(radius, rule.points[:, 0]), {"units": "mm"}),
             "z": (("element", "point"), np.outer(radius, rule.points[:, 1]), {"units": "mm"}),
             "weight": ("point", rule.weights),
+            "curvature": (("element", "gauss"), place.curvature, {"units": "1/mm", "about": "towards y"}),
+            "torsion": (("element", "gauss"), place.torsion, {"units": "1/mm"}),
         },
         coords={
             "snapshot": [shot.name for shot in snapshots],
             "turn": ("station", analysis.turns, {"units": "1"}),
             "component": names,
+            "angle": ("angle", np.arange(SURFACE_POINTS) * 360.0 / SURFACE_POINTS, {"units": "degree"}),
             "resultant": RESULTANTS,
             "axis": ["x", "y", "z"],
         },
-        attrs={"title": "section points of the rod", "material": analysis.law.name, "section_rule": rule.name},
+        attrs={"title": "section points of the rod", "material": analysis.law.name, "section_rule": rule.name,
+               "section_kind": analysis.case.mesh.section.kind},
     )  # fmt: skip
     return data.merge(pressure_along_wire(analysis))
 
@@ -85,7 +97,9 @@ def write_fields(folder, analysis, snapshots):
         data = {name: [mean[:, k]] for k, name in enumerate(RESULTANTS)}
         data["shear_max_MPa"] = [shot.shear.max(axis=(1, 2))]
         data["normal_max_MPa"] = [np.abs(shot.history[..., 0]).max(axis=(1, 2))]
-        data["work_max_MPa"] = [shot.history[..., 6].max(axis=(1, 2))]
+        data["work_max_MPa"] = [component(shot.history, shot.components, "b").max(axis=(1, 2))]
+        data["surface_shear_max_MPa"] = [shear(shot.surface, shot.components).max(axis=(1, 2))]
+        data["surface_shear_inside_MPa"] = [analysis.inside.shear(shot.surface, shot.components).mean(axis=1)]
         data["wire_radius_mm"] = [analysis.wire_radius]
         with whole(folder / f"{number:02d}.vtu") as path:
             meshio.write(path, meshio.Mesh(shot.x, cells, cell_data=data))

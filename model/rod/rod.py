@@ -7,14 +7,11 @@ without touching the equilibrium, `commit` makes the trial state the equilibrium
 import numpy as np
 from dolfinx import fem
 
-from coilset.meshes.placement import Placement
+from coilset.meshes.placement import Placement, straight
 from coilset.model.frames.rotations import triads, turn_nodes
 from coilset.model.rod import forms
 from coilset.model.rod.kinematics import GAUSS, section_strains
 from coilset.model.section.kinds import make_sections
-
-# placement of the sections of straight rods, one row for all
-STRAIGHT = Placement(np.eye(6)[None, None].repeat(2, axis=1), np.ones((1, 2)), np.zeros((1, 2)), np.zeros((1, 2)))
 
 
 class CellField:
@@ -47,7 +44,7 @@ class Rod:
 
     Attributes:
         x, chord, R, shear, strain: trial state of the local nodes and owned cells; x in mm, strain shape (cells, 2, 6).
-        points: trial state of the sections, a dict of arrays of shape (cells, 2, ...); `history`, shape
+        points: trial state of the sections, a dict of arrays of shape (cells, 2, ...); `point_state`, shape
             (cells, 2, points, n_state), is always among them.
         equilibrium: the same at the last equilibrium, a dict.
     """
@@ -58,7 +55,7 @@ class Rod:
         self.mesh, self.parameters = mesh, law.parameters(temperature)
         element = line.element[:n]
         self.radius = np.ascontiguousarray(np.asarray(radius, float)[element])
-        self.placement = STRAIGHT
+        self.placement = straight(n)
         if placement is not None:
             self.placement = Placement(*(np.ascontiguousarray(part[element]) for part in placement))
         self.sections = make_sections(
@@ -104,7 +101,7 @@ class Rod:
     @property
     def history(self):
         """Trial state of the section points, shape (cells, 2, points, n_state)."""
-        return self.points["history"]
+        return self.points["point_state"]
 
     def _start(self, x):
         """The stress-free state."""
@@ -152,7 +149,7 @@ class Rod:
 
     def restore(self):
         """Go back to the last equilibrium."""
-        self.points["surface"][:] = self.equilibrium["surface"]
+        self.points["surface_state"][:] = self.equilibrium["surface_state"]
         self.increment.x.array[:] = 0.0
         return self.update()
 

@@ -31,7 +31,7 @@ class PlaneSections:
         parameters: of the law at the rod's temperature.
         rule: quadrature of the disk.
         radius: wire radius of each element, shape (cells,), mm.
-        placement: Placement of the cells' sections; one row of it may serve all.
+        placement: Placement of the cells' sections.
         temperature: K, of the points at the start; None: the material's first.
 
     Attributes:
@@ -55,12 +55,12 @@ class PlaneSections:
         self.rim_y, self.rim_z = np.ascontiguousarray(rim().T)
 
     def initial_state(self) -> dict[str, np.ndarray]:
-        """Unstressed points, `history`, shape (cells, 2, points, n_state), and those on the surface, `surface`."""
+        """Unstressed points: `point_state`, shape (cells, 2, points, n_state), and `surface_state` on the surface."""
         row = initial_state(self.law, 1, temperature=self.temperature)
         shape = (len(self.radius), 2)
         return {
-            "history": np.tile(row, (*shape, len(self.y), 1)),
-            "surface": np.tile(row, (*shape, len(self.rim_y), 1)),
+            "point_state": np.tile(row, (*shape, len(self.y), 1)),
+            "surface_state": np.tile(row, (*shape, len(self.rim_y), 1)),
         }
 
     def update(
@@ -86,7 +86,7 @@ class PlaneSections:
         place = self.placement
         status = update_sections(
             self.parameters, self.y, self.z, self.weights, self.radius, place.curvature, strain - start["strain"],
-            place.matrices, place.stretch, start["history"], trial["history"], s, D,
+            place.matrices, place.stretch, start["point_state"], trial["point_state"], s, D,
         )  # fmt: skip
         return status == 0
 
@@ -98,7 +98,7 @@ class PlaneSections:
         place = self.placement
         update_surface(
             self.parameters, self.rim_y, self.rim_z, self.radius, place.curvature, strain - start["strain"],
-            place.matrices, start["surface"], trial["surface"],
+            place.matrices, start["surface_state"], trial["surface_state"],
         )  # fmt: skip
 
 
@@ -113,9 +113,9 @@ def update_sections(p, y, z, w, radius, curvature, de, placement, stretch, old, 
         p: parameters of the material law.
         y, z, w: points of the unit disk and weights, shape (points,).
         radius: wire radius of each element, shape (cells,), mm.
-        curvature: κ of the wire, towards y, shape (cells or 1, 2), 1/mm.
+        curvature: κ of the wire, towards y, shape (cells, 2), 1/mm.
         de: increments of the section strains ε, γ12, γ13, φ′, κ2 = −w″, κ3 = v″, shape (cells, 2, 6).
-        placement: shape (cells or 1, 2, 6, 6), stretch: ds/dx, shape (cells or 1, 2).
+        placement: shape (cells, 2, 6, 6), stretch: ds/dx, shape (cells, 2).
         old: state at the last equilibrium, shape (cells, 2, points, n_state); not changed.
         new: written, the state at the end of the increment.
         s: written, N, Q2, Q3 in N and Mt, M2, M3 in N mm, shape (cells, 2, 6), about the chord axis.
@@ -132,20 +132,19 @@ def update_sections(p, y, z, w, radius, curvature, de, placement, stretch, old, 
     for c in range(len(radius)):
         R = radius[c]
         area = math.pi * R * R
-        row = c if len(placement) > 1 else 0
         for g in range(2):
-            P = placement[row, g]
+            P = placement[c, g]
             to_section(P, de[c, g], d)
             resultant[:] = 0.0
             tangent[:] = 0.0
             for k in range(len(w)):
-                inverse = 1.0 / (1.0 - curvature[row, g] * R * y[k])
+                inverse = 1.0 / (1.0 - curvature[c, g] * R * y[k])
                 if not integrate_point(p, R * y[k], R * z[k], area * w[k], inverse, d, old[c, g, k], new[c, g, k],
                                        C, resultant, tangent):  # fmt: skip
                     return -1
             if not math.isfinite(resultant.sum()):
                 return -1
-            to_chord(P, stretch[row, g], resultant, tangent, work, s[c, g], D[c, g])
+            to_chord(P, stretch[c, g], resultant, tangent, work, s[c, g], D[c, g])
     return 0
 
 
@@ -198,10 +197,9 @@ def update_surface(p, y, z, radius, curvature, de, placement, old, new):
     C = np.empty((3, 3))
     for c in range(len(radius)):
         R = radius[c]
-        row = c if len(placement) > 1 else 0
         for g in range(2):
-            to_section(placement[row, g], de[c, g], d)
+            to_section(placement[c, g], de[c, g], d)
             for k in range(len(y)):
-                inverse = 1.0 / (1.0 - curvature[row, g] * R * y[k])
+                inverse = 1.0 / (1.0 - curvature[c, g] * R * y[k])
                 if strain_point(p, R * y[k], R * z[k], inverse, d, old[c, g, k], new[c, g, k], C) < 0:
                     new[c, g, k, :] = math.nan

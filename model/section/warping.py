@@ -62,17 +62,17 @@ class WarpingSections:
         self.iterations = np.zeros(2, dtype=np.int64)  # sections brought up to date, local iterations on the way
 
     def initial_state(self) -> dict[str, np.ndarray]:
-        """Unstressed points, `history` and `surface` as in `PlaneSections`, and the warping.
+        """Unstressed points, `point_state` and `surface_state` as in `PlaneSections`, and the warping.
 
-        `warping` are the a, shape (cells, 2, unknowns), and `slope` is da/de, shape (cells, 2, unknowns, 6).
+        `warping` are the a, shape (cells, 2, unknowns), and `warping_slope` is da/de, shape (cells, 2, unknowns, 6).
         """
         row = initial_state(self.law, 1, 6, self.temperature)
         shape = (len(self.radius), 2)
         return {
-            "history": np.tile(row, (*shape, len(self.weights), 1)),
-            "surface": np.tile(row, (*shape, len(self.rim[0]), 1)),
+            "point_state": np.tile(row, (*shape, len(self.weights), 1)),
+            "surface_state": np.tile(row, (*shape, len(self.rim[0]), 1)),
             "warping": np.zeros((*shape, self.unknowns)),
-            "slope": np.zeros((*shape, self.unknowns, 6)),
+            "warping_slope": np.zeros((*shape, self.unknowns, 6)),
         }
 
     def update(
@@ -87,8 +87,9 @@ class WarpingSections:
         place = self.placement
         status = update_sections(
             self.parameters, *self.points, self.weights, self.radius, place.curvature, place.torsion,
-            strain - start["strain"], place.matrices, place.stretch, start["history"], start["warping"], start["slope"],
-            trial["history"], trial["warping"], trial["slope"], s, D, self.iterations,
+            strain - start["strain"], place.matrices, place.stretch, start["point_state"], start["warping"],
+            start["warping_slope"], trial["point_state"], trial["warping"], trial["warping_slope"], s, D,
+            self.iterations,
         )  # fmt: skip
         return status == 0
 
@@ -97,7 +98,7 @@ class WarpingSections:
         place = self.placement
         update_surface(
             self.parameters, *self.rim, self.radius, place.curvature, place.torsion, strain - start["strain"],
-            place.matrices, start["surface"], trial["warping"] - start["warping"], trial["surface"],
+            place.matrices, start["surface_state"], trial["warping"] - start["warping"], trial["surface_state"],
         )  # fmt: skip
 
 
@@ -116,7 +117,7 @@ def update_sections(
     Args:
         p: parameters of the material law.
         y, z, f, w: points, polynomials and weights of the unit disk.
-        radius, curvature, torsion: of the wire, shape (cells,), (cells or 1, 2), (cells or 1, 2), mm and 1/mm.
+        radius, curvature, torsion: of the wire, shape (cells,), (cells, 2), (cells, 2), mm and 1/mm.
         de, placement, stretch, s, D: as in `plane.update_sections`.
         old, old_a, old_slope: state of the points with all six stresses, warping, and its slope da/de in the section's
             own strains, at the last equilibrium, shapes (cells, 2, points, n_state), (cells, 2, unknowns) and
@@ -136,12 +137,11 @@ def update_sections(
     resultant, tangent, work = np.empty(6), np.empty((6, 6)), np.empty((6, 6))
     for c in range(len(radius)):
         R = radius[c]
-        row = c if len(placement) > 1 else 0
         for g in range(2):
-            P = placement[row, g]
-            strain_operator(y, z, f, R, curvature[row, g], torsion[row, g], B)
+            P = placement[c, g]
+            strain_operator(y, z, f, R, curvature[c, g], torsion[c, g], B)
             for k in range(points):
-                dA[k] = math.pi * R * R * w[k] * (1.0 - curvature[row, g] * R * y[k])
+                dA[k] = math.pi * R * R * w[k] * (1.0 - curvature[c, g] * R * y[k])
             to_section(P, de[c, g], step)
             good = False
             for follow in (1.0, 0.0):  # from where the slope leads, else from the last equilibrium
@@ -158,7 +158,7 @@ def update_sections(
             slope[c, g] = -X[:, n : n + 6]
             if not math.isfinite(resultant.sum()):
                 return -1
-            to_chord(P, stretch[row, g], resultant, tangent, work, s[c, g], D[c, g])
+            to_chord(P, stretch[c, g], resultant, tangent, work, s[c, g], D[c, g])
             count[0] += 1
     return 0
 
@@ -170,10 +170,9 @@ def update_surface(p, y, z, f, radius, curvature, torsion, de, placement, old, d
     B, C = np.zeros((len(y), 6, 6 + n)), np.empty((6, 6))
     e, strain = np.empty(6), np.empty(6)
     for c in range(len(radius)):
-        row = c if len(placement) > 1 else 0
         for g in range(2):
-            strain_operator(y, z, f, radius[c], curvature[row, g], torsion[row, g], B)
-            to_section(placement[row, g], de[c, g], e)
+            strain_operator(y, z, f, radius[c], curvature[c, g], torsion[c, g], B)
+            to_section(placement[c, g], de[c, g], e)
             for k in range(len(y)):
                 for i in range(6):
                     strain[i] = 0.0

@@ -121,11 +121,11 @@ def test_points_on_the_surface_have_the_stress_of_the_section_there(ck15, kind):
     section.commit(np.array([1e-6, 2e-6, 0, 4e-5, 1e-5, -2e-5]))
     rule = polar(16, 24)
     columns = [section.sections.components.index(name) for name in ("s11", "t12", "t13")]
-    rings = section.trial["history"][0, 0].reshape(16, 24, -1)[-3:, :, columns]
+    rings = section.trial["point_state"][0, 0].reshape(16, 24, -1)[-3:, :, columns]
     radius = np.hypot(*rule.points.T).reshape(16, 24)[-3:, 0]
     at_rim = [np.prod([(1 - b) / (a - b) for b in radius if b != a]) for a in radius]  # Lagrange, quadratic
     ring = np.einsum("r,rac->ac", at_rim, rings)
     between = 0.5 * (ring + np.roll(ring, 1, axis=0))  # the rule's angles lie half way between the rim's
-    found = section.trial["surface"][0, 0][:, columns]
+    found = section.trial["surface_state"][0, 0][:, columns]
     assert found.shape == (24, 3)
     np.testing.assert_allclose(found, between, rtol=0, atol=0.012 * np.abs(found).max())  # 1 − cos 7.5° = 0.9 %
