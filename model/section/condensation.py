@@ -11,7 +11,8 @@ from coilset.model.material.solid import return_map
 # A change of the warping, a strain, that ends the iteration. What it would change in the resultants is added to them,
 # so that they are right to its square over the strain at which the law bends, some 1e-3.
 TOLERANCE = 1e-10
-MAX_ITERATIONS = 30
+MAX_ITERATIONS = 40
+SHORTEST = 1e-3  # part of a correction
 
 
 @njit(cache=True)
@@ -58,26 +59,41 @@ def strain_operator(y, z, f, radius, curvature, torsion, B):
 def find_warping(p, B, dA, old, old_a, a, new, step, C, CB, K, r, X, count):
     """Newton's method for the warping `a` at the section strain increment in the first six places of `step`.
 
+    Far from the solution a correction may lead beyond it, since flow makes the section soft. One that meets more work
+    of the leftover forces, r_a · Δa, than it set out with is shortened to where a straight line through both has none.
+
     K, r: written, stiffness and forces of strains and warping; X: written, D_aa⁻¹ (D_ae, r_a) in its last columns.
 
     Returns:
         Whether the law had a solution everywhere and the last change of the warping is within the tolerance.
     """
     n = len(a)
+    before, part = math.inf, 1.0
     for _ in range(MAX_ITERATIONS):
         for i in range(n):
             step[6 + i] = a[i] - old_a[i]
         count[1] += 1
         if not integrate(p, B, dA, step, old, new, C, CB, K, r):
             return False
+        after = 0.0
+        if before < math.inf:
+            for i in range(n):
+                after -= X[i, n + 6] * r[6 + i]
+        if after > before and part > SHORTEST:
+            shorter = part * max(before / (before + after), 0.1)
+            for i in range(n):
+                a[i] += (part - shorter) * X[i, n + 6]
+            part = shorter
+            continue
         X[:, :n] = K[6:, 6:]
         X[:, n : n + 6] = K[6:, :6]
         X[:, n + 6] = r[6:]
         if not eliminate(X):
             return False
-        largest = 0.0
+        largest, before, part = 0.0, 0.0, 1.0
         for i in range(n):
             largest = max(largest, abs(X[i, n + 6]))
+            before += X[i, n + 6] * r[6 + i]
         if not math.isfinite(largest):
             return False
         if largest <= TOLERANCE:

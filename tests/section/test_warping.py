@@ -5,6 +5,7 @@ import pytest
 
 from coilset.meshes.placement import straight
 from coilset.model.material import library
+from coilset.model.section.condensation import TOLERANCE, strain_operator
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.polynomials import orthonormal, values_and_slopes
 from coilset.model.section.rules import polar, rim
@@ -78,9 +79,7 @@ def test_stresses_are_a_function_of_the_last_equilibrium(ck15):
 
 
 def test_warping_does_no_work(ck15):
-    """The stresses of a plastic section are orthogonal to every unit warping, to 1e-9 of the stress at yield."""
-    from coilset.model.section.condensation import strain_operator
-
+    """Stresses of a plastic section on every unit warping, as far as the iteration's tolerance lets them."""
     wire = HelixSection(ck15, "warping", 5.0, 5.0)
     wire.update(np.array([1e-4, 0, 1e-4, 2e-3, 0, 4e-4]))
     rule, place = wire.rule, wire.placement
@@ -92,5 +91,14 @@ def test_warping_does_no_work(ck15):
     stress = wire.trial["point_state"][0, 0][:, :6]
     volume = rule.weights * (1.0 - place.curvature[0, 0] * RADIUS * y)
     rest = np.einsum("pi,pij,p->j", stress, B, volume)
-    assert np.abs(rest[6:]).max() < 1e-7 * np.abs(stress).max()
+    assert np.abs(rest[6:]).max() < 5.0 * TOLERANCE * ck15.E
     assert np.abs(rest[:6]).max() > 0.1 * np.abs(stress).max()
+
+
+def test_warping_is_found_far_beyond_yield(ck15):
+    """Strains of up to some per cent in one increment from the unstressed state, in all directions."""
+    rng = np.random.default_rng(0)
+    for _ in range(30):
+        wire = HelixSection(ck15, "warping", 4.0, 5.0)
+        wire.update(rng.normal(size=6) * np.repeat([2e-3, 1e-3], 3) * rng.choice([0.3, 1, 3, 10]))
+        assert wire.sections.iterations[1] <= 2 * 20
