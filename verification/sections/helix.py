@@ -49,6 +49,10 @@ class HelixSection:
         self.sections.update_surface(strain, self.start, self.trial)
         return s[0, 0], D[0, 0]
 
+    def inside_shear(self) -> float:
+        """τ13 on the surface at the inside of the coil at the last update, MPa."""
+        return float(component(self.trial["surface_state"][0, 0, 0], self.sections.components, "t13"))
+
     def factors(self) -> tuple[float, float]:
         """Elastic shear stress at the inside and at the outside over 8 F D/(π d³), at the force 1 N."""
         self.update(np.linalg.solve(self.update(np.zeros(6))[1], self.load))
