@@ -31,6 +31,15 @@ class SectionSpec(Strict):
     radial: Annotated[int, Field(ge=1, le=64, description="rings of the polar rule")] = 4
     angular: Annotated[int, Field(ge=3, le=256, description="angles of the polar rule")] = 12
 
+    @model_validator(mode="after")
+    def _warping_is_integrated(self):
+        exact = 5 if self.rule == "abramowitz9" else min(4 * self.radial, self.angular) - 1
+        needed = 2 * self.degree - 2
+        if self.kind == "warping" and exact < needed:
+            raise ValueError(f"the rule is exact for polynomials of degree {exact}, warping of degree {self.degree} "
+                             f"needs {needed}; give more points or a lower degree")
+        return self
+
     def build(self):
         """The DiskRule."""
         return rules.abramowitz9() if self.rule == "abramowitz9" else rules.polar(self.radial, self.angular)
