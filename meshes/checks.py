@@ -79,11 +79,19 @@ def _index(spring):
     index = 2 * spring.mean_radius(t) / spring.wire_diameter(t)
     i = np.argmin(index) if index.min() < INDEX_USUAL[0] else np.argmax(index)
     if index[i] < INDEX_LEAST:
-        yield Finding(True, "spring.mean_diameter", "the wire is thicker than the coil allows: "
-                      f"D/d = {index[i]:.3g} at turn {t[i]:.3g}, must be at least {INDEX_LEAST:g}")
+        yield Finding(
+            True,
+            "spring.mean_diameter",
+            "the wire is thicker than the coil allows: "
+            f"D/d = {index[i]:.3g} at turn {t[i]:.3g}, must be at least {INDEX_LEAST:g}",
+        )
     elif not INDEX_USUAL[0] <= index[i] <= INDEX_USUAL[1]:
-        yield Finding(False, "spring.mean_diameter", f"D/d = {index[i]:.3g} at turn {t[i]:.3g} is outside of the "
-                      f"{INDEX_USUAL[0]:g} to {INDEX_USUAL[1]:g} usual in cold coiling (EN 15800)")
+        yield Finding(
+            False,
+            "spring.mean_diameter",
+            f"D/d = {index[i]:.3g} at turn {t[i]:.3g} is outside of the "
+            f"{INDEX_USUAL[0]:g} to {INDEX_USUAL[1]:g} usual in cold coiling (EN 15800)",
+        )
 
 
 def _coils(spring):
@@ -93,47 +101,76 @@ def _coils(spring):
     gap = distance - wire
     i = np.argmin(gap / wire)
     if gap[i] < -TOUCH * wire[i]:
-        yield Finding(True, "spring", f"coils overlap: between the turns {turn[i]:.3g} and {turn[i] + 1:.3g} the "
-                      f"centres of the wire are {distance[i]:.3g} mm apart, must be at least {wire[i]:.3g} mm")
+        yield Finding(
+            True,
+            "spring",
+            f"coils overlap: between the turns {turn[i]:.3g} and {turn[i] + 1:.3g} the "
+            f"centres of the wire are {distance[i]:.3g} mm apart, must be at least {wire[i]:.3g} mm",
+        )
         return
     t = spring.breaks
-    body = ((t >= spring.bottom.end_turns + spring.bottom.transition_turns)
-            & (t <= spring.turns - spring.top.end_turns - spring.top.transition_turns))
+    body = (t >= spring.bottom.end_turns + spring.bottom.transition_turns) & (
+        t <= spring.turns - spring.top.end_turns - spring.top.transition_turns
+    )
     play = spring.pitch(t) - touching_pitch(spring.wire_diameter(t), spring.slope(t))
     solid = t[body & (play < TOUCH * spring.wire_diameter(t))]
     if len(solid) > 1:
-        yield Finding(False, "spring.pitch", f"coils of the body are solid before any load, between the turns "
-                      f"{solid[0]:.3g} and {solid[-1]:.3g}; their pitch is {spring.pitch(solid).min():.4g} mm")
+        yield Finding(
+            False,
+            "spring.pitch",
+            f"coils of the body are solid before any load, between the turns "
+            f"{solid[0]:.3g} and {solid[-1]:.3g}; their pitch is {spring.pitch(solid).min():.4g} mm",
+        )
 
 
 def _block(spring):
     travel = spring.free_length - spring.block_height
     if travel <= TOUCH * np.max(spring.wire_diameter(spring.breaks)):
-        yield Finding(True, "spring", f"there is no travel: the free length is {spring.free_length:.4g} mm, the block "
-                      f"length {spring.block_height:.4g} mm")
+        yield Finding(
+            True,
+            "spring",
+            f"there is no travel: the free length is {spring.free_length:.4g} mm, the block "
+            f"length {spring.block_height:.4g} mm",
+        )
 
 
 def _active(spring):
     if spring.active_turns < ACTIVE_LEAST:
-        yield Finding(False, "spring.turns", f"only {spring.active_turns:.3g} active turns; formulas for rate and "
-                      f"stress need {ACTIVE_LEAST:g} or more (EN 13906-1)")
+        yield Finding(
+            False,
+            "spring.turns",
+            f"only {spring.active_turns:.3g} active turns; formulas for rate and "
+            f"stress need {ACTIVE_LEAST:g} or more (EN 13906-1)",
+        )
 
 
 def _ground(spring):
     for end, name, turn in ((spring.bottom, "bottom", 0.0), (spring.top, "top", spring.turns)):
         if end.tip_thickness < TIP_LEAST:
             d = spring.wire_diameter(turn)
-            yield Finding(False, "spring.end_coils", f"the ground {name} end is {end.tip_thickness * d:.3g} mm thin at "
-                          f"its tip, less than a quarter of the wire ({TIP_LEAST * d:.3g} mm)")
+            yield Finding(
+                False,
+                "spring.end_coils",
+                f"the ground {name} end is {end.tip_thickness * d:.3g} mm thin at "
+                f"its tip, less than a quarter of the wire ({TIP_LEAST * d:.3g} mm)",
+            )
         flat = spring.flat_turns(name)
         if flat > end.end_turns + 1e-9:
-            yield Finding(False, "spring.end_coils", f"the flat of the {name} end runs over {flat:.3g} turns and cuts "
-                          f"into the transition; its end turns are {end.end_turns:.3g}")
+            yield Finding(
+                False,
+                "spring.end_coils",
+                f"the flat of the {name} end runs over {flat:.3g} turns and cuts "
+                f"into the transition; its end turns are {end.end_turns:.3g}",
+            )
 
 
 def _buckling(spring):
     travel, limit = spring.free_length - spring.block_height, buckling_travel(spring)
     if limit < travel:
         slender = spring.free_length / (2 * np.min(spring.mean_radius(spring.breaks)))
-        yield Finding(False, "spring.free_length", f"slender, L0/D = {slender:.3g}: unguided it buckles at "
-                      f"{limit:.3g} mm of travel on parallel seats, before its block at {travel:.3g} mm (EN 13906-1)")
+        yield Finding(
+            False,
+            "spring.free_length",
+            f"slender, L0/D = {slender:.3g}: unguided it buckles at "
+            f"{limit:.3g} mm of travel on parallel seats, before its block at {travel:.3g} mm (EN 13906-1)",
+        )

@@ -21,8 +21,9 @@ def torsion_rate(spring, shear_modulus):
     """
     start, end = spring.bottom.end_turns, spring.turns - spring.top.end_turns
     breaks = np.concatenate([[start], spring.breaks[(spring.breaks > start) & (spring.breaks < end)], [end]])
-    return shear_modulus / (64 * functions.integral(lambda t: spring.mean_radius(t) ** 3 / spring.wire_diameter(t) ** 4,
-                                                    breaks).sum())
+    return shear_modulus / (
+        64 * functions.integral(lambda t: spring.mean_radius(t) ** 3 / spring.wire_diameter(t) ** 4, breaks).sum()
+    )
 
 
 @dataclass(frozen=True)
@@ -53,6 +54,7 @@ class SpringData:
 
     def rows(self):
         """Label, text and unit of every entry, for a table."""
+
         def span(pair):
             low, high = pair
             return f"{low:.4g}" if high - low < 5e-4 * high else f"{low:.4g} to {high:.4g}"
@@ -60,15 +62,21 @@ class SpringData:
         rate = "rate G d⁴/(8 D³ n), EN 13906-1" if self.is_cylinder else "rate by torsion, G/(64 ∫ r³/d⁴ dn)"
         buckling = f"{self.buckling_travel:.4g}" if np.isfinite(self.buckling_travel) else "never"
         return [
-            ("turns", f"{self.turns:g}", ""), ("active turns", f"{self.active_turns:g}", ""), ("hand", self.hand, ""),
-            ("wire diameter d", span(self.wire_diameter), "mm"), ("mean diameter D", span(self.mean_diameter), "mm"),
+            ("turns", f"{self.turns:g}", ""),
+            ("active turns", f"{self.active_turns:g}", ""),
+            ("hand", self.hand, ""),
+            ("wire diameter d", span(self.wire_diameter), "mm"),
+            ("mean diameter D", span(self.mean_diameter), "mm"),
             ("outer diameter", f"{self.outer_diameter:.4g}", "mm"),
             ("inner diameter", f"{self.inner_diameter:.4g}", "mm"),
-            ("pitch", span(self.pitch), "mm"), ("free length", f"{self.free_length:.5g}", "mm"),
+            ("pitch", span(self.pitch), "mm"),
+            ("free length", f"{self.free_length:.5g}", "mm"),
             ("block length", f"{self.block_length:.5g}", "mm"),
             ("travel to block", f"{self.free_length - self.block_length:.5g}", "mm"),
-            ("wire length", f"{self.wire_length:.5g}", "mm"), ("mass", f"{self.mass * 1e3:.4g}", "g"),
-            ("spring index D/d", span(self.index), ""), ("slenderness L0/D", f"{self.slenderness:.3g}", ""),
+            ("wire length", f"{self.wire_length:.5g}", "mm"),
+            ("mass", f"{self.mass * 1e3:.4g}", "g"),
+            ("spring index D/d", span(self.index), ""),
+            ("slenderness L0/D", f"{self.slenderness:.3g}", ""),
             ("travel to buckling, parallel seats", buckling, "mm" if np.isfinite(self.buckling_travel) else ""),
             (rate, f"{self.rate:.5g}", "N/mm"),
         ]
@@ -91,11 +99,20 @@ def spring_data(spring, material=STEEL):
         return float(values.min()), float(values.max())
 
     return SpringData(
-        turns=spring.turns, active_turns=spring.active_turns, hand="right" if spring.hand > 0 else "left",
-        wire_diameter=span(d), mean_diameter=span(D), outer_diameter=float((D + d).max()),
-        inner_diameter=float((D - d).min()), pitch=span(spring.pitch(t)), free_length=spring.free_length,
-        block_length=spring.block_height, wire_length=spring.wire_length, mass=spring.volume * material.density,
-        index=span(D / d), slenderness=spring.free_length / float(D.min()),
+        turns=spring.turns,
+        active_turns=spring.active_turns,
+        hand="right" if spring.hand > 0 else "left",
+        wire_diameter=span(d),
+        mean_diameter=span(D),
+        outer_diameter=float((D + d).max()),
+        inner_diameter=float((D - d).min()),
+        pitch=span(spring.pitch(t)),
+        free_length=spring.free_length,
+        block_length=spring.block_height,
+        wire_length=spring.wire_length,
+        mass=spring.volume * material.density,
+        index=span(D / d),
+        slenderness=spring.free_length / float(D.min()),
         buckling_travel=float(buckling_travel(spring, material.shear_modulus / material.young_modulus)),
         rate=float(torsion_rate(spring, material.shear_modulus)),
     )

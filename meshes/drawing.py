@@ -69,8 +69,13 @@ def _side_view(axes, spring):
         pieces = np.stack([seen[:-1], seen[1:]], axis=1)
         width = spring.wire_diameter(0.5 * (turns[1:] + turns[:-1])) * points_per_mm
         for order, (color, narrower) in enumerate(((INK, 0.0), (STEEL_FACE, 2 * OUTLINE))):
-            wire = LineCollection(pieces, colors=color, linewidths=np.maximum(width - narrower, 0.2), capstyle="round",
-                                  zorder=depth + 0.5 * order)
+            wire = LineCollection(
+                pieces,
+                colors=color,
+                linewidths=np.maximum(width - narrower, 0.2),
+                capstyle="round",
+                zorder=depth + 0.5 * order,
+            )
             axes.add_collection(wire, autolim=False)
             wire.set_clip_path(cut)
     _dimensions(axes, spring, reach, size)
@@ -100,15 +105,30 @@ def _dimensions(axes, spring, reach, size):
         _dimension(axes, (-radius - d / 2, level), (radius + d / 2, level), f"De = {2 * radius + d:.4g} mm")
     widest = t[np.argmax(outer)]
     if outer.max() > 1.001 * max(outer[0], outer[-1]):
-        axes.text(-reach - 0.2 * size, spring.centre_line(widest)[2], f"De = {outer.max():.4g} mm\nwidest", ha="center",
-                  va="center", rotation=90, color=DIMENSION)
+        axes.text(
+            -reach - 0.2 * size,
+            spring.centre_line(widest)[2],
+            f"De = {outer.max():.4g} mm\nwidest",
+            ha="center",
+            va="center",
+            rotation=90,
+            color=DIMENSION,
+        )
 
 
 def _dimension(axes, start, end, text):
-    axes.annotate("", start, end, arrowprops={"arrowstyle": "<->", "color": DIMENSION, "lw": 0.9, "shrinkA": 0,
-                                              "shrinkB": 0})
+    axes.annotate(
+        "", start, end, arrowprops={"arrowstyle": "<->", "color": DIMENSION, "lw": 0.9, "shrinkA": 0, "shrinkB": 0}
+    )
     upright = start[0] == end[0]
     middle = (0.5 * (start[0] + end[0]), 0.5 * (start[1] + end[1]))
-    axes.annotate(text, middle, (6, 0) if upright else (0, 3), textcoords="offset points", color=DIMENSION,
-                  rotation=90 if upright else 0, ha="left" if upright else "center",
-                  va="center" if upright else "bottom")
+    axes.annotate(
+        text,
+        middle,
+        (6, 0) if upright else (0, 3),
+        textcoords="offset points",
+        color=DIMENSION,
+        rotation=90 if upright else 0,
+        ha="left" if upright else "center",
+        va="center" if upright else "bottom",
+    )

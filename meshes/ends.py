@@ -6,14 +6,14 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from coilset.meshes import functions
-from coilset.meshes.shapes import Entry
+from coilset.meshes.entry import Strict
 
 CLOSED_TURNS, CLOSED_TRANSITION, GROUND_TIP = 1.0, 0.5, 0.25
 
 _Turns = Annotated[float, Field(ge=0.01, allow_inf_nan=False, strict=True)]
 
 
-class EndCoils(Entry):
+class EndCoils(Strict):
     """One end of a spring, or both.
 
     Open: the wire is cut off. Closed: the end turns lie on each other and bear no load of their own; a transition
@@ -71,7 +71,7 @@ class EndCoils(Entry):
 OPEN = EndCoils()
 
 
-class BothEnds(Entry):
+class BothEnds(Strict):
     """Two different ends."""
 
     bottom: EndCoils = OPEN
@@ -121,8 +121,16 @@ def pitch_with_ends(body, bottom, top, touching):
         The pitch as a function of the turn, mm per turn.
     """
     last = body.x[-1]
-    marks = np.array([0.0, bottom.end_turns, bottom.end_turns + bottom.transition_turns,
-                      last - top.end_turns - top.transition_turns, last - top.end_turns, last])
+    marks = np.array(
+        [
+            0.0,
+            bottom.end_turns,
+            bottom.end_turns + bottom.transition_turns,
+            last - top.end_turns - top.transition_turns,
+            last - top.end_turns,
+            last,
+        ]
+    )
     parts = [functions.restricted(body, marks[2], marks[3])]
     if bottom.is_closed:
         coil = functions.polynomial([touching(*marks[:2])], *marks[:2])

@@ -41,15 +41,17 @@ def _write_meshio(points, coil, data, path):
     options = {"data_format": "XML"} if path.suffix == ".xdmf" else {}
     if path.suffix == ".inp":  # Abaqus has sets in the place of data, with names without spaces
         elements = {"wire": [nodes[:-1]], "end_coils": [nodes[:-1][coil != 1]]}
-        mesh = meshio.Mesh(points, [("line", lines)], cell_sets=elements,
-                           point_sets={"bottom_end": nodes[:1], "top_end": nodes[-1:]})
+        mesh = meshio.Mesh(
+            points, [("line", lines)], cell_sets=elements, point_sets={"bottom_end": nodes[:1], "top_end": nodes[-1:]}
+        )
     try:
         mesh.write(path, **options)
         kept = sum(len(block.data) for block in meshio.read(path).cells if block.type == "line")
     except (meshio.WriteError, meshio.ReadError, KeyError, ValueError, SystemExit) as error:
         path.unlink(missing_ok=True)
-        raise InputError(f"meshio cannot write a wire so: {' '.join(str(error).split())}; "
-                         "take .vtu, .msh, .inp or .xdmf", "", path) from None
+        raise InputError(
+            f"meshio cannot write a wire so: {' '.join(str(error).split())}; take .vtu, .msh, .inp or .xdmf", "", path
+        ) from None
     if kept != len(lines):
         path.unlink()
         raise InputError(f"{path.suffix} files hold no line elements; take .vtu, .msh, .inp or .xdmf", "", path)

@@ -71,11 +71,22 @@ def smoothed(turn, value, noise):
     return PPoly(pieces.c[:, real], np.append(pieces.x[:-1][real], pieces.x[-1]))
 
 
+def added(left, right, factor=1.0):
+    """The function `left` + `factor` · `right`; both begin and end at the same turns."""
+    breaks = np.union1d(left.x, right.x)
+    return PPoly(_coefficients(left, breaks) + factor * _coefficients(right, breaks), breaks)
+
+
 def restricted(function, start, end):
-    """The part of a function between two turns, by Taylor's expansion at the left of every piece."""
+    """The part of a function between two turns."""
     breaks = np.array([start, *function.x[(function.x > start) & (function.x < end)], end])
+    return PPoly(_coefficients(function, breaks), breaks)
+
+
+def _coefficients(function, breaks):
+    """Of a function between breaks, its own among them, by Taylor's expansion at the left of every piece."""
     terms = [function.derivative(k)(breaks[:-1]) / factorial(k) for k in range(DEGREE, 0, -1)]
-    return PPoly(np.array([*terms, function(breaks[:-1])]), breaks)
+    return np.array([*terms, function(breaks[:-1])])
 
 
 def blended(left, right, start, end):

@@ -60,8 +60,10 @@ class Spring:
         t = self.breaks
         z, d = self.height(t), self.wire(t)
         bottom, top = self.bottom.tip_thickness, self.top.tip_thickness
-        return (z[0] - (bottom - 0.5) * d[0] if bottom < 1 else np.min(z - 0.5 * d),
-                z[-1] + (top - 0.5) * d[-1] if top < 1 else np.max(z + 0.5 * d))
+        return (
+            z[0] - (bottom - 0.5) * d[0] if bottom < 1 else np.min(z - 0.5 * d),
+            z[-1] + (top - 0.5) * d[-1] if top < 1 else np.max(z + 0.5 * d),
+        )
 
     @cached_property
     def breaks(self):
@@ -207,7 +209,7 @@ class Spring:
         if i == 0:
             return 0.0
         level = self._planes[0] if end == "bottom" else self._planes[1]
-        rest = np.abs(self.height(along[i - 1:i + 1]) - level) - 0.5 * self.wire(along[i - 1:i + 1])
+        rest = np.abs(self.height(along[i - 1 : i + 1]) - level) - 0.5 * self.wire(along[i - 1 : i + 1])
         last = along[i - 1] - rest[0] * (along[i] - along[i - 1]) / (rest[1] - rest[0])
         return float(abs(last - along[0]))
 

@@ -10,8 +10,9 @@ from pydantic import Field, ValidationInfo, field_validator
 from coilset.meshes import functions
 from coilset.meshes.checks import refuse
 from coilset.meshes.ends import OPEN, Ends, bottom_and_top
+from coilset.meshes.entry import Strict
 from coilset.meshes.geometry import Spring
-from coilset.meshes.shapes import Entry, Length
+from coilset.meshes.shapes import Length
 from coilset.model.errors import InputError
 
 LEAST_POINTS = 5
@@ -19,7 +20,7 @@ WIDEST_STEP = 1 / 3  # of a turn between neighbouring points
 WIRE_DIAMETER = "wire_diameter"
 
 
-class MeasuredSpec(Entry):
+class MeasuredSpec(Strict):
     """A spring whose centre line was measured. The file's z axis is the axis of the spring, lengths in mm.
 
     The points become mean radius and height over the polar angle, which the cubic spline joins: a helix stays exactly
@@ -65,8 +66,9 @@ class MeasuredSpec(Entry):
         bottom, top = bottom_and_top(self.end_coils)
         closed = bottom.end_turns + top.end_turns
         if closed >= turn[-1]:
-            raise InputError(f"{closed:g} end turns, but the centre line has only {turn[-1]:.4g} turns",
-                             "spring.end_coils")
+            raise InputError(
+                f"{closed:g} end turns, but the centre line has only {turn[-1]:.4g} turns", "spring.end_coils"
+            )
         spring = Spring(radius, height, functions.tabulated(turn, wire, "monotone"), hand, bottom, top, phase)
         return refuse(spring, "", path)
 
@@ -93,8 +95,11 @@ def read_centre_line(path):
     if bad.any():
         i = int(np.argmax(bad))
         numbers = [*points[i], *([] if wire is None else [wire[i]])]
-        raise InputError(f"{', '.join(f'{n:g}' for n in numbers)}: must be finite numbers and a wire diameter above 0",
-                         f"point {i + 1}", path)
+        raise InputError(
+            f"{', '.join(f'{n:g}' for n in numbers)}: must be finite numbers and a wire diameter above 0",
+            f"point {i + 1}",
+            path,
+        )
     return points, wire
 
 
@@ -132,7 +137,7 @@ def _read_mesh(path):
         raise InputError("has no line elements; the wire must be a chain of them", "", path)
     order = _chain(np.concatenate(lines), path)
     points = np.zeros((len(order), 3))
-    points[:, :mesh.points.shape[1]] = mesh.points[order]
+    points[:, : mesh.points.shape[1]] = mesh.points[order]
     wire = mesh.point_data.get(WIRE_DIAMETER)
     return points, None if wire is None else np.asarray(wire, dtype=float).reshape(-1)[order]
 
@@ -147,8 +152,9 @@ def _chain(lines, path):
     lines = np.unique(np.sort(np.asarray(lines, dtype=int), axis=1), axis=0)
     nodes, uses = np.unique(lines, return_counts=True)
     if np.sum(uses == 1) != 2 or uses.max() > 2:
-        raise InputError(f"its line elements are not one open chain: {np.sum(uses == 1)} ends, "
-                         f"{np.sum(uses > 2)} branches", "", path)
+        raise InputError(
+            f"its line elements are not one open chain: {np.sum(uses == 1)} ends, {np.sum(uses > 2)} branches", "", path
+        )
     neighbours = {int(node): [] for node in nodes}
     for a, b in lines.tolist():
         neighbours[a].append(b)
@@ -171,11 +177,18 @@ def _turns(points, path):
     back = step * hand <= 0
     if back.any():
         i = int(np.argmax(back))
-        raise InputError("the wire does not go on round the z axis here; the axis of the spring must be the z axis, "
-                         "and no point may occur twice", f"point {i + 2}", path)
+        raise InputError(
+            "the wire does not go on round the z axis here; the axis of the spring must be the z axis, "
+            "and no point may occur twice",
+            f"point {i + 2}",
+            path,
+        )
     wide = np.abs(step) > 2 * np.pi * WIDEST_STEP
     if wide.any():
         i = int(np.argmax(wide))
-        raise InputError(f"is {np.degrees(abs(step[i])):.0f}° away from the point before; must be at most "
-                         f"{360 * WIDEST_STEP:.0f}°", f"point {i + 2}", path)
+        raise InputError(
+            f"is {np.degrees(abs(step[i])):.0f}° away from the point before; must be at most {360 * WIDEST_STEP:.0f}°",
+            f"point {i + 2}",
+            path,
+        )
     return np.concatenate([[0.0], np.cumsum(np.abs(step))]) / (2 * np.pi), hand, float(angle[0])

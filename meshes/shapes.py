@@ -3,9 +3,10 @@
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from coilset.meshes import functions
+from coilset.meshes.entry import Strict
 
 SHORTEST, LONGEST = 1e-3, 1e5  # mm
 CLOSEST = 1e-3  # turns
@@ -21,17 +22,13 @@ Length = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True), AfterVa
 Turn = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
 
 
-class Entry(BaseModel):
-    """A part of the case file: unknown keys are refused, values do not change."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Table(Entry):
+class Table(Strict):
     """Values at chosen turns, the first at turn 0 and the last at the last turn."""
 
-    turns: Annotated[tuple[Turn, ...], Field(min_length=2, description="turns from the bottom end, increasing")]
-    values: Annotated[tuple[Length, ...], Field(min_length=2, description="values at these turns, mm")]
+    turns: Annotated[
+        tuple[Turn, ...], Field(strict=False, min_length=2, description="turns from the bottom end, increasing")
+    ]
+    values: Annotated[tuple[Length, ...], Field(strict=False, min_length=2, description="values at these turns, mm")]
     interpolation: Annotated[
         Literal["linear", "monotone", "spline"],
         Field(description="linear; monotone (cubic without overshoot, smooth slope); spline (cubic, smooth curvature)"),
@@ -54,7 +51,7 @@ class Table(Entry):
         return functions.tabulated(np.array([*self.turns[:-1], turns]), np.array(self.values), self.interpolation)
 
 
-class Cylinder(Entry):
+class Cylinder(Strict):
     """The same diameter at every turn."""
 
     shape: Literal["cylinder"]
@@ -65,7 +62,7 @@ class Cylinder(Entry):
         return functions.constant(self.diameter, turns)
 
 
-class Cone(Entry):
+class Cone(Strict):
     """A diameter that changes by the same amount every turn."""
 
     shape: Literal["cone"]
@@ -77,7 +74,7 @@ class Cone(Entry):
         return functions.polynomial([self.bottom, (self.top - self.bottom) / turns], 0.0, turns)
 
 
-class Funnel(Entry):
+class Funnel(Strict):
     """A cone on the bottom end that goes on as a cylinder (the funnel's neck) to the top end."""
 
     shape: Literal["funnel"]
@@ -88,13 +85,16 @@ class Funnel(Entry):
     def function(self, turns):
         """The diameter as a function of the turn, mm; raises ValueError if the cone has too many turns."""
         if self.cone_turns >= turns:
-            raise ValueError(f"cone_turns is {self.cone_turns:g}, but the spring has only {turns:g} turns; "
-                             "leave some for the neck, or take the shape cone")
-        return functions.tabulated(np.array([0, self.cone_turns, turns]),
-                                   np.array([self.bottom, self.neck, self.neck]), "linear")
+            raise ValueError(
+                f"cone_turns is {self.cone_turns:g}, but the spring has only {turns:g} turns; "
+                "leave some for the neck, or take the shape cone"
+            )
+        return functions.tabulated(
+            np.array([0, self.cone_turns, turns]), np.array([self.bottom, self.neck, self.neck]), "linear"
+        )
 
 
-class _Waisted(Entry):
+class _Waisted(Strict):
     ends: Annotated[Length, Field(description="mean coil diameter at both ends, mm")]
     middle: Annotated[Length, Field(description="mean coil diameter at half of the turns, mm")]
 
@@ -106,8 +106,9 @@ class DoubleCone(_Waisted):
 
     def function(self, turns):
         """The diameter as a function of the turn, mm."""
-        return functions.tabulated(np.array([0, turns / 2, turns]), np.array([self.ends, self.middle, self.ends]),
-                                   "linear")
+        return functions.tabulated(
+            np.array([0, turns / 2, turns]), np.array([self.ends, self.middle, self.ends]), "linear"
+        )
 
 
 class _Parabola(_Waisted):
@@ -125,8 +126,10 @@ class Barrel(_Parabola):
     @model_validator(mode="after")
     def _is_wide(self):
         if self.middle <= self.ends:
-            raise ValueError(f"a barrel is wider in its middle ({self.middle:g} mm) than at its ends "
-                             f"({self.ends:g} mm); the other way round it is an hourglass")
+            raise ValueError(
+                f"a barrel is wider in its middle ({self.middle:g} mm) than at its ends "
+                f"({self.ends:g} mm); the other way round it is an hourglass"
+            )
         return self
 
 
@@ -138,20 +141,28 @@ class Hourglass(_Parabola):
     @model_validator(mode="after")
     def _is_narrow(self):
         if self.middle >= self.ends:
-            raise ValueError(f"an hourglass is narrower in its middle ({self.middle:g} mm) than at its ends "
-                             f"({self.ends:g} mm); the other way round it is a barrel")
+            raise ValueError(
+                f"an hourglass is narrower in its middle ({self.middle:g} mm) than at its ends "
+                f"({self.ends:g} mm); the other way round it is a barrel"
+            )
         return self
 
 
-SHAPES = {"cylinder": Cylinder, "cone": Cone, "double cone": DoubleCone, "hourglass": Hourglass, "barrel": Barrel,
-          "funnel": Funnel}
+SHAPES = {
+    "cylinder": Cylinder,
+    "cone": Cone,
+    "double cone": DoubleCone,
+    "hourglass": Hourglass,
+    "barrel": Barrel,
+    "funnel": Funnel,
+}
 
 
 def form_of_entry(value: Any) -> str:
     """Tag of the form of an entry; tags are in brackets because they are no part of its place in the case file."""
     if isinstance(value, dict):
         return f"({value['shape']})" if "shape" in value else "(table)"
-    if isinstance(value, Entry):
+    if isinstance(value, Strict):
         return f"({getattr(value, 'shape', 'table')})"
     return "(number)"
 
@@ -171,8 +182,11 @@ DiameterProfile = Annotated[
     | Annotated[Hourglass, Tag("(hourglass)")]
     | Annotated[Barrel, Tag("(barrel)")]
     | Annotated[Funnel, Tag("(funnel)")],
-    Discriminator(form_of_entry, custom_error_type="form",
-                  custom_error_message=f"must be a number, a table, or one of the shapes {', '.join(SHAPES)}"),
+    Discriminator(
+        form_of_entry,
+        custom_error_type="form",
+        custom_error_message=f"must be a number, a table, or one of the shapes {', '.join(SHAPES)}",
+    ),
 ]
 """The mean coil diameter over the turns: a number in mm, a table, or a shape."""
 

@@ -1,6 +1,6 @@
 """The `spring:` section of the case file, and what is built from it."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
@@ -9,19 +9,30 @@ from scipy.optimize import brentq
 from coilset.meshes import functions
 from coilset.meshes.checks import refuse
 from coilset.meshes.ends import OPEN, Ends, bottom_and_top, pitch_with_ends, touching_pitch
+from coilset.meshes.entry import Strict
 from coilset.meshes.geometry import Spring
 from coilset.meshes.measured import MeasuredSpec
-from coilset.meshes.shapes import DiameterProfile, Entry, Length, Profile, profile_function
+from coilset.meshes.shapes import DiameterProfile, Length, Profile, profile_function
 from coilset.model.errors import InputError
+
+DIAMETERS = {"mean_diameter": 0, "outer_diameter": -1, "inner_diameter": 1}  # wires to add for the mean diameter
 
 __all__ = ["MeasuredSpec", "Spring", "SpringEntry", "SpringSpec"]
 
 
-class SpringSpec(Entry):
+class SpringSpec(Strict):
     """A spring as on a drawing: three lengths over the turns, hand and ends. Lengths in mm."""
 
     wire_diameter: Annotated[Profile, Field(description="wire diameter, mm; a number or a table over the turns")]
-    mean_diameter: Annotated[DiameterProfile, Field(description="mean coil diameter, mm; a number, a table or a shape")]
+    mean_diameter: Annotated[
+        DiameterProfile | None, Field(description="mean coil diameter D, mm; a number, a table or a shape")
+    ] = None
+    outer_diameter: Annotated[
+        DiameterProfile | None, Field(description="outer coil diameter De = D + d, mm, in place of the mean one")
+    ] = None
+    inner_diameter: Annotated[
+        DiameterProfile | None, Field(description="inner coil diameter Di = D − d, mm, in place of the mean one")
+    ] = None
     turns: Annotated[float, Field(ge=0.1, le=1000, strict=True, description="all turns, end turns included")]
     pitch: Annotated[
         Profile | None, Field(description="rise in a turn of the body, mm; a number or a table; or give free_length")
@@ -33,12 +44,25 @@ class SpringSpec(Entry):
     end_coils: Ends = OPEN
 
     @model_validator(mode="after")
-    def _has_length(self):
+    def _has_one_diameter(self) -> Self:
+        given = [name for name in DIAMETERS if getattr(self, name) is not None]
+        if len(given) != 1:
+            found = f"{', '.join(given)} are given" if given else "the coil diameter is missing"
+            raise ValueError(f"{found}; give one of mean_diameter, outer_diameter (De) and inner_diameter (Di)")
+        return self
+
+    @property
+    def diameter_entry(self) -> str:
+        """Name of the entry that gives the coil diameter."""
+        return next(name for name in DIAMETERS if getattr(self, name) is not None)
+
+    @model_validator(mode="after")
+    def _has_length(self) -> Self:
         if self.pitch is None and self.free_length is None:
             raise ValueError("pitch and free_length are both missing; give one of them")
         return self
 
-    def build(self):
+    def build(self) -> Spring:
         """The geometry.
 
         Returns:
@@ -47,24 +71,49 @@ class SpringSpec(Entry):
         Raises:
             InputError: entries that contradict each other, with their place.
         """
-        wire, diameter = self._function("wire_diameter"), self._function("mean_diameter")
-        radius = functions.PPoly(0.5 * diameter.c, diameter.x)
+        wire = self._function("wire_diameter")
+        mean = self._mean_diameter(wire)
+        radius = functions.PPoly(0.5 * mean.c, mean.x)
         ends_and_transitions = sum(end.end_turns + end.transition_turns for end in bottom_and_top(self.end_coils))
         if ends_and_transitions >= self.turns:
-            raise InputError(f"{self.turns:g} turns are too few: end turns and transitions alone are "
-                             f"{ends_and_transitions:g}", "spring.turns")
+            raise InputError(
+                f"{self.turns:g} turns are too few: end turns and transitions alone are {ends_and_transitions:g}",
+                "spring.turns",
+            )
 
         def spring(pitch):
             height = self._pitch_with_ends(pitch, wire, radius).antiderivative()
             return Spring(radius, height, wire, 1 if self.hand == "right" else -1, *bottom_and_top(self.end_coils))
 
         if self.pitch is None:
-            return refuse(self._with_free_length(spring, self.turns - ends_and_transitions))
+            return self._refuse(self._with_free_length(spring, self.turns - ends_and_transitions))
         built = spring(self._function("pitch"))
         if self.free_length is not None and abs(built.free_length - self.free_length) > 1e-6 * self.free_length:
-            raise InputError(f"{self.free_length:g} mm contradicts the pitch, which makes {built.free_length:.6g} mm; "
-                             "leave one of the two out", "spring.free_length")
-        return refuse(built)
+            raise InputError(
+                f"{self.free_length:g} mm contradicts the pitch, which makes {built.free_length:.6g} mm; "
+                "leave one of the two out",
+                "spring.free_length",
+            )
+        return self._refuse(built)
+
+    def _refuse(self, spring):
+        """Refuse what cannot be a spring; what is wrong with the diameter is said of the entry that gives it."""
+        try:
+            return refuse(spring)
+        except InputError as error:
+            place = error.place.replace("mean_diameter", self.diameter_entry)
+            raise InputError(error.problem, place, error.file) from None
+
+    def _mean_diameter(self, wire):
+        """D = De − d = Di + d as a function of the turn, mm."""
+        given = self._function(self.diameter_entry)
+        factor = DIAMETERS[self.diameter_entry]
+        if factor == 0:
+            return given
+        mean = functions.added(given, wire, factor)
+        if np.min(mean(np.unique(mean.x))) <= 0:
+            raise InputError("the coil is no wider than its wire", f"spring.{self.diameter_entry}")
+        return mean
 
     def _function(self, entry):
         try:
@@ -83,13 +132,16 @@ class SpringSpec(Entry):
 
     def _with_free_length(self, spring, body_turns):
         """The spring whose body has the pitch that makes the free length; this grows with the pitch."""
+
         def too_long(pitch):
             return spring(functions.constant(pitch, self.turns)).free_length - self.free_length
 
         least = too_long(0.0) + self.free_length
         if least >= self.free_length:
-            raise InputError(f"{self.free_length:g} mm leave no pitch: end coils and wire alone need {least:.4g} mm",
-                             "spring.free_length")
+            raise InputError(
+                f"{self.free_length:g} mm leave no pitch: end coils and wire alone need {least:.4g} mm",
+                "spring.free_length",
+            )
         # the body alone rises by the greatest pitch times its turns
         pitch = brentq(too_long, 0.0, self.free_length / body_turns, xtol=1e-12, rtol=1e-14)
         return spring(functions.constant(pitch, self.turns))

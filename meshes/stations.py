@@ -36,8 +36,11 @@ def stations(spring, elements_per_turn=16, sagitta=None):
         InputError: a table that does not end at the last turn, or too few or too many elements in a turn.
     """
     try:
-        given = (elements_per_turn.function(spring.turns) if isinstance(elements_per_turn, Table)
-                 else functions.constant(elements_per_turn, spring.turns))
+        given = (
+            elements_per_turn.function(spring.turns)
+            if isinstance(elements_per_turn, Table)
+            else functions.constant(elements_per_turn, spring.turns)
+        )
     except ValueError as error:
         raise InputError(str(error), "mesh.elements_per_turn") from None
 
@@ -50,8 +53,9 @@ def stations(spring, elements_per_turn=16, sagitta=None):
     breaks = np.unique(np.concatenate([spring.breaks, given.x]))
     densities = density(breaks)
     if not LEAST <= densities.min() <= densities.max() <= MOST:
-        raise InputError(f"{densities.min():.4g} to {densities.max():.4g} elements in a turn; "
-                         f"must be {LEAST} to {MOST}", "mesh")
+        raise InputError(
+            f"{densities.min():.4g} to {densities.max():.4g} elements in a turn; must be {LEAST} to {MOST}", "mesh"
+        )
     count = np.concatenate([[0.0], np.cumsum(functions.integral(density, breaks, points=2))])
     elements = int(np.ceil(count[-1] * (1 - 1e-9)))
     if np.ptp(densities) == 0:

@@ -1,71 +1,42 @@
-"""From a case to its history: geometry → mesh → rod, contacts and drive → load program → results."""
+"""From a case to its history: geometry → mesh → rod, contacts and control → load program → records."""
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Protocol
 
 import numpy as np
 from mpi4py import MPI
 
 from coilset.meshes.line import line_mesh
 from coilset.meshes.placement import section_placement, straight
-from coilset.model.contact.build import build_contacts
+from coilset.model.case import Case
+from coilset.model.case.phases import Phase
+from coilset.model.contact.build import build_contacts, seats_at
+from coilset.model.equilibrium.axial_control import AxialControl
+from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
+from coilset.model.equilibrium.continuation import Continuation
+from coilset.model.equilibrium.layout import LineLayout
+from coilset.model.equilibrium.methods import rod_method
+from coilset.model.equilibrium.newton import Newton
+from coilset.model.equilibrium.program import LoadProgram, ProgramPosition, Stage, StepTaken
+from coilset.model.equilibrium.system import System
 from coilset.model.errors import SolveError
-from coilset.model.frames.rotations import triads
-from coilset.model.loading.driver import Drive
-from coilset.model.loading.stepper import Step, Stepper
 from coilset.model.material import library
-from coilset.model.problem.system import System
-from coilset.model.results.seats import Resultants, observe
-from coilset.model.rod.kinematics import GAUSS
+from coilset.model.results.balance import imbalance
+from coilset.model.results.checkpoint import Saved
+from coilset.model.results.record import ContactRecord, Result, Setup, Snapshot, Step
+from coilset.model.results.seat_reactions import seat_reactions
+from coilset.model.rod.kinematics import GAUSS, chord_triads
 from coilset.model.rod.rod import Rod
-from coilset.model.section import surface
-from coilset.model.solvers.solver import Solver
-
-PROBE = 1e-3  # travel by which the initial rate is measured, in free lengths
+from coilset.model.state import State
 
 
-@dataclass
-class Snapshot:
-    """The spring at one moment, in the order of its stations and elements; complete on rank 0.
+class Save(Protocol):
+    """Keeps the state after each step, as coilset.model.results.checkpoint.Checkpoint.save."""
 
-    Attributes:
-        name: what moment it is, such as `start`, `block`, `force 0 N`.
-        height, force: of the seats, mm and N.
-        x: station positions, shape (n + 1, 3), mm.
-        triads: element triads (columns), shape (n, 3, 3).
-        resultants: N, Q2, Q3, Mt, M2, M3 at the Gauss sections, shape (n, 2, 6), N and N mm.
-        history: state at the section points, shape (n, 2, points, n_state), MPa.
-        surface: the same at the points on the wire's surface, shape (n, 2, surface points, n_state), MPa.
-        components: names of the columns of both.
-    """
-
-    name: str
-    height: float
-    force: float
-    x: np.ndarray
-    triads: np.ndarray
-    resultants: np.ndarray
-    history: np.ndarray
-    surface: np.ndarray
-    components: tuple[str, ...]
-
-    @property
-    def shear(self):
-        """Magnitude of the shear stress at the section points, shape (n, 2, points), MPa."""
-        return surface.shear(self.history, self.components)
-
-
-@dataclass
-class Result:
-    """What a run has found; `complete` is False if it ended before its program did.
-
-    `seats` has what both ends bear after each of the `steps`.
-    """
-
-    steps: list[Step] = field(default_factory=list)
-    snapshots: list[Snapshot] = field(default_factory=list)
-    seats: list[Resultants] = field(default_factory=list)
-    rate: float = float("nan")
-    complete: bool = False
+    def __call__(self, state: State, layout: LineLayout, position: ProgramPosition, result: Result) -> object:
+        """Keep it; collective."""
+        ...
 
 
 class Analysis:
@@ -77,37 +48,74 @@ class Analysis:
 
     Raises:
         InputError: if the spring or the material cannot be built.
+
+    Attributes:
+        setup: Setup, what the records are about.
+        result: Result up to now.
+        system, newton, control, program: the System of the Rod `rod`, its Newton, AxialControl and LoadProgram.
     """
 
-    def __init__(self, case, comm=MPI.COMM_WORLD):
+    def __init__(self, case: Case, comm: MPI.Comm = MPI.COMM_WORLD) -> None:
         self.case, self.comm = case, comm
-        self.spring = case.spring.build()
-        self.turns = self.spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
+        self.spring = spring = case.spring.build()
+        turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
         self.law = library.load(case.material)
-        line = line_mesh(self.spring.centre_line(self.turns), comm)
-        self.wire_radius = 0.5 * self.spring.wire_diameter(0.5 * (self.turns[1:] + self.turns[:-1]))
-        section, self.placement = case.mesh.section, straight(len(self.turns) - 1)
+        line = line_mesh(spring.centre_line(turns), comm)
+        radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
+        section, placement = case.mesh.section, straight(len(turns) - 1)
         if case.mesh.axis == "curved":
-            chords = triads(np.diff(line.stations, axis=0))
-            self.placement = section_placement(self.spring, self.turns, chords, GAUSS, section.kind != "plane")
-        self.rod = Rod(line, self.wire_radius, self.law, section.build(), self.placement, case.temperature,
-                       section.kind, section.degree)  # fmt: skip
-        top = self.spring.free_length
-        contacts = build_contacts(case, self.spring, self.turns, line.stations, self.law.E)
-        self.system = System(self.rod, contacts, seats=(0.0, top))
-        self.solver = Solver(self.system, case.solver.method, case.solver.tolerance, case.solver.options,
-                             case.contact.penetration or np.inf)  # fmt: skip
-        self.drive = Drive(self.system, case.ends, top, case.seats)
-        deepest = case.contact.deepest * 2.0 * self.wire_radius.min()
-        self.stepper = Stepper(self.drive, self.solver, self.spring.block_height, deepest)
+            chords = chord_triads(np.diff(line.stations, axis=0))
+            placement = section_placement(spring, turns, chords, GAUSS, section.kind != "plane")
+        self.rod = Rod(line, radius, self.law, section.build(), placement, case.temperature, section.kind,
+                       section.degree)  # fmt: skip
+        seats = case.seats if case.ends == "seats" else None
+        contacts = build_contacts(case.contact, seats, spring, turns, line.stations, self.law.E)
+        self.layout = LineLayout(self.rod)
+        self.system = System(self.rod, self.layout, contacts, seats_at(spring.free_length))
+        self.newton = self._newton(2.0 * self.rod.largest_radius)
+        self.control = AxialControl(
+            self.system, spring.free_length, case.ends == "clamped", case.seats.hold == "tips",
+            (case.seats.bottom.held(), case.seats.top.held()),
+        )  # fmt: skip
+        limit = case.contact.penetration_limit * 2.0 * float(radius.min())
+        self.continuation = Continuation(self.newton, case.solver.control.steps, limit)
+        self.program = LoadProgram(self.control, self.continuation)
+        records = tuple(
+            ContactRecord(one.name, one.end, one.points and one.points.turns, getattr(one, "tip", 0))
+            for one in contacts
+        )
+        self.setup = Setup(spring, self.law.name, case.ends, tuple(p.label for p in case.loading),
+                           turns, radius, self.rod.rule, records, section.kind, placement)  # fmt: skip
         self.result = Result()
 
-    def run(self, report=lambda step: None, checkpoint=None):
-        """Walk through the load program; a resumed analysis goes on where its checkpoint was.
+    def _newton(self, wire_diameter: float) -> Newton:
+        solver, contact = self.case.solver, self.case.contact
+        control = solver.control.newton
+        limit = ContactLimit(self.system, control, free_penetration(control, contact.penetration_limit) * wire_diameter)
+        return Newton(self.system, self._method(solver.method), solver.tolerance, control, limit,
+                      contact.augmentation_tolerance or np.inf)  # fmt: skip
+
+    def _method(self, name: str):
+        # an arc by which every node moves by about the wire's radius
+        arc = self.rod.largest_radius * np.sqrt(len(self.layout.station_dofs))
+        return rod_method(name, self.comm.size, self.case.solver.options, arc)
+
+    def use_method(self, name: str) -> None:
+        """Go on with another iteration method.
+
+        Raises:
+            InputError: if there is no such method, or PETSc refuses an option; the method stays what it was.
+        """
+        self.newton.use(self._method(name))
+
+    # ---- the run ---------------------------------------------------------------------------------------------------
+
+    def run(self, report: Callable[[Step], object] = lambda step: None, save: Save | None = None) -> Result:
+        """Walk through the load program; a resumed analysis goes on where its checkpoint was; collective.
 
         Args:
             report: called with each converged Step.
-            checkpoint: Checkpoint that is saved after each step.
+            save: keeps the state after each step, see Checkpoint.save.
 
         Returns:
             Result; it is also `self.result`, with all steps up to there if the run is interrupted.
@@ -115,66 +123,87 @@ class Analysis:
         Raises:
             SolveError: no equilibrium was found; the state is that of the last converged step.
         """
-        result, save = self.result, checkpoint.save if checkpoint else lambda analysis: None
-
-        def record(step):
-            result.seats.append(observe(self, step))
-            result.steps.append(step)
-            save(self)
-            report(step)
-
-        if not result.snapshots:
-            result.rate = self.initial_rate()
-            result.snapshots.append(self.snapshot("start"))
+        if not self.result.snapshots:
+            self.result = replace(self.result, rate=self.initial_rate(), snapshots=(self.snapshot("start"),))
         try:
-            for index in range(self.stepper.walk.phase, len(self.case.loading)):
-                phase = self.case.loading[index]
-                self.stepper.run_phase(phase, record)
-                result.snapshots.append(self.snapshot(phase.label))
-                self.stepper.begin(index + 1)
-                save(self)
+            for number in range(self.program.number, len(self.case.loading)):
+                phase = self.case.loading[number]
+                for taken in self.program.run(self.stage(phase)):
+                    step = self._record(number, taken)
+                    self._keep(save)
+                    report(step)
+                self._add_snapshot(phase.label)
+                self.program.begin(number + 1)
+                self._keep(save)
         except (SolveError, KeyboardInterrupt):
             self.system.restore()
-            result.snapshots.append(self.snapshot("last equilibrium"))
+            self._add_snapshot("last equilibrium")
             raise
-        result.complete = True
-        return result
+        self.result = replace(self.result, complete=True)
+        return self.result
 
-    def initial_rate(self):
-        """Force over the shortening of the wire from tip to tip, at a thousandth of the free length, N/mm."""
-        self.drive.by_height(self.drive.height - PROBE * self.spring.free_length)
-        before = np.ptp(self.system.gather(self.rod.x)[[0, -1], 2])
-        outcome = self.solver.solve()
+    def resume(self, saved: Saved) -> None:
+        """Go back to where a checkpoint was; collective."""
+        for name, field in self.system.state.items():
+            self.layout.take(field, saved.arrays[name])
+        self.system.restore()
+        self.program.position, self.continuation.number = saved.position, len(saved.result.steps)
+        self.result = saved.result
+
+    def stage(self, phase: Phase) -> Stage:
+        """A phase of the case as the load program takes it."""
+        to, free_length = phase.to, self.spring.free_length
+        if to == "block":
+            return Stage("height", self.spring.block_height, phase.steps, phase.label)
+        if to.force is not None:
+            return Stage("force", to.force, phase.steps, phase.label)
+        height = to.height if to.height is not None else free_length - to.travel
+        return Stage("height", height, phase.steps, phase.label)
+
+    def _keep(self, save: Save | None) -> None:
+        if save is not None:
+            save(self.system.state, self.layout, self.program.position, self.result)
+
+    def _record(self, phase: int, taken: StepTaken) -> Step:
+        height, force, last = self.control.height, self.control.force, self.system.last
+        contacts = sum(part.closed for part in last.contributions)
+        step = Step(taken.number, phase, taken.progress, height, self.spring.free_length - height, force,
+                    taken.outcome.iterations, taken.cuts, contacts, self.system.max_penetration)  # fmt: skip
+        greatest = max(self.result.greatest_force, abs(force))
+        seats = seat_reactions(self.system, self.control, self.setup.turns, step.number, greatest)
+        self.result = replace(self.result, steps=(*self.result.steps, step), seats=(*self.result.seats, seats))
+        return step
+
+    def initial_rate(self) -> float:
+        """Force over the shortening of the wire from tip to tip, at a thousandth of the free length, N/mm; collective.
+
+        Raises:
+            SolveError: if there is no equilibrium there.
+        """
+        x = self.system.state["x"]
+        travel = self.continuation.control.probe * self.spring.free_length
+        before = np.ptp(self.layout.gather(x.equilibrium)[[0, -1], 2])
+        outcome, (force, after) = self.continuation.probe(
+            self.control.to_height(self.control.height - travel),
+            lambda: (self.control.trial_force, np.ptp(self.layout.gather(x.trial)[[0, -1], 2])),
+        )
         if not outcome.converged:
             raise SolveError(f"no equilibrium at the first touch: {outcome.reason}")
-        after = np.ptp(self.system.gather(self.rod.x)[[0, -1], 2])
-        force = self.drive.read(self.solver.X)[1]
-        self.system.restore()
-        return force / (before - after)
+        return float(force / (before - after))
 
-    def snapshot(self, name):
-        """The spring as it stands, gathered on rank 0."""
+    def imbalance(self) -> tuple[float, float]:
+        """Lack of balance at any cut as it stands, N and N mm; see coilset.model.results.balance; collective."""
+        return imbalance(self.snapshot("balance"), self.system, self.control)
+
+    def _add_snapshot(self, name: str) -> None:
+        self.result = replace(self.result, snapshots=(*self.result.snapshots, self.snapshot(name)))
+
+    def snapshot(self, name: str) -> Snapshot:
+        """The spring as it stands, gathered on rank 0; collective."""
         rod = self.rod
-        parts = (rod.E.values, rod.s.values, rod.history, rod.points["surface_state"])
-        fields = [rod.line.in_order(values) for values in parts]
+        parts = (rod.triads.values, rod.s.values, rod.point_state, rod.surface_state)
+        cells = [rod.line.in_order(values) for values in parts]
         if self.comm.rank:
-            fields = [np.empty(0)] * len(parts)
-        return Snapshot(name, self.drive.height, self.drive.force, self.system.gather(rod.x), *fields,
-                        rod.sections.components)  # fmt: skip
-
-    @property
-    def section_turns(self):
-        """Turns at which the Gauss sections stand, shape (n, 2)."""
-        return self.turns[:-1, None] + np.diff(self.turns)[:, None] * GAUSS
-
-    @property
-    def inside(self):
-        """Where the inside of the coil is on the wire's surface, a `coilset.model.section.surface.Inside`."""
-        return surface.Inside.of(self.case.mesh.section.kind != "plane", self.spring.hand)
-
-    def outer_length(self, x):
-        """Height of the wire between two planes across the axis that just touch it, mm."""
-        z, spring = x[:, 2], self.spring
-        top = z + spring.seat_distance(self.turns, "top")
-        bottom = z - spring.seat_distance(self.turns, "bottom")
-        return float(top.max() - bottom.min())
+            cells = [np.empty(0)] * len(parts)
+        x, components = self.layout.gather(rod.x), rod.sections.components
+        return Snapshot(name, self.control.height, self.control.force, x, *cells, components)

@@ -1,11 +1,9 @@
 """`coilset solve --interactive`: watch each step, and change size, method and target before the next."""
 
-import yaml
-from pydantic import ValidationError
-
-from coilset.model.case import explain
+from coilset.model.case.entry import check_entries
+from coilset.model.case.phases import Phase
+from coilset.model.case.yaml import load_yaml
 from coilset.model.errors import InputError
-from coilset.model.loading.program import Phase
 
 HELP = """\
 Enter            the next step
@@ -49,7 +47,6 @@ class Prompt:
             InputError, ValueError: if it is wrong; nothing was changed.
             KeyboardInterrupt: for `stop`.
         """
-        stepper = self.analysis.stepper
         if word == "run":
             self.free = True
         elif word == "stop":
@@ -58,11 +55,11 @@ class Prompt:
             size = float(rest)
             if not 0.0 < size <= 1000.0:
                 raise ValueError("a size is a number above 0, in regular steps")
-            stepper.resize(size)
+            self.analysis.continuation.resize(size)
         elif word == "method":
-            self.analysis.solver.use(rest)
+            self.analysis.use_method(rest)
         elif word == "to":
-            stepper.redirect(parse_phase(rest))
+            self.analysis.program.redirect(self.analysis.stage(parse_phase(rest)))
         else:
             self.say(HELP)
 
@@ -74,8 +71,7 @@ def parse_phase(text):
         InputError: if it is none.
     """
     try:
-        return Phase.model_validate(yaml.safe_load(f"{{to: {text}}}"))
-    except ValidationError as error:
-        raise InputError(*reversed(explain(error))) from None
-    except yaml.YAMLError:
-        raise InputError("a target is block, {travel: mm}, {height: mm} or {force: N}", text) from None
+        return check_entries(load_yaml(f"{{to: {text}}}"), Phase)
+    except InputError as error:
+        problem = f"{error.problem}; a target is block, {{travel: mm}}, {{height: mm}} or {{force: N}}"
+        raise InputError(problem, error.place) from None

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from coilset.model.errors import InputError
-from coilset.model.material.law import UNITS
+from coilset.model.material.file import UNITS
 
 app = typer.Typer(help="Draw a material, test it at one point, or fit it to tests.", no_args_is_help=True)
 MATERIAL = typer.Argument(help="name in the library, or the path of a material file")
@@ -75,8 +75,9 @@ def fit(
     """Identify the constants of k², ζ and κ from tension, reversed torsion and tension-torsion tests."""
     import yaml
 
-    from coilset.model.material import experiments, figures
-    from coilset.model.material import fit as fitting
+    from coilset.model.material import figures
+    from coilset.model.material.identification import experiments
+    from coilset.model.material.identification import fit as fitting
     from coilset.model.results.folder import whole
 
     out = _folder(out, name)

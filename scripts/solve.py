@@ -13,8 +13,7 @@ from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.errors import CoilsetError, InputError, SolveError
 from coilset.model.results.checkpoint import Checkpoint
-from coilset.model.results.folder import prepare, write_history, write_summary
-from coilset.model.results.seats import write_seats
+from coilset.model.results.folder import prepare, write_history, write_seats, write_summary
 from coilset.model.results.summary import summarise
 from coilset.scripts.interactive import Prompt
 from coilset.scripts.interrupt import Interrupt
@@ -43,11 +42,11 @@ def solve(case_file, out, force, settings, pictures, resume=False, interactive=F
     began = time.perf_counter()
     failure = _run(console, analysis, checkpoint, interactive)
     analysed = time.perf_counter() - began
-    summary = comm.bcast(summarise(analysis, analysis.result) if comm.rank == 0 else None)
+    summary = comm.bcast(summarise(analysis.setup, analysis.result) if comm.rank == 0 else None)
     if comm.rank == 0:
-        _write(out, analysis, analysis.result, summary)
+        _write(out, analysis.setup, analysis.result, summary)
         if pictures:
-            _draw(out, analysis, analysis.result, summary, console)
+            _draw(out, analysis.setup, analysis.result, summary, console)
     _conclude(console, summary, out, analysed)
     if failure is not None:
         console.print("go on from the last step with --resume")
@@ -58,7 +57,7 @@ def _begin(analysis, out, resume):
     """The checkpoint, resumed from or cleared, and the log."""
     checkpoint = Checkpoint(out, analysis.case)
     if resume:
-        checkpoint.resume(analysis)
+        analysis.resume(checkpoint.load(analysis.comm))
     if analysis.comm.rank == 0:
         if not resume:
             checkpoint.clear()
@@ -67,13 +66,13 @@ def _begin(analysis, out, resume):
 
 
 def _announce(console, analysis, case_file, resume):
-    for warning in analysis.spring.warnings:
+    for warning in [*analysis.case.notices(), *analysis.spring.warnings]:
         console.print(f"[yellow]warning:[/] {warning}")
     targets = ", ".join(phase.label for phase in analysis.case.loading)
-    elements, ranks = len(analysis.turns) - 1, analysis.comm.size
+    elements, ranks = len(analysis.setup.turns) - 1, analysis.comm.size
     console.print(f"{Path(case_file).name}: {elements} elements, to {targets}, {ranks} rank(s)")
     if resume:
-        console.print(f"going on after step {analysis.stepper.number}")
+        console.print(f"going on after step {analysis.continuation.number}")
     console.print("   step   seat height/mm      force/N   iterations   contacts")
 
 
@@ -89,7 +88,7 @@ def _run(console, analysis, checkpoint, interactive):
 
     try:
         with Interrupt(analysis.comm, console.print) as interrupt:
-            analysis.run(report, checkpoint)
+            analysis.run(report, checkpoint.save)
     except (SolveError, KeyboardInterrupt) as error:
         return error
     return None
@@ -125,28 +124,28 @@ def _row(step):
     return f"{step.number:7d}{step.seat_height_mm:17.4f}{force:13.3f}{step.iterations:13d}{step.contacts:11d}{cuts}"
 
 
-def _write(out, analysis, result, summary):
+def _write(out, setup, result, summary):
     from coilset.model.results import dataset
 
     write_history(out, result.steps)
     write_seats(out, result.seats)
-    dataset.write_points(out, dataset.point_state(analysis, result.snapshots))
-    dataset.write_fields(out, analysis, result.snapshots)
+    dataset.write_points(out, dataset.point_state(setup, result))
+    dataset.write_fields(out, setup, result.snapshots)
     write_summary(out, summary)
 
 
-def _draw(out, analysis, result, summary, console):
+def _draw(out, setup, result, summary, console):
     from coilset.model.results import display, figures, scene, seat_figures
 
     last = result.snapshots[-1]
-    figures.characteristic(out / "characteristic.png", analysis, result, summary)
-    figures.cross_section(out / "cross_section.png", analysis, last)
+    figures.characteristic(out / "characteristic.png", setup, result, summary)
+    figures.cross_section(out / "cross_section.png", setup, last)
     if result.steps:
-        seat_figures.force_centre(out / "force_centre.png", analysis, result)
-        seat_figures.seat_pressure(out / "seat_pressure.png", analysis, result)
+        seat_figures.force_centre(out / "force_centre.png", setup, result)
+        seat_figures.seat_pressure(out / "seat_pressure.png", setup, result)
     if display.ensure():
         shots = result.snapshots if len(result.snapshots) <= 4 else [result.snapshots[0], *result.snapshots[-3:]]
-        scene.springs(out / "springs.png", shots, analysis.wire_radius)
+        scene.springs(out / "springs.png", shots, setup.wire_radius)
     else:
         console.print("[yellow]warning:[/] springs.png is not drawn: there is no display and no Xvfb")
 

@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
-from coilset.model.errors import InputError
+from coilset.model.errors import InputError, SolveError
 from coilset.model.sweep import dataset
 from coilset.model.sweep.figures import draw
 from coilset.model.sweep.journal import Journal
@@ -22,11 +22,15 @@ REPORT_SECONDS = 30.0  # between two lines of progress where there is no termina
 SHOWN_FAILURES = 5
 
 
-def sweep(sweep_file, out, force, resume, retry, jobs, ranks_per_case, pictures):
+def sweep(
+    sweep_file: str, out: str | None, force: bool, resume: bool, retry: bool, jobs: int | None, ranks_per_case: int,
+    pictures: bool,
+) -> None:  # fmt: skip
     """Run a sweep; see `coilset sweep --help`.
 
     Raises:
         InputError: before anything is run, if a file is wrong or the folder holds a sweep already.
+        SolveError: cases failed; after what was found is written.
         KeyboardInterrupt: after the cases that have ended are brought together.
     """
     environment = dict(os.environ)  # as it was before MPI
@@ -43,11 +47,12 @@ def sweep(sweep_file, out, force, resume, retry, jobs, ranks_per_case, pictures)
                 _lead(plan, out, retry, pool, console)
     except KeyboardInterrupt:
         interrupted = True
-    if comm.rank == 0:
-        _conclude(plan, out, pictures, console)
+    failed = comm.bcast(_conclude(plan, out, pictures, console) if comm.rank == 0 else 0)
     if interrupted:
         console.print("interrupted; the same command with --resume goes on")
         raise KeyboardInterrupt
+    if failed:
+        raise SolveError(f"{failed} case(s) failed; their reasons are in the journal, --retry runs them again")
 
 
 def _on_first_rank(comm, prepare):
@@ -101,6 +106,8 @@ def _lead(plan, out, retry, pool, console):
     with closing(Journal(path)) as journal:
         todo = list(missing(plan, finished(path, retry)))
         there = len(set(plan.keys)) - len(todo)
+        for notice in plan.notices:
+            console.print(f"[yellow]warning:[/] {notice}")
         console.print(f"{plan.path.name}: {len(plan)} cases, {there} there already, {pool.workers} at a time")
         progress = Bar(len(todo), console)
         with progress.bar:
@@ -135,7 +142,7 @@ class Bar:
 
 
 def _conclude(plan, out, pictures, console):
-    """Data set, figures, and what was found in words."""
+    """Data set, figures, and what was found in words; returns how many cases failed."""
     data = dataset.collect(plan, out / "journal.jsonl")
     dataset.write(out / "sweep.nc", data)
     files, problems = draw(out, plan, data) if pictures else ([], [])
@@ -156,5 +163,6 @@ def _conclude(plan, out, pictures, console):
         console.print(f"[yellow]failed:[/] {inputs}: {failures.reason.values[k]}")
     console.print(", ".join(f"{count} {status}" for status, count in counts.items() if count or status == "done"))
     console.print(f"results in {out}{os.sep} (sweep.nc, journal.jsonl{''.join(', ' + name for name in files)})")
-    if problems:
-        raise problems[0]
+    for problem in problems:
+        console.print(f"[yellow]warning:[/] {problem}")
+    return counts["failed"]

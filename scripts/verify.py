@@ -15,6 +15,7 @@ from coilset.verification.study import Study
 
 WIDTH = 140  # columns where the output goes to a file
 
+
 def verify(names, out, fast):
     """Run the named cases, all if none is named; returns 1 if a value is off, else 0.
 

@@ -4,10 +4,17 @@ import numpy as np
 from mpi4py import MPI
 
 from coilset.meshes.frame import frame_mesh
-from coilset.model.problem.system import System
+from coilset.model.equilibrium.contact_limit import ContactLimit
+from coilset.model.equilibrium.continuation import Continuation
+from coilset.model.equilibrium.control import NewtonControl
+from coilset.model.equilibrium.layout import SEATS, LineLayout
+from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.methods import rod_method
+from coilset.model.equilibrium.newton import Newton, Start
+from coilset.model.equilibrium.system import System
 from coilset.model.rod.rod import Rod
-from coilset.model.solvers.solver import Solver
 
+FREE_PENETRATION = 0.02  # wire diameters that a correction may press, as for springs
 KEEP = {"snes_lag_jacobian": 1_000_000}  # the matrix is kept over the whole step, as in the thesis (4.4.5)
 
 
@@ -21,22 +28,26 @@ class Frame:
         law: material law.
         rule: DiskRule.
         held: (node, components) pairs that stay where they are; components are 0-2 for x, y, z, 3-5 for turns.
-        method, options: as for Solver; its tolerance is the thesis's 1e-7.
+        method, options: of coilset.model.equilibrium.methods, and more of PETSc's; the tolerance is the thesis's 1e-7.
         contacts: kinds of contact.
     """
 
     def __init__(self, nodes, pairs, radius, law, rule, held, method="newton", options=None, contacts=()):
         line = frame_mesh(nodes, pairs, MPI.COMM_SELF)
         self.rod = Rod(line, np.broadcast_to(np.asarray(radius, float), len(pairs)), law, rule)
-        self.system = System(self.rod, contacts)
-        self.solver = Solver(self.system, method, 1e-7, options)
-        self.held = {int(dof): 0.0 for dof in self.system.seat_dofs}
+        self.layout = LineLayout(self.rod)
+        self.system = System(self.rod, self.layout, contacts, np.zeros(SEATS))
+        # an arc by which every node moves by about the wire's radius
+        arc = self.rod.largest_radius * np.sqrt(len(self.layout.station_dofs))
+        limit = ContactLimit(self.system, NewtonControl(), FREE_PENETRATION * 2.0 * self.rod.largest_radius)
+        self.continuation = Continuation(Newton(self.system, rod_method(method, 1, options, arc), 1e-7, limit=limit))
+        self.held = {int(dof): 0.0 for dof in self.layout.seat_dofs}
         self.held |= {self.dof(node, component): 0.0 for node, components in held for component in components}
-        self._last = None
+        self._stepped = False
 
     def dof(self, node, component):
         """Number of a node's dof in the system."""
-        return int(self.system.station_dofs[node, component])
+        return int(self.layout.station_dofs[node, component])
 
     def step(self, moves=None, forces=None, share=None):
         """One load step.
@@ -49,26 +60,19 @@ class Frame:
         Returns:
             Outcome; where it has not converged, the frame is back at the last equilibrium.
         """
-        self.system.fixed, self.system.forces = self.held | (moves or {}), forces or {}
-        guess = None
-        if share is not None and self._last is not None:
-            guess = self._last.copy()
-            guess.scale(share)
-        outcome = self.solver.solve(guess)
-        if outcome.converged:
-            self._last = self.solver.X.copy()
-            self.system.commit()
-        else:
-            self.system.restore()
+        load = Load.of(self.layout, self.held | (moves or {}), forces or {})
+        start = Start() if share is None or not self._stepped else self.continuation.scaled_last(share)
+        outcome = self.continuation.attempt(load, [start])
+        self._stepped = self._stepped or outcome.converged
         return outcome
 
     def moved(self, node):
         """Displacement of a node since the start, mm."""
-        return self.system.gather(self.rod.x)[node] - self.rod.line.stations[node]
+        return self.layout.gather(self.rod.x)[node] - self.rod.line.stations[node]
 
     def force(self, dof):
         """Internal force at a dof, N or N mm; a support's reaction has the same sign."""
-        return self.system.value(self.system.internal, dof)
+        return float(self.layout.values(self.system.internal, dof))
 
     @property
     def resultants(self):

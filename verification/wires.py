@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coilset.model.contact.centreline import CentreLine
+from coilset.model.contact.curve import CentreLine
 
 
 def wire_points(stations, radius, turns=None):

@@ -1,26 +1,48 @@
-"""What every kind of contact gives to the problem: forces and stiffness on named degrees of freedom.
+"""What every kind of contact gives to the equilibrium: forces and stiffness on named degrees of freedom.
 
 Degrees of freedom are numbered independently of the partition: 3 i + k is the displacement k of station i; after
-those of the n stations come x, y, z and turns θx, θy, θz of the bottom and of the top seat, 3 n + j, and after these
-the stations' turns since the last equilibrium, 3 n + 12 + 3 i + k. Positions of all stations are known on every rank
-(they are small), every rank evaluates all contacts, and adds each row where it lives.
+those of the n stations come x, y, z and rotations θx, θy, θz of the bottom and of the top seat, 3 n + j, and after
+these the stations' rotations since the last equilibrium, 3 n + 12 + 3 i + k. Positions of all stations are known on
+every rank (they are small), every rank evaluates all contacts, and adds each row where it lives.
+
+Every kind is a `Contact`. What only some of them do has a protocol of its own, asked for by isinstance: `LimitsStep`,
+`HasMemory`, `Augmented`.
 """
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from coilset.model.contact.centreline import WirePoints
+from coilset.model.contact.curve import WirePoints
 from coilset.model.contact.memory import Memory
 
 ENDS = ("bottom", "top")
 SEAT_DOFS = 6  # x, y, z, θx, θy, θz; see plate.py
 LEVEL = 2  # the one along the spring's axis
-TOUCH = 1e-6  # N
+# A point counts as closed from this share of c w on, the force of its stiffness c over the way w of its onset: by the
+# law of the onset, c p²/(4 w), it has then sunk in by 4e-4 w, two millionths of a millimetre for a wire of 5 mm. What
+# presses by less does so by the tolerance of the iteration.
+CLOSED_OF_ONSET_FORCE = 4e-8
 
 
-@dataclass
+@dataclass(frozen=True)
+class TrialPositions:
+    """Where stations and seats are at a trial state.
+
+    Attributes:
+        x: station positions, shape (n, 3), mm.
+        seats: x, y, z and rotation vector of the bottom seat, then of the top seat, shape (12,), mm and rad.
+        rotations: rotation vectors of the stations since the last equilibrium, shape (n, 3), rad, or None if no contact
+            asked for them.
+    """
+
+    x: np.ndarray
+    seats: np.ndarray
+    rotations: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
 class Contribution:
     """Forces and stiffness of m contact elements on k degrees of freedom each.
 
@@ -31,6 +53,7 @@ class Contribution:
         pressure: compressive force of each element, positive when closed, shape (m,), N.
         penetration: how far the bodies overlap, shape (m,), mm; negative where they do not.
         point: number of each element's point or pair in its kind of contact, shape (m,).
+        onset_force: c w of each element, shape (m,), N; 0 where there is none.
     """
 
     dofs: np.ndarray
@@ -39,22 +62,28 @@ class Contribution:
     pressure: np.ndarray
     penetration: np.ndarray
     point: np.ndarray
+    onset_force: np.ndarray
 
     @property
-    def closed(self):
-        """Number of closed elements; what presses by less than TOUCH does so by rounding."""
-        return int(np.count_nonzero(self.pressure > TOUCH))
+    def bears(self) -> np.ndarray:
+        """Which elements are closed, shape (m,)."""
+        return self.pressure > CLOSED_OF_ONSET_FORCE * self.onset_force
+
+    @property
+    def closed(self) -> int:
+        """Number of closed elements."""
+        return int(np.count_nonzero(self.bears))
 
 
-def one_sided(g, c, onset):
+def one_sided(g: np.ndarray, c: np.ndarray, onset: float) -> tuple[np.ndarray, np.ndarray]:
     """Compressive force and stiffness of one-sided springs whose contact sets in over a short way.
 
     Touching surfaces come to bear gradually: with the penetration p = −g the force is c p²/(4w) up to p = 2w and
     c (p − w) beyond. Without such an onset the tangent jumps, and a line search can be caught on the kink.
 
     Args:
-        g: gaps, negative where the bodies overlap, mm.
-        c: stiffness, N/mm.
+        g: gaps, negative where the bodies overlap, shape (m,), mm; may be complex.
+        c: stiffness, shape (m,), N/mm.
         onset: w, mm.
 
     Returns:
@@ -65,37 +94,61 @@ def one_sided(g, c, onset):
 
 
 class Contact(Protocol):
-    """A kind of contact; no correction presses a guarded one in deep, and only such a one needs `depth`.
+    """A kind of contact."""
 
-    Attributes:
-        name: for labels.
-        guarded: see above.
-        end: `bottom` or `top` if its forces are those of a seat, else None.
-        points: the WirePoints that `Contribution.point` counts, or None; `lengths`, shape (m,), mm, is the wire over
-            which each of them bears.
-        rolls: does it ask for the turns of the stations since the last equilibrium?
-        memory: what it carries from one equilibrium to the next, or None. A kind that has one can be augmented: the
-            array `lift` is a way by which each point is pressed although it has not sunk in by it.
-    """
-
-    name: str
-    guarded: bool
-    rolls: bool
-    end: str | None
-    points: WirePoints | None
-    memory: Memory | None
-
-    def depth(self, x: np.ndarray, seats: np.ndarray) -> float:
-        """Greatest penetration, mm; 0 where nothing touches."""
+    @property
+    def name(self) -> str:
+        """For labels."""
         ...
 
-    def evaluate(self, x: np.ndarray, seats: np.ndarray) -> Contribution:
-        """Forces and stiffness at station positions `x`, shape (n, 3), mm, and seats, shape (12,), mm and rad.
-
-        A kind that rolls is given the turns as a third argument, shape (n, 3), rad.
-        """
+    @property
+    def end(self) -> str | None:
+        """`bottom` or `top` if its forces are those of a seat, else None."""
         ...
 
-    def augment(self, x: np.ndarray, seats: np.ndarray) -> None:
-        """Lift each point by as much more as it has sunk in, so that the next equilibrium needs less penetration."""
+    @property
+    def points(self) -> WirePoints | None:
+        """What `Contribution.point` counts, or None; with points go `lengths`, (m,), mm of wire on which each bears."""
+        ...
+
+    @property
+    def needs_rotations(self) -> bool:
+        """Does it ask for `TrialPositions.rotations`?"""
+        ...
+
+    def evaluate(self, trial: TrialPositions) -> Contribution:
+        """Forces and stiffness at a trial state. A kind with a memory writes its trial arrays."""
+        ...
+
+
+@runtime_checkable
+class LimitsStep(Contact, Protocol):
+    """A contact into which no correction of the iteration is to press bodies deeply."""
+
+    def max_penetration(self, trial: TrialPositions) -> float:
+        """Greatest penetration, mm; 0 where nothing touches. Cheaper than `evaluate`, and writes nothing."""
+        ...
+
+
+@runtime_checkable
+class HasMemory(Contact, Protocol):
+    """A contact that carries arrays from one equilibrium to the next."""
+
+    @property
+    def memory(self) -> Memory:
+        """The arrays; whoever owns the state commits and restores them."""
+        ...
+
+
+@runtime_checkable
+class Augmented(HasMemory, Protocol):
+    """A contact whose penetration can be worked off by augmented Lagrange."""
+
+    @property
+    def multiplier_offset(self) -> np.ndarray:
+        """The way by which each point is pressed although it has not sunk in by it, mm; part of its memory."""
+        ...
+
+    def augment(self, trial: TrialPositions) -> None:
+        """Raise each point's offset by what it has sunk in, so that the next equilibrium needs less penetration."""
         ...

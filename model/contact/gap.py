@@ -1,8 +1,9 @@
 """The thesis's gap element between two given nodes, or a node and a plane (7.1.1, after Hughes)."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from coilset.model.contact.base import Contribution, one_sided
+from coilset.model.contact.base import Contribution, TrialPositions, one_sided
 
 
 class Gaps:
@@ -15,19 +16,19 @@ class Gaps:
         onset: way over which contact sets in, mm.
     """
 
-    name, end, points, memory = "gap", None, None, None
-    rolls = guarded = False  # gap elements are few: they close and open by the iteration alone, as in the thesis
+    # gap elements are few: they limit no step, but close and open by the iteration alone, as in the thesis
+    name, end, points, needs_rotations = "gap", None, None, False
 
-    def __init__(self, pairs, free_length, stiffness, onset):
+    def __init__(self, pairs: ArrayLike, free_length: ArrayLike, stiffness: ArrayLike, onset: float):
         self.pairs = np.asarray(pairs, dtype=np.int64).reshape(-1, 2)
         self.free_length = np.broadcast_to(free_length, len(self.pairs))
         self.stiffness = np.broadcast_to(stiffness, len(self.pairs))
         self.onset = onset
         self.dofs = (3 * self.pairs[:, :, None] + np.arange(3)).reshape(-1, 6)
 
-    def evaluate(self, x, seats):
+    def evaluate(self, trial: TrialPositions) -> Contribution:
         """Gap g = |x2 − x1| − free length; the force acts along the connection, with its exact derivative."""
-        d = x[self.pairs[:, 1]] - x[self.pairs[:, 0]]
+        d = trial.x[self.pairs[:, 1]] - trial.x[self.pairs[:, 0]]
         length = np.linalg.norm(d, axis=1)
         n = d / length[:, None]
         pressure, c = one_sided(length - self.free_length, self.stiffness, self.onset)
@@ -36,7 +37,7 @@ class Gaps:
         k = c[:, None, None] * nn - (pressure / length)[:, None, None] * (np.eye(3) - nn)
         penetration = self.free_length - length
         return Contribution(self.dofs, np.hstack([-force, force]), np.block([[k, -k], [-k, k]]), pressure, penetration,
-                            np.arange(len(length)))  # fmt: skip
+                            np.arange(len(length)), self.stiffness * self.onset)  # fmt: skip
 
 
 class Stops:
@@ -50,10 +51,9 @@ class Stops:
         onset: way over which contact sets in, mm.
     """
 
-    name, end, points, memory = "stop", None, None, None
-    rolls = guarded = False
+    name, end, points, needs_rotations = "stop", None, None, False
 
-    def __init__(self, stations, normal, level, stiffness, onset):
+    def __init__(self, stations: ArrayLike, normal: ArrayLike, level: ArrayLike, stiffness: ArrayLike, onset: float):
         self.stations = np.asarray(stations, dtype=np.int64)
         m = len(self.stations)
         self.normal = np.broadcast_to(np.asarray(normal, dtype=float), (m, 3))
@@ -61,10 +61,10 @@ class Stops:
         self.onset = onset
         self.dofs = 3 * self.stations[:, None] + np.arange(3)
 
-    def evaluate(self, x, seats):
+    def evaluate(self, trial: TrialPositions) -> Contribution:
         """Gap g = n · x − level; the force acts along n."""
         n = self.normal
-        gap = np.einsum("mk,mk->m", n, x[self.stations]) - self.level
+        gap = np.einsum("mk,mk->m", n, trial.x[self.stations]) - self.level
         pressure, c = one_sided(gap, self.stiffness, self.onset)
         return Contribution(self.dofs, -pressure[:, None] * n, c[:, None, None] * n[:, :, None] * n[:, None, :],
-                            pressure, -gap, np.arange(len(gap)))  # fmt: skip
+                            pressure, -gap, np.arange(len(gap)), self.stiffness * self.onset)  # fmt: skip

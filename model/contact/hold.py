@@ -1,15 +1,17 @@
 """How a seat holds the end coil sideways, and how it is itself held: linear springs without gaps."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from coilset.model.contact.base import Contribution
+from coilset.model.contact.base import Contribution, TrialPositions
+from coilset.model.contact.curve import WirePoints
 from coilset.model.contact.plate import Plate, radial
 
 
 class Groove:
     """The end coil lies in a smooth round groove of its seat, its tip against the groove's end.
 
-    Each point keeps its stress-free distance from the seat's axis by the potential ½ c (ρ − ρ0)², the tip its place
+    Each point keeps its stress-free distance from the seat's axis by the potential ½ c (ρ − ρ0)², the tip its position
     along the groove by ½ c (s − s0)². Both sides of the groove bear, whether the wire lies on its ground or not. Along
     the groove and off the seat the wire is free, and it may roll and tilt: the seat takes no moment but that of forces.
 
@@ -22,35 +24,34 @@ class Groove:
         seats: of both seats at the stress-free state, shape (12,).
     """
 
-    rolls, guarded, points, memory = False, False, None, None
+    points, needs_rotations = None, False
 
-    def __init__(self, end, points, turns, stations, bedding, seats):
-        self.name, self.end, self.plate, self.wire = f"{end} groove", end, Plate(end, len(stations)), points
+    def __init__(
+        self, end: str, points: WirePoints, turns: float, stations: np.ndarray, bedding: float, seats: np.ndarray
+    ):
+        self.name, self.end = f"{end} groove", end
+        self.plate, self.wire = Plate(end, len(stations)), points
         tip = 0 if end == "bottom" else len(points) - 1
         inside = np.flatnonzero(np.abs(points.turns - points.turns[tip]) <= turns + 1e-9)
         self.at, self.stop = np.append(inside, tip), len(inside)  # the last element is the groove's end
         self.stiffness = bedding * np.append(points.length[inside], 2.0 * points.radius[tip])
         self.dofs = self.plate.dofs_with(points)[self.at]
-        q = self.plate.sees(points.at(stations)[self.at], seats)
+        q = self.plate.to_seat_frame(points.at(stations)[self.at], seats)
         along = np.array([-q[-1, 1], q[-1, 0], 0.0])
         self.along = along / np.linalg.norm(along)
         self.start = np.append(np.hypot(*q[:-1, :2].T), q[-1] @ self.along)
 
-    def depth(self, x, seats):
-        """It may be pressed at will."""
-        return 0.0
-
-    def evaluate(self, x, seats):
+    def evaluate(self, trial: TrialPositions) -> Contribution:
         """Forces across the groove, and along it at its end."""
-        p = self.wire.at(x)[self.at]
-        q = self.plate.sees(p, seats)
+        p = self.wire.at(trial.x)[self.at]
+        q = self.plate.to_seat_frame(p, trial.seats)
         s, g, H = radial(q)
         s[-1], g[-1], H[-1] = q[-1] @ self.along, self.along, 0.0
         force = self.stiffness * (s - self.start)
-        grad, hessian = self.plate.derivatives(p, seats, self.wire.weights[self.at], g, H)
+        grad, hessian = self.plate.derivatives(p, trial.seats, self.wire.weights[self.at], g, H)
         k = self.stiffness[:, None, None] * grad[:, :, None] * grad[:, None, :] + force[:, None, None] * hessian
         none = np.zeros(len(force))
-        return Contribution(self.dofs, force[:, None] * grad, k, none, none, self.at)
+        return Contribution(self.dofs, force[:, None] * grad, k, none, none, self.at, none)
 
 
 class Mount:
@@ -63,19 +64,15 @@ class Mount:
         seats: of both seats, shape (12,), where the springs are slack.
     """
 
-    rolls, guarded, points, end, memory = False, False, None, None, None
+    end, points, needs_rotations = None, None, False
 
-    def __init__(self, end, stations, stiffness, seats):
+    def __init__(self, end: str, stations: int, stiffness: ArrayLike, seats: np.ndarray):
         plate = Plate(end, stations)
         self.name, self.own, self.dofs = f"{end} mount", plate.own, plate.dofs[None]
         self.stiffness, self.slack = np.diag(stiffness)[None], np.array(seats[plate.own])
 
-    def depth(self, x, seats):
-        """Nothing is pressed in."""
-        return 0.0
-
-    def evaluate(self, x, seats):
+    def evaluate(self, trial: TrialPositions) -> Contribution:
         """Forces of the springs."""
-        force = self.stiffness[0] @ (seats[self.own] - self.slack)
+        force = self.stiffness[0] @ (trial.seats[self.own] - self.slack)
         none = np.zeros(1)
-        return Contribution(self.dofs, force[None], self.stiffness, none, none, np.zeros(1, dtype=int))
+        return Contribution(self.dofs, force[None], self.stiffness, none, none, np.zeros(1, dtype=int), none)

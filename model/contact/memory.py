@@ -1,31 +1,31 @@
-"""What a contact carries from one equilibrium to the next: arrays on trial, and as they were last committed."""
+"""What a contact carries from one equilibrium to the next: its part of the state."""
 
 import numpy as np
 
+from coilset.model.state import State, Where
+
 
 class Memory:
-    """Named arrays of a contact.
-
-    A step writes the trial arrays; `commit` keeps them, `restore` goes back, so that a failed step leaves no trace.
+    """Named arrays of a contact: it writes those on trial and reads, besides, those of the last equilibrium.
 
     Args:
-        arrays: name → values at the start.
+        arrays: name → values at the start, the same on every rank.
+
+    Attributes:
+        state: State that holds them.
     """
 
-    def __init__(self, **arrays):
-        self.committed = {name: np.array(values, dtype=float) for name, values in arrays.items()}
-        self.restore()
+    def __init__(self, **arrays: np.ndarray) -> None:
+        self.state = State()
+        for name, values in arrays.items():
+            self.state.add(name, np.array(values, dtype=float), Where.SHARED)
 
-    def commit(self):
-        """Make the trial arrays the committed ones."""
-        self.committed = {name: values.copy() for name, values in self.trial.items()}
+    def committed(self, name: str) -> np.ndarray:
+        """The array at the last equilibrium."""
+        return self.state[name].equilibrium
 
-    def restore(self):
-        """Go back to the committed arrays."""
-        self.trial = {name: values.copy() for name, values in self.committed.items()}
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.state[name].trial
 
-    def __getitem__(self, name):
-        return self.trial[name]
-
-    def __setitem__(self, name, values):
-        self.trial[name] = values
+    def __setitem__(self, name: str, values: np.ndarray) -> None:
+        self.state[name].trial[...] = values

@@ -1,13 +1,14 @@
 """What acts on the wire from outside: forces of the contacts, gathered to wrenches, and where their resultant goes."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
-from coilset.model.contact.base import SEAT_DOFS
+from coilset.model.contact.base import SEAT_DOFS, Contribution
 
 
-def station_forces(parts, stations):
+def station_forces(parts: Iterable[Contribution], stations: int) -> np.ndarray:
     """Forces of contacts on the wire.
 
     Args:
@@ -24,8 +25,8 @@ def station_forces(parts, stations):
     return force.reshape(-1, 3)
 
 
-def station_moments(parts, charts):
-    """Moments of friction on the wire's sections, which its work on their turns gives: M · δω = f · δv, δω = T δv.
+def station_moments(parts: Iterable[Contribution], charts: np.ndarray) -> np.ndarray:
+    """Moments of friction on the wire's sections, which its work on their rotations gives: M · δω = f · δv, δω = T δv.
 
     Args:
         parts: Contributions.
@@ -37,14 +38,14 @@ def station_moments(parts, charts):
     n = len(charts)
     moment, first = np.zeros(3 * n), 3 * n + 2 * SEAT_DOFS
     for part in parts:
-        on_turns = part.dofs >= first
-        np.subtract.at(moment, part.dofs[on_turns] - first, part.forces[on_turns])
+        on_rotations = part.dofs >= first
+        np.subtract.at(moment, part.dofs[on_rotations] - first, part.forces[on_rotations])
     if not moment.any():
         return moment.reshape(n, 3)
     return np.linalg.solve(np.swapaxes(charts, 1, 2), moment.reshape(n, 3, 1))[..., 0]
 
 
-def levers(x, forces):
+def levers(x: np.ndarray, forces: np.ndarray) -> np.ndarray:
     """Σ x × f, from the matrix Σ x fᵀ; shapes (n, 3) each."""
     C = x.T @ forces
     return np.array([C[1, 2] - C[2, 1], C[2, 0] - C[0, 2], C[0, 1] - C[1, 0]])
@@ -58,19 +59,19 @@ class Wrench:
     moment: np.ndarray
 
     @classmethod
-    def of(cls, forces, x, moments=0.0):
+    def of(cls, forces: np.ndarray, x: np.ndarray, moments: np.ndarray | float = 0.0) -> "Wrench":
         """The resultant of `forces` and `moments`, shape (n, 3), at the points `x`, shape (n, 3), mm."""
         turning = np.broadcast_to(moments, np.shape(forces))
         return cls(np.sum(forces, axis=0), levers(x, forces) + np.sum(turning, axis=0))
 
-    def __add__(self, other):
+    def __add__(self, other: "Wrench") -> "Wrench":
         return Wrench(self.force + other.force, self.moment + other.moment)
 
-    def about(self, point):
+    def about(self, point: np.ndarray) -> np.ndarray:
         """Moment about another point, shape (3,), N mm."""
         return self.moment - levers(point[None], self.force[None])
 
-    def crossing(self, point):
+    def crossing(self, point: np.ndarray) -> np.ndarray:
         """Where the resultant crosses the plane z = const through `point`, relative to it.
 
         There its moments about x and y vanish: ex = −My/Fz, ey = Mx/Fz.

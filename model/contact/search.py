@@ -1,13 +1,15 @@
-"""Where a wire comes near itself: for points of the wire the closest places of the other coils, in linear time."""
+"""Where a wire comes near itself: for its points the closest points of the other coils, in linear time."""
 
 import math
 
 import numpy as np
 from numba import njit
 
-APART = 0.5  # turns between two places of the wire that may touch, at least
-CELLS = 16  # cells of the grid per station, at most
-POST = 0.5  # distance of the stations that are sorted, in wire radii, at least
+from coilset.model.contact.curve import point_on_curve
+
+LEAST_TURNS_BETWEEN = 0.5  # turns between two points of the wire that may touch
+MOST_CELLS_PER_STATION = 16  # cells of the grid
+LEAST_POST_DISTANCE = 0.5  # distance of the stations that are sorted, in wire radii
 
 
 @njit(cache=True)
@@ -23,7 +25,7 @@ def grid(x, size):
     while True:
         for k in range(3):
             count[k] = int((high[k] - low[k]) / size) + 1
-        if count[0] * count[1] * count[2] <= CELLS * n:
+        if count[0] * count[1] * count[2] <= MOST_CELLS_PER_STATION * n:
             break
         size *= 1.3
     head, after = np.full(count[0] * count[1] * count[2], -1), np.empty(n, np.int64)
@@ -41,30 +43,13 @@ def distance2(p, x, j):
     return (p[0] - x[j, 0]) ** 2 + (p[1] - x[j, 1]) ** 2 + (p[2] - x[j, 2]) ** 2
 
 
-@njit(cache=True)
-def place(y, first, cubic, e, xi, c, order):
-    """Write into `c` the curve's place and radius (order 0) or their derivatives by ξ (1, 2) on element `e`."""
-    for k in range(4):
-        c[k] = 0.0
-    for m in range(min(4, len(y))):
-        a = cubic[e, m]
-        if order == 0:
-            w = a[0] + xi * (a[1] + xi * (a[2] + xi * a[3]))
-        elif order == 1:
-            w = a[1] + xi * (2.0 * a[2] + xi * 3.0 * a[3])
-        else:
-            w = 2.0 * a[2] + 6.0 * a[3] * xi
-        for k in range(4):
-            c[k] += w * y[first[e] + m, k]
-
-
 @njit(cache=True, error_model="numpy")
 def slope_and_curvature(p, y, first, cubic, e, xi, work):
     """First and second derivative by ξ of the gap |p − c(ξ)| − r(ξ) on element `e`."""
     c, dc, ddc = work[0], work[1], work[2]
-    place(y, first, cubic, e, xi, c, 0)
-    place(y, first, cubic, e, xi, dc, 1)
-    place(y, first, cubic, e, xi, ddc, 2)
+    point_on_curve(y, first, cubic, e, xi, c, 0)
+    point_on_curve(y, first, cubic, e, xi, dc, 1)
+    point_on_curve(y, first, cubic, e, xi, ddc, 2)
     d = math.sqrt((p[0] - c[0]) ** 2 + (p[1] - c[1]) ** 2 + (p[2] - c[2]) ** 2)
     along = speed2 = bend = 0.0
     for k in range(3):
@@ -84,7 +69,7 @@ def station_slope(p, y, first, cubic, j, work):
 
 @njit(cache=True, error_model="numpy")
 def closest(p, y, first, cubic, j, work):
-    """Closest place to `p` along the wire, sought from station `j`: element, ξ, and whether it is inside the wire."""
+    """Closest point to `p` along the wire, sought from station `j`: element, ξ, and whether it is inside the wire."""
     last = len(first)
     direction = -1 if station_slope(p, y, first, cubic, j, work) > 0.0 else 1
     near, stride = j, 1
@@ -119,8 +104,20 @@ def closest(p, y, first, cubic, j, work):
 
 
 @njit(cache=True, error_model="numpy")
-def near_places(p, radius, turns, y, station_turns, first, cubic, overlap, margin, pair, where):
-    """All places where a point of the wire and another coil are nearer than `margin`.
+def near_locations(
+    p: np.ndarray,
+    radius: np.ndarray,
+    turns: np.ndarray,
+    y: np.ndarray,
+    station_turns: np.ndarray,
+    first: np.ndarray,
+    cubic: np.ndarray,
+    overlap: np.ndarray,
+    margin: float,
+    pair: np.ndarray,
+    where: np.ndarray,
+) -> int:
+    """All locations where a point of the wire and another coil are nearer than `margin`.
 
     Args:
         p: points, shape (m, 3), with radius and turn, shape (m,).
@@ -128,11 +125,11 @@ def near_places(p, radius, turns, y, station_turns, first, cubic, overlap, margi
         first, cubic: of the CentreLine.
         overlap: what counts as touching though the bodies overlap, for the coil before and after, shape (m, 2), mm.
         margin: greatest gap, mm.
-        pair: written, point, element and whether the place is inside the wire, shape (capacity, 3).
+        pair: written, point, element and whether the location is inside the wire, shape (capacity, 3).
         where: written, ξ and gap, shape (capacity, 2).
 
     Returns:
-        Number of places; more than `capacity` if the arrays were too short.
+        Number of locations; more than `capacity` if the arrays were too short.
     """
     n, widest, longest = len(y), 0.0, 0.0
     for i in range(n):
@@ -140,12 +137,12 @@ def near_places(p, radius, turns, y, station_turns, first, cubic, overlap, margi
         if i:
             longest = max(longest, distance2(y[i], y, i - 1))
     # where elements are much shorter than the wire is thick, only every so many stations are sorted: the posts
-    stride = max(1, int(POST * widest / math.sqrt(longest)))
+    stride = max(1, int(LEAST_POST_DISTANCE * widest / math.sqrt(longest)))
     posts = np.empty((n - 2) // stride + 2, np.int64)
     for k in range(len(posts)):
         posts[k] = min(k * stride, n - 1)
     x = y[posts]
-    # the post nearest to a place is at most half a stride from it
+    # the post nearest to a location is at most half a stride from it
     reach = 2.0 * widest + margin + 0.6 * stride * math.sqrt(longest)
     low, count, size, head, after = grid(x[:, :3], reach)
     work, cube, found = np.empty((3, 4)), np.empty(3, np.int64), 0
@@ -159,7 +156,7 @@ def near_places(p, radius, turns, y, station_turns, first, cubic, overlap, margi
                     while j >= 0:
                         here, now = distance2(p[i], x, j), j
                         j = after[j]
-                        if here > reach**2 or abs(station_turns[posts[now]] - turns[i]) < APART:
+                        if here > reach**2 or abs(station_turns[posts[now]] - turns[i]) < LEAST_TURNS_BETWEEN:
                             continue
                         if now > 0 and distance2(p[i], x, now - 1) < here:
                             continue
@@ -167,9 +164,9 @@ def near_places(p, radius, turns, y, station_turns, first, cubic, overlap, margi
                             continue
                         e, xi, inside = closest(p[i], y, first, cubic, posts[now], work)
                         turn = station_turns[e] + xi * (station_turns[e + 1] - station_turns[e])
-                        if abs(turn - turns[i]) < APART:
+                        if abs(turn - turns[i]) < LEAST_TURNS_BETWEEN:
                             continue
-                        place(y, first, cubic, e, xi, work[0], 0)
+                        point_on_curve(y, first, cubic, e, xi, work[0], 0)
                         gap = 0.0
                         for k in range(3):
                             gap += (p[i, k] - work[0, k]) ** 2

@@ -5,19 +5,21 @@ In the coordinates q of its plate (plate.py) a flat seat is the plane qz = 0; a 
 
 import numpy as np
 
-from coilset.model.contact.base import LEVEL, Contribution, one_sided
-from coilset.model.contact.centreline import STENCIL
+from coilset.model.contact.base import LEVEL, Contribution, TrialPositions, one_sided
+from coilset.model.contact.curve import STENCIL, WirePoints
 from coilset.model.contact.memory import Memory
 from coilset.model.contact.plate import Plate, radial
 
-CORD = 1e-5  # stiffness of the tip's cord: this share of the bedding of a wire diameter
+# Stiffness of the spring that holds a tip which lifts off, as a share of the bedding of a wire diameter. 1e-3 changed
+# the set of a spring whose tips lift off at the end of the release by 0.24 mm of 37.7 mm, 1e-5 by less than 0.01 mm.
+TIP_SPRING_OF_BEDDING = 1e-5
 
 
 class Seat:
     """The bottom or the top seat: where the underside sinks in, it is pushed out in proportion to the penetration.
 
-    The wire's tip bears from its first touch, and hangs on a cord: where it lifts off farther than it did in the
-    stress-free state it is pulled back softly, so that "zero force" is the one position in which both ends just touch,
+    The wire's tip bears from its first touch, and a soft spring holds it: where it lifts off farther than it did in the
+    stress-free state it is pulled back, so that "zero force" is the one position in which both ends just touch,
     and the spring cannot float between the seats.
 
     Args:
@@ -33,9 +35,21 @@ class Seat:
         moves: has the seat degrees of freedom besides its level?
     """
 
-    guarded, rolls = True, False
+    needs_rotations = False
 
-    def __init__(self, end, points, reach, stations, seats, bedding, onset, slope=0.0, stepped=0.0, moves=False):
+    def __init__(
+        self,
+        end: str,
+        points: WirePoints,
+        reach: np.ndarray,
+        stations: np.ndarray,
+        seats: np.ndarray,
+        bedding: float,
+        onset: float,
+        slope: float = 0.0,
+        stepped: float = 0.0,
+        moves: bool = False,
+    ):
         self.name, self.end, self.points, self.onset, self.slope = f"{end} seat", end, points, onset, slope
         self.side = 1.0 if end == "bottom" else -1.0  # the wire lies above the bottom seat
         self.plate = Plate(end, len(stations))
@@ -46,7 +60,7 @@ class Seat:
         # a wire that stands on its tip bears by its end face, whatever the mesh
         self.stiffness[self.tip] = bedding * 2.0 * points.radius[self.tip]
         self.lengths = self.stiffness / bedding
-        self.cord = CORD * self.stiffness[self.tip]
+        self.tip_spring = TIP_SPRING_OF_BEDDING * self.stiffness[self.tip]
         self.reach = np.array(reach, dtype=float)
         gap = self.gaps(points.at(stations), seats)
         if stepped:
@@ -56,20 +70,25 @@ class Seat:
             self.reach += np.where(on_step, gap, gap[last])
         else:
             self.reach += gap.min()  # zero on a flat seat; a cone is moved until it touches
-        self.memory = Memory(lift=np.zeros(len(points)))
+        self.memory = Memory(multiplier_offset=np.zeros(len(points)))
         self.slack = 0.0 if stepped else gap[self.tip] - gap.min()
         self.dofs = self.plate.dofs_with(points)
         if self.linear:
             self.dofs = self.dofs[:, np.append(np.arange(2, 3 * STENCIL, 3), 3 * STENCIL + LEVEL)]
 
-    def gaps(self, p, seats):
+    @property
+    def multiplier_offset(self) -> np.ndarray:
+        """Way by which each point is pressed although it has not sunk in by it, shape (m,), mm."""
+        return self.memory["multiplier_offset"]
+
+    def gaps(self, p: np.ndarray, seats: np.ndarray) -> np.ndarray:
         """Gap of the underside at the points `p`, shape (m, 3), negative where it sinks in, shape (m,), mm."""
         if self.linear:
             return self.side * (p[:, 2] - seats[self.plate.own][LEVEL]) - self.reach
-        return self.surface(self.plate.sees(p, seats))[1] - self.reach
+        return self.surface(self.plate.to_seat_frame(p, seats))[1] - self.reach
 
-    def surface(self, q):
-        """Normal of the surface under the places `q`, towards the wire, and their distance from it; also if complex."""
+    def surface(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Normal of the surface under the points `q`, towards the wire, and their distance from it; also if complex."""
         n, rise, above = np.zeros_like(q), np.sqrt(1.0 + self.slope**2), self.side * q[:, 2]
         n[:, 2] = self.side / rise
         if self.slope:
@@ -78,12 +97,12 @@ class Seat:
             above = (above - self.slope * ρ) / rise
         return n, above
 
-    def pressures(self, i, pressed):
+    def pressures(self, i: np.ndarray, pressed: np.ndarray) -> np.ndarray:
         """Forces on the points `i` that are pressed in by so much, mm, N; also if complex."""
         tip = self.stiffness[self.tip] * np.where(pressed.real > 0.0, pressed, 0.0)
         return np.where(i == self.tip, tip, one_sided(-pressed, self.stiffness[i], self.onset)[0])
 
-    def _gap_derivatives(self, q):
+    def _gap_derivatives(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """∂g/∂q and ∂²g/∂q², shapes (m, 3) and (m, 3, 3)."""
         g, H = np.zeros((len(q), 3)), np.zeros((len(q), 3, 3))
         g[:, 2] = self.side
@@ -92,33 +111,33 @@ class Seat:
             g, H = (g - self.slope * e) / np.hypot(1.0, self.slope), -self.slope * ee / np.hypot(1.0, self.slope)
         return g, H
 
-    def depth(self, x, seats):
+    def max_penetration(self, trial: TrialPositions) -> float:
         """Greatest penetration, mm."""
-        return -self.gaps(self.points.at(x), seats).min(initial=0.0)
+        return -self.gaps(self.points.at(trial.x), trial.seats).min(initial=0.0)
 
-    def evaluate(self, x, seats):
-        """Forces across the seat's surface, for the points that touch, and for the tip on its cord."""
-        p = self.points.at(x)
-        gap = self.gaps(p, seats)
-        lift = self.memory["lift"]
-        bearing = np.flatnonzero((gap < lift) | (np.arange(len(gap)) == self.tip))
-        penetration, gap, p = -gap[bearing], (gap - lift)[bearing], p[bearing]
+    def evaluate(self, trial: TrialPositions) -> Contribution:
+        """Forces across the seat's surface, for the points that touch, and for the tip on its spring."""
+        p = self.points.at(trial.x)
+        gap = self.gaps(p, trial.seats)
+        bearing = np.flatnonzero((gap < self.multiplier_offset) | (np.arange(len(gap)) == self.tip))
+        penetration, gap, p = -gap[bearing], (gap - self.multiplier_offset)[bearing], p[bearing]
+        onset_force = self.stiffness[bearing] * self.onset
         pressure, c = one_sided(gap, self.stiffness[bearing], self.onset)
         force, tip = pressure.copy(), np.flatnonzero(bearing == self.tip)
         taut = np.where(gap[tip] > 0.0, np.maximum(gap[tip] - self.slack, 0.0), gap[tip])
-        c[tip] = np.where(gap[tip] > 0.0, self.cord * (gap[tip] >= self.slack), self.stiffness[self.tip])
+        c[tip] = np.where(gap[tip] > 0.0, self.tip_spring * (gap[tip] >= self.slack), self.stiffness[self.tip])
         force[tip] = -c[tip] * taut
         pressure[tip] = np.maximum(force[tip], 0.0)
         if self.linear:
             grad = self.side * np.column_stack([self.points.weights[bearing], np.full(len(p), -1.0)])
             k = c[:, None, None] * grad[:, :, None] * grad[:, None, :]
         else:
-            derivatives = self._gap_derivatives(self.plate.sees(p, seats))
-            grad, hessian = self.plate.derivatives(p, seats, self.points.weights[bearing], *derivatives)
+            derivatives = self._gap_derivatives(self.plate.to_seat_frame(p, trial.seats))
+            grad, hessian = self.plate.derivatives(p, trial.seats, self.points.weights[bearing], *derivatives)
             k = c[:, None, None] * grad[:, :, None] * grad[:, None, :] - force[:, None, None] * hessian
-        return Contribution(self.dofs[bearing], -force[:, None] * grad, k, pressure, penetration, bearing)
+        return Contribution(self.dofs[bearing], -force[:, None] * grad, k, pressure, penetration, bearing, onset_force)
 
-    def augment(self, x, seats):
+    def augment(self, trial: TrialPositions) -> None:
         """Press each point by as much more as it has sunk in."""
-        lift = self.memory["lift"]
-        self.memory["lift"] = np.maximum(lift - self.gaps(self.points.at(x), seats), 0.0)
+        gap = self.gaps(self.points.at(trial.x), trial.seats)
+        self.memory["multiplier_offset"] = np.maximum(self.multiplier_offset - gap, 0.0)

@@ -15,7 +15,7 @@ INLINE = KERNEL | {"forceinline": True}
 
 # Head of the parameter array.
 SPIN = 0  # 1: with the spin terms (5.2.33), 0: without
-TEMPERATURE = 1  # K, of points whose history row holds none, at the end of the increment
+TEMPERATURE = 1  # K, of points whose state holds none, at the end of the increment
 HEATING = 2  # K mm²/N: rise of temperature per plastic work b*; 0: isothermal
 TOLERANCE = 3  # relative error of stress that the Heun integrator allows in a sub-step; inf: one step
 CHANGE = 4  # K: prescribed change of temperature over the increment; 0: isothermal or adiabatic

@@ -1,111 +1,17 @@
-"""The material file: its schema, its checks, and the law that comes out of it.
-
-A material file gives, for one or more temperatures, the elastic constants and the constants of k², ζ and κ (6.2.2).
-"""
+"""The law that comes out of a material file: its checks, and the array of its constants for the kernels."""
 
 import math
-from difflib import get_close_matches
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, Literal, get_args
+from typing import NoReturn
 
 import numpy as np
-import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+import numpy.typing as npt
 
+from coilset.model.case.entry import Strict
 from coilset.model.errors import InputError
 from coilset.model.material import functions as fn
-
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-Finite = Annotated[float, Field(allow_inf_nan=False)]
-
-Text = Annotated[str, Field(min_length=1)]
-
-
-class _Section(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Elasticity(_Section):
-    """Elastic constants (3.1.2)."""
-
-    G: Positive  # N/mm²
-    nu: Annotated[float, Field(gt=-1, lt=0.5)]
-    alpha: NotNegative = 0.0  # 1/K
-
-
-class Saturation(_Section):
-    """Second branch of k², b* ≥ b1."""
-
-    b1: NotNegative  # N/mm²
-    k1_squared: Positive  # N²/mm⁴
-    k_inf_squared: Positive  # N²/mm⁴
-    a4: NotNegative  # mm²/N
-
-
-class IsotropicHardening(_Section):
-    """k²(b*): k0² + a1 (1 + a2 b* − exp(−a3 b*)) and, if there is one, the second branch."""
-
-    k0_squared: Positive  # N²/mm⁴
-    a1: NotNegative = 0.0  # N²/mm⁴
-    a2: Finite = 0.0  # mm²/N
-    a3: NotNegative = 0.0  # mm²/N
-    saturation: Saturation | None = None
-
-    def first_branch(self, b):
-        """k² of the first branch at plastic work `b`."""
-        return self.k0_squared + self.a1 * (1 + self.a2 * b - math.exp(-self.a3 * b))
-
-
-class KinematicHardening(_Section):
-    """ζ(b*) = a5 (a6 + a7 exp(−a7 b*)) sqrt(6 k²)."""
-
-    a5: NotNegative  # N/mm²
-    a6: NotNegative  # mm²/N
-    a7: NotNegative  # mm²/N
-
-
-class NonNormality(_Section):
-    """2Gκ(b*) = a b*³."""
-
-    a: NotNegative  # mm⁶/N³
-
-
-class Constants(_Section):
-    """All constants at one temperature; a function that the material has not is said to be `none`."""
-
-    temperature: Positive  # K
-    elasticity: Elasticity
-    isotropic: IsotropicHardening | Literal["none"]
-    kinematic: KinematicHardening | Literal["none"]
-    non_normality: NonNormality | Literal["none"]
-
-
-class Heating(_Section):
-    """Adiabatic heating: of the plastic work b* the fraction `dissipated` warms the material."""
-
-    dissipated: Annotated[float, Field(gt=0, le=1)]
-    density: Positive  # t/mm³
-    specific_heat: Positive  # N mm/(t K) = mm²/(s² K)
-
-
-class Validity(_Section):
-    """Where the constants may be trusted."""
-
-    plastic_work: Positive  # largest b*, N/mm²; the checks of the functions go up to it
-    remark: Text
-
-
-class MaterialFile(_Section):
-    """A whole material file."""
-
-    name: Text
-    description: Text
-    source: Text
-    units: Literal["N, mm, K"]
-    validity: Validity
-    temperatures: Annotated[tuple[Constants, ...], Field(min_length=1)]
-    heating: Heating | None = None
+from coilset.model.material.file import UNITS, Constants, MaterialFile, Validity
 
 
 class Law:
@@ -121,7 +27,9 @@ class Law:
         InputError: if the functions break a condition of the theory.
     """
 
-    def __init__(self, data, spin=True, heun_tolerance=1e-4, file=""):
+    def __init__(
+        self, data: MaterialFile, spin: bool = True, heun_tolerance: float = 1e-4, file: str | Path = ""
+    ) -> None:
         self.data, self.spin, self.heun_tolerance, self.file = data, spin, heun_tolerance, str(file)
         self._temperatures = np.array([at.temperature for at in data.temperatures])
         self._rows = np.array([self._row(i, at) for i, at in enumerate(data.temperatures)])
@@ -133,38 +41,85 @@ class Law:
             self._fail("temperatures", "isotropic is 'none' at some temperatures only; give it at all or at none")
         self._check_functions()
 
-    name = property(lambda self: self.data.name)
-    description = property(lambda self: self.data.description)
-    source = property(lambda self: self.data.source)
-    validity = property(lambda self: self.data.validity)
-    reference_temperature = property(lambda self: float(self._temperatures[0]), doc="The first temperature given, K.")
-    temperature_range = property(lambda self: (float(self._temperatures[0]), float(self._temperatures[-1])), doc="K.")
-    G = property(lambda self: self.data.temperatures[0].elasticity.G, doc="At the reference temperature, N/mm².")
-    nu = property(lambda self: self.data.temperatures[0].elasticity.nu, doc="At the reference temperature.")
-    E = property(lambda self: 2 * self.G * (1 + self.nu), doc="At the reference temperature, N/mm².")
-    temperatures = property(lambda self: tuple(float(t) for t in self._temperatures), doc="Of the table, K.")
-    is_adiabatic = property(lambda self: self.data.heating is not None, doc="Whether plastic work heats the points.")
-    n_state = property(lambda self: 8 if self.data.heating else 7, doc="Length of a rod point's history row.")
+    @property
+    def name(self) -> str:
+        """As the file names it."""
+        return self.data.name
 
     @property
-    def yield_stress(self):
+    def description(self) -> str:
+        """What it is, in a sentence."""
+        return self.data.description
+
+    @property
+    def source(self) -> str:
+        """Where its constants come from."""
+        return self.data.source
+
+    @property
+    def validity(self) -> Validity:
+        """Where its constants may be trusted."""
+        return self.data.validity
+
+    @property
+    def temperatures(self) -> tuple[float, ...]:
+        """Of the table, K."""
+        return tuple(float(t) for t in self._temperatures)
+
+    @property
+    def reference_temperature(self) -> float:
+        """The first temperature given, K."""
+        return float(self._temperatures[0])
+
+    @property
+    def temperature_range(self) -> tuple[float, float]:
+        """The first and the last temperature given, K."""
+        return float(self._temperatures[0]), float(self._temperatures[-1])
+
+    @property
+    def G(self) -> float:
+        """Shear modulus at the reference temperature, N/mm²."""
+        return self.data.temperatures[0].elasticity.G
+
+    @property
+    def nu(self) -> float:
+        """Poisson's ratio at the reference temperature."""
+        return self.data.temperatures[0].elasticity.nu
+
+    @property
+    def E(self) -> float:
+        """Young's modulus at the reference temperature, N/mm²."""
+        return 2 * self.G * (1 + self.nu)
+
+    @property
+    def is_adiabatic(self) -> bool:
+        """Whether plastic work heats the points."""
+        return self.data.heating is not None
+
+    @property
+    def n_state(self) -> int:
+        """Length of a rod point's state."""
+        return 8 if self.data.heating else 7
+
+    @property
+    def yield_stress(self) -> float:
         """First uniaxial yield stress sqrt(1.5 k0²) at the reference temperature, N/mm² (3.1.4); inf if elastic."""
         return math.sqrt(1.5 * self._rows[0, fn.K0])
 
     @property
-    def heating(self):
+    def heating(self) -> float:
         """Rise of temperature per plastic work b*, K mm²/N."""
         h = self.data.heating
         return h.dissipated / (h.density * h.specific_heat) if h else 0.0
 
-    def constants(self, temperature):
+    def constants(self, temperature: float) -> Iterator[tuple[str, tuple[float, str]]]:
         """Names, values and units of the constants that the file gives at one of its temperatures."""
         at = self.data.temperatures[self.temperatures.index(temperature)]
         for section in (at.elasticity, at.isotropic, getattr(at.isotropic, "saturation", None), at.kinematic):
             yield from _entries(section)
         yield from _entries(at.non_normality)
 
-    def parameters(self, temperature=None):
+    def parameters(self, temperature: float | None = None) -> np.ndarray:
         """Parameter array of the kernels.
 
         Args:
@@ -185,7 +140,7 @@ class Law:
         head[fn.N_ROWS] = len(self._rows)
         return np.concatenate([head, self._rows.ravel()])
 
-    def known(self, temperature):
+    def known(self, temperature: float) -> float:
         """The temperature, K, as a number.
 
         Raises:
@@ -197,12 +152,12 @@ class Law:
             self._fail("temperature", f"{temperature:g} K is outside the table of '{self.name}', known {known}")
         return float(temperature)
 
-    def thermal_strain(self, start, end):
+    def thermal_strain(self, start: float, end: float) -> float:
         """Thermal strain α ΔT (3.1.2) from one temperature to another, K, with the mean α of both."""
         alphas = np.interp([self.known(start), self.known(end)], self._temperatures, self._rows[:, fn.ALPHA])
         return float(alphas.mean()) * (end - start)
 
-    def functions(self, work, temperature=None):
+    def functions(self, work: npt.ArrayLike, temperature: float | None = None) -> np.ndarray:
         """k², k²′, ζ, ζ′, κ, κ′ at plastic works b*.
 
         Args:
@@ -219,14 +174,14 @@ class Law:
         fn.many(p, work.ravel(), p[fn.TEMPERATURE], values)
         return values.reshape(6, *work.shape)
 
-    def k_squared(self, work):
+    def k_squared(self, work: npt.ArrayLike) -> np.ndarray:
         """k² at the reference temperature, N²/mm⁴."""
         return self.functions(work)[0]
 
-    def _fail(self, place, problem):
+    def _fail(self, place: str, problem: str) -> NoReturn:
         raise InputError(problem, place, self.file)
 
-    def _row(self, i, at):
+    def _row(self, i: int, at: Constants) -> np.ndarray:
         row = np.zeros(fn.ROW_LENGTH)
         G, nu = at.elasticity.G, at.elasticity.nu
         row[[fn.ROW_T, fn.YOUNG, fn.SHEAR, fn.ALPHA]] = at.temperature, 2 * G * (1 + nu), G, at.elasticity.alpha
@@ -250,7 +205,7 @@ class Law:
             row[fn.KAPPA] = at.non_normality.a / (2 * G)
         return row
 
-    def _check_functions(self):
+    def _check_functions(self) -> None:
         """k² > 0, 2ζ + k²′ ≥ 0 and κ k²′ < 2 over the range of validity: else (3.1.9) is not positive."""
         work = np.linspace(0, self.validity.plastic_work, 2001)
         for i, row in enumerate(self._rows):
@@ -274,93 +229,8 @@ class Law:
                                    " (checked up to validity.plastic_work)")  # fmt: skip
 
 
-UNITS = {
-    "G": "N/mm²", "nu": "", "alpha": "1/K", "k0_squared": "N²/mm⁴", "a1": "N²/mm⁴", "a2": "mm²/N", "a3": "mm²/N",
-    "b1": "N/mm²", "k1_squared": "N²/mm⁴", "k_inf_squared": "N²/mm⁴", "a4": "mm²/N", "a5": "N/mm²", "a6": "mm²/N",
-    "a7": "mm²/N", "a": "mm⁶/N³",
-}  # fmt: skip
-
-
-HINTS = {
-    "name": "a name for the material",
-    "description": "a sentence that says what it is",
-    "source": "where the constants come from",
-    "units": "'N, mm, K', in which all numbers of the file are understood",
-    "validity": "plastic_work, the largest b* in N/mm², and a remark",
-    "plastic_work": "the largest b* up to which the constants are valid, N/mm²",
-    "remark": "where else the constants may be trusted",
-    "temperatures": "a list with the constants at one temperature at least",
-    "temperature": "the temperature of the constants, K",
-    "elasticity": "G and nu",
-    "isotropic": "its constants, or 'none' if the material has no such function",
-    "kinematic": "its constants, or 'none' if the material has no such function",
-    "non_normality": "its constants, or 'none' if the material has no such function",
-}
-
-
-def _entries(section):
-    if isinstance(section, _Section):
+def _entries(section: object) -> Iterator[tuple[str, tuple[float, str]]]:
+    if isinstance(section, Strict):
         for name, value in section:
-            if not isinstance(value, _Section) and value is not None:
+            if not isinstance(value, Strict) and value is not None:
                 yield name, (value, UNITS[name])
-
-
-def read(path, **options):
-    """Read a material file.
-
-    Args:
-        path: YAML file.
-        options: passed to `Law`.
-
-    Raises:
-        InputError: if the file cannot be read or says something wrong.
-    """
-    path = Path(path)
-    try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", file=str(path)) from error
-    except yaml.YAMLError as error:
-        problem = " ".join(str(error).split())
-        raise InputError(f"is not YAML: {problem}", file=str(path)) from error
-    if not isinstance(content, dict):
-        raise InputError("is no material file; it wants name, source, units, validity, ...", file=str(path))
-    try:
-        data = MaterialFile.model_validate(content)
-    except ValidationError as error:
-        raise first_problem(error, path) from error
-    return Law(data, file=path, **options)
-
-
-def first_problem(error, path, kind="material"):
-    """The `InputError` of pydantic's first complaint, in place terms of a `kind` file."""
-    first = error.errors()[0]
-    inside = {"IsotropicHardening", "KinematicHardening", "NonNormality"}
-    places = [str(part) for part in first["loc"] if part not in inside and not str(part).startswith("literal[")]
-    name, value, message = places[-1] if places else "", first["input"], first["msg"]
-    if first["type"] == "missing":
-        problem = "is missing"
-        if name in HINTS or name in UNITS:
-            problem += f"; give {HINTS.get(name) or 'a number in ' + (UNITS[name] or '1')}"
-    elif first["type"] == "extra_forbidden":
-        near = get_close_matches(name, ENTRIES, 1, 0.7) if kind == "material" else []
-        problem = f"is no entry of a {kind} file; " + (
-            f"is {near[0]} meant?" if near else "docs/material.md lists them"
-        )
-    elif name in HINTS:
-        problem = f"{value!r} is not what belongs here; give {HINTS[name]}"
-    else:
-        unit = UNITS.get(name) if isinstance(value, (int, float)) else None
-        problem = f"{value!r}{' ' + unit if unit else ''}: {message[0].lower()}{message[1:]}"
-    return InputError(problem, ".".join(places), str(path))
-
-
-def _entry_names(model):
-    for name, field in model.model_fields.items():
-        yield name
-        for inner in (field.annotation, *get_args(field.annotation)):
-            if isinstance(inner, type) and issubclass(inner, BaseModel):
-                yield from _entry_names(inner)
-
-
-ENTRIES = sorted(set(_entry_names(MaterialFile)))

@@ -74,7 +74,7 @@ def update(law, state, increments, integrator="return_mapping", temperature=None
 
     Args:
         law: a `Law`.
-        state: history rows, shape (points, 7 or 8) as in `rod`, or (points, 13 or 14) as in `solid`.
+        state: the points' states, shape (points, 7 or 8) as in `rod`, or (points, 13 or 14) as in `solid`.
         increments: ε11, γ12, γ13, shape (points, 3), or ε11, ε22, ε33, γ12, γ13, γ23, shape (points, 6).
         integrator: "return_mapping" (backward Euler, consistent tangent) or "heun" (the thesis's, the rates' tangent).
         temperature: of all points, K, where the state holds none; default is the reference temperature. A pair is the

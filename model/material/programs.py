@@ -5,16 +5,18 @@ values at its end, reached in equal increments; what it does not name stays driv
 start every stress is driven, and zero: tension is `eps11` alone.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal
 
 import numpy as np
-import yaml
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import Field
 
+from coilset.model.case.entry import Strict, Whole, check_entries, shortened
+from coilset.model.case.yaml import read_data
 from coilset.model.errors import InputError, SolveError
-from coilset.model.material.law import first_problem
+from coilset.model.material.law import Law
 from coilset.model.material.points import initial_state, update
 
 STRAINS = {
@@ -27,31 +29,27 @@ STRESSES = {
 }
 MAX_ITERATIONS = 50
 MAX_HALVINGS = 12
-Finite = Annotated[float, Field(allow_inf_nan=False)]
+Temperature = Annotated[float, Field(gt=0)]
 
 
-class _Section(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Step(_Section):
+class Step(Strict):
     """One straight piece of a program."""
 
     name: str = ""
-    to: dict[str, Finite] = {}  # strains (1) and stresses (N/mm²) at the end
-    temperature: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None  # K, at the end
-    increments: Annotated[int, Field(ge=1, le=1_000_000)]
+    to: Annotated[dict[str, float], Field(description="strains (1) and stresses (N/mm²) at the end")] = Field({})
+    temperature: Annotated[Temperature | None, Field(description="at the end, K")] = None
+    increments: Annotated[Whole, Field(ge=1, le=1_000_000, description="the number of equal increments")]
 
 
-class Program(_Section):
+class Program(Strict):
     """A whole program."""
 
-    name: str
+    name: Annotated[str, Field(description="a name for the program")]
     description: str = ""
     source: str = ""
     form: Literal["rod", "solid"] = "rod"
-    temperature: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None  # K, at the start
-    steps: Annotated[tuple[Step, ...], Field(min_length=1)]
+    temperature: Annotated[Temperature | None, Field(description="at the start, K")] = None
+    steps: Annotated[tuple[Step, ...], Field(strict=False, min_length=1, description="a list of steps")]
 
 
 @dataclass(frozen=True)
@@ -70,7 +68,7 @@ class History:
     temperature: np.ndarray
     step: np.ndarray
 
-    def columns(self):
+    def columns(self) -> Iterator[tuple[str, np.ndarray]]:
         """Names and values of a table's columns."""
         yield "step", self.step
         for names, values in ((STRAINS, self.strain), (STRESSES, self.stress)):
@@ -82,38 +80,29 @@ class History:
         yield "temperature", self.temperature
 
 
-def read(path):
+def read(path: str | Path) -> Program:
     """Read a program.
 
     Raises:
         InputError: if the file cannot be read or says something wrong.
     """
-    path = Path(path)
-    try:
-        content = yaml.safe_load(path.read_text(encoding="utf-8"))
-        program = Program.model_validate(content)
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", file=str(path)) from error
-    except yaml.YAMLError as error:
-        raise InputError(f"is not YAML: {' '.join(str(error).split())}", file=str(path)) from error
-    except ValidationError as error:
-        raise first_problem(error, path, "program") from error
+    program = check_entries(read_data(path, "a program file holds the entries name: and steps:"), Program, path)
     for i, step in enumerate(program.steps):
         _check_targets(step, program.form, f"steps.{i}.to", str(path))
     return program
 
 
-def _check_targets(step, form, place, file):
+def _check_targets(step: Step, form: str, place: str, file: str) -> None:
     strains, stresses = STRAINS[form], STRESSES[form]
     for name in step.to:
         if name not in strains + stresses:
-            raise InputError(f"'{name}' is none of {', '.join(strains + stresses)} ({form})", place, file)
+            raise InputError(f"'{shortened(name)}' is none of {', '.join(strains + stresses)} ({form})", place, file)
     for strain, stress in zip(strains, stresses, strict=True):
         if strain in step.to and stress in step.to:
             raise InputError(f"{strain} and {stress} cannot both be prescribed", place, file)
 
 
-def run(law, program, integrator="return_mapping"):
+def run(law: Law, program: Program, integrator: str = "return_mapping") -> History:
     """Drive one point through a program.
 
     Args:
@@ -149,7 +138,7 @@ def run(law, program, integrator="return_mapping"):
     return History(program.form, *(np.array(column) for column in zip(*rows, strict=True)))
 
 
-def _check_temperatures(law, program):
+def _check_temperatures(law: Law, program: Program) -> None:
     named = {"temperature": program.temperature}
     named |= {f"steps.{index}.temperature": step.temperature for index, step in enumerate(program.steps)}
     for place, temperature in named.items():

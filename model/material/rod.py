@@ -1,7 +1,8 @@
 """The constitutive law of the rod: σ11, τ12, τ13 from ε11, γ12, γ13, with σ22 = σ33 = τ23 = 0 (5.2.32).
 
-A point's history row is σ11, τ12, τ13, B11, B12, B13 (N/mm²), b* (N/mm²) and, with adiabatic heating, the temperature
-(K). The active deviator is n11 = ⅔σ11 − B11, n1j = τ1j − B1j, and n:n = 3/2 n11² + 2 n12² + 2 n13² (5.2.28).
+A point's state is a row of σ11, τ12, τ13, B11, B12, B13 (N/mm²), b* (N/mm²) and, with adiabatic heating, the
+temperature (K). The active deviator is n11 = ⅔σ11 − B11, n1j = τ1j − B1j, and n:n = 3/2 n11² + 2 n12² + 2 n13²
+(5.2.28).
 """
 
 from collections import namedtuple
@@ -66,9 +67,9 @@ def return_map(p, old, de11, dg12, dg13, new, C):
 
     Args:
         p: parameter array of the law, `Law.parameters()`.
-        old: history row at the start, shape (7,) or, with adiabatic heating, (8,); not written.
+        old: the point's state at the start, shape (7,) or, with adiabatic heating, (8,); not written.
         de11, dg12, dg13: increments of ε11, γ12 = 2ε12, γ13.
-        new: history row at the end; always fully written.
+        new: the state at the end; always fully written.
         C: d(σ11, τ12, τ13)/d(ε11, γ12, γ13), shape (3, 3), N/mm²; written.
 
     Returns:

@@ -1,11 +1,12 @@
 """The constitutive law for the full stress state.
 
 Order of components: 11, 22, 33, 12, 13, 23. Strain increments hold engineering shear strains, γ12 = 2ε12; stress and
-back stress hold the tensor's components. A point's history row is σ (6), B (6), b* and, with adiabatic heating, the
-temperature: 13 or 14 numbers, in N/mm² and K.
+back stress hold the tensor's components. A point's state is a row of σ (6), B (6), b* and, with adiabatic heating,
+the temperature: 13 or 14 numbers, in N/mm² and K.
 
-The law is hypoelastic with the Zaremba-Jaumann rate (3.1.2): it holds in a frame that turns with the material's spin.
-Either the caller works in such a frame, or it turns the history row by the increment's rotation first, with `turn`.
+The law is hypoelastic with the Zaremba-Jaumann rate (3.1.2): it holds in a frame that rotates with the material's spin.
+Either the caller works in such a frame, or it rotates the point's state by the increment's rotation first, with
+`rotate_state`.
 """
 
 from numba import njit
@@ -33,7 +34,7 @@ def _deviator_increment(dD, G):
 
 @njit(**INLINE)
 def _active(row):
-    """n = T − B of a history row."""
+    """n = T − B of a point's state."""
     mean = (row[0] + row[1] + row[2]) / 3.0
     return (
         row[0] - mean - row[6], row[1] - mean - row[7], row[2] - mean - row[8],
@@ -75,9 +76,9 @@ def return_map(p, old, dD, new, C):
 
     Args:
         p: parameter array of the law, `Law.parameters()`.
-        old: history row at the start, shape (13,) or, with adiabatic heating, (14,); not written.
+        old: the point's state at the start, shape (13,) or, with adiabatic heating, (14,); not written.
         dD: strain increment, shape (6,), engineering shear strains.
-        new: history row at the end; always fully written.
+        new: the state at the end; always fully written.
         C: dσ/dε, shape (6, 6), N/mm²; written.
 
     Returns:
@@ -180,16 +181,16 @@ def _tangent(local, n0, e, beta, products, u, m, c, expansion, C):
 
 
 @njit(**KERNEL)
-def turn(old, R, new):
-    """Turn stress and back stress of a history row by a rotation, S → R S Rᵀ.
+def rotate_state(old, R, new):
+    """Rotate stress and back stress of a point's state, S → R S Rᵀ.
 
-    With R = exp(W), W = ½(grad Δu − grad Δuᵀ), before the update with the strain increment in the turned frame, this
+    With R = exp(W), W = ½(grad Δu − grad Δuᵀ), before the update with the strain increment in the rotated frame, this
     integrates the Zaremba-Jaumann rate; all invariants stay, so that the update is objective for any size of W.
 
     Args:
-        old: history row, shape (13,) or (14,); not written.
+        old: the point's state, shape (13,) or (14,); not written.
         R: rotation, shape (3, 3).
-        new: turned row, not the same array as `old`.
+        new: the rotated state, not the same array as `old`.
     """
     for o in (0, 6):
         for k in range(6):

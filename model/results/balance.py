@@ -3,9 +3,13 @@
 import numpy as np
 
 from coilset.model.contact.resultants import station_forces, station_moments
+from coilset.model.equilibrium.axial_control import AxialControl
+from coilset.model.equilibrium.layout import LineLayout
+from coilset.model.equilibrium.system import System
+from coilset.model.results.record import Snapshot
 
 
-def section_wrenches(x, triads, resultants):
+def section_wrenches(x: np.ndarray, triads: np.ndarray, resultants: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """What the wire behind a cut does to the wire before it, for a cut through each element.
 
     Between two nodes nothing acts on an element; so the force is the mean of its two Gauss sections, and the moment at
@@ -26,28 +30,31 @@ def section_wrenches(x, triads, resultants):
     return force, moment + np.cross(x[:-1], force)
 
 
-def imbalance(analysis):
+def imbalance(shot: Snapshot, system: System, control: AxialControl) -> tuple[float, float]:
     """How far seats, contacts and section forces are from balance; collective, whole on rank 0.
 
     Args:
-        analysis: Analysis at an equilibrium.
+        shot: Snapshot of the equilibrium.
+        system: System of a Rod at that equilibrium.
+        control: AxialControl.
 
     Returns:
         Greatest lack of force over all cuts, N, and of moment about the origin, N mm; the last cut is behind the whole
         wire, so that both seats' wrenches are judged too.
     """
-    shot, system, drive = analysis.snapshot("balance"), analysis.system, analysis.drive
-    x = shot.x
-    forces = station_forces(system.contributions, len(x))
-    moments = station_moments(system.contributions, system.gather(analysis.rod.chart))
-    for station, components in drive.tips.values():
+    layout, x = system.layout, shot.x
+    assert isinstance(layout, LineLayout)
+    forces = station_forces(system.last.contributions, len(x))
+    moments = station_moments(system.last.contributions, layout.gather(system.body.chart))
+    for station, components in control.tips.values():
         reaction = np.zeros(6)
-        reaction[components] = system.values(system.internal, system.station_dofs[station, components])
+        reaction[components] = layout.values(system.internal, layout.station_dofs[station, components])
         forces[station] += reaction[:3]
         moments[station] += reaction[3:]
-    if analysis.comm.rank:
+    if system.comm.rank:
         return np.nan, np.nan
     before = np.cumsum(forces, axis=0), np.cumsum(np.cross(x, forces) + moments, axis=0)
     behind = section_wrenches(x, shot.triads, shot.resultants)
-    behind = [np.vstack([part, np.zeros(3)]) for part in behind]
-    return tuple(float(np.linalg.norm(a + b, axis=1).max()) for a, b in zip(before, behind, strict=True))
+    lacking = [a + np.vstack([b, np.zeros(3)]) for a, b in zip(before, behind, strict=True)]
+    force, moment = (float(np.linalg.norm(lack, axis=1).max()) for lack in lacking)
+    return force, moment

@@ -4,19 +4,41 @@ The arrays of a checkpoint belong to stations and elements, not to ranks, so tha
 """
 
 import json
-from dataclasses import asdict
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from mpi4py import MPI
 
+from coilset.model.case import Case
+from coilset.model.equilibrium.continuation import Position
+from coilset.model.equilibrium.layout import LineLayout
+from coilset.model.equilibrium.program import ProgramPosition
 from coilset.model.errors import InputError
-from coilset.model.loading.stepper import Step, Walk
 from coilset.model.results.folder import whole
-from coilset.model.results.seats import Resultants
+from coilset.model.results.record import Result, SeatReactions, Snapshot, Step
+from coilset.model.state import State
 
-NODAL, CELLWISE = ("x", "R"), ("chord", "shear", "strain")  # and the arrays of the sections
 # what must be the same to go on
 SPRING_ENTRIES = ("spring", "material", "temperature", "ends", "seats", "mesh", "contact")
+PREFIX = "state_"  # of the state's arrays
+
+
+@dataclass(frozen=True)
+class Saved:
+    """What a checkpoint holds.
+
+    Attributes:
+        arrays: name → array of the state in natural order.
+        position: ProgramPosition.
+        result: Result up to there.
+    """
+
+    arrays: Mapping[str, np.ndarray]
+    position: ProgramPosition
+    result: Result
 
 
 class Checkpoint:
@@ -27,34 +49,24 @@ class Checkpoint:
         case: Case.
     """
 
-    def __init__(self, folder, case):
+    def __init__(self, folder: str | Path, case: Case) -> None:
         self.folder = Path(folder) / "checkpoint"
         self.case = case.model_dump(mode="json")
 
     # ---- saving ----------------------------------------------------------------------------------------------------
 
-    def save(self, analysis):
+    def save(self, state: State, layout: LineLayout, position: ProgramPosition, result: Result) -> None:
         """Write the state after a converged step; collective."""
-        rod, system, stepper = analysis.rod, analysis.system, analysis.stepper
-        state = {name: system.gather(rod.equilibrium[name]) for name in NODAL}
-        state |= {name: rod.line.in_order(rod.equilibrium[name]) for name in (*CELLWISE, *rod.points)}
-        state |= {"guess": system.to_order(stepper.guess), "reactions": system.to_order(system.reaction_start)}
-        if analysis.comm.rank:
+        arrays: dict[str, Any] = {PREFIX + name: layout.natural(field) for name, field in state.items()}
+        if layout.comm.rank:
             return
-        state["seats"] = system.seats_start
-        for k, memory in enumerate(system.memories):
-            state |= {f"contact_{k}_{name}": values for name, values in memory.committed.items()}
-        result = analysis.result
-        state["pressure"] = np.concatenate([np.empty((0, 3)), *(one.pressure for one in result.seats)])
-        state["bearing_points"] = np.array([len(one.pressure) for one in result.seats], dtype=int)
-        steps = [asdict(step) for step in result.steps]
+        arrays["pressure"] = np.concatenate([np.empty((0, 3)), *(one.pressure for one in result.seats)])
+        arrays["bearing_points"] = np.array([len(one.pressure) for one in result.seats], dtype=int)
         about = {
             "case": self.case,
-            "walk": asdict(stepper.walk),
-            "height": analysis.drive.height,
-            "force": analysis.drive.force,
+            "position": asdict(position),
             "rate": result.rate,
-            "steps": steps,
+            "steps": [asdict(step) for step in result.steps],
             "seats": [one.row() for one in result.seats],
             "snapshots": len(result.snapshots),
         }
@@ -62,32 +74,31 @@ class Checkpoint:
         for number, snapshot in enumerate(result.snapshots):
             self._save_snapshot(number, snapshot)
         with whole(self.folder / "state.npz") as path, open(path, "wb") as file:
-            np.savez(file, about=np.array(json.dumps(about)), **state)
+            np.savez(file, about=np.array(json.dumps(about)), **arrays)
 
-    def _save_snapshot(self, number, snapshot):
+    def _save_snapshot(self, number: int, snapshot: Snapshot) -> None:
         path = self.folder / f"snapshot-{number:02d}.npz"
         if not path.exists():
             with whole(path) as partial, open(partial, "wb") as file:
                 np.savez(file, **asdict(snapshot))
 
-    def clear(self):
+    def clear(self) -> None:
         """Forget an earlier run."""
         for path in self.folder.glob("*.npz"):
             path.unlink()
 
     # ---- resuming --------------------------------------------------------------------------------------------------
 
-    def resume(self, analysis):
-        """Bring an analysis to the state of the checkpoint; collective.
+    def load(self, comm: MPI.Comm) -> Saved:
+        """What was saved last, the same on every rank but for the cells of snapshots; collective.
 
         Raises:
             InputError: if there is no checkpoint, it is broken, or it belongs to another spring or load program.
         """
-        comm = analysis.comm
         loaded = problem = None
         if comm.rank == 0:
             try:
-                loaded = self._load()
+                loaded = self._read()
                 self._compare(loaded["about"])
             except InputError as error:
                 problem = error
@@ -95,27 +106,11 @@ class Checkpoint:
         if problem:
             raise InputError(*problem)
         loaded = comm.bcast(loaded)
-        about = loaded.pop("about")
-        rod, system, stepper, drive = analysis.rod, analysis.system, analysis.stepper, analysis.drive
-        for name in NODAL:
-            rod.equilibrium[name] = loaded[name][rod.line.node].copy()
-        for name in (*CELLWISE, *rod.points):
-            rod.equilibrium[name] = loaded[name][rod.line.element[: rod.line.owned_cells]].copy()
-        system.seats_start = loaded["seats"].copy()
-        for k, memory in enumerate(system.memories):
-            memory.committed = {name: loaded[f"contact_{k}_{name}"].copy() for name in memory.committed}
-        system.from_order(loaded["guess"], stepper.guess)
-        system.from_order(loaded["reactions"], system.reaction_start)
-        system.restore()
-        drive.accept(about["height"], about["force"])
-        stepper.walk, stepper.number = Walk(**about["walk"]), len(about["steps"])
-        analysis.result.steps = [Step(**step) for step in about["steps"]]
-        parts = np.split(loaded["pressure"], np.cumsum(loaded["bearing_points"])[:-1])
-        analysis.result.seats = [Resultants.from_row(*pair) for pair in zip(about["seats"], parts, strict=True)]
-        analysis.result.rate = about["rate"]
-        analysis.result.snapshots = [self._snapshot(number, comm.rank) for number in range(about["snapshots"])]
+        about = loaded["about"]
+        arrays = {name.removeprefix(PREFIX): values for name, values in loaded.items() if name.startswith(PREFIX)}
+        return Saved(arrays, self._position(about), self._result(loaded, comm.rank))
 
-    def _load(self):
+    def _read(self) -> dict[str, Any]:
         path = self.folder / "state.npz"
         if not path.exists():
             raise InputError("there is no checkpoint to go on from; run it without --resume", "", self.folder)
@@ -126,28 +121,43 @@ class Checkpoint:
         except (OSError, ValueError, KeyError) as error:
             raise InputError(f"the checkpoint is not readable: {error}", "", path) from None
 
-    def _snapshot(self, number, rank):
-        from coilset.model.analysis import Snapshot
+    def _result(self, loaded: Mapping[str, Any], rank: int) -> Result:
+        about = loaded["about"]
+        parts = np.split(loaded["pressure"], np.cumsum(loaded["bearing_points"])[:-1])
+        return Result(
+            tuple(Step(**step) for step in about["steps"]),
+            tuple(SeatReactions.from_row(*pair) for pair in zip(about["seats"], parts, strict=False)),
+            tuple(self._snapshot(number, rank) for number in range(about["snapshots"])),
+            about["rate"],
+        )
 
+    def _snapshot(self, number: int, rank: int) -> Snapshot:
         with np.load(self.folder / f"snapshot-{number:02d}.npz", allow_pickle=False) as file:
-            fields = {name: file[name] for name in file.files}
+            found: dict[str, Any] = {name: file[name] for name in file.files}
         for name, kind in (("name", str), ("height", float), ("force", float)):
-            fields[name] = kind(fields[name])
-        fields["components"] = tuple(str(name) for name in fields["components"])
+            found[name] = kind(found[name])
+        found["components"] = tuple(str(name) for name in found["components"])
         if rank:
-            fields |= {name: np.empty(0) for name in ("triads", "resultants", "history", "surface")}
-        return Snapshot(**fields)
+            found |= {name: np.empty(0) for name in ("triads", "resultants", "point_state", "surface_state")}
+        return Snapshot(**found)
 
-    def _compare(self, about):
+    def _position(self, about: Mapping[str, Any]) -> ProgramPosition:
+        """Where to go on; a changed target begins its phase where the spring stands now."""
+        saved = about["position"]
+        position = ProgramPosition(**{**saved, "walk": Position(**saved["walk"])})
+        stage, old, new = position.stage, about["case"]["loading"], self.case["loading"]
+        if old[stage : stage + 1] == new[stage : stage + 1]:
+            return position
+        last = about["steps"][-1] if about["steps"] else None
+        height, force = (last["seat_height_mm"], last["force_N"]) if last else (position.height, position.force)
+        return replace(position, height=height, force=force, walk=Position())
+
+    def _compare(self, about: Mapping[str, Any]) -> None:
         """The spring must be the same; the phases that are behind too, and the rest may have changed."""
         old, new = about["case"], self.case
         for entry in SPRING_ENTRIES:
             if old.get(entry) != new[entry]:
                 raise InputError("differs from that of the checkpoint; run it without --resume", entry, self.folder)
-        walk = about["walk"]
-        phase = walk["phase"]
-        if old["loading"][:phase] != new["loading"][:phase]:
-            raise InputError(f"its first {phase} phases are behind and must stay as they were", "loading", self.folder)
-        if old["loading"][phase : phase + 1] != new["loading"][phase : phase + 1]:
-            # a changed target: begin its phase where the spring stands now
-            about["walk"] = asdict(Walk(phase, height=about["height"], force=about["force"]))
+        behind = about["position"]["stage"]
+        if old["loading"][:behind] != new["loading"][:behind]:
+            raise InputError(f"its first {behind} phases are behind and must stay as they were", "loading", self.folder)

@@ -1,34 +1,39 @@
 """Figures of a run: the characteristic, and the residual stress over the wire's cross-section."""
 
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.model.results.folder import whole
+from coilset.model.results.record import Result, Setup, Snapshot
 
 STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False}
 DPI = 160
 
 
-def save(figure, path):
+def save(figure: Figure, path: str | Path) -> None:
     """Write a figure as PNG."""
     with whole(path) as partial:
         figure.savefig(partial, dpi=DPI)
 
 
-def characteristic(path, analysis, result, summary):
+def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapping[str, Any]) -> None:
     """Force over travel, one line a phase."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(6.4, 4.2), layout="constrained")
         axes = figure.add_subplot()
         travel, force = [0.0], [0.0]
-        for index, phase in enumerate(analysis.case.loading):
+        for index, phase in enumerate(setup.phases):
             steps = [step for step in result.steps if step.phase == index]
             if not steps:
                 continue
             travel = [travel[-1]] + [step.travel_mm for step in steps]
             force = [force[-1]] + [step.force_N for step in steps]
-            axes.plot(travel, force, "o-", ms=3, lw=1.3, label=f"to {phase.label}")
+            axes.plot(travel, force, "o-", ms=3, lw=1.3, label=f"to {phase}")
         greatest = max(abs(summary["force_max_N"]), 1e-300)
         reach = greatest / summary["rate_N_per_mm"]
         axes.plot([0, reach], [0, greatest], "k:", lw=0.9, label=f"initial rate {summary['rate_N_per_mm']:.4g} N/mm")
@@ -38,7 +43,7 @@ def characteristic(path, analysis, result, summary):
             set_mm = summary["set_mm"]
             axes.annotate("", (0, 0), (set_mm, 0), arrowprops={"arrowstyle": "<->", "lw": 0.9, "color": "0.3"})
             axes.annotate(f"set {set_mm:.3f} mm", (0.5 * set_mm, 0.02 * greatest), ha="center", va="bottom")
-        axes.set(xlabel="travel in mm", ylabel="axial force in N", title=f"Characteristic, {analysis.law.name}")
+        axes.set(xlabel="travel in mm", ylabel="axial force in N", title=f"Characteristic, {setup.material}")
         axes.legend(fontsize=8)
         axes.grid(lw=0.3)
         save(figure, path)
@@ -47,23 +52,24 @@ def characteristic(path, analysis, result, summary):
 ROUND = 96  # points of the rim in a picture
 
 
-def cross_section(path, analysis, snapshot):
+def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
     """Stress over the cross-section at mid height, to the wire's surface: circumferential shear and normal stress."""
-    n = len(analysis.turns) - 1
-    inner = analysis.rod.rule.points
+    n = len(setup.turns) - 1
+    inner = setup.rule.points
     angle = 2.0 * np.pi * np.arange(ROUND) / ROUND
     points = np.concatenate([inner, np.stack([np.cos(angle), np.sin(angle)], axis=-1)])
-    radius = analysis.wire_radius[n // 2]
+    radius = setup.wire_radius[n // 2]
     y, z = radius * points.T
 
     def stress(name):
         column = snapshot.components.index(name)
-        at_points, rim = (state[n // 2, ..., column].mean(axis=0) for state in (snapshot.history, snapshot.surface))
+        states = snapshot.point_state, snapshot.surface_state
+        at_points, rim = (state[n // 2, ..., column].mean(axis=0) for state in states)
         return np.concatenate([at_points, refined(rim, ROUND)])
 
     distance = np.hypot(points[:, 0], points[:, 1])
     around = (stress("t13") * points[:, 0] - stress("t12") * points[:, 1]) / np.where(distance > 0, distance, 1.0)
-    inwards = np.cos(analysis.inside.angle) > 0
+    inwards = np.cos(setup.inside.angle) > 0
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.2, 3.9), layout="constrained")
         panels = ((around, "shear about the wire's axis"), (stress("s11"), "normal stress"))
@@ -82,7 +88,7 @@ def cross_section(path, analysis, snapshot):
         save(figure, path)
 
 
-def refined(values, points):
+def refined(values: np.ndarray, points: int) -> np.ndarray:
     """Values at equal angles of a circle, shape (n,), at more such angles, by the trigonometric polynomial."""
     waves = np.fft.rfft(values)
     if len(values) % 2 == 0:

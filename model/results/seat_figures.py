@@ -1,12 +1,17 @@
 """Figures of where the force goes: path of the force centre, pressure along the end coils, turns that are active."""
 
+from pathlib import Path
+from typing import Any
+
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from coilset.model.contact.base import ENDS
 from coilset.model.results.figures import STYLE, save
+from coilset.model.results.record import ContactRecord, Result, Setup
 
 COLOURS = {"bottom": "C0", "top": "C3"}
 DRAWN = {  # what both seats of a symmetric spring share stays to be seen
@@ -20,20 +25,20 @@ DECADES = 3  # of the pressure's colours
 LEAST_TURNS = 0.2  # that are shown from the tip on, though nothing bears there
 
 
-def phases(result):
+def phases(result: Result) -> dict[int, list[int]]:
     """Numbers of the steps of each phase, a dict by the phase's number."""
-    found = {}
+    found: dict[int, list[int]] = {}
     for number, step in enumerate(result.steps):
         found.setdefault(step.phase, []).append(number)
     return found
 
 
-def column(result, end, name):
-    """One entry of an end's Bearings over the steps."""
+def column(result: Result, end: str, name: str) -> np.ndarray:
+    """One entry of an end's SeatReactions over the steps."""
     return np.array([getattr(getattr(one, end), name) for one in result.seats])
 
 
-def force_centre(path, analysis, result):
+def force_centre(path: str | Path, setup: Setup, result: Result) -> None:
     """Path of the force centre on both seats, seen along the axis, and its distance from the axis over travel."""
     travel = np.array([step.travel_mm for step in result.steps])
     force = np.abs([step.force_N for step in result.steps])
@@ -42,9 +47,9 @@ def force_centre(path, analysis, result):
         figure = Figure(figsize=(9.6, 4.3), layout="constrained")
         plan, over = figure.subplots(1, 2, width_ratios=(1, 1.15))
         for end in ENDS:
-            turns = np.linspace(0.0, min(1.0, analysis.spring.turns), 121)
-            turns = turns if end == "bottom" else analysis.spring.turns - turns
-            coil = analysis.spring.centre_line(turns)
+            turns = np.linspace(0.0, min(1.0, setup.spring.turns), 121)
+            turns = turns if end == "bottom" else setup.spring.turns - turns
+            coil = setup.spring.centre_line(turns)
             plan.plot(*coil[:, :2].T, color=COLOURS[end], lw=0.6, alpha=0.6)
             plan.plot(*coil[0, :2], "s", color=COLOURS[end], ms=5, label=f"wire's tip at the {end}")
             x, y, distance, px, py = (
@@ -54,10 +59,10 @@ def force_centre(path, analysis, result):
             plan.plot(px, py, "-", color=COLOURS[end], lw=3.5, alpha=0.25, label=f"centre of pressure, {end}")
             for style, (index, steps) in zip(LINES * len(travel), phases(result).items(), strict=False):
                 joined = steps if index == 0 or steps[0] == 0 else [steps[0] - 1, *steps]
-                label = f"{end} seat, to {analysis.case.loading[index].label}"
+                label = f"{end} seat, to {setup.phases[index]}"
                 plan.plot(x[joined], y[joined], style, marker="o", ms=2.5, lw=1.0, color=COLOURS[end])
                 over.plot(travel[joined], distance[joined], style, marker="o", **DRAWN[end], label=label)
-        radius = float(np.hypot(*analysis.spring.centre_line(np.array([0.0, analysis.spring.turns]))[:, :2].T).max())
+        radius = float(np.hypot(*setup.spring.centre_line(np.array([0.0, setup.spring.turns]))[:, :2].T).max())
         plan.plot(0, 0, "k+", ms=9)
         plan.set(aspect="equal", xlabel="x in mm", ylabel="y in mm", title="force centre, seen along the axis",
                  xlim=(-REACH * radius, REACH * radius), ylim=(-REACH * radius, REACH * radius))  # fmt: skip
@@ -71,7 +76,7 @@ def force_centre(path, analysis, result):
         save(figure, path)
 
 
-def seat_pressure(path, analysis, result):
+def seat_pressure(path: str | Path, setup: Setup, result: Result) -> bool:
     """Pressure along both end coils in every step, length of wire in contact, and active turns.
 
     Returns:
@@ -79,8 +84,8 @@ def seat_pressure(path, analysis, result):
     """
     seats = {
         contact.end: (kind, contact)
-        for kind, contact in enumerate(analysis.system.contacts)
-        if contact.end and contact.points is not None
+        for kind, contact in enumerate(setup.contacts)
+        if contact.end and contact.wire_turns is not None
     }
     if not seats or not result.seats:
         return False
@@ -98,7 +103,7 @@ def seat_pressure(path, analysis, result):
         if shown is not None:
             figure.colorbar(shown, ax=maps, label="force per length of wire in N/mm")
         for style, (index, steps) in zip(LINES * len(travel), phases(result).items(), strict=False):
-            label = f"to {analysis.case.loading[index].label}"
+            label = f"to {setup.phases[index]}"
             for end in seats:
                 lengths.plot(travel[steps], column(result, end, "length_mm")[steps], style, marker="o", **DRAWN[end],
                              label=f"{end} seat, {label}")  # fmt: skip
@@ -107,7 +112,7 @@ def seat_pressure(path, analysis, result):
                 turns.plot(travel[steps], values, style, marker="o", ms=2.5, lw=1.0, color=colour,
                            label=f"{words}, {label}")  # fmt: skip
         lengths.set(xlabel="travel in mm", ylabel="wire in contact with the seat in mm")
-        turns.set(xlabel="travel in mm", ylabel="turns", ylim=(0.0, 1.5 * analysis.spring.turns))
+        turns.set(xlabel="travel in mm", ylabel="turns", ylim=(0.0, 1.5 * setup.spring.turns))
         for axes in (lengths, turns):
             axes.legend(fontsize=7)
             axes.grid(lw=0.3)
@@ -115,10 +120,10 @@ def seat_pressure(path, analysis, result):
     return True
 
 
-def draw_pressure(axes, result, kind, contact, greatest):
+def draw_pressure(axes: Axes, result: Result, kind: int, contact: ContactRecord, greatest: float) -> Any:
     """Pressure of one kind of contact as colour over the place along the wire and the step; None if there is none."""
     rows = [one.pressure[one.pressure[:, 0] == kind] for one in result.seats]
-    away = np.abs(contact.points.turns - contact.points.turns[contact.tip])
+    away = np.abs(contact.wire_turns - contact.wire_turns[contact.tip])
     bearing = np.unique(np.concatenate(rows)[:, 1].astype(int))
     if not len(bearing):
         return None

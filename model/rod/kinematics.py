@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
-from coilset.model.frames.rotations import (
+from coilset.model.rotations.kernels import (
     exponential,
     inverse_chart_tangent,
     logarithm,
@@ -14,6 +14,18 @@ from coilset.model.frames.rotations import (
 )
 
 GAUSS = np.array([0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0)])  # abscissae ξ = x/l (5.2.43)
+
+
+def chord_triads(chords: np.ndarray) -> np.ndarray:
+    """Right-handed orthonormal triads (columns) with the first axis along the chords, shape (n, 3) → (n, 3, 3).
+
+    The second axis lies as level as it can; for a round wire its direction is free (the external node 3 of 5.2.5).
+    """
+    e1 = chords / np.linalg.norm(chords, axis=1, keepdims=True)
+    helper = np.where(np.abs(e1[:, 2:]) < 0.9, [[0.0, 0.0, 1.0]], [[1.0, 0.0, 0.0]])
+    e2 = np.cross(helper, e1)
+    e2 /= np.linalg.norm(e2, axis=1, keepdims=True)
+    return np.stack([e1, e2, np.cross(e1, e2)], axis=-1)
 
 
 @njit(cache=True)

@@ -1,17 +1,28 @@
-"""A rod structure: state of its nodes and section points, and the forms assembled from them.
-
-The unknowns are the increments since the last equilibrium configuration; `update` brings the trial state to them
-without touching the equilibrium, `commit` makes the trial state the equilibrium, so that a failed step leaves no trace.
-"""
+"""A rod structure, a Body: state of its nodes and section points, and the forms assembled from them."""
 
 import numpy as np
 from dolfinx import fem
+from dolfinx.fem.petsc import assemble_matrix
+from mpi4py import MPI
+from petsc4py import PETSc
 
+from coilset.meshes.line import LineMesh
 from coilset.meshes.placement import Placement, straight
-from coilset.model.frames.rotations import triads, turn_nodes
+from coilset.model.material.law import Law
 from coilset.model.rod import forms
-from coilset.model.rod.kinematics import GAUSS, section_strains
+from coilset.model.rod.kinematics import GAUSS, chord_triads, section_strains
+from coilset.model.rotations.kernels import rotate_nodes
 from coilset.model.section.kinds import make_sections
+from coilset.model.section.rules import DiskRule
+from coilset.model.state import State, Where
+
+NODAL_ENTRIES = 22  # in a row of the tangent: three nodes with 6 unknowns each, and two elements with 2
+SHEAR_ENTRIES = 14  # two nodes and the element's own 2
+
+
+def comm_max(comm: MPI.Comm, value: float) -> float:
+    """Greatest value of all ranks."""
+    return comm.allreduce(float(value), op=MPI.MAX) if comm.size > 1 else float(value)
 
 
 class CellField:
@@ -43,13 +54,24 @@ class Rod:
         InputError: if the temperature lies outside the material's table.
 
     Attributes:
-        x, chord, R, shear, strain: trial state of the local nodes and owned cells; x in mm, strain shape (cells, 2, 6).
-        points: trial state of the sections, a dict of arrays of shape (cells, 2, ...); `point_state`, shape
-            (cells, 2, points, n_state), is always among them.
-        equilibrium: the same at the last equilibrium, a dict.
+        increment: function of the increments since the last equilibrium.
+        state: State with `x`, mm, and `R`, rotations since the stress-free state, of the local nodes; `chord`, mm,
+            `shear`, `strain`, shape (cells, 2, 6), and the arrays of the sections, of the owned cells; of these
+            `point_state`, shape (cells, 2, points, n_state), and `surface_state` are always there.
+        chart: tangents of the nodes' rotation charts on trial, shape (nodes, 3, 3).
     """
 
-    def __init__(self, line, radius, law, rule, placement=None, temperature=None, kind="plane", degree=3):
+    def __init__(
+        self,
+        line: LineMesh,
+        radius: np.ndarray,
+        law: Law,
+        rule: DiskRule,
+        placement: Placement | None = None,
+        temperature: float | None = None,
+        kind: str = "plane",
+        degree: int = 3,
+    ) -> None:
         self.line, self.law, self.rule = line, law, rule
         mesh, n = line.mesh, line.owned_cells
         self.mesh, self.parameters = mesh, law.parameters(temperature)
@@ -68,95 +90,132 @@ class Rod:
         self.cells = np.ascontiguousarray(mesh.geometry.dofmap[:n])
         x = mesh.geometry.x
         chords = x[self.cells[:, 1]] - x[self.cells[:, 0]]
-        self.l0, self.E0 = np.linalg.norm(chords, axis=1), triads(chords)
+        self.l0, self.E0 = np.linalg.norm(chords, axis=1), chord_triads(chords)
 
         self.xi = CellField(mesh, forms.section_element(()), (2,), n)
         self.xi.values[:] = GAUSS
-        self.share = CellField(mesh, forms.cell_element(()), (1,), n)
+        self.timoshenko_factor = CellField(mesh, forms.cell_element(()), (1,), n)
         Φ = 3.0 * law.E * self.radius**2 / (law.G * self.l0**2)  # 12 E I/(G A l²)
-        self.share.values[:, 0] = Φ / (1.0 + Φ)
-        self.E = CellField(mesh, forms.cell_element((3, 3)), (3, 3), n)
+        self.timoshenko_factor.values[:, 0] = Φ / (1.0 + Φ)
+        self.triads = CellField(mesh, forms.cell_element((3, 3)), (3, 3), n)
         self.T = CellField(mesh, forms.cell_element((2, 3, 3)), (2, 3, 3), n)
         self.P = CellField(mesh, forms.cell_element((2, 3, 3)), (2, 3, 3), n)
         self.W = CellField(mesh, forms.cell_element((3, 3)), (3, 3), n)
         self.e = CellField(mesh, forms.section_element((6,)), (2, 6), n)
         self.s = CellField(mesh, forms.section_element((6,)), (2, 6), n)
         self.D = CellField(mesh, forms.section_element((6, 6)), (2, 6, 6), n)
-        fields = (self.xi, self.share, self.E, self.T, self.P, self.W, self.e, self.s, self.D)
+        fields = (self.xi, self.timoshenko_factor, self.triads, self.T, self.P, self.W, self.e, self.s, self.D)
         self.forms = forms.RodForms(mesh, self.V, *(field.function for field in fields))
         self._residual = fem.form(self.forms.residual)
         self._tangent = fem.form(self.forms.material_stiffness + self.forms.frame_stiffness)
+        self.row_entries = np.full(self.V.dofmap.index_map.size_local, NODAL_ENTRIES, dtype=PETSc.IntType)
+        self.row_entries[self.shear_dofs] = SHEAR_ENTRIES
+        self.largest_radius = comm_max(mesh.comm, self.radius.max(initial=0.0))
+        self.axial_force = law.E * np.pi * self.largest_radius**2  # E A
+        self.extent = float(np.ptp(line.stations, axis=0).max())
+        self._constraint_weight = comm_max(mesh.comm, (law.E * np.pi * self.radius**2 / self.l0).max(initial=0.0))
         self._start(x)
 
-    def _number_dofs(self):
-        """Local dofs of the nodes' displacements and turns, shape (nodes, 3), and of the cells' shear angles."""
+    def _number_dofs(self) -> None:
+        """Local dofs of the nodes' displacements and rotations, shape (nodes, 3), and of the cells' shear angles."""
         geometry = self.mesh.geometry
-        self.u_dofs, self.turn_dofs = np.empty((2, len(geometry.x), 3), dtype=np.int32)
+        self.u_dofs, self.rotation_dofs = np.empty((2, len(geometry.x), 3), dtype=np.int32)
         nodal, shear = self.V.sub(0), self.V.sub(1)
         for i in range(3):
             self.u_dofs[geometry.dofmap, i] = nodal.sub(i).dofmap.list
-            self.turn_dofs[geometry.dofmap, i] = nodal.sub(i + 3).dofmap.list
+            self.rotation_dofs[geometry.dofmap, i] = nodal.sub(i + 3).dofmap.list
         self.shear_dofs = np.stack([shear.sub(i).dofmap.list[: self.line.owned_cells, 0] for i in range(2)], axis=1)
 
-    @property
-    def history(self):
-        """Trial state of the section points, shape (cells, 2, points, n_state)."""
-        return self.points["point_state"]
-
-    def _start(self, x):
-        """The stress-free state."""
-        n = len(self.cells)
-        self.x = x  # the mesh's own coordinates: the forms are integrated on the current configuration
-        self.chord = x[self.cells[:, 1]] - x[self.cells[:, 0]]
-        self.R = np.tile(np.eye(3), (len(x), 1, 1))
-        self.chart = np.tile(np.eye(3), (len(x), 1, 1))
-        self.shear = np.zeros((n, 2))
-        self.strain = self.e.values
-        self.points = self.sections.initial_state()
-        self.equilibrium = {}
-        self._keep()
+    def _start(self, x: np.ndarray) -> None:
+        """The stress-free state; the mesh's coordinates are the trial positions, as forms need it."""
+        n, state = len(self.cells), State()
+        self._x = state.add("x", x, Where.STATION)
+        self._R = state.add("R", np.tile(np.eye(3), (len(x), 1, 1)), Where.STATION)
+        self._chord = state.add("chord", x[self.cells[:, 1]] - x[self.cells[:, 0]], Where.ELEMENT)
+        self._shear = state.add("shear", np.zeros((n, 2)), Where.ELEMENT)
+        self._strain = state.add("strain", self.e.values, Where.ELEMENT)
+        points = {name: state.add(name, rows, Where.ELEMENT) for name, rows in self.sections.initial_state().items()}
+        self._section_start = {name: field.equilibrium for name, field in points.items()}
+        self._section_trial = {name: field.trial for name, field in points.items()}
+        self._section_start["strain"] = self._strain.equilibrium
+        self.state, self.chart = state, np.tile(np.eye(3), (len(x), 1, 1))
         self.update()
 
-    def update(self):
-        """Bring the trial state to the increments in `self.increment` (ghosts up to date).
+    # ---- results on trial ------------------------------------------------------------------------------------------
 
-        Returns:
-            True, or False if the law found no solution at some section point of this rank.
-        """
-        increment, start = self.increment.x.array, self.equilibrium
+    @property
+    def x(self) -> np.ndarray:
+        """Positions of the local nodes on trial, shape (nodes, 3), mm."""
+        return self._x.trial
+
+    @property
+    def point_state(self) -> np.ndarray:
+        """State at the section points on trial, shape (cells, 2, points, n_state), MPa."""
+        return self._section_trial["point_state"]
+
+    @property
+    def surface_state(self) -> np.ndarray:
+        """State of the points on the wire's surface, shape (cells, 2, surface points, n_state), MPa."""
+        return self._section_trial["surface_state"]
+
+    # ---- Body ------------------------------------------------------------------------------------------------------
+
+    def update(self) -> bool:
+        """Bring the trial state to the increments; see Body."""
+        increment = self.increment.x.array
         # Chords are carried on by differences of the increments: those of the positions would lose digits in l/L.
         moved = increment[self.u_dofs]
-        np.add(start["x"], moved, out=self.x)
-        self.chord = start["chord"] + (moved[self.cells[:, 1]] - moved[self.cells[:, 0]])
-        turn_nodes(increment[self.turn_dofs], start["R"], self.R, self.chart)
-        self.shear = start["shear"] + increment[self.shear_dofs]
+        np.add(self._x.equilibrium, moved, out=self._x.trial)
+        np.add(self._chord.equilibrium, moved[self.cells[:, 1]] - moved[self.cells[:, 0]], out=self._chord.trial)
+        rotate_nodes(increment[self.rotation_dofs], self._R.equilibrium, self._R.trial, self.chart)
+        np.add(self._shear.equilibrium, increment[self.shear_dofs], out=self._shear.trial)
         section_strains(
-            self.cells, self.chord, self.R, self.E0, self.l0, self.shear, self.share.values[:, 0], GAUSS,
-            self.E.values, self.P.values, self.W.values, self.strain,
+            self.cells, self._chord.trial, self._R.trial, self.E0, self.l0, self._shear.trial,
+            self.timoshenko_factor.values[:, 0], GAUSS, self.triads.values, self.P.values, self.W.values,
+            self._strain.trial,
         )  # fmt: skip
         self.T.values[:] = self.chart[self.cells]
-        return self.sections.update(self.strain, start, self.points, self.s.values, self.D.values)
+        start, trial = self._section_start, self._section_trial
+        return self.sections.update(self._strain.trial, start, trial, self.s.values, self.D.values)
 
-    def commit(self):
-        """Make the trial state the equilibrium and set the increments to zero."""
-        self.sections.update_surface(self.strain, self.equilibrium, self.points)
-        self._keep()
+    def follow(self) -> None:
+        """Bring the points on the wire's surface to the end of the increment; see Body."""
+        self.sections.update_surface(self._strain.trial, self._section_start, self._section_trial)
 
-    def _keep(self):
-        self.equilibrium = {name: getattr(self, name).copy() for name in ("x", "chord", "R", "shear", "strain")}
-        self.equilibrium |= {name: rows.copy() for name, rows in self.points.items()}
-        self.increment.x.array[:] = 0.0
-
-    def restore(self):
-        """Go back to the last equilibrium."""
-        self.points["surface_state"][:] = self.equilibrium["surface_state"]
-        self.increment.x.array[:] = 0.0
-        return self.update()
-
-    def assemble_forces(self, vector):
-        """Add the internal nodal forces ∫ ¹σ : δΔE_l of the owned cells to a local array (owned and ghost dofs)."""
+    def internal_forces(self, vector: np.ndarray) -> None:
+        """Add ∫ ¹σ : δΔE_l of the owned cells; see Body."""
         fem.assemble_vector(vector, self._residual)
 
-    def assemble_tangent(self, matrix):
-        """Add K_l and the stiffness of the turning frame to a PETSc matrix; values stay unassembled."""
-        fem.petsc.assemble_matrix(matrix, self._tangent)
+    def create_matrix(self, rows: int) -> PETSc.Mat:
+        """A matrix of the rod's unknowns and the seats'; see Body."""
+        index_map, comm = self.V.dofmap.index_map, self.mesh.comm
+        matrix = PETSc.Mat().create(comm)
+        matrix.setSizes(((rows, None), (rows, None)))
+        matrix.setType(PETSc.Mat.Type.AIJ)
+        ghosts = np.concatenate([np.arange(*index_map.local_range), index_map.ghosts]).astype(PETSc.IntType)
+        matrix.setLGMap(PETSc.LGMap().create(ghosts, comm=comm), PETSc.LGMap().create(ghosts, comm=comm))
+        matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
+        return matrix
+
+    def tangent(self, matrix: PETSc.Mat) -> None:
+        """Add K_l and the stiffness of the turning frame; see Body."""
+        assemble_matrix(matrix, self._tangent)
+
+    @property
+    def constraint_weight(self) -> float:
+        """Axial stiffness of the stiffest element, N/mm; see Body."""
+        return self._constraint_weight
+
+    def hold(self, matrix: PETSc.Mat, rows: np.ndarray) -> None:
+        """Rows of prescribed increments; columns stay, so that a correction from afar meets them at once; see Body."""
+        matrix.zeroRows(rows.astype(PETSc.IntType), diag=self.constraint_weight)
+
+    def rounding(self, increments: np.ndarray) -> float:
+        """That of the increments, times the axial stiffness of the shortest element, and that of the wire; see Body.
+
+        The second strains the wire by 1e-14, so that a step without any change of load is at rest too.
+        """
+        greatest = comm_max(self.mesh.comm, np.abs(increments).max(initial=0.0))
+        greatest = min(greatest, self.extent)  # what flies away is not at rest
+        size = self.mesh.comm.allreduce(len(increments)) if self.mesh.comm.size > 1 else len(increments)
+        return max(np.finfo(float).eps * greatest * self.constraint_weight * np.sqrt(size), 1e-14 * self.axial_force)

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from dolfinx import fem
-from scipy.spatial.transform import Rotation
+
+from coilset.model.rotations.vectors import rotation_matrix
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ class Head:
 
     def positions(self, motion):
         """Position coefficients of the face's blocks after a motion, shape (blocks, 3), mm; they are linear in it."""
-        R = Rotation.from_rotvec(motion.rotation).as_matrix()
+        R = rotation_matrix(motion.rotation)
         return (self._start - self.centre) @ R.T + self.centre + np.asarray(motion.translation)
 
     def reaction(self, forces, point):

@@ -57,9 +57,9 @@ def grid(solid):
     cells, kinds, x = dolfinx.plot.vtk_mesh(mesh)
     data = {
         "displacement": mesh.geometry.x - solid.configuration.start,
-        "stress": at_nodes(solid, solid.state[..., :6]),
-        "von Mises stress": at_nodes(solid, mises(solid.state[..., :6])),
-        "plastic work": at_nodes(solid, solid.state[..., 12]),
+        "stress": at_nodes(solid, solid.point_state[..., :6]),
+        "von Mises stress": at_nodes(solid, mises(solid.point_state[..., :6])),
+        "plastic work": at_nodes(solid, solid.point_state[..., 12]),
     }  # fmt: skip
     parts = solid.comm.gather((cells, kinds, x.copy(), data))
     if parts is None:

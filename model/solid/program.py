@@ -1,14 +1,13 @@
 """Load programs of a coil section between its heads: pressed along the coil's axis, and released to zero force."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from coilset.model.errors import SolveError
+from coilset.model.equilibrium.release import release
 from coilset.model.solid.heads import Motion
-
-MAX_RELEASE_STEPS = 20
-PROBE = 0.01  # part of the travel by which the rate of release is measured
+from coilset.model.solid.problem import SolidProblem
 
 
 @dataclass(frozen=True)
@@ -41,32 +40,29 @@ class AxialProgram:
         stations: those reached so far, the unloaded one first.
     """
 
-    def __init__(self, problem, report=lambda station: None):
+    def __init__(self, problem: SolidProblem, report: Callable[[Station], object] = lambda station: None) -> None:
         self.problem, self.report = problem, report
         self.stations = [Station(0.0, 0.0, 0.0)]
 
-    def go(self, travel):
+    def go(self, travel: float) -> Station:
         """Go to a travel in one step.
-
-        Returns:
-            Station.
 
         Raises:
             SolveError: if there is no equilibrium.
         """
-        effort = self.problem.step(Motion((0.0, 0.0, -travel)))
+        outcome, _cuts = self.problem.step(Motion((0.0, 0.0, -travel)))
         _, top = self.problem.reactions(np.zeros(3))
-        station = Station(travel, -top.force[2], top.moment[2], effort.iterations, effort.linear_iterations)
+        station = Station(travel, -top.force[2], top.moment[2], outcome.iterations, outcome.linear_iterations)
         self.stations.append(station)
         self.report(station)
         return station
 
-    def press(self, travel, steps):
+    def press(self, travel: float, steps: int) -> None:
         """Go to a travel in equal steps."""
         for part in np.arange(1, steps + 1) / steps:
             self.go(travel * part)
 
-    def release(self, steps, precision=1e-5):
+    def release(self, steps: int, precision: float = 1e-5) -> Station:
         """Go back to zero axial force: in equal steps to where the rate of release brings it, then by secants.
 
         Args:
@@ -81,14 +77,5 @@ class AxialProgram:
         """
         limit = precision * max(abs(station.force) for station in self.stations)
         last = self.stations[-1]
-        first = self.go(last.travel * (1 - PROBE))
-        rate = (last.force - first.force) / (last.travel - first.travel)
-        for part in np.arange(1, steps + 1) / steps:
-            station = self.go(first.travel - first.force / rate * part)
-        for _ in range(MAX_RELEASE_STEPS):
-            if abs(station.force) <= limit:
-                return station
-            before = self.stations[-2]
-            secant = (station.force - before.force) / (station.travel - before.travel)
-            station = self.go(station.travel - station.force / np.clip(secant, 0.5 * rate, 1.5 * rate))
-        raise SolveError(f"the force does not come below {limit:g} N on release")
+        release(lambda travel: self.go(travel).force, last.travel, last.force, steps, limit)
+        return self.stations[-1]

@@ -70,14 +70,14 @@ class SectionSample:
 
     def stress(self):
         """σ11, τ12, τ13 at the last equilibrium with 1 = t, 2 = outward, 3 = t × outward, shape (n, 3), MPa."""
-        six = self._recover(self.solid.state[self._cells, :, :6], self._patches)
+        six = self._recover(self.solid.point_state[self._cells, :, :6], self._patches)
         σ = six[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
         axes = self.frame()[1]
         return np.einsum("nij,i,jk->nk", σ, axes[:, 0], axes)
 
     def history(self, entry):
         """An entry of the history rows at the points, for instance 12 for the plastic work b*, shape (n,)."""
-        return self._recover(self.solid.state[self._cells, :, entry], self._patches)
+        return self._recover(self.solid.point_state[self._cells, :, entry], self._patches)
 
 
 def disk_grid(radius, rings=8, spokes=24):

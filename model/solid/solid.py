@@ -1,16 +1,33 @@
-"""The solid body: moving configuration, state of the points, internal forces and tangent."""
+"""The solid body, a Body: moving configuration, state of the points, internal forces and tangent."""
+
+import time
+from typing import Protocol
 
 import numpy as np
-from dolfinx import la
-from dolfinx.fem import assemble_vector
+from dolfinx import fem
 from dolfinx.fem.petsc import assemble_matrix, create_matrix
+from petsc4py import PETSc
 
+from coilset.meshes.solid import SolidMesh
 from coilset.model.solid.configuration import Configuration
 from coilset.model.solid.forms import SolidForms
 from coilset.model.solid.kinematics import push_forward, stretches
+from coilset.model.state import State, Where
 
 # Cells whose points are worked on at a time; bounds the memory of what is not kept between iterations.
 CHUNK = 2048
+
+
+class PointLaw(Protocol):
+    """A material law at points, as coilset.model.solid.points.MaterialPoints."""
+
+    def initial_state(self, points: int) -> np.ndarray:
+        """Rows of unstressed points, shape (points, n_state); first stress and back stress, 6 entries each."""
+        ...
+
+    def update(self, old: np.ndarray, strain: np.ndarray, new: np.ndarray, C: np.ndarray) -> bool:
+        """Write new rows and moduli; False if the law found no solution."""
+        ...
 
 
 class Solid:
@@ -18,87 +35,108 @@ class Solid:
 
     Args:
         wire: SolidMesh; its mesh will move with the body.
-        points: the law at the points, as `MaterialPoints`: `initial_state(n)` and `update(old, strain, new, C)`.
+        points: the law at the points.
         symmetric: keep only the symmetric part of the moduli, for solvers that need it.
 
     Attributes:
         wire, configuration, forms: mesh, positions, UFL forms.
-        u: coefficients of the displacement increment, shape (blocks with ghosts, 3), mm; a view.
-        state: history rows at the last equilibrium, shape (owned cells, points, n_state), in the current frame.
-        trial: the same at the current increment.
+        increment: function of the displacement increment, mm; u are its coefficients, shape (blocks with ghosts, 3).
+        state: State with the position coefficients `x`, mm, and the rows `point_state` of the owned cells, shape
+            (cells, points, n_state), in the current frame.
+        seconds: time spent at the points (`points`) and in assembling the tangent (`assembly`).
     """
 
-    def __init__(self, wire, points, symmetric=False):
+    row_entries = None
+
+    def __init__(self, wire: SolidMesh, points: PointLaw, symmetric: bool = False) -> None:
         self.wire, self.points, self.symmetric = wire, points, symmetric
         self.configuration = Configuration(wire.mesh)
         self.forms = SolidForms(self.configuration)
-        self.comm = wire.mesh.comm
-        self.V = self.configuration.V
-        self.u = self.forms.u.x.array.reshape(-1, 3)
+        self.comm, self.V = wire.mesh.comm, self.configuration.V
+        self.increment = self.forms.u
+        self.u = self.increment.x.array.reshape(-1, 3)
         self.n_cells = wire.mesh.topology.index_map(3).size_local
         self.n_points = len(self.forms.points)
-        state = points.initial_state(self.n_cells * self.n_points)
-        self.state = state.reshape(self.n_cells, self.n_points, -1)
-        self.trial = self.state.copy()
-        self._internal = la.vector(self.V.dofmap.index_map, 3)
+        rows = points.initial_state(self.n_cells * self.n_points).reshape(self.n_cells, self.n_points, -1)
+        self.state = State()
+        self._x = self.state.add("x", self.configuration.x.copy(), Where.STATION)
+        self._points = self.state.add("point_state", rows, Where.CELL)
+        self.seconds = {"points": 0.0, "assembly": 0.0}
+        self._rounding = 0.0
         self.update()
 
     @property
-    def x(self):
-        """Coefficients of the current position, shape (blocks with ghosts, 3), mm."""
-        return self.configuration.x + self.u
+    def x(self) -> np.ndarray:
+        """Coefficients of the position on trial, shape (blocks with ghosts, 3), mm."""
+        return self._x.trial
 
-    def update(self):
-        """Bring mesh, stresses and moduli to the increment `u`.
+    @property
+    def point_state(self) -> np.ndarray:
+        """Rows of the owned cells' points on trial, shape (cells, points, n_state), MPa."""
+        return self._points.trial
 
-        Returns:
-            False, on every rank, if the increment turns a point inside out or the law finds no solution somewhere.
-        """
+    # ---- Body ------------------------------------------------------------------------------------------------------
+
+    def update(self) -> bool:
+        """Bring mesh, stresses and moduli to the increment; see Body."""
+        began = time.perf_counter()
+        np.add(self._x.equilibrium, self.u, out=self._x.trial)
         self.configuration.move(self.x)
         good = all(self._update_chunk(first) for first in range(0, self.n_cells, CHUNK))
-        return self.comm.allreduce(int(good)) == self.comm.size
+        self.seconds["points"] += time.perf_counter() - began
+        return good
 
-    def _update_chunk(self, first):
+    def follow(self) -> None:
+        """Nothing in a solid bears no load; see Body."""
+
+    def _update_chunk(self, first: int) -> bool:
         cells = slice(first, min(first + CHUNK, self.n_cells))
         gradient = self.forms.evaluate_gradient(np.arange(cells.start, cells.stop))
-        n, rows = len(gradient), self.state.shape[-1]
+        old, trial = self._points.equilibrium, self._points.trial
+        n, rows = len(gradient), old.shape[-1]
         strain, log_stretch = np.empty((n, 6)), np.empty((n, 3))
         axes, rotation = np.empty((n, 3, 3)), np.empty((n, 3, 3))
         if stretches(gradient, strain, axes, rotation, log_stretch) != 0:
             return False
-        C = np.empty((n, 6, 6))
-        trial = self.trial[cells].reshape(n, rows)
-        if not self.points.update(self.state[cells].reshape(n, rows), strain, trial, C):
+        C, new = np.empty((n, 6, 6)), trial[cells].reshape(n, rows)
+        if not self.points.update(old[cells].reshape(n, rows), strain, new, C):
             return False
         stress = self.forms.stress.x.array.reshape(-1, self.n_points, 6)[cells].reshape(n, 6)
         moduli = self.forms.moduli.x.array.reshape(-1, self.n_points, 6, 6)[cells].reshape(n, 6, 6)
-        push_forward(trial, C, axes, rotation, log_stretch, stress, moduli, self.symmetric)
+        push_forward(new, C, axes, rotation, log_stretch, stress, moduli, self.symmetric)
         return True
 
-    def commit(self):
-        """Make the trial state the equilibrium."""
-        self.configuration.x += self.u
-        self.u[:] = 0.0
-        self.state[:] = self.trial
+    def internal_forces(self, vector: np.ndarray) -> None:
+        """Add ∫ σ : δε of the owned cells; see Body."""
+        began = time.perf_counter()
+        fem.assemble_vector(vector, self.forms.residual)
+        self.seconds["points"] += time.perf_counter() - began
 
-    def restore(self):
-        """Go back to the last equilibrium."""
-        self.u[:] = 0.0
-        self.update()
-
-    def internal_forces(self):
-        """Internal forces at the current increment, shape (owned blocks, 3), N."""
-        self._internal.array[:] = 0.0
-        assemble_vector(self._internal.array, self.forms.residual)
-        self._internal.scatter_reverse(la.InsertMode.add)
-        return self._internal.array.reshape(-1, 3)[: self.configuration.owned].copy()
-
-    def create_matrix(self):
-        """A PETSc matrix for the tangent."""
+    def create_matrix(self, rows: int) -> PETSc.Mat:
+        """A matrix for the tangent, with room for all of it; see Body."""
         return create_matrix(self.forms.tangent)
 
-    def assemble_tangent(self, A, conditions):
-        """Write the tangent at the current increment into A; constrained rows and columns are those of the identity."""
-        A.zeroEntries()
-        assemble_matrix(A, self.forms.tangent, bcs=conditions)
-        A.assemble()
+    def tangent(self, matrix: PETSc.Mat) -> None:
+        """Add the material part and that of initial stress; see Body."""
+        began = time.perf_counter()
+        assemble_matrix(matrix, self.forms.tangent)
+        self.seconds["assembly"] += time.perf_counter() - began
+
+    @property
+    def constraint_weight(self) -> float:
+        """Rows and columns of the heads are those of the identity, N/mm; see Body."""
+        return 1.0
+
+    def hold(self, matrix: PETSc.Mat, rows: np.ndarray) -> None:
+        """Rows and columns of prescribed increments, so that the matrix stays symmetric; see Body.
+
+        Increments that go with this matrix meet what is prescribed from their start on, see `HeadPredictor`.
+        """
+        matrix.zeroRowsColumns(rows.astype(PETSc.IntType), diag=self.constraint_weight)
+        diagonal = matrix.getDiagonal()
+        diagonal.array[:] *= 0.5 * np.finfo(float).eps * self.x[: self.configuration.owned].ravel()
+        self._rounding = diagonal.norm()
+
+    def rounding(self, increments: np.ndarray) -> float:
+        """What rounding the positions does to the forces, by the diagonal of the last tangent; see Body."""
+        return self._rounding

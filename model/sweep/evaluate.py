@@ -10,7 +10,7 @@ from dataclasses import asdict, fields
 from coilset.model.analysis import Analysis
 from coilset.model.case import check
 from coilset.model.errors import CoilsetError, SolveError
-from coilset.model.loading.stepper import Step
+from coilset.model.results.record import Step
 from coilset.model.results.summary import summarise
 
 
@@ -42,7 +42,7 @@ def evaluate(data, comm, file="", time_limit=None):
     result = getattr(analysis, "result", None)
     record = {"status": "failed" if reason else "done", "reason": reason, "summary": {}, "steps": {}}
     if result is not None and result.snapshots and comm.rank == 0:
-        record["summary"] = {key: plain(value) for key, value in summarise(analysis, result).items()}
+        record["summary"] = {key: plain(value) for key, value in summarise(analysis.setup, result).items()}
         rows = [asdict(step) for step in result.steps]
         record["steps"] = {column.name: [plain(row[column.name]) for row in rows] for column in fields(Step)}
     del analysis, result

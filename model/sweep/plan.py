@@ -3,16 +3,23 @@
 import copy
 import hashlib
 import json
+from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
-from coilset.model.case import check, put, read_data
+from coilset.model.case import Case, check, read_case_data
+from coilset.model.case.entry import shown
+from coilset.model.case.settings import located, put
+from coilset.model.case.yaml import read_data
 from coilset.model.errors import InputError
 from coilset.model.material import library
 from coilset.model.sweep.design import rows
+from coilset.model.sweep.rehearsal import Rehearsal
 from coilset.model.sweep.spec import SweepSpec
 
 KEY_BYTES = 12
+Row = tuple[Any, ...]
 
 
 class Plan:
@@ -23,39 +30,57 @@ class Plan:
 
     Attributes:
         spec: SweepSpec.
-        case_path: file of the base case, from whose folder other files count.
+        case_path: file of the base case, from whose folder the files that it names count; files that the sweep file
+            names count from the sweep file's.
         names: names of the inputs.
         rows: values of the inputs, a tuple a case.
         keys: key of each case: a digest of all its entries and of its material's constants.
+        notices: what the user should know about the entries of the cases, one line each.
 
     Raises:
-        InputError: if a file cannot be read, or a case breaks the schema; one line with file, place and value.
+        InputError: if a file cannot be read, a case breaks the schema, or an input has a value with which no case can
+            be built; one line with file, place and value.
     """
 
-    def __init__(self, path):
+    def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
         kind = "a sweep file holds the entries case: and vary:"
-        self.spec = check(read_data(path, kind=kind), path, SweepSpec)
+        self.spec = check(read_data(path, kind), path, SweepSpec)
         self.case_path = self.path.parent / self.spec.case
-        self.base = read_data(self.case_path)
+        self.base = read_case_data(self.case_path)
+        self.names = list(self.spec.vary)
         try:
             for entry, value in self.spec.change.items():
-                put(self.base, entry, value, f"change.{entry}")
-            self.names = list(self.spec.vary)
+                put(self.base, entry, self._located(entry, value), f"change.{entry}")
             self.base_values = {name: self._base_value(name) for name in self.names}
-            self.rows = rows(self.spec, self.base_values)
-            self.keys = [self._key(row) for row in self.rows]
+            self.rows: list[Row] = rows(self.spec, self.base_values)
+            self.keys = list(self._check_cases())
         except InputError as error:
             raise InputError(error.problem, error.place, error.file or path) from None
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.rows)
 
-    def entries(self, name):
+    def entries(self, name: str) -> list[str]:
         """Paths of the entries that an input sets."""
         return self.spec.vary[name].entries or [name]
 
-    def _base_value(self, name):
+    def task(self, row: Row) -> dict[str, Any]:
+        """What is needed to run a case: its raw data, the base case's file, and the time limit."""
+        return {"data": self.data(row), "file": str(self.case_path), "time_limit": self.spec.time_limit}
+
+    def data(self, row: Row) -> dict[str, Any]:
+        """The raw data of one case, as a case file would hold it."""
+        data = copy.deepcopy(self.base)
+        for name, value in zip(self.names, row, strict=True):
+            for entry in self.entries(name):
+                put(data, entry, self._located(entry, copy.deepcopy(value)), f"vary.{name}")
+        return data
+
+    def _located(self, entry: str, value: Any) -> Any:
+        return located(entry, value, self.path.parent.absolute())
+
+    def _base_value(self, name: str) -> Any:
         """The base case's value of an input, None if the base case leaves it out."""
         value = self.base
         for part in self.entries(name)[0].split("."):
@@ -67,42 +92,45 @@ class Plan:
                 return None
         return value
 
-    def task(self, row):
-        """What is needed to run a case: its raw data, the base case's file, and the time limit."""
-        return {"data": self.data(row), "file": str(self.case_path), "time_limit": self.spec.time_limit}
+    def _check_cases(self) -> Iterator[str]:
+        """The keys, one after the other."""
+        rehearsal = Rehearsal(self.spec)
+        self.notices: list[str] = []
+        for row in self.rows:
+            try:
+                case = check(self.data(row), self.case_path)
+            except InputError as error:
+                inputs = ", ".join(f"{name} = {shown(value)}" for name, value in zip(self.names, row, strict=True))
+                raise InputError(f"{error.problem} (in the case {inputs})", error.place) from None
+            self.notices = self.notices or list(case.notices())
+            rehearsal.try_case(row, case)
+            yield key(case)
+        rehearsal.conclude()
 
-    def data(self, row):
-        """The raw data of one case, as a case file would hold it."""
-        data = copy.deepcopy(self.base)
-        for name, value in zip(self.names, row, strict=True):
-            for entry in self.entries(name):
-                put(data, entry, copy.deepcopy(value), f"vary.{name}")
-        return data
 
-    def _key(self, row):
-        try:
-            case = check(self.data(row), self.case_path)
-        except InputError as error:
-            inputs = ", ".join(f"{name} = {value}" for name, value in zip(self.names, row, strict=True))
-            raise InputError(f"{error.problem} (in the case {inputs})", error.place) from None
-        content = case.model_dump(mode="json")
-        content["material"] = material_digest(case.material)
-        if "file" in content["spring"]:
-            content["spring"]["file"] = file_digest(Path(content["spring"]["file"]))
-        content = json.dumps(content, sort_keys=True)
-        return hashlib.blake2b(content.encode(), digest_size=KEY_BYTES).hexdigest()
+def key(case: Case) -> str:
+    """Digest of a case: its entries, its material's constants, and the file of a measured spring."""
+    content = case.model_dump(mode="json")
+    content["material"] = material_digest(case.material)
+    if "file" in content["spring"]:
+        content["spring"]["file"] = file_digest(Path(content["spring"]["file"]))
+    return _digest(json.dumps(content, sort_keys=True).encode())
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.blake2b(content, digest_size=KEY_BYTES).hexdigest()
 
 
 @lru_cache
-def material_digest(name):
+def material_digest(name: str) -> str:
     """Digest of a material's constants, so that a changed material file makes new cases."""
-    return hashlib.blake2b(library.load(name).parameters().tobytes(), digest_size=KEY_BYTES).hexdigest()
+    return _digest(library.load(name).parameters().tobytes())
 
 
 @lru_cache
-def file_digest(path):
+def file_digest(path: Path) -> str:
     """Digest of a file; that of nothing if it cannot be read, which its case will complain of."""
     try:
-        return hashlib.blake2b(path.read_bytes(), digest_size=KEY_BYTES).hexdigest()
+        return _digest(path.read_bytes())
     except OSError:
         return ""

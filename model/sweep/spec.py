@@ -1,12 +1,20 @@
 """The sweep file: a base case, the entries that vary, the design that combines them, and the figures."""
 
-from typing import Annotated, Any, Literal
+from collections.abc import Sequence
+from difflib import get_close_matches
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 from scipy import stats
 
-from coilset.model.loading.program import Strict
+from coilset.model.case.entry import Strict, Whole, shortened
+
+# numbers of a case's summary, and how long it took
+RESPONSES = (
+    "free_length_before_mm", "free_length_after_mm", "set_mm", "rate_N_per_mm", "force_max_N", "block_height_mm",
+    "residual_shear_max_MPa", "shear_max_MPa", "steps", "iterations", "elements", "seconds",
+)  # fmt: skip
 
 
 class Input(Strict):
@@ -24,11 +32,11 @@ class Values(Input):
 
     values: Annotated[list[Any], Field(min_length=1, description="numbers, words or any other YAML")]
 
-    def grid(self):
+    def grid(self) -> list[Any]:
         """The values."""
         return list(self.values)
 
-    def at(self, q):
+    def at(self, q: Sequence[float] | np.ndarray) -> list[Any]:
         """Values at the probabilities `q`, 0 ≤ q < 1."""
         return [self.values[min(int(part * len(self.values)), len(self.values) - 1)] for part in q]
 
@@ -38,24 +46,24 @@ class Range(Input):
 
     start: Annotated[float, Field(alias="from", description="first value")]
     stop: Annotated[float, Field(alias="to", description="last value")]
-    count: Annotated[int | None, Field(ge=2, le=1_000_000, description="number of values in a grid")] = None
+    count: Annotated[Whole | None, Field(ge=2, le=1_000_000, description="number of values in a grid")] = None
     spacing: Annotated[Literal["linear", "log"], Field(description="equal differences or equal ratios")] = "linear"
 
     @model_validator(mode="after")
-    def _order(self):
+    def _order(self) -> Self:
         if self.start >= self.stop:
             raise ValueError(f"from {self.start:g} to {self.stop:g} is no range; 'from' must be the smaller one")
         if self.spacing == "log" and self.start <= 0:
             raise ValueError(f"equal ratios need a positive start, not {self.start:g}")
         return self
 
-    def grid(self):
+    def grid(self) -> list[Any]:
         """`count` values, both ends among them."""
         if self.count is None:
             raise ValueError("a grid needs 'count', the number of values in the range")
         return self.at(np.linspace(0.0, 1.0, self.count))
 
-    def at(self, q):
+    def at(self, q: Sequence[float] | np.ndarray) -> list[Any]:
         """Values at the probabilities `q`."""
         if self.spacing == "log":
             return (self.start * (self.stop / self.start) ** np.asarray(q)).tolist()
@@ -69,17 +77,17 @@ class Normal(Input):
     tolerance: Annotated[float, Field(gt=0, description="half of the tolerance's width")]
     sigmas: Annotated[float, Field(gt=0, le=10, description="standard deviations in the tolerance")] = 3.0
 
-    def grid(self):
+    def grid(self) -> list[Any]:
         """There is none."""
         raise ValueError("a scatter has no grid; take the design latin_hypercube, sobol or sobol_indices")
 
-    def at(self, q):
+    def at(self, q: Sequence[float] | np.ndarray) -> list[Any]:
         """Values at the probabilities `q`, the quantiles of the truncated normal distribution."""
         scatter = stats.truncnorm(-self.sigmas, self.sigmas, loc=self.mean, scale=self.tolerance / self.sigmas)
         return scatter.ppf(q).tolist()
 
 
-def _kind(value):
+def _kind(value: Any) -> str:
     """Which of the three an input is, by the entries that only it has."""
     given = value if isinstance(value, dict) else getattr(value, "__dict__", {})
     if "values" in given:
@@ -141,7 +149,24 @@ class Convergence(Strict):
     of: Annotated[list[str], Field(min_length=1, description="entries of the summary")] = Field(["set_mm"])
 
 
-AnyFigure = Annotated[Lines | Map | Family | Scatter | Sensitivity | Convergence, Field(discriminator="kind")]
+def _figure(value: Any) -> str:
+    """Tag of a figure: its kind."""
+    return f"({value.get('kind') if isinstance(value, dict) else getattr(value, 'kind', None)})"
+
+
+AnyFigure = Annotated[
+    Annotated[Lines, Tag("(lines)")]
+    | Annotated[Map, Tag("(map)")]
+    | Annotated[Family, Tag("(characteristics)")]
+    | Annotated[Scatter, Tag("(scatter)")]
+    | Annotated[Sensitivity, Tag("(sensitivity)")]
+    | Annotated[Convergence, Tag("(convergence)")],
+    Discriminator(
+        _figure,
+        custom_error_type="figure",
+        custom_error_message="kind must be lines, map, characteristics, scatter, sensitivity or convergence",
+    ),
+]
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_.]*$")]  # of a variable in the data set
 
@@ -159,13 +184,13 @@ class SweepSpec(Strict):
         Literal["grid", "together", "one_at_a_time", "latin_hypercube", "sobol", "random", "sobol_indices"],
         Field(description="how the inputs are combined"),
     ] = "grid"
-    samples: Annotated[int | None, Field(ge=2, le=100_000_000, description="cases of a sampling design")] = None
-    seed: Annotated[int, Field(ge=0, description="of a sampling design's random numbers")] = 0
+    samples: Annotated[Whole | None, Field(ge=2, le=100_000_000, description="cases of a sampling design")] = None
+    seed: Annotated[Whole, Field(ge=0, description="of a sampling design's random numbers")] = 0
     time_limit: Annotated[float | None, Field(gt=0, description="seconds after which a case is given up")] = None
     figures: list[AnyFigure] | None = None
 
     @model_validator(mode="after")
-    def _design_fits(self):
+    def _design_fits(self) -> Self:
         if self.design in SAMPLES and self.samples is None:
             raise ValueError(f"the design {self.design} needs 'samples'")
         if self.design in GRIDS and self.samples is not None:
@@ -175,13 +200,21 @@ class SweepSpec(Strict):
         return self
 
     @model_validator(mode="after")
-    def _figures_fit(self):
+    def _figures_fit(self) -> Self:
+        """Every name in a figure is that of an input or of a response; known before any case runs."""
+        responses = [f"{name}_found" if name in self.vary else name for name in RESPONSES]
         for number, figure in enumerate(self.figures or []):
-            for role in ("x", "y", "panels", "colour"):
-                name = getattr(figure, role, None)
-                if role == "colour" and figure.kind == "characteristics":
-                    continue
-                if name is not None and name not in self.vary:
-                    raise ValueError(f"figures.{number}.{role}: '{name}' is none of the varied inputs "
-                                     f"({', '.join(self.vary)})")  # fmt: skip
+            for role in ("x", "y", "panels", "colour", "of"):
+                either = role == "colour" and figure.kind == "characteristics"
+                known = responses if role == "of" else [*self.vary, *responses] if either else list(self.vary)
+                for name in _names(getattr(figure, role, None)):
+                    if name not in known:
+                        what = "no response of a case" if role == "of" or either else "none of the varied inputs"
+                        near = get_close_matches(name, known, 1)
+                        hint = f"is {near[0]} meant?" if near else f"there are {', '.join(known)}"
+                        raise ValueError(f"figures.{number}.{role}: '{shortened(name)}' is {what}; {hint}")
         return self
+
+
+def _names(value: str | list[str] | None) -> list[str]:
+    return [value] if isinstance(value, str) else value or []

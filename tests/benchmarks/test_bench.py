@@ -1,33 +1,63 @@
 """The benchmarks measure what they say: stages do not overlap, records are whole, tables and figure come of them."""
 
 import json
-import time
+from types import SimpleNamespace
 
 import pytest
 from mpi4py import MPI
 
 from coilset.model import analysis
 from coilset.scripts import bench as command
-from coilset.verification.benchmarks import measure, run
+from coilset.verification.benchmarks import measure, run, stopwatch
 from coilset.verification.benchmarks.stopwatch import Stopwatch
 from coilset.verification.benchmarks.target import ITERATION, per_element, seconds, spread, targets
 
 
-def test_a_stage_does_not_count_the_stages_within_it():
-    watch, owner = Stopwatch(), type("Owner", (), {"wait": staticmethod(time.sleep)})
+@pytest.fixture
+def clock(monkeypatch):
+    """Hands of the clock and of the processor that the stopwatch reads, moved by the test, s."""
+    hands = SimpleNamespace(wall=100.0, cpu=7.0)
+    fake = SimpleNamespace(perf_counter=lambda: hands.wall, process_time=lambda: hands.cpu)
+    monkeypatch.setattr(stopwatch, "time", fake)
+    return hands
+
+
+def test_a_stage_does_not_count_the_stages_within_it(clock):
+    """Outer: 2 s and 4 s at full work, within it 5 s of waiting, and 16 s after the end that belong to nobody."""
+
+    def work(seconds):
+        clock.wall, clock.cpu = clock.wall + seconds, clock.cpu + seconds
+
+    def wait(seconds):
+        clock.wall += seconds
+
+    watch, owner = Stopwatch(), SimpleNamespace(wait=wait)
     watch.watch(owner, "wait", "inner")
-    began = time.perf_counter()
     with watch.stage("outer"):
-        time.sleep(0.02)
-        owner.wait(0.05)
-        time.sleep(0.02)
-    whole = time.perf_counter() - began
-    assert 0.05 <= watch.wall["inner"] < 0.05 + (whole - 0.09) + 1e-3
-    assert watch.wall["inner"] + watch.wall["outer"] == pytest.approx(whole, abs=1e-3)
-    assert sum(watch.cpu.values()) < 0.5 * whole  # who sleeps does not use the processor
-    watch.split("outer", {"part": 0.01})
-    assert watch.wall["part"] == 0.01
-    assert watch.wall["inner"] + watch.wall["outer"] + watch.wall["part"] == pytest.approx(whole, abs=1e-3)
+        work(2.0)
+        owner.wait(5.0)
+        work(4.0)
+    work(16.0)
+    assert watch.wall == {"inner": 5.0, "outer": 6.0}
+    assert watch.cpu == {"inner": 0.0, "outer": 6.0}
+    watch.split("outer", {"part": 1.5})
+    assert watch.wall == {"inner": 5.0, "outer": 4.5, "part": 1.5}
+    assert watch.cpu == {"inner": 0.0, "outer": 4.5, "part": 1.5}
+
+
+def test_a_stage_ends_where_it_is_left_by_an_error(clock):
+    def fail():
+        clock.wall += 1.0
+        raise ValueError("left")
+
+    watch, owner = Stopwatch(), SimpleNamespace(fail=fail)
+    watch.watch(owner, "fail", "outer")
+    with pytest.raises(ValueError, match="left"):
+        owner.fail()
+    clock.wall += 2.0
+    with watch.stage("next"):
+        clock.wall += 4.0
+    assert watch.wall == {"outer": 1.0, "next": 4.0}
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from coilset.model.contact.centreline import CentreLine
+from coilset.model.contact.base import TrialPositions
+from coilset.model.contact.curve import CentreLine
 
 TURNS, RADIUS = np.linspace(0.0, 2.5, 41), 20.0
 
@@ -19,7 +20,7 @@ def _points(thin=2.5, thick=2.5):
 
 
 def _dense(contact, x, seats):
-    part, n = contact.evaluate(x, seats), x.size + len(seats)
+    part, n = contact.evaluate(TrialPositions(x, seats)), x.size + len(seats)
     f, K = np.zeros(n), np.zeros((n, n))
     for dofs, force, k in zip(part.dofs, part.forces, part.stiffness, strict=True):
         np.add.at(f, dofs, force)

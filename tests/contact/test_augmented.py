@@ -29,7 +29,7 @@ def test_penetration_is_as_small_as_asked_for_whatever_the_bedding():
     for bedding in (3000.0, 1000.0):
         for penetration in (None, 5e-4):
             analysis = analyse(bedding=bedding, penetration=penetration)
-            found[bedding, penetration] = summarise(analysis, analysis.run())
+            found[bedding, penetration] = summarise(analysis.setup, analysis.run())
             deepest = max(step.penetration_mm for step in analysis.result.steps)
             assert deepest <= 5e-4 if penetration else deepest > 0.01
     soft, hard = found[1000.0, None], found[3000.0, None]
@@ -39,10 +39,10 @@ def test_penetration_is_as_small_as_asked_for_whatever_the_bedding():
     assert soft["force_max_N"] == pytest.approx(hard["force_max_N"], rel=1e-3)
 
 
-def test_stiffness_is_the_derivative_of_the_forces_of_lifted_points(points, helix, dense):
-    """Coils 0.1 mm apart, lifted by up to 0.3 mm: two thirds of the points bear though none has sunk in."""
+def test_stiffness_is_the_derivative_of_the_forces_of_offset_points(points, helix, dense):
+    """Coils 0.1 mm apart, pressed as if up to 0.3 mm nearer: two thirds of the points bear though none has sunk in."""
     coils, x = Coils(points(), helix(12.0), 1e3, 0.005), helix(5.12, seed=1, noise=0.002)
-    coils.memory["lift"] = np.random.default_rng(3).uniform(0.0, 0.3, coils.overlap.shape)
+    coils.memory["multiplier_offset"] = np.random.default_rng(3).uniform(0.0, 0.3, coils.overlap.shape)
     _, K, part = dense(coils, x, np.zeros(12))
     assert part.closed > 40
     assert part.penetration.max() < 0.0
@@ -53,7 +53,7 @@ def test_stiffness_is_the_derivative_of_the_forces_of_lifted_points(points, heli
                                atol=1e-6 * np.abs(K).max())  # fmt: skip
 
 
-def test_lifts_are_part_of_the_state(tmp_path):
+def test_offsets_are_part_of_the_state(tmp_path):
     """A run resumed at its third step ends as the undisturbed one does, bit by bit; a failed step leaves no trace."""
     whole = analyse(penetration=1e-3)
     whole.run()
@@ -67,17 +67,17 @@ def test_lifts_are_part_of_the_state(tmp_path):
 
     first = analyse(penetration=1e-3)
     with pytest.raises(Stop):
-        first.run(stop, Checkpoint(tmp_path, first.case))
+        first.run(stop, Checkpoint(tmp_path, first.case).save)
     seat = next(contact for contact in first.system.contacts if contact.end == "top")
-    committed = seat.memory.committed["lift"].copy()
+    committed = seat.memory.committed("multiplier_offset").copy()
     assert committed.max() > 0.0
     first.system.augment()
-    assert np.any(seat.memory["lift"] != committed)
+    assert np.any(seat.memory["multiplier_offset"] != committed)
     first.system.restore()
-    np.testing.assert_array_equal(seat.memory["lift"], committed)
+    np.testing.assert_array_equal(seat.memory["multiplier_offset"], committed)
 
     second = analyse(penetration=1e-3)
-    Checkpoint(tmp_path, second.case).resume(second)
+    second.resume(Checkpoint(tmp_path, second.case).load(second.comm))
     second.run()
     assert [step.force_N for step in second.result.steps] == [step.force_N for step in whole.result.steps]
     np.testing.assert_array_equal(second.result.snapshots[-1].x, whole.result.snapshots[-1].x)

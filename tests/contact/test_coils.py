@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from coilset.model.contact.base import TrialPositions
 from coilset.model.contact.coils import Coils
 
 SEATS = np.zeros(12)
@@ -78,16 +79,16 @@ def test_coils_of_a_flat_cone_touch_sideways(make_coils, helix):
 
 
 def test_open_coils_do_not_touch(make_coils, helix):
-    assert make_coils().evaluate(helix(5.1), SEATS).closed == 0
-    assert make_coils().depth(helix(5.1), SEATS) == 0.0
+    assert make_coils().evaluate(TrialPositions(helix(5.1), SEATS)).closed == 0
+    assert make_coils().max_penetration(TrialPositions(helix(5.1), SEATS)) == 0.0
 
 
 def test_coils_that_lie_on_each_other_from_the_start_are_free_of_force(points, helix):
     """Closed ends: what overlaps in the stress-free state counts as touching."""
     x = helix(4.95)
     coils = Coils(points(), x, 1e3, 0.005)
-    assert coils.evaluate(x, SEATS).closed == 0
-    squeezed = x * [1, 1, 0.99]
-    assert coils.evaluate(squeezed, SEATS).closed > 40
+    assert coils.evaluate(TrialPositions(x, SEATS)).closed == 0
+    squeezed = TrialPositions(x * [1, 1, 0.99], SEATS)
+    assert coils.evaluate(squeezed).closed > 40
     # 1 % of the pitch closer: 0.0495 mm but for the slope of the coils
-    assert coils.depth(squeezed, SEATS) == pytest.approx(0.0495, rel=0.01)
+    assert coils.max_penetration(squeezed) == pytest.approx(0.0495, rel=0.01)

@@ -1,11 +1,12 @@
-"""Plates, grooves and mounts: exact derivatives, and plates that turn with the wire see nothing new."""
+"""Plates, grooves and mounts: exact derivatives, and a plate that turns with its wire sees it stay."""
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from coilset.model.contact.base import TrialPositions
 from coilset.model.contact.hold import Groove, Mount
-from coilset.model.contact.plate import Plate, turned_back
+from coilset.model.contact.plate import Plate
 
 SEATS = np.array([0.03, -0.02, 0.1, 1e-2, 2e-2, 5e-2, -0.04, 0.01, 27.5, -1e-2, 3e-2, -2e-2])
 LEVEL = np.where(np.arange(12) == 8, 27.5, 0.0)
@@ -18,7 +19,7 @@ def test_groove_is_an_energy(points, helix, dense, end):
     x, h, rng = helix(8.8, seed=1, noise=0.02), 1e-6, np.random.default_rng(3)
 
     def energy(x, seats):
-        q = groove.plate.sees(groove.wire.at(x)[groove.at], seats)
+        q = groove.plate.to_seat_frame(groove.wire.at(x)[groove.at], seats)
         s = np.append(np.hypot(*q[:-1, :2].T), q[-1] @ groove.along)
         return 0.5 * groove.stiffness @ (s - groove.start) ** 2
 
@@ -33,28 +34,13 @@ def test_groove_is_an_energy(points, helix, dense, end):
     np.testing.assert_allclose(K @ direction, change, rtol=0, atol=1e-7 * np.abs(change).max())
 
 
-def test_a_turned_plate_sees_a_turned_wire_unturned(helix):
-    """A(θ) undoes the turn by θ, to rounding of the series also for 1 rad."""
+def test_a_wire_that_turns_with_its_plate_stays_where_it_was_in_its_frame(helix):
+    """R(θ)ᵀ undoes the rotation by θ."""
     plate, x = Plate("top", 41), helix(9.0)
     θ = np.array([0.6, -0.7, 0.4])
     seats = np.concatenate([np.zeros(6), [1.0, 2.0, 3.0], θ])
     turned = Rotation.from_rotvec(θ).apply(x) + seats[6:9]
-    np.testing.assert_allclose(plate.sees(turned, seats), x, atol=1e-13 * 27.0)
-
-
-def test_turned_back_has_the_derivatives_of_the_rotation():
-    """Central differences with h = 1e-4: truncation h²/6 = 2e-9, for second derivatives h²/12 and rounding."""
-    θ, h, steps = np.array([0.3, -0.5, 0.2]), 1e-4, np.eye(3)
-    _, dA, ddA = turned_back(θ)
-
-    def A(vector):
-        return Rotation.from_rotvec(-vector).as_matrix()
-
-    for k in range(3):
-        np.testing.assert_allclose(dA[k], (A(θ + h * steps[k]) - A(θ - h * steps[k])) / (2 * h), atol=1e-8)
-        for l in range(3):
-            ends = [a * b * A(θ + h * (a * steps[k] + b * steps[l])) for a in (1, -1) for b in (1, -1)]
-            np.testing.assert_allclose(ddA[k, l], sum(ends) / (4 * h * h), atol=1e-7)
+    np.testing.assert_allclose(plate.to_seat_frame(turned, seats), x, atol=1e-13 * 27.0)
 
 
 def test_a_plate_in_a_rigid_motion_gets_balanced_forces(points, helix):
@@ -63,7 +49,7 @@ def test_a_plate_in_a_rigid_motion_gets_balanced_forces(points, helix):
     groove = Groove("bottom", points(), 0.7, helix(9.0), 1e3, LEVEL)
     x = helix(8.8, seed=1, noise=0.02)
     for seats, within in ((LEVEL, 1e-12), (SEATS, 2e-5)):
-        part = groove.evaluate(x, seats)
+        part = groove.evaluate(TrialPositions(x, seats))
         on_wire = -part.forces[:, :12].reshape(-1, 4, 3)
         at = x[part.dofs[:, :12:3] // 3]
         on_plate = -part.forces[:, 12:].sum(axis=0)

@@ -9,9 +9,9 @@ from mpi4py import MPI
 from coilset.model.analysis import Analysis
 from coilset.model.case import check, read_case
 from coilset.model.contact.resultants import Wrench
-from coilset.model.results.balance import imbalance
 from coilset.model.results.dataset import pressure_along_wire
-from coilset.model.results.seats import Resultants, write_seats
+from coilset.model.results.folder import write_seats
+from coilset.model.results.record import SeatReactions
 
 COARSE = ["mesh.section.rule=abramowitz9", "loading.0.steps=6", "loading.1.steps=4"]
 CLOSED = {"wire_diameter": 4.0, "mean_diameter": 32.0, "turns": 7.5, "free_length": 75.0,
@@ -25,7 +25,7 @@ def example_runs(example):
     springs = example.parent / "springs"
     for file in (example, springs / "closed_and_ground.yaml", springs / "variable_wire.yaml"):
         analysis, lacks = Analysis(read_case(file, COARSE), MPI.COMM_SELF), []
-        analysis.run(lambda step, analysis=analysis, lacks=lacks: lacks.append(imbalance(analysis)))
+        analysis.run(lambda step, analysis=analysis, lacks=lacks: lacks.append(analysis.imbalance()))
         found[file.stem] = analysis, np.array(lacks)
     return found
 
@@ -68,7 +68,7 @@ def test_what_one_seat_does_the_other_undoes(example_runs):
 def test_pressure_adds_up_to_the_force(example_runs, tmp_path):
     """On level seats the pressure, times the length each point bears with, is the axial force while the tip bears."""
     analysis, _ = example_runs["closed_and_ground"]
-    data, seat = pressure_along_wire(analysis), analysis.system.contacts[1]
+    data, seat = pressure_along_wire(analysis.setup, analysis.result), analysis.system.contacts[1]
     assert list(data.contact.values) == ["coils", "bottom seat", "top seat"]
     place = np.searchsorted(seat.points.turns, data.wire_turn.values)
     lengths = seat.lengths[place]
@@ -81,7 +81,7 @@ def test_pressure_adds_up_to_the_force(example_runs, tmp_path):
     rows = list(csv.DictReader((tmp_path / "seats.csv").read_text().splitlines()))
     assert len(rows) == len(analysis.result.steps)
     assert float(rows[3]["top_eccentricity_mm"]) == analysis.result.seats[3].top.eccentricity_mm
-    again = Resultants.from_row(analysis.result.seats[3].row(), analysis.result.seats[3].pressure)
+    again = SeatReactions.from_row(analysis.result.seats[3].row(), analysis.result.seats[3].pressure)
     assert again.row() == analysis.result.seats[3].row()
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from coilset.model.contact.centreline import CentreLine
 from coilset.model.contact.coils import Coils
+from coilset.model.contact.curve import CentreLine
 
 RADIUS, WIRE, PITCH = 20.0, 2.5, 4.9
 

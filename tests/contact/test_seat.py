@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from coilset.model.contact.base import TrialPositions
 from coilset.model.contact.seat import Seat
 
 BEDDING, ONSET = 1e3, 0.005
@@ -49,7 +50,7 @@ def test_a_flat_seat_bears_each_point_by_its_length_and_penetration(make_seat, h
     """Beyond the onset w the pressure is bedding · length · (penetration − w)."""
     seat = make_seat("bottom")
     x = helix(0.0, lift=2.48)
-    part = seat.evaluate(x, LEVEL)
+    part = seat.evaluate(TrialPositions(x, LEVEL))
     assert part.closed == 81
     np.testing.assert_allclose(part.penetration, 0.02, rtol=1e-12)
     bulk = part.point != 0  # the tip bears from the first touch
@@ -83,7 +84,7 @@ def test_a_conical_seat_bears_across_its_surface(make_seat, helix, dense):
 
 def test_moments_on_a_tilting_seat_are_those_of_its_pressure(make_seat, helix):
     seat = make_seat("bottom", moves=True)
-    part = seat.evaluate(helix(0.0, lift=2.48), LEVEL)
+    part = seat.evaluate(TrialPositions(helix(0.0, lift=2.48), LEVEL))
     p = seat.points.at(helix(0.0))[part.point]
     np.testing.assert_allclose(part.forces[:, -3], part.pressure * p[:, 1], rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(part.forces[:, -2], -part.pressure * p[:, 0], rtol=1e-9, atol=1e-9)

@@ -6,9 +6,8 @@ from mpi4py import MPI
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import check
-from coilset.model.contact.build import SOFT, SOFTNESS
+from coilset.model.contact.build import FREE_TILT_OF_BEDDING, MODULUS_OF_BEDDING
 from coilset.model.errors import InputError
-from coilset.model.results.balance import imbalance
 
 SPRING = {"wire_diameter": 4.0, "mean_diameter": 32.0, "turns": 7.5, "free_length": 75.0,
           "end_coils": {"form": "closed and ground"}}  # fmt: skip
@@ -52,8 +51,8 @@ def run(seats, loading=LIGHT, spring=SPRING):
     analysis = Analysis(case(seats, loading, spring), MPI.COMM_SELF)
 
     def judge(step):
-        assert imbalance(analysis)[0] < 1e-8 * step.force_N
-        assert imbalance(analysis)[1] < 1e-8 * step.force_N * spring["mean_diameter"]
+        assert analysis.imbalance()[0] < 1e-8 * step.force_N
+        assert analysis.imbalance()[1] < 1e-8 * step.force_N * spring["mean_diameter"]
 
     return analysis, analysis.run(judge)
 
@@ -73,7 +72,8 @@ def test_a_ball_joint_keeps_the_force_on_its_axis(guided):
         assert free.seats[step].top.eccentricity_mm < 1e-3
         assert abs(free.seats[step].top.moment_z_Nmm) < 1e-6 * abs(held.seats[step].top.moment_z_Nmm)
         assert free.seats[step].bottom.eccentricity_mm > 0.5
-    tilt, softness = np.hypot(*analysis.system.seats[9:11]), SOFT * analysis.law.E / SOFTNESS * 16.0**3
+    tilt = np.hypot(*analysis.system.seats[9:11])
+    softness = FREE_TILT_OF_BEDDING * analysis.law.E / MODULUS_OF_BEDDING * 16.0**3
     assert tilt > 1e-3
     assert free.seats[1].top.tilt_rad == pytest.approx(tilt, rel=1e-3)
     assert free.seats[1].top.eccentricity_mm == pytest.approx(softness * tilt / 30.0, rel=0.01)
@@ -108,7 +108,7 @@ def test_a_cone_moves_the_end_coil_towards_or_off_the_axis():
     for angle in (-20, 0, 20):
         seat = {"shape": "conical", "angle": angle} if angle else {}
         analysis, _ = run({"bottom": seat})
-        end_coil = analysis.system.gather(analysis.rod.x)[1:14]
+        end_coil = analysis.layout.gather(analysis.rod.x)[1:14]
         radius[angle] = np.hypot(*end_coil[:, :2].T).mean()
     assert radius[20] < radius[0] - 1e-3
     assert radius[0] + 1e-3 < radius[-20]

@@ -8,7 +8,8 @@ import yaml
 from typer.testing import CliRunner
 
 from coilset.model.errors import InputError
-from coilset.model.material import experiments, fit, library, points
+from coilset.model.material import library, points
+from coilset.model.material.identification import experiments, fit
 from coilset.scripts.material import app
 from coilset.verification.cases import material_fit
 

@@ -106,7 +106,7 @@ def test_objective_under_a_growing_turn():
     for D in random_strains(6, 30, 6, 3e-3):
         R = step @ R
         row = np.empty(13)
-        solid.turn(moving[0], step, row)
+        solid.rotate_state(moving[0], step, row)
         moving = points.update(law, row[None], turned(D, R, 0.5)[None])[0]
         still = points.update(law, still, D[None])[0]
     np.testing.assert_allclose(moving[0, :6], turned(still[0, :6], R), atol=1e-10 * np.abs(still[0, :6]).max())

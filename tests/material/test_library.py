@@ -83,11 +83,12 @@ def at(content):
 WRONG = {
     "missing function": (
         lambda c: at(c).pop("kinematic"),
-        "temperatures.0.kinematic: is missing; give its constants, or 'none' if the material has no such function",
+        "temperatures.0.kinematic: this entry is required; give its constants, or 'none' if the material has no such"
+        " function",
     ),
     "negative k0²": (
         lambda c: at(c)["isotropic"].update(k0_squared=-5),
-        "temperatures.0.isotropic.k0_squared: -5 N²/mm⁴: input should be greater than 0",
+        "temperatures.0.isotropic.k0_squared: -5: must be greater than 0",
     ),
     "negative k²": (
         lambda c: at(c).update(isotropic={"k0_squared": 22480, "a1": 86664, "a2": -0.05, "a3": 0.0574}),
@@ -101,28 +102,28 @@ WRONG = {
     ),
     "unknown key": (
         lambda c: c.update(colour="red"),
-        "colour: is no entry of a material file; docs/material.md lists them",
+        "colour: unknown entry; the entries here are name, description, source, units, validity, temperatures, heating",
     ),
     "misspelt key": (
         lambda c: at(c)["isotropic"].update(k0_square=1),
-        "temperatures.0.isotropic.k0_square: is no entry of a material file; is k0_squared meant?",
+        "temperatures.0.isotropic.k0_square: unknown entry; is k0_squared meant?",
     ),
     "wrong type": (
         lambda c: at(c)["elasticity"].update(G="stiff"),
-        "temperatures.0.elasticity.G: 'stiff': input should be a valid number, unable to parse string as a number",
+        "temperatures.0.elasticity.G: 'stiff': must be a number",
     ),
     "missing units": (
         lambda c: c.pop("units"),
-        "units: is missing; give 'N, mm, K', in which all numbers of the file are understood",
+        "units: this entry is required; give 'N, mm, K', in which all numbers of the file are understood",
     ),
     "other units": (
         lambda c: c.update(units="N, m, K"),
-        "units: 'N, m, K' is not what belongs here; give 'N, mm, K', in which all numbers of the file are understood",
+        "units: 'N, m, K': must be 'N, mm, K'",
     ),
-    "missing source": (lambda c: c.pop("source"), "source: is missing; give where the constants come from"),
+    "missing source": (lambda c: c.pop("source"), "source: this entry is required; give where the constants come from"),
     "empty source": (
         lambda c: c.update(source=""),
-        "source: '' is not what belongs here; give where the constants come from",
+        "source: '': must have at least 1 character",
     ),
     "jump of k²": (
         lambda c: at(c)["isotropic"]["saturation"].update(k1_squared=1e5),
@@ -176,7 +177,7 @@ def test_unknown_names_and_unreadable_files(tmp_path):
         InputError, match=r"'ck16' is no material of the library \(ck15, elastic, .*\) and no .yaml file"
     ):
         library.load("ck16")
-    with pytest.raises(InputError, match=r"none\.yaml: cannot be read"):
+    with pytest.raises(InputError, match=r"none\.yaml: the file cannot be read"):
         library.load(tmp_path / "none.yaml")
     (tmp_path / "list.yaml").write_text("- 1\n")
     with pytest.raises(InputError, match="is no material file; it wants name, source, units"):
@@ -189,5 +190,6 @@ def test_the_command_says_it_in_one_line(tmp_path):
     command = [sys.executable, "-m", "coilset.scripts", "material", "show", "wrong.yaml"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 2
-    assert done.stderr == "coilset: wrong.yaml: description: is missing; give a sentence that says what it is\n"
+    problem = "this entry is required; give a sentence that says what it is"
+    assert done.stderr == f"coilset: wrong.yaml: description: {problem}\n"
     assert [path.name for path in tmp_path.iterdir()] == ["wrong.yaml"]

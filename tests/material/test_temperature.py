@@ -237,6 +237,6 @@ def test_program_starts_hot(material_file):
 def test_a_rod_starts_at_the_reference_temperature(make_rod, material_file):
     """The rod's history rows of a material that heats itself hold its first temperature, and nothing else."""
     rod = make_rod([[0, 0, 0], [10, 0, 0], [20, 0, 0]], law=library.load(material_file(heating=HEAT)))
-    assert rod.history.shape[-1] == 8
-    assert (rod.history[..., 7] == TEMPERATURES[0]).all()
-    assert (rod.history[..., :7] == 0).all()
+    assert rod.point_state.shape[-1] == 8
+    assert (rod.point_state[..., 7] == TEMPERATURES[0]).all()
+    assert (rod.point_state[..., :7] == 0).all()

@@ -5,7 +5,7 @@ import pytest
 
 from coilset.meshes.placement import section_placement
 from coilset.meshes.spring import SpringSpec
-from coilset.model.frames.rotations import triads
+from coilset.model.rod.kinematics import chord_triads as triads
 
 ABSCISSAE = np.array([0.2, 0.8])
 CONE = {"shape": "cone", "bottom": 60.0, "top": 30.0}

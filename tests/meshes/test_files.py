@@ -19,8 +19,14 @@ FORMATS = [".msh", ".vtu", ".vtk", ".xdmf", ".inp", ".med", ".csv"]
 def barrel():
     """A left-hand spring with everything that can change along the wire."""
     wire = {"turns": [0, 2, 4, 7.25], "values": [4.0, 5.0, 5.0, 4.5], "interpolation": "monotone"}
-    return SpringSpec(wire_diameter=wire, mean_diameter={"shape": "barrel", "ends": 30.0, "middle": 50.0}, turns=7.25,
-                      free_length=110.0, hand="left", end_coils=ENDS).build()
+    return SpringSpec(
+        wire_diameter=wire,
+        mean_diameter={"shape": "barrel", "ends": 30.0, "middle": 50.0},
+        turns=7.25,
+        free_length=110.0,
+        hand="left",
+        end_coils=ENDS,
+    ).build()
 
 
 def write(spring, path, per_turn=16):
@@ -128,19 +134,29 @@ WRONG_TABLES = [
     (HEAD + "1,2,3\n", "line 2: '1,2,3': must be 4 numbers"),
     (HEAD + "1,2,three,5\n", "line 2: '1,2,three,5': must be 4 numbers"),
     (HEAD + "".join(POINTS[:3]), "has 3 points; a centre line needs 5 or more"),
-    (HEAD + "".join(POINTS) + "1,nan,3,5\n",
-     "point 25: 1, nan, 3, 5: must be finite numbers and a wire diameter above 0"),
-    (HEAD + "".join(POINTS).replace(",5\n", ",0\n"),
-     "point 1: 20, 0, 0, 0: must be finite numbers and a wire diameter above 0"),
-    (HEAD + "".join(POINTS[:9] + POINTS[5:]),
-     "point 10: the wire does not go on round the z axis here; the axis of the spring must be the z axis, and no point "
-     "may occur twice"),
+    (
+        HEAD + "".join(POINTS) + "1,nan,3,5\n",
+        "point 25: 1, nan, 3, 5: must be finite numbers and a wire diameter above 0",
+    ),
+    (
+        HEAD + "".join(POINTS).replace(",5\n", ",0\n"),
+        "point 1: 20, 0, 0, 0: must be finite numbers and a wire diameter above 0",
+    ),
+    (
+        HEAD + "".join(POINTS[:9] + POINTS[5:]),
+        "point 10: the wire does not go on round the z axis here; the axis of the spring must be the z axis, and no "
+        "point may occur twice",
+    ),
     (HEAD + "".join(POINTS[::5]), "point 2: is 143° away from the point before; must be at most 120°"),
-    ("".join([HEAD.replace(",wire_diameter", ""), *(row.replace(",5\n", "\n") for row in POINTS)]),
-     "has no wire_diameter; give spring.wire_diameter"),
+    (
+        "".join([HEAD.replace(",wire_diameter", ""), *(row.replace(",5\n", "\n") for row in POINTS)]),
+        "has no wire_diameter; give spring.wire_diameter",
+    ),
     # the tenth point is 4.5 rad from the first
-    (HEAD + "".join([*POINTS[:9], POINTS[9].replace(",5\n", ",20\n"), *POINTS[10:]]),
-     "the wire is thicker than the coil allows: D/d = 2 at turn 0.716, must be at least 3"),
+    (
+        HEAD + "".join([*POINTS[:9], POINTS[9].replace(",5\n", ",20\n"), *POINTS[10:]]),
+        "the wire is thicker than the coil allows: D/d = 2 at turn 0.716, must be at least 3",
+    ),
 ]
 
 

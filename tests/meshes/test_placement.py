@@ -70,8 +70,9 @@ def test_curved_placement_is_exact_for_the_helix(cylinder, helix_compliance):
 
 def test_curved_placement_converges_with_order_four():
     # r(t) = 30 − 3 t: the integrand is not constant; the reference by adaptive quadrature of the plain formulas
-    cone = SpringSpec(wire_diameter=5.0, mean_diameter={"shape": "cone", "bottom": 60.0, "top": 30.0}, turns=5,
-                      pitch=14.0).build()
+    cone = SpringSpec(
+        wire_diameter=5.0, mean_diameter={"shape": "cone", "bottom": 60.0, "top": 30.0}, turns=5, pitch=14.0
+    ).build()
 
     def integrand(t):
         r, ds = 30 - 3 * t, np.sqrt((2 * np.pi * (30 - 3 * t)) ** 2 + 9 + 14**2)

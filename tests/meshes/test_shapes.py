@@ -80,7 +80,9 @@ def test_shape_meets_its_closed_formulas(name):
     end = 2 * np.pi * turns
     np.testing.assert_allclose(
         spring.centre_line(np.array([0.0, turns])),
-        [[r_bottom, 0, d / 2], [r_top * np.cos(end), r_top * np.sin(end), rise + d / 2]], atol=1e-9)
+        [[r_bottom, 0, d / 2], [r_top * np.cos(end), r_top * np.sin(end), rise + d / 2]],
+        atol=1e-9,
+    )
     nodes = spring.stations(16)
     assert len(nodes) - 1 == 16 * turns
     assert (nodes[0], nodes[-1]) == (0, turns)
@@ -146,10 +148,12 @@ def test_variable_pitch():
     spring = example("variable_pitch")
     np.testing.assert_allclose(np.diff(spring.centre_line(np.array([0.0, 2, 3, 4, 6]))[:, 2]), [14, 8.5, 11.5, 26])
     assert spring.free_length == pytest.approx(64)
+
     # ds = √((πD)² + p²) dt; ∫ of it over a linear p is that of the cone with the parts exchanged
     def primitive(p):
         c = np.pi * 36
         return 0.5 * (p * np.hypot(c, p) + c**2 * np.arcsinh(p / c))
+
     ramp = (primitive(13) - primitive(7)) / 3
     length = 2 * np.hypot(np.pi * 36, 7) + ramp + 2 * np.hypot(np.pi * 36, 13)
     assert spring.wire_length == pytest.approx(length, rel=EXACT)
@@ -212,3 +216,19 @@ def test_free_length_and_pitch_derive_each_other():
     by_length = SpringSpec(**spec, free_length=by_pitch.free_length, end_coils=ends).build()
     assert by_length.pitch(3.0) == pytest.approx(9.0, rel=1e-12)
     assert SpringSpec(**spec, pitch=9.0, free_length=by_pitch.free_length, end_coils=ends).build().pitch(3.0) == 9.0
+
+
+def test_outer_and_inner_diameters_are_a_wire_off_the_mean_one():
+    """D = De − d = Di + d, to the bit where the numbers are whole; also where both run over the turns."""
+    drawing = {"wire_diameter": 5.0, "turns": 4.0, "pitch": 12.0}
+    t = np.linspace(0, 4, 200)
+    mean = SpringSpec(mean_diameter=40.0, **drawing).build()
+    for entry, value in (("outer_diameter", 45.0), ("inner_diameter", 35.0)):
+        spring = SpringSpec(**{entry: value}, **drawing).build()
+        np.testing.assert_array_equal(spring.mean_radius(t), mean.mean_radius(t))
+        np.testing.assert_array_equal(spring.centre_line(t), mean.centre_line(t))
+    wire = {"turns": [0, 1.5, 4], "values": [4.0, 5.0, 4.5], "interpolation": "monotone"}
+    barrel = {"shape": "barrel", "ends": 40.0, "middle": 50.0}
+    spring = SpringSpec(wire_diameter=wire, outer_diameter=barrel, turns=4.0, pitch=12.0).build()
+    outer = 40.0 + 10.0 * (1.0 - (t / 2.0 - 1.0) ** 2)
+    np.testing.assert_allclose(2 * spring.mean_radius(t), outer - spring.wire_diameter(t), rtol=1e-13)

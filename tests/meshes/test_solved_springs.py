@@ -38,10 +38,14 @@ def test_sections_on_the_curved_axis_reach_the_rate(tmp_path):
 
 def test_plastic_force_and_set_need_few_elements_on_the_curved_axis():
     """10 mm down and released: 16 elements a turn against 64, in force and set."""
+
     def force_and_set(per_turn, axis):
-        case = {"spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0}, "ends": "clamped",
-                "mesh": {"elements_per_turn": per_turn, "axis": axis},
-                "loading": [{"to": {"travel": 10}, "steps": 10}, {"to": {"force": 0}, "steps": 2}]}
+        case = {
+            "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0},
+            "ends": "clamped",
+            "mesh": {"elements_per_turn": per_turn, "axis": axis},
+            "loading": [{"to": {"travel": 10}, "steps": 10}, {"to": {"force": 0}, "steps": 2}],
+        }
         steps = Analysis(check(case), MPI.COMM_SELF).run().steps
         return np.array([steps[9].force_N, steps[-1].travel_mm])
 
@@ -55,20 +59,24 @@ def test_conical_spring_meets_the_closed_formula(law):
     # Wahl, Mechanical Springs, conical springs: R = G d⁴/(16 n (r1 + r2)(r1² + r2²)); it leaves out pitch, bending and
     # shear, so the cone is slender (D/d from 10 to 20) with small pitch, and long enough for the heads not to matter
     r1, r2, n, d = 30.0, 15.0, 10.0, 3.0
-    cone = SpringSpec(wire_diameter=d, mean_diameter={"shape": "cone", "bottom": 2 * r1, "top": 2 * r2}, turns=n,
-                      pitch=7.0).build()
+    cone = SpringSpec(
+        wire_diameter=d, mean_diameter={"shape": "cone", "bottom": 2 * r1, "top": 2 * r2}, turns=n, pitch=7.0
+    ).build()
     rate = representation.rate(cone, cone.stations(16), CURVED, law)
     assert rate == pytest.approx(law.G * d**4 / (16 * n * (r1 + r2) * (r1**2 + r2**2)), rel=0.01)
     # and the curved rod with bending, shear and heads much closer
     assert rate == pytest.approx(clamped_rate(cone, law.E, law.G), rel=1e-4)
 
 
-@pytest.mark.parametrize(("name", "stiffer", "within"), [
-    # the formula closes a coil at once, a seat from its tip on: 2.5 % where the first coil lies down
-    ("telescoping cone on a seat", 2.8, 0.03),
-    ("barrel", 2.3, 0.02),
-    ("variable pitch", 2.1, 0.02),
-])
+@pytest.mark.parametrize(
+    ("name", "stiffer", "within"),
+    [
+        # the formula closes a coil at once, a seat from its tip on: 2.5 % where the first coil lies down
+        ("telescoping cone on a seat", 2.8, 0.03),
+        ("barrel", 2.3, 0.02),
+        ("variable pitch", 2.1, 0.02),
+    ],
+)
 def test_progressive_springs(name, stiffer, within):
     found = progressive.solve(name)
     assert found.work == 0.0  # elastic, so that the formula holds
@@ -81,8 +89,14 @@ def test_progressive_springs(name, stiffer, within):
 @pytest.mark.parametrize("suffix", [".msh", ".vtu"])
 def test_round_trip_keeps_the_rate(law, tmp_path, suffix):
     ends = {"form": "closed and ground"}
-    drawn = SpringSpec(wire_diameter=4.0, mean_diameter={"shape": "barrel", "ends": 30.0, "middle": 44.0}, turns=7.25,
-                       free_length=90.0, hand="left", end_coils=ends).build()
+    drawn = SpringSpec(
+        wire_diameter=4.0,
+        mean_diameter={"shape": "barrel", "ends": 30.0, "middle": 44.0},
+        turns=7.25,
+        free_length=90.0,
+        hand="left",
+        end_coils=ends,
+    ).build()
     write_mesh(drawn, drawn.stations(16), tmp_path / f"spring{suffix}")
     measured = MeasuredSpec(file=str(tmp_path / f"spring{suffix}"), end_coils=ends).build()
     rates = [representation.rate(spring, spring.stations(16), CURVED, law) for spring in (drawn, measured)]
@@ -93,4 +107,5 @@ def test_round_trip_keeps_the_rate(law, tmp_path, suffix):
 def test_hand_does_not_change_the_rate(law, hand):
     spring = SpringSpec(wire_diameter=5.0, mean_diameter=40.0, turns=2.5, pitch=12.0, hand=hand).build()
     assert representation.rate(spring, spring.stations(16), CURVED, law) == pytest.approx(
-        clamped_rate(spring, law.E, law.G), rel=2e-5)
+        clamped_rate(spring, law.E, law.G), rel=2e-5
+    )

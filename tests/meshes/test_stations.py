@@ -12,8 +12,9 @@ def cylinder(turns=2.5):
     return SpringSpec(wire_diameter=5.0, mean_diameter=40.0, turns=turns, pitch=12.0).build()
 
 
-@pytest.mark.parametrize(("turns", "per_turn", "elements"),
-                         [(2.5, 16, 40), (2.3, 16, 37), (6.0, 10.5, 63), (0.5, 3, 2)])
+@pytest.mark.parametrize(
+    ("turns", "per_turn", "elements"), [(2.5, 16, 40), (2.3, 16, 37), (6.0, 10.5, 63), (0.5, 3, 2)]
+)
 def test_equal_elements(turns, per_turn, elements):
     nodes = cylinder(turns).stations(per_turn)
     np.testing.assert_allclose(nodes, np.linspace(0, turns, elements + 1))
@@ -30,8 +31,9 @@ def test_graded_elements():
 
 
 def test_sagitta_is_kept():
-    spring = SpringSpec(wire_diameter=5.0, mean_diameter={"shape": "cone", "bottom": 80.0, "top": 30.0}, turns=6,
-                        pitch=14.0).build()
+    spring = SpringSpec(
+        wire_diameter=5.0, mean_diameter={"shape": "cone", "bottom": 80.0, "top": 30.0}, turns=6, pitch=14.0
+    ).build()
     nodes = spring.stations(4, sagitta=0.1)
     ends = spring.centre_line(nodes)
     chord = np.diff(ends, axis=0)
@@ -45,11 +47,17 @@ def test_sagitta_is_kept():
     assert len(nodes) - 1 == pytest.approx(np.pi / np.sqrt(0.2) * 4 * (40**1.5 - 15**1.5) / (25), rel=0.02)
 
 
-@pytest.mark.parametrize(("arguments", "message"), [
-    ((2,), "2 to 2 elements in a turn; must be 3 to 1000000"),
-    ((16, 1e-12), "elements in a turn; must be 3 to 1000000"),
-    ((Table(turns=(0, 3), values=(16, 16), interpolation="linear"),), "ends at turn 3, but the spring has 2.5 turns"),
-])
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((2,), "2 to 2 elements in a turn; must be 3 to 1000000"),
+        ((16, 1e-12), "elements in a turn; must be 3 to 1000000"),
+        (
+            (Table(turns=(0, 3), values=(16, 16), interpolation="linear"),),
+            "ends at turn 3, but the spring has 2.5 turns",
+        ),
+    ],
+)
 def test_wrong_densities(arguments, message):
     with pytest.raises(InputError, match=message):
         cylinder().stations(*arguments)

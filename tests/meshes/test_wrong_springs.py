@@ -9,8 +9,7 @@ from coilset.model.errors import InputError
 RIGHT = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 6.0, "pitch": 12.0}
 CONE = {"shape": "cone", "bottom": 40.0, "top": 30.0}
 FORMS = "must be a number, a table, or one of the shapes cylinder, cone, double cone, hourglass, barrel, funnel"
-OVERLAP = ("spring: coils overlap: between the turns {} the centres of the wire are {} mm apart, must be at least "
-           "5 mm")
+OVERLAP = "spring: coils overlap: between the turns {} the centres of the wire are {} mm apart, must be at least 5 mm"
 
 
 def table(turns, values, **more):
@@ -19,69 +18,127 @@ def table(turns, values, **more):
 
 # entries that replace or (None) remove those of the right spring, and the message
 WRONG = [
-    ({"wire_diameter": -5.0}, "spring.wire_diameter: -5.0: Input should be greater than 0"),
-    ({"wire_diameter": 0}, "spring.wire_diameter: 0: Input should be greater than 0"),
-    ({"wire_diameter": "5 mm"}, "spring.wire_diameter: '5 mm': Input should be a valid number"),
-    ({"wire_diameter": float("nan")}, "spring.wire_diameter: nan: Input should be a finite number"),
+    ({"wire_diameter": -5.0}, "spring.wire_diameter: -5.0: must be greater than 0"),
+    ({"wire_diameter": 0}, "spring.wire_diameter: 0: must be greater than 0"),
+    ({"wire_diameter": "5 mm"}, "spring.wire_diameter: '5 mm': must be a number"),
+    ({"wire_diameter": float("nan")}, "spring.wire_diameter: nan: must be a finite number"),
     ({"wire_diameter": 1e9}, "spring.wire_diameter: 1e+09 is no length of a spring; must be 0.001 to 100000"),
-    ({"wire_diameter": True}, "spring.wire_diameter: True: Input should be a valid number"),
-    ({"wire_diameter": None}, "spring.wire_diameter: this entry is required"),
-    ({"diameter": 40.0}, "spring.diameter: unknown entry; is it misspelt?"),
-    ({"mean_diameter": 14.0},
-     "spring.mean_diameter: the wire is thicker than the coil allows: D/d = 2.8 at turn 0, must be at least 3"),
+    ({"wire_diameter": True}, "spring.wire_diameter: True: must be a number"),
+    (
+        {"wire_diameter": None},
+        "spring.wire_diameter: this entry is required; give wire diameter, mm; a number or a table over the turns",
+    ),
+    ({"diameter": 40.0}, "spring.diameter: unknown entry; is outer_diameter or inner_diameter meant?"),
+    (
+        {"mean_diameter": 14.0},
+        "spring.mean_diameter: the wire is thicker than the coil allows: D/d = 2.8 at turn 0, must be at least 3",
+    ),
     ({"mean_diameter": {"shape": "pyramid"}}, "spring.mean_diameter: {'shape': 'pyramid'}: " + FORMS),
-    ({"mean_diameter": {"shape": "cone", "bottom": 40.0}}, "spring.mean_diameter.top: this entry is required"),
-    ({"mean_diameter": CONE | {"middle": 3.0}}, "spring.mean_diameter.middle: unknown entry; is it misspelt?"),
-    ({"mean_diameter": CONE | {"top": 12.0}},
-     "spring.mean_diameter: the wire is thicker than the coil allows: D/d = 2.4 at turn 6, must be at least 3"),
-    ({"mean_diameter": {"shape": "barrel", "ends": 50.0, "middle": 40.0}},
-     "spring.mean_diameter: a barrel is wider in its middle (40 mm) than at its ends (50 mm); "
-     "the other way round it is an hourglass"),
-    ({"mean_diameter": {"shape": "hourglass", "ends": 30.0, "middle": 40.0}},
-     "spring.mean_diameter: an hourglass is narrower in its middle (40 mm) than at its ends (30 mm); "
-     "the other way round it is a barrel"),
-    ({"mean_diameter": {"shape": "funnel", "bottom": 60.0, "neck": 30.0, "cone_turns": 6.0}},
-     "spring.mean_diameter: cone_turns is 6, but the spring has only 6 turns; leave some for the neck, or take the "
-     "shape cone"),
-    ({"mean_diameter": {"turns": [0, 6], "values": [40.0, 30.0]}},
-     "spring.mean_diameter.interpolation: this entry is required"),
-    ({"mean_diameter": table([0, 6], [40.0, 30.0], interpolation="cubic")},
-     "spring.mean_diameter.interpolation: 'cubic': Input should be 'linear', 'monotone' or 'spline'"),
-    ({"mean_diameter": table([0, 3, 6], [40.0, 30.0])},
-     "spring.mean_diameter: has 3 turns but 2 values; give one value for each turn"),
-    ({"mean_diameter": table([0, 3], [40.0, 30.0])},
-     "spring.mean_diameter: ends at turn 3, but the spring has 6 turns"),
-    ({"mean_diameter": table([0, 4, 4, 6], [40.0] * 4)},
-     "spring.mean_diameter: turns must increase from one to the next, by 0.001 or more"),
+    (
+        {"mean_diameter": {"shape": "cone", "bottom": 40.0}},
+        "spring.mean_diameter.top: this entry is required; give mean coil diameter at the top end, mm",
+    ),
+    (
+        {"mean_diameter": CONE | {"middle": 3.0}},
+        "spring.mean_diameter.middle: unknown entry; the entries here are shape, bottom, top",
+    ),
+    (
+        {"mean_diameter": CONE | {"top": 12.0}},
+        "spring.mean_diameter: the wire is thicker than the coil allows: D/d = 2.4 at turn 6, must be at least 3",
+    ),
+    (
+        {"mean_diameter": {"shape": "barrel", "ends": 50.0, "middle": 40.0}},
+        "spring.mean_diameter: a barrel is wider in its middle (40 mm) than at its ends (50 mm); "
+        "the other way round it is an hourglass",
+    ),
+    (
+        {"mean_diameter": {"shape": "hourglass", "ends": 30.0, "middle": 40.0}},
+        "spring.mean_diameter: an hourglass is narrower in its middle (40 mm) than at its ends (30 mm); "
+        "the other way round it is a barrel",
+    ),
+    (
+        {"mean_diameter": {"shape": "funnel", "bottom": 60.0, "neck": 30.0, "cone_turns": 6.0}},
+        "spring.mean_diameter: cone_turns is 6, but the spring has only 6 turns; leave some for the neck, or take the "
+        "shape cone",
+    ),
+    (
+        {"mean_diameter": {"turns": [0, 6], "values": [40.0, 30.0]}},
+        "spring.mean_diameter.interpolation: this entry is required; give linear; monotone (cubic without overshoot, "
+        "smooth slope); spline (cubic, smooth curvature)",
+    ),
+    (
+        {"mean_diameter": table([0, 6], [40.0, 30.0], interpolation="cubic")},
+        "spring.mean_diameter.interpolation: 'cubic': must be 'linear', 'monotone' or 'spline'",
+    ),
+    (
+        {"mean_diameter": table([0, 3, 6], [40.0, 30.0])},
+        "spring.mean_diameter: has 3 turns but 2 values; give one value for each turn",
+    ),
+    (
+        {"mean_diameter": table([0, 3], [40.0, 30.0])},
+        "spring.mean_diameter: ends at turn 3, but the spring has 6 turns",
+    ),
+    (
+        {"mean_diameter": table([0, 4, 4, 6], [40.0] * 4)},
+        "spring.mean_diameter: turns must increase from one to the next, by 0.001 or more",
+    ),
     ({"mean_diameter": table([1, 6], [40.0] * 2)}, "spring.mean_diameter: must begin at turn 0, not at 1"),
-    ({"turns": -2.5}, "spring.turns: -2.5: Input should be greater than or equal to 0.1"),
-    ({"turns": float("inf")}, "spring.turns: inf: Input should be less than or equal to 1000"),
+    (
+        {"mean_diameter": None},
+        "spring: the coil diameter is missing; give one of mean_diameter, outer_diameter (De) and inner_diameter (Di)",
+    ),
+    (
+        {"outer_diameter": 45.0},
+        "spring: mean_diameter, outer_diameter are given; give one of mean_diameter, "
+        "outer_diameter (De) and inner_diameter (Di)",
+    ),
+    (
+        {"mean_diameter": None, "outer_diameter": 19.0},
+        "spring.outer_diameter: the wire is thicker than the coil allows: D/d = 2.8 at turn 0, must be at least 3",
+    ),
+    ({"mean_diameter": None, "outer_diameter": 4.0}, "spring.outer_diameter: the coil is no wider than its wire"),
+    (
+        {"mean_diameter": None, "inner_diameter": table([0, 3], [40.0, 30.0])},
+        "spring.inner_diameter: ends at turn 3, but the spring has 6 turns",
+    ),
+    ({"turns": -2.5}, "spring.turns: -2.5: must be greater than or equal to 0.1"),
+    ({"turns": float("inf")}, "spring.turns: inf: must be a finite number"),
     ({"pitch": None}, "spring: pitch and free_length are both missing; give one of them"),
-    ({"pitch": -12.0}, "spring.pitch: -12.0: Input should be greater than 0"),
+    ({"pitch": -12.0}, "spring.pitch: -12.0: must be greater than 0"),
     ({"pitch": 4.0}, OVERLAP.format("0 and 1", "4")),
     # the pitch falls by 1.5 mm a turn, to 3.5 mm and 2 mm at the turns 5 and 6
     ({"pitch": table([0, 6], [11.0, 2.0])}, OVERLAP.format("5 and 6", "2.75")),
     # √(4.5² + (5/6)²) = 4.58
     ({"mean_diameter": CONE, "pitch": 4.5}, OVERLAP.format("0 and 1", "4.58")),
     ({"pitch": 5.0}, "spring: there is no travel: the free length is 35 mm, the block length 35 mm"),
-    ({"free_length": 80.0},
-     "spring.free_length: 80 mm contradicts the pitch, which makes 77 mm; leave one of the two out"),
-    ({"pitch": None, "free_length": 4.0},
-     "spring.free_length: 4 mm leave no pitch: end coils and wire alone need 5 mm"),
+    (
+        {"free_length": 80.0},
+        "spring.free_length: 80 mm contradicts the pitch, which makes 77 mm; leave one of the two out",
+    ),
+    (
+        {"pitch": None, "free_length": 4.0},
+        "spring.free_length: 4 mm leave no pitch: end coils and wire alone need 5 mm",
+    ),
     ({"pitch": None, "free_length": 29.0}, OVERLAP.format("0 and 1", "4")),
-    ({"hand": "up"}, "spring.hand: 'up': Input should be 'right' or 'left'"),
-    ({"end_coils": "ground"},
-     "spring.end_coils.form: 'ground': Input should be 'open', 'closed' or 'closed and ground'"),
-    ({"end_coils": {"form": "open", "turns": 1.0}},
-     "spring.end_coils: open ends have no end turns and no transition; leave these out or make the form closed"),
-    ({"end_coils": {"form": "closed", "tip": 0.3}},
-     "spring.end_coils: tip is for ends that are closed and ground, not for closed ends"),
-    ({"end_coils": {"form": "closed and ground", "tip": 1.5}},
-     "spring.end_coils.tip: 1.5: Input should be less than 1"),
-    ({"end_coils": {"bottom": {"form": "closed", "turns": -1.0}}},
-     "spring.end_coils.bottom.turns: -1.0: Input should be greater than or equal to 0.01"),
-    ({"end_coils": {"form": "closed", "turns": 2.5}},
-     "spring.turns: 6 turns are too few: end turns and transitions alone are 6"),
+    ({"hand": "up"}, "spring.hand: 'up': must be 'right' or 'left'"),
+    ({"end_coils": "ground"}, "spring.end_coils.form: 'ground': must be 'open', 'closed' or 'closed and ground'"),
+    (
+        {"end_coils": {"form": "open", "turns": 1.0}},
+        "spring.end_coils: open ends have no end turns and no transition; leave these out or make the form closed",
+    ),
+    (
+        {"end_coils": {"form": "closed", "tip": 0.3}},
+        "spring.end_coils: tip is for ends that are closed and ground, not for closed ends",
+    ),
+    ({"end_coils": {"form": "closed and ground", "tip": 1.5}}, "spring.end_coils.tip: 1.5: must be less than 1"),
+    (
+        {"end_coils": {"bottom": {"form": "closed", "turns": -1.0}}},
+        "spring.end_coils.bottom.turns: -1.0: must be greater than or equal to 0.01",
+    ),
+    (
+        {"end_coils": {"form": "closed", "turns": 2.5}},
+        "spring.turns: 6 turns are too few: end turns and transitions alone are 6",
+    ),
 ]
 
 
@@ -103,21 +160,31 @@ def test_the_right_spring_is_right():
 
 WARNED = [
     # γ = 1 − 81.5/206 = 0.6044: 65/γ · (1 − √(1 − γ/0.8956 · (π/3.25)²)) = 42.18 mm
-    ({"mean_diameter": 20.0, "turns": 8.0, "pitch": 15.625, "end_coils": "open"},
-     "slender, L0/D = 6.5: unguided it buckles at 42.2 mm of travel on parallel seats, before its block at 85 mm "
-     "(EN 13906-1)"),
+    (
+        {"mean_diameter": 20.0, "turns": 8.0, "pitch": 15.625, "end_coils": "open"},
+        "slender, L0/D = 6.5: unguided it buckles at 42.2 mm of travel on parallel seats, before its block at 85 mm "
+        "(EN 13906-1)",
+    ),
     ({"mean_diameter": 17.5}, "D/d = 3.5 at turn 0 is outside of the 4 to 20 usual in cold coiling (EN 15800)"),
     ({"mean_diameter": 110.0}, "D/d = 22 at turn 0 is outside of the 4 to 20 usual in cold coiling (EN 15800)"),
-    ({"turns": 3.5, "end_coils": "closed"},
-     "only 1.5 active turns; formulas for rate and stress need 2 or more (EN 13906-1)"),
-    ({"end_coils": {"bottom": {"form": "closed and ground", "tip": 0.2}}},
-     "the ground bottom end is 1 mm thin at its tip, less than a quarter of the wire (1.25 mm)"),
+    (
+        {"turns": 3.5, "end_coils": "closed"},
+        "only 1.5 active turns; formulas for rate and stress need 2 or more (EN 13906-1)",
+    ),
+    (
+        {"end_coils": {"bottom": {"form": "closed and ground", "tip": 0.2}}},
+        "the ground bottom end is 1 mm thin at its tip, less than a quarter of the wire (1.25 mm)",
+    ),
     # the end turn of this cone rises by √(5² − 4²) = 3 mm; the flat ends 0.75 · 5 mm above the tip, 0.75 mm into the
     # transition, 3 u/2 + 9 (u³ − u⁴/2)/2 = 0.75 at u = 0.373 of its half turn
-    ({"mean_diameter": {"shape": "cone", "bottom": 88.0, "top": 40.0}, "end_coils": {"bottom": "closed and ground"}},
-     "the flat of the bottom end runs over 1.19 turns and cuts into the transition; its end turns are 1"),
-    ({"pitch": table([0, 2, 3, 6], [5.0, 5.0, 12.0, 12.0])},
-     "coils of the body are solid before any load, between the turns 0 and 2; their pitch is 5 mm"),
+    (
+        {"mean_diameter": {"shape": "cone", "bottom": 88.0, "top": 40.0}, "end_coils": {"bottom": "closed and ground"}},
+        "the flat of the bottom end runs over 1.19 turns and cuts into the transition; its end turns are 1",
+    ),
+    (
+        {"pitch": table([0, 2, 3, 6], [5.0, 5.0, 12.0, 12.0])},
+        "coils of the body are solid before any load, between the turns 0 and 2; their pitch is 5 mm",
+    ),
 ]
 
 
@@ -127,5 +194,5 @@ def test_doubtful_spring_is_warned_of(entries, warning):
 
 
 def test_python_use_raises_the_same():
-    with pytest.raises(ValueError, match="Input should be greater than 0"):
+    with pytest.raises(ValueError, match="should be greater than 0"):
         SpringSpec(wire_diameter=-5.0, mean_diameter=40.0, turns=2.5, pitch=12.0)

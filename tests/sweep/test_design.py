@@ -108,10 +108,13 @@ def test_rank_correlation_sees_monotone_and_constant_inputs():
         ({"vary": {"a": [1, 2]}, "design": "latin_hypercube"}, "latin_hypercube needs 'samples'"),
         ({"vary": {"a": [1, 2]}, "samples": 3}, "grid has no 'samples'"),
         ({"vary": {"a": [1, 2]}, "design": "sobol", "samples": 100}, "power of 2 as 'samples', not 100"),
-        ({"vary": {"a b": [1, 2]}}, "vary.a b"),
+        ({"vary": {"a b": [1, 2]}}, "vary.a b: 'a b': must be a name of letters, digits, _"),
         ({"vary": {}}, "vary"),
-        ({"vary": {"a": [1]}, "figures": [{"kind": "lines", "x": "b"}]}, "'b' is none of the varied inputs (a)"),
-        ({"vary": {"a": [1]}, "figures": [{"kind": "pie"}]}, "figures.0"),
+        ({"vary": {"a": [1]}, "figures": [{"kind": "lines", "x": "b"}]}, "'b' is none of the varied inputs; there are"),
+        ({"vary": {"a": [1]}, "figures": [{"kind": "pie"}]}, "figures.0: {'kind': 'pie'}: kind must be lines, map"),
+        ({"vary": {"a": [1]}, "figures": [{"kind": "lines", "x": 5}]}, "figures.0.x: 5: must be a word"),
+        ({"vary": {"a": [1]}, "samples": True}, "samples: True: must be a whole number"),
+        ({"vary": {"a": {"from": True, "to": 2}}}, "vary.a.from: True: must be a number"),
     ],
 )
 def test_wrong_sweeps_get_one_line(given, words):

@@ -34,8 +34,8 @@ def apart(found, expected):
             stresses, forces = slice(0, 6), slice(0, 3)
             differences[shot.name] = {
                 "position": relative(shot.x, other.x),
-                "stress": relative(shot.history[..., stresses], other.history[..., stresses]),
-                "plastic work": relative(shot.history[..., 6], other.history[..., 6]),
+                "stress": relative(shot.point_state[..., stresses], other.point_state[..., stresses]),
+                "plastic work": relative(shot.point_state[..., 6], other.point_state[..., 6]),
                 "forces": relative(shot.resultants[..., forces], other.resultants[..., forces]),
                 "moments": relative(shot.resultants[..., 3:], other.resultants[..., 3:]),
             }
@@ -57,6 +57,13 @@ def test_every_number_of_ranks_finds_the_same_spring(example, ends):
         assert max(parts) < AGREEMENT, differences
 
 
+# the last wire is too thick for its coil
+WITH_A_WRONG_SPRING = """
+    vary: {spring.wire_diameter: {from: 4, to: 6, count: 3}}
+    change: {spring.mean_diameter: 17.0}
+"""
+
+
 def small_plan(write_sweep, text):
     """The plan on rank 0, whose files the others need not see."""
     return Plan(write_sweep(text)) if COMM.rank == 0 else None
@@ -65,7 +72,7 @@ def small_plan(write_sweep, text):
 @pytest.mark.skipif(COMM.size == 1, reason="needs a rank that leads and one that solves")
 def test_sweep_over_ranks_is_the_sweep_of_one_process(write_sweep, tmp_path):
     """One rank a case, and a wrong spring among them."""
-    plan = small_plan(write_sweep, "vary: {spring.wire_diameter: [4.0, 4.5, 39.0, 5.0]}")
+    plan = small_plan(write_sweep, WITH_A_WRONG_SPRING)
     with mpi_pool(COMM, 1) as pool:
         if pool is not None:
             assert pool.workers == COMM.size - 1
@@ -73,14 +80,14 @@ def test_sweep_over_ranks_is_the_sweep_of_one_process(write_sweep, tmp_path):
                 run(plan, missing(plan, ()), pool, journal)
     if COMM.rank == 0:
         records = {record["key"]: record for record in read_records(tmp_path / "journal.jsonl")}
-        assert [records[key]["status"] for key in plan.keys] == ["done", "done", "failed", "done"]
+        assert [records[key]["status"] for key in plan.keys] == ["done", "done", "failed"]
         alone = evaluate(**plan.task(plan.rows[1]), comm=MPI.COMM_SELF)
         assert records[plan.keys[1]]["summary"] == alone["summary"]
 
 
 @pytest.mark.skipif(COMM.size < 3, reason="needs a rank that leads and two that share a case")
 def test_two_ranks_share_a_case(write_sweep, tmp_path):
-    plan = small_plan(write_sweep, "vary: {spring.wire_diameter: [4.0, 39.0, 5.0]}")
+    plan = small_plan(write_sweep, WITH_A_WRONG_SPRING)
     with mpi_pool(COMM, 2) as pool:
         if pool is not None:
             assert pool.workers == (COMM.size - 1) // 2
@@ -88,8 +95,8 @@ def test_two_ranks_share_a_case(write_sweep, tmp_path):
                 run(plan, missing(plan, ()), pool, journal)
     if COMM.rank == 0:
         records = {record["key"]: record for record in read_records(tmp_path / "journal.jsonl")}
-        assert [records[key]["status"] for key in plan.keys] == ["done", "failed", "done"]
-        for row, key in zip(plan.rows[::2], plan.keys[::2], strict=True):
+        assert [records[key]["status"] for key in plan.keys] == ["done", "done", "failed"]
+        for row, key in zip(plan.rows[:2], plan.keys[:2], strict=True):
             alone = evaluate(**plan.task(row), comm=MPI.COMM_SELF)
             for name in ("set_mm", "force_max_N"):  # the case's own tolerance of 1e-7 bounds the agreement
                 assert records[key]["summary"][name] == pytest.approx(alone["summary"][name], rel=1e-7)

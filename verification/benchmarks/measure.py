@@ -28,12 +28,12 @@ FACTORISE, SOLVE = ("MatLUFactorSym", "MatLUFactorNum"), ("MatSolve",)  # PETSc'
 def watch_analysis(watch, analysis):
     """Make the stages of a solve count."""
     watch.watch(analysis.rod, "update", "law")
-    for owner, function in ((analysis.rod, "assemble_tangent"), (analysis.system, "assemble_internal"),
+    for owner, function in ((analysis.rod, "tangent"), (analysis.rod, "internal_forces"),
                             (analysis.system, "tangent")):  # fmt: skip
         watch.watch(owner, function, "assemble")
     for contact in analysis.system.contacts:
         watch.watch(contact, "evaluate", "contact")
-    watch.watch(analysis.system, "free_way", "contact")
+    watch.watch(analysis.newton.limit, "step_length", "contact")
 
 
 def petsc_seconds(events):
@@ -122,7 +122,7 @@ def example(repeats=5):
         "analysis": [min(total[kind] for total in sums) for kind in range(2)],
         "output": pair(start, "output"),
         "pictures": pair(start, "pictures"),
-        "elements": len(analysis.turns) - 1,
+        "elements": len(analysis.setup.turns) - 1,
         "section_points": len(analysis.rod.rule),
         "steps": len(result.steps),
         "iterations": sum(step.iterations for step in result.steps),
@@ -144,17 +144,17 @@ def write(watch, analysis):
     result = analysis.result
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        summary = summarise(analysis, result)
+        summary = summarise(analysis.setup, result)
         with watch.stage("output"):
             write_history(folder, result.steps)
-            dataset.write_points(folder, dataset.point_state(analysis, result.snapshots))
-            dataset.write_fields(folder, analysis, result.snapshots)
+            dataset.write_points(folder, dataset.point_state(analysis.setup, result))
+            dataset.write_fields(folder, analysis.setup, result.snapshots)
             write_summary(folder, summary)
         with watch.stage("pictures"):
-            figures.characteristic(folder / "characteristic.png", analysis, result, summary)
-            figures.cross_section(folder / "cross_section.png", analysis, result.snapshots[-1])
+            figures.characteristic(folder / "characteristic.png", analysis.setup, result, summary)
+            figures.cross_section(folder / "cross_section.png", analysis.setup, result.snapshots[-1])
             if display.ensure():
-                scene.springs(folder / "springs.png", result.snapshots, analysis.wire_radius)
+                scene.springs(folder / "springs.png", result.snapshots, analysis.setup.wire_radius)
 
 
 def press(elements, repeats=1):
@@ -173,21 +173,21 @@ def press(elements, repeats=1):
     for _ in range(int(repeats)):
         watch.wall.clear()
         watch.cpu.clear()
-        analysis, steps = build(watch, read_example(settings), comm), []
+        analysis = build(watch, read_example(settings), comm)
         with watch.stage("other"):
-            analysis.stepper.run_phase(analysis.case.loading[0], steps.append)
+            taken = list(analysis.program.run(analysis.stage(analysis.case.loading[0])))
         logged.charge()
         ranks = comm.allgather({stage: pair(watch, stage) for stage in STAGES})
         runs.append({stage: [max(rank[stage][kind] for rank in ranks) for kind in range(2)] for stage in STAGES})
-    plastic = analysis.rod.history[..., 6] > 0.0
+    plastic = analysis.rod.point_state[..., 6] > 0.0
     return {
-        "elements": len(analysis.turns) - 1,
+        "elements": len(analysis.setup.turns) - 1,
         "ranks": comm.size,
-        "unknowns": analysis.solver.X.getSize(),
-        "force_N": steps[-1].force_N,
-        "iterations": sum(step.iterations for step in steps),
-        "cuts": sum(step.cuts for step in steps),
-        "evaluations": analysis.solver.evaluations,
+        "unknowns": analysis.layout.size,
+        "force_N": analysis.control.force,
+        "iterations": sum(step.outcome.iterations for step in taken),
+        "cuts": sum(step.cuts for step in taken),
+        "evaluations": taken[-1].outcome.evaluations,
         "plastic": comm.allreduce(int(plastic.sum())) / comm.allreduce(plastic.size),
         "memory_GiB": max(comm.allgather(peak_memory())),
         "stages": {stage: [min(run[stage][kind] for run in runs) for kind in range(2)] for stage in STAGES},

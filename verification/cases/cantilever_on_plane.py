@@ -45,8 +45,8 @@ def press():
     for step in np.diff(heights):
         if not frame.step(moves={frame.dof(ELEMENTS, 2): step}, share=1.0 if rows else None).converged:
             raise RuntimeError(f"no equilibrium at step {len(rows) + 1}")
-        part = frame.system.contributions[0]
-        x = points.at(frame.system.gather(frame.rod.x))[part.point, 0]
+        part = frame.system.last.contributions[0]
+        x = points.at(frame.layout.gather(frame.rod.x))[part.point, 0]
         rows.append((part.pressure.sum(), part.pressure @ x / part.pressure.sum()))
     return heights[1:], *np.array(rows).T, law.E * np.pi * RADIUS**4 / 4.0
 

@@ -53,7 +53,7 @@ def press(name, mesh, automatic):
     finally:
         logger.removeHandler(counter)
         logger.setLevel(level)
-    return analysis, summarise(analysis, result), counter
+    return analysis, summarise(analysis.setup, result), counter
 
 
 def characteristic(analysis, phase=None):

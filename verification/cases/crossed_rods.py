@@ -58,7 +58,7 @@ def press():
         if not frame.step(moves=dict.fromkeys(driven, -step)).converged:
             raise RuntimeError(f"no equilibrium at step {len(rows) + 1}")
         rows.append((-sum(frame.force(dof) for dof in driven),
-                     frame.system.contributions[0].penetration.max(initial=0.0)))  # fmt: skip
+                     frame.system.last.contributions[0].penetration.max(initial=0.0)))  # fmt: skip
     bearing = coils.stiffness[[2 * int(PLACES[0] * ELEMENTS), 2 * (count + int(PLACES[1] * ELEMENTS))]].sum()
     return *np.array(rows).T, bearing, law
 

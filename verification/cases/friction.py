@@ -51,10 +51,10 @@ def drag(component, way, free):
     """Force that a rod needs to move by `way`, N, and its mean turn about its axis, rad."""
     frame, forces = pressed_rod(free)
     drawn = [frame.dof(node, component) for node in range(NODES)]
-    before = frame.system.gather(frame.rod.R).copy()
+    before = frame.layout.gather(frame.system.state["R"].trial).copy()
     if not frame.step(moves=dict.fromkeys(drawn, way), forces=forces).converged:
         raise RuntimeError("no equilibrium of the dragged rod")
-    turn = frame.system.gather(frame.rod.R) @ np.swapaxes(before, 1, 2)
+    turn = frame.layout.gather(frame.system.state["R"].trial) @ np.swapaxes(before, 1, 2)
     return sum(frame.force(dof) for dof in drawn), float(0.5 * (turn[:, 2, 1] - turn[:, 1, 2]).mean())
 
 

@@ -27,10 +27,10 @@ from mpi4py import MPI
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
+from coilset.model.equilibrium.methods import METHODS, rod_method
+from coilset.model.equilibrium.newton import Newton, Start
 from coilset.model.errors import SolveError
 from coilset.model.results.figures import STYLE
-from coilset.model.solvers.methods import METHODS
-from coilset.model.solvers.solver import Solver
 
 FAST = False
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "ck15_presetting.yaml"
@@ -69,15 +69,15 @@ def walk(ends, down, up, method):
     """Run the example to block and back to zero force."""
     case = example(ends, method, down, up)
     analysis, counts = Analysis(case, MPI.COMM_SELF), dict.fromkeys(COUNTS, 0)
-    solve = analysis.solver.solve
+    solve = analysis.newton.solve
 
-    def counted(guess=None):
-        outcome = solve(guess)
+    def counted(load, start=None):
+        outcome = solve(load, start)
         for name in COUNTS:
             counts[name] += getattr(outcome, name)
         return outcome
 
-    analysis.solver.solve, complete, began = counted, True, time.perf_counter()
+    analysis.newton.solve, complete, began = counted, True, time.perf_counter()
     try:
         analysis.run()
     except SolveError:
@@ -92,26 +92,23 @@ def newton_along(ends, steps):
     equilibrium.
     """
     analysis = Analysis(example(ends, "newton"), MPI.COMM_SELF)
-    drive, system = analysis.drive, analysis.system
-    solvers = [analysis.solver, Solver(system, "newton", TOLERANCE, {"snes_linesearch_type": "cp"})]
-    last = None
+    control, system = analysis.control, analysis.system
+    newtons = [analysis.newton, Newton(system, rod_method("newton", 1, {"snes_linesearch_type": "cp"}), TOLERANCE)]
+    phase, size = None, 0.0
     for step in steps:
         by_height = step.phase == 0
-        begin, end = (drive.height, step.seat_height_mm) if by_height else (drive.force, step.force_N)
-        (drive.by_height if by_height else drive.by_force)(end)
-        guesses = [None]
-        if last is not None and last[0] == step.phase:
-            guesses.insert(0, last[1].copy())
-            guesses[0].scale((end - begin) / last[2])
-        for solver, guess in itertools.product(solvers, guesses):
-            if solver.solve(guess).converged:
+        begin, end = (control.height, step.seat_height_mm) if by_height else (control.force, step.force_N)
+        load = (control.to_height if by_height else control.to_force)(end)
+        starts = [Start()]
+        if phase == step.phase:
+            starts.insert(0, analysis.continuation.scaled_last((end - begin) / size))
+        for newton, start in itertools.product(newtons, starts):
+            if newton.solve(load, start).converged:
                 break
         else:
             return None
-        last = step.phase, solver.X.copy(), end - begin
-        height, force = drive.read(solver.X)
+        phase, size = step.phase, end - begin
         system.commit()
-        drive.accept(height, force)
     return analysis.snapshot("end")
 
 
@@ -122,10 +119,10 @@ def apart(run, reference):
     """
     if not run.complete or reference is None:
         return np.inf
-    spring, stress = run.analysis.spring, reference.history[..., :3]
+    spring, stress = run.analysis.spring, reference.point_state[..., :3]
     travel = spring.free_length - spring.block_height
     return max(np.abs(run.final.x - reference.x).max() / travel,
-               np.abs(run.final.history[..., :3] - stress).max() / np.abs(stress).max())  # fmt: skip
+               np.abs(run.final.point_state[..., :3] - stress).max() / np.abs(stress).max())  # fmt: skip
 
 
 def run(study):

@@ -11,8 +11,9 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.material import fit, library, programs
-from coilset.model.material.experiments import Test
+from coilset.model.material import library, programs
+from coilset.model.material.identification import fit
+from coilset.model.material.identification.experiments import Test
 from coilset.model.results.figures import STYLE
 
 NOISE = 0.01  # of the greatest stress of each test

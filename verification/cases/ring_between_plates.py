@@ -66,18 +66,18 @@ def press():
     held = [*sides, (ELEMENTS // 2, (0, 1, 3, 5)), *((node, (1, 3, 5)) for node in range(1, ELEMENTS))]
     pairs = [(k, k + 1) for k in range(ELEMENTS)]
     frame = Frame(nodes, pairs, RADIUS, law, polar(), held, contacts=[seat])
-    level, rows = int(frame.system.seat_dofs[SEAT_DOFS + LEVEL]), []
+    level, rows = int(frame.layout.seat_dofs[SEAT_DOFS + LEVEL]), []
     for step in np.diff(np.append(1.0, HEIGHTS)) * RING:
         if not frame.step(moves={level: step}).converged:
             raise RuntimeError(f"no equilibrium at step {len(rows) + 1}")
-        part = frame.system.contributions[0]
-        x = points.at(frame.system.gather(frame.rod.x))[part.point, 0]
+        part = frame.system.last.contributions[0]
+        x = points.at(frame.layout.gather(frame.rod.x))[part.point, 0]
         right = x > 0.0
         middle = (part.pressure * x)[right].sum() / max(part.pressure[right].sum(), 1e-300)
         rows.append((part.pressure.sum(), middle / RING))
     EI = law.E * np.pi * RADIUS**4 / 4.0
     force, flat = np.array(rows).T
-    return force * RING**2 / EI, flat, frame.system.gather(frame.rod.x) + np.array([0.0, 0.0, RING + RADIUS])
+    return force * RING**2 / EI, flat, frame.layout.gather(frame.rod.x) + np.array([0.0, 0.0, RING + RADIUS])
 
 
 def run(study):

@@ -14,7 +14,8 @@ from mpi4py import MPI
 
 from coilset.meshes.solid import SectionGrid, straight_wire
 from coilset.model.material import library
-from coilset.model.material.law import Law, MaterialFile
+from coilset.model.material.file import MaterialFile
+from coilset.model.material.law import Law
 from coilset.model.results.figures import STYLE
 from coilset.model.solid.heads import Motion
 from coilset.model.solid.points import MaterialPoints

@@ -1,8 +1,8 @@
 """Table 4.1: Newton, modified Newton and BFGS on one degree of freedom, every printed digit
 
 Δr = 6 − 2 √u from u = 1, solution 9 (chapter 4.4). The three columns run through SNES with the option sets of
-`coilset.model.solvers.methods`, without line search (β = 1) and with the first matrix kept. K⁻¹ of an iteration is its
-step over the residual at its start. Tolerance: half of the last printed digit.
+`coilset.model.equilibrium.methods`, without line search (β = 1) and with the first matrix kept. K⁻¹ of an iteration is
+its step over the residual at its start. Tolerance: half of the last printed digit.
 
 Two printed numbers are wrong in their last digits, as Newton's closed formula u ← 6 √u − u shows: 8.4146 for 8.4164
 (= 6 √5 − 5), and 2.2360 for 2.2361 (√5 = 2.23607, cut off instead of rounded).
@@ -13,8 +13,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from petsc4py import PETSc
 
+from coilset.model.equilibrium.methods import rod_method
 from coilset.model.results.figures import STYLE
-from coilset.model.solvers.methods import options
 
 FAST = True
 KEEP = 1_000_000  # iterations before a matrix is set up anew
@@ -40,7 +40,7 @@ def iterate(method, extra):
     X, F, A = PETSc.Vec().createSeq(1), PETSc.Vec().createSeq(1), PETSc.Mat().createAIJ((1, 1))
     A.setUp()
     snes, database, states = PETSc.SNES().create(PETSc.COMM_SELF), PETSc.Options("table41_"), []
-    settings = options(method, 1, PLAIN | extra)
+    settings = rod_method(method, 1, PLAIN | extra).options
     for key, value in settings.items():
         database[key] = value
 

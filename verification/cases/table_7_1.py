@@ -93,7 +93,7 @@ def bend(method, options, law):
         if not outcome.converged:
             break
         counts[row] = outcome.iterations
-        forces[row] = frame.system.contributions[0].pressure / unit
+        forces[row] = frame.system.last.contributions[0].pressure / unit
         moved[row] = [-frame.moved(node)[2] / (LENGTH * SCALE) for node in (1, 2)]
     return forces, moved, counts
 

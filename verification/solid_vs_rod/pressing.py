@@ -138,7 +138,7 @@ def run_rod(case, section=PLANE):
         "force": [0.0] + [step.force_N for step in result.steps], "torque": torque,
         "set": result.steps[-1].travel_mm,
         "full": _rod_section(analysis, result.snapshots[1]), "end": _rod_section(analysis, result.snapshots[2]),
-        "inside": [float(analysis.inside.shear(shot.surface, shot.components)[ROD_ELEMENTS // 2].mean())
+        "inside": [float(analysis.setup.inside.shear(shot.surface_state, shot.components)[ROD_ELEMENTS // 2].mean())
                    for shot in result.snapshots[1:3]],
     }  # fmt: skip
 
@@ -155,7 +155,7 @@ def _torque(analysis):
 def _rod_section(analysis, snapshot):
     """Places and stresses of the middle element's section points, in the axes t, outward, t × outward."""
     middle = ROD_ELEMENTS // 2
-    radius = float(analysis.wire_radius[middle])
+    radius = float(analysis.setup.wire_radius[middle])
     E = snapshot.triads[middle]
     centre = snapshot.x[middle : middle + 2].mean(axis=0)
     outward = centre * [1.0, 1.0, 0.0]
@@ -163,7 +163,7 @@ def _rod_section(analysis, snapshot):
     outward /= np.linalg.norm(outward)
     turn = np.stack([outward, np.cross(E[:, 0], outward)]) @ E[:, 1:]  # local y, z → outward, t × outward
     places = radius * analysis.rod.rule.points @ turn.T
-    state = snapshot.history[middle].mean(axis=0)
+    state = snapshot.point_state[middle].mean(axis=0)
     normal, *shears = (component(state, snapshot.components, name) for name in ("s11", "t12", "t13"))
     stress = np.column_stack([normal, np.column_stack(shears) @ turn.T])
     return {"y": places[:, 0].tolist(), "z": places[:, 1].tolist(), "stress": stress.tolist()}

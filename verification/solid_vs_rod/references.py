@@ -20,8 +20,8 @@ def goehner_series(index):
     return 1 + 1.25 / index + 0.875 / index**2 + 1 / index**3
 
 
-def goehner_exact(index, degree=14):
-    """Factors at the inside and the outside from Göhner's boundary value problem, solved to rounding.
+def goehner_exact(index, degree=14, places=(-1.0, 1.0)):
+    """Shear stress on the diameter through the coil's axis, from Göhner's boundary value problem, solved to rounding.
 
     A sector of a ring of circular section with radius R under opposite forces along its axis (pitch → 0) has the
     stresses r² τ_θz = ∂φ/∂r, r² τ_rθ = −∂φ/∂z, and compatibility asks for
@@ -33,9 +33,10 @@ def goehner_exact(index, degree=14):
     Args:
         index: spring index D/d.
         degree: of the polynomials; 10 and 14 agree to 1e-11.
+        places: on the diameter, outwards from the wire's centre, in wire radii; the surface's inside and outside.
 
     Returns:
-        Factors of 8 F D / (π d³) at the inside and at the outside.
+        |τ| at the places over 8 F D / (π d³), a tuple.
     """
     t, w = np.polynomial.legendre.leggauss(40)
     ρ, w = 0.5 * (t + 1), 0.25 * w * (t + 1)
@@ -58,7 +59,7 @@ def goehner_exact(index, degree=14):
     a = np.linalg.lstsq((d_dx * weight) @ d_dx.T + (d_dz * weight) @ d_dz.T, value @ (2 * weight), rcond=1e-14)[0]
     force = np.sum(w * (a @ d_dx) / (index + x) ** 2)
     factors = []
-    for place in (-1.0, 1.0):
+    for place in places:
         slope = a @ gradients(np.array([place]), np.zeros(1))[1]
         factors.append(float(abs(slope[0] / (index + place) ** 2) * np.pi / (2 * index * abs(force))))
     return tuple(factors)

@@ -21,15 +21,36 @@ from coilset.verification.springs.curved_rod import torsion_characteristic
 
 STEPS = 26
 CASES = {  # ends, travel in mm, spring
-    "telescoping cone on a seat": ("seats", 13.0, {
-        "wire_diameter": 2.0, "mean_diameter": {"shape": "cone", "bottom": 70.0, "top": 30.0}, "turns": 6.0,
-        "pitch": 3.0}),
-    "barrel": ("clamped", 13.0, {
-        "wire_diameter": 2.0, "mean_diameter": {"shape": "barrel", "ends": 30.0, "middle": 44.0}, "turns": 8.0,
-        "pitch": 3.2}),
-    "variable pitch": ("clamped", 15.0, {
-        "wire_diameter": 2.0, "mean_diameter": 40.0, "turns": 8.0,
-        "pitch": {"turns": [0, 8], "values": [3.0, 5.0], "interpolation": "linear"}}),
+    "telescoping cone on a seat": (
+        "seats",
+        13.0,
+        {
+            "wire_diameter": 2.0,
+            "mean_diameter": {"shape": "cone", "bottom": 70.0, "top": 30.0},
+            "turns": 6.0,
+            "pitch": 3.0,
+        },
+    ),
+    "barrel": (
+        "clamped",
+        13.0,
+        {
+            "wire_diameter": 2.0,
+            "mean_diameter": {"shape": "barrel", "ends": 30.0, "middle": 44.0},
+            "turns": 8.0,
+            "pitch": 3.2,
+        },
+    ),
+    "variable pitch": (
+        "clamped",
+        15.0,
+        {
+            "wire_diameter": 2.0,
+            "mean_diameter": 40.0,
+            "turns": 8.0,
+            "pitch": {"turns": [0, 8], "values": [3.0, 5.0], "interpolation": "linear"},
+        },
+    ),
 }
 
 
@@ -59,7 +80,7 @@ def solve(name):
     steps = analysis.run().steps
     force = np.array([step.force_N for step in steps])
     formula = torsion_characteristic(analysis.spring, analysis.law.G, force)
-    work = float(analysis.snapshot("end").history[..., 6].max())
+    work = float(analysis.snapshot("end").point_state[..., 6].max())
     return Characteristic(np.array([step.travel_mm for step in steps]), force, formula, work)
 
 

@@ -15,15 +15,17 @@ from mpi4py import MPI
 from coilset.meshes.line import line_mesh
 from coilset.meshes.placement import polygon_nodes, section_placement
 from coilset.meshes.spring import SpringSpec
-from coilset.model.frames.rotations import triads
-from coilset.model.loading.driver import Drive
+from coilset.model.equilibrium.axial_control import AxialControl
+from coilset.model.equilibrium.continuation import Continuation
+from coilset.model.equilibrium.layout import SEATS, LineLayout
+from coilset.model.equilibrium.methods import rod_method
+from coilset.model.equilibrium.newton import Newton
+from coilset.model.equilibrium.system import System
 from coilset.model.material import library
-from coilset.model.problem.system import System
 from coilset.model.results.figures import STYLE, save
-from coilset.model.rod.kinematics import GAUSS
+from coilset.model.rod.kinematics import GAUSS, chord_triads
 from coilset.model.rod.rod import Rod
 from coilset.model.section.rules import polar
-from coilset.model.solvers.solver import Solver
 from coilset.verification.springs.curved_rod import clamped_rate
 
 TRAVEL = 1e-4  # of the free length, in both directions
@@ -37,7 +39,8 @@ REPRESENTATIONS = {
 SPRINGS = {
     "cylinder, 2.5 turns": SpringSpec(wire_diameter=5.0, mean_diameter=40.0, turns=2.5, pitch=12.0),
     "barrel, 6 turns": SpringSpec(
-        wire_diameter=5.0, mean_diameter={"shape": "barrel", "ends": 30.0, "middle": 50.0}, turns=6.0, pitch=14.0),
+        wire_diameter=5.0, mean_diameter={"shape": "barrel", "ends": 30.0, "middle": 50.0}, turns=6.0, pitch=14.0
+    ),
 }
 
 
@@ -54,17 +57,18 @@ def rate(spring, turns, representation, law):
     line = line_mesh(polygon_nodes(spring, turns, keep, poisson=law.E / (2 * law.G) - 1), MPI.COMM_SELF)
     placement = None
     if representation == "curved":
-        placement = section_placement(spring, turns, triads(np.diff(line.stations, axis=0)), GAUSS)
+        placement = section_placement(spring, turns, chord_triads(np.diff(line.stations, axis=0)), GAUSS)
     radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
-    system = System(Rod(line, radius, law, polar(2, 8), placement))
-    drive, solver = Drive(system, "clamped", spring.free_length), Solver(system)
+    rod = Rod(line, radius, law, polar(2, 8), placement)
+    system = System(rod, LineLayout(rod), (), np.zeros(SEATS))
+    control = AxialControl(system, spring.free_length, clamped=True)
+    walk = Continuation(Newton(system, rod_method("newton", 1), 1e-7))
     forces = []
     for travel in (TRAVEL * spring.free_length, -TRAVEL * spring.free_length):
-        drive.by_height(spring.free_length - travel)
-        if not solver.solve().converged:
+        outcome, force = walk.probe(control.to_height(spring.free_length - travel), lambda: control.trial_force)
+        if not outcome.converged:
             raise RuntimeError(f"no equilibrium at a travel of {travel:g} mm")
-        forces.append(drive.read(solver.X)[1])
-        system.restore()
+        forces.append(force)
     # the central difference leaves no share of the characteristic's curvature
     return (forces[0] - forces[1]) / (2 * TRAVEL * spring.free_length)
 
@@ -76,8 +80,10 @@ def study():
     for name, spec in SPRINGS.items():
         spring = spec.build()
         exact = clamped_rate(spring, law.E, law.G)
-        errors[name] = {key: np.array([rate(spring, spring.stations(n), key, law) / exact - 1 for n in ELEMENTS])
-                        for key in REPRESENTATIONS}
+        errors[name] = {
+            key: np.array([rate(spring, spring.stations(n), key, law) / exact - 1 for n in ELEMENTS])
+            for key in REPRESENTATIONS
+        }
     return errors
 
 

@@ -1,19 +1,22 @@
 """The material library: one YAML file a material, beside this module; users name their own file instead."""
 
 from pathlib import Path
+from typing import Any
 
+from coilset.model.case.entry import shortened
 from coilset.model.errors import InputError
-from coilset.model.material.law import read
+from coilset.model.material.file import read
+from coilset.model.material.law import Law
 
 FOLDER = Path(__file__).parent
 
 
-def names():
+def names() -> list[str]:
     """Names of the materials that come with coilset."""
     return sorted(path.stem for path in FOLDER.glob("*.yaml"))
 
 
-def load(name, **options):
+def load(name: str | Path, **options: Any) -> Law:
     """Load a material.
 
     Args:
@@ -28,8 +31,9 @@ def load(name, **options):
     """
     name = str(name)
     if name.endswith((".yaml", ".yml")):
-        return read(name, **options)
+        return Law(read(name), file=name, **options)
     if name not in names():
         known = ", ".join(names())
-        raise InputError(f"'{name}' is no material of the library ({known}) and no .yaml file", "material")
-    return read(FOLDER / f"{name}.yaml", **options)
+        raise InputError(f"'{shortened(name)}' is no material of the library ({known}) and no .yaml file", "material")
+    path = FOLDER / f"{name}.yaml"
+    return Law(read(path), file=path, **options)

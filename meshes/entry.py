@@ -1,0 +1,81 @@
+"""What every group of entries of an input file is built on: unknown names are refused, numbers are numbers."""
+
+from collections.abc import Iterator
+from difflib import get_close_matches
+from operator import index
+from typing import Annotated, Any, ClassVar
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, PrivateAttr, model_validator
+from pydantic_core import PydanticCustomError
+
+
+def _whole(value: Any) -> Any:
+    """A whole number that came as 12.0, or as one of numpy's, as 12; what is none is left to be refused."""
+    if isinstance(value, bool | str):
+        return value
+    try:
+        return int(value) if isinstance(value, float) and value.is_integer() else index(value)
+    except TypeError:
+        return value
+
+
+Whole = Annotated[int, BeforeValidator(_whole)]
+"""A whole number; 12.0 is one, too, as ranges of a sweep make it."""
+
+WORD_OR_NUMBER = Discriminator(lambda value: "(word)" if isinstance(value, str) else "(number)")
+"""Tells a number, tagged `(number)`, from one of some words, tagged `(word)`."""
+
+
+class Strict(BaseModel):
+    """A group of entries.
+
+    Unknown entries are refused, values do not change, numbers are finite, and nothing is converted: neither a word nor
+    a truth value is a number.
+
+    Attributes:
+        RENAMED: earlier names of entries and their names now; both are taken, but not both at once.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True)
+    RENAMED: ClassVar[dict[str, str]] = {}
+    _earlier: tuple[str, ...] = PrivateAttr(())
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _entries(cls, data: Any, validate: Any) -> Any:
+        if not isinstance(data, dict):
+            return validate(data)
+        earlier = tuple(name for name in cls.RENAMED if name in data)
+        for name in earlier:
+            if cls.RENAMED[name] in data:
+                raise ValueError(f"{name} is the earlier name of {cls.RENAMED[name]}; give one of the two")
+        data = {cls.RENAMED.get(name, name): value for name, value in data.items()}
+        _check_names(cls, data)
+        group = validate(data)
+        if earlier:
+            group._earlier = earlier
+        return group
+
+    def notices(self) -> Iterator[str]:
+        """What the user should know about the entries: one line for each that has an earlier name, with its place."""
+        for name in self._earlier:
+            yield f"{name}: this entry is now called {self.RENAMED[name]}"
+        for name, value in self:
+            if isinstance(value, Strict):
+                yield from (f"{name}.{notice}" for notice in value.notices())
+
+
+def _check_names(group: type[BaseModel], data: dict) -> None:
+    """Refuse the first unknown entry, and then the first missing one: a misspelt entry leaves another one missing."""
+    known = {field.alias or name: field for name, field in group.model_fields.items()}
+    for name in data:
+        if name not in known:
+            left = [other for other in known if other not in data]
+            near = get_close_matches(str(name), known, 1, 0.8) or get_close_matches(str(name), left, 3)
+            hint = f"is {' or '.join(near)} meant?" if near else f"the entries here are {', '.join(known)}"
+            raise PydanticCustomError("unknown_entry", "unknown entry; {hint}", {"entry": str(name), "hint": hint})
+    for name, field in known.items():
+        if field.is_required() and name not in data:
+            hint = f"; give {field.description}" if field.description else ""
+            problem = "this entry is required{hint}"
+            raise PydanticCustomError("missing_entry", problem, {"entry": name, "hint": hint})

@@ -1,0 +1,207 @@
+"""The case file: one YAML file that names a spring, its material, its ends, its mesh and its load program."""
+
+import math
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
+
+from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
+
+from coilset.meshes.spring import SpringEntry
+from coilset.meshes.stations import ElementsPerTurn
+from coilset.model.case.entry import Strict, Whole, check_entries
+from coilset.model.case.phases import Phase
+from coilset.model.case.seats import SeatsSpec
+from coilset.model.case.settings import assign, located
+from coilset.model.case.yaml import read_data
+from coilset.model.equilibrium.control import NewtonControl, StepControl
+from coilset.model.equilibrium.methods import METHODS
+from coilset.model.section import rules
+
+
+class SectionSpec(Strict):
+    """The wire's cross-section: what it may do, and its quadrature."""
+
+    kind: Annotated[
+        Literal["plane", "curved", "warping"],
+        Field(description="plane as in the thesis; curved: plane, with fibres as long as the curved wire makes them; "
+                          "warping: free to warp, with all six stresses"),
+    ] = "plane"  # fmt: skip
+    degree: Annotated[Whole, Field(ge=1, le=7, description="of the polynomials of a section that warps")] = 3
+    rule: Annotated[Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")] = (
+        "polar"
+    )
+    radial: Annotated[Whole, Field(ge=1, le=64, description="rings of the polar rule")] = 4
+    angular: Annotated[Whole, Field(ge=3, le=256, description="angles of the polar rule")] = 12
+
+    @model_validator(mode="after")
+    def _warping_is_integrated(self) -> Self:
+        exact = 5 if self.rule == "abramowitz9" else min(4 * self.radial, self.angular) - 1
+        needed = 2 * self.degree - 2
+        if self.kind == "warping" and exact < needed:
+            raise ValueError(f"the rule is exact for polynomials of degree {exact}, warping of degree {self.degree} "
+                             f"needs {needed}; give more points or a lower degree")  # fmt: skip
+        return self
+
+    def build(self) -> rules.DiskRule:
+        """The quadrature rule."""
+        return rules.abramowitz9() if self.rule == "abramowitz9" else rules.polar(self.radial, self.angular)
+
+
+class MeshSpec(Strict):
+    """Elements along the wire."""
+
+    elements_per_turn: Annotated[
+        ElementsPerTurn, Field(description="straight rods per turn, a number or a table over the turns")
+    ] = 16
+    sagitta: Annotated[
+        float | None, Field(gt=0, description="greatest distance of a rod from the wire's axis, mm; makes more rods")
+    ] = None
+    axis: Annotated[
+        Literal["curved", "chords"],
+        Field(description="curved: the rods' sections lie on the true centre line; chords: the thesis's polygon"),
+    ] = "curved"
+    section: SectionSpec = SectionSpec()
+
+    @model_validator(mode="after")
+    def _curvature_belongs(self) -> Self:
+        if self.axis == "chords" and self.section.kind != "plane":
+            raise ValueError(f"chords are straight; give section.kind: plane, or axis: curved for {self.section.kind}")
+        return self
+
+
+class FrictionSpec(Strict):
+    """Coefficients of Coulomb friction; 0 is none."""
+
+    seats: Annotated[float, Field(ge=0, lt=2, description="of the wire on the seats")] = 0.0
+    coils: Annotated[float, Field(ge=0, lt=2, description="of coils on coils")] = 0.0
+
+
+class ContactSpec(Strict):
+    """Stiffness of seats and coils against penetration."""
+
+    RENAMED: ClassVar[dict[str, str]] = {"deepest": "penetration_limit", "penetration": "augmentation_tolerance"}
+
+    coils: Annotated[
+        Literal["closest", "gaps"],
+        Field(description="closest points of the wires, or the thesis's gap elements between nodes one turn apart"),
+    ] = "closest"
+    bedding: Annotated[
+        float | None, Field(gt=0, description="force per length and penetration, N/mm per mm; default E/40")
+    ] = None
+    penetration_limit: Annotated[
+        float, Field(gt=0, description="penetration in wire diameters beyond which a step is no equilibrium")
+    ] = 0.02
+    augmentation_tolerance: Annotated[
+        float | None, Field(gt=0, description="greatest penetration, mm, reached by augmented Lagrange; default: any")
+    ] = None
+    friction: FrictionSpec = FrictionSpec()
+
+    @model_validator(mode="after")
+    def _friction_belongs(self) -> Self:
+        if self.coils == "gaps" and self.friction.coils:
+            raise ValueError("gap elements have no friction; give coils: closest, or leave friction.coils out")
+        return self
+
+
+class ControlSpec(Strict):
+    """Every number that steers the iteration and the steps."""
+
+    newton: Annotated[NewtonControl, Field(description="how one step is solved")] = NewtonControl()
+    steps: Annotated[StepControl, Field(description="how steps follow each other")] = StepControl()
+
+
+def _one_value(value: Any) -> Any:
+    if isinstance(value, dict | list | tuple) or (isinstance(value, float) and not math.isfinite(value)):
+        raise ValueError("must be a word, a finite number, true, false or null")
+    return value
+
+
+Option = Annotated[bool | int | float | str | None, BeforeValidator(_one_value)]
+"""Value of a PETSc option."""
+
+
+class SolverSpec(Strict):
+    """How equilibrium is found."""
+
+    method: Annotated[Literal[tuple(METHODS)], Field(description="iteration method")] = "newton"
+    tolerance: Annotated[float, Field(gt=0, lt=1, description="ε of (6.3.1)")] = 1e-9
+    options: Annotated[
+        dict[Annotated[str, Field(pattern="^[a-z]\\w*$")], Option],
+        Field(default_factory=dict, description="any PETSc options, without the leading hyphen; they win"),
+    ]
+    control: ControlSpec = ControlSpec()
+
+
+class Case(Strict):
+    """A whole case; units mm, N, MPa, K."""
+
+    spring: Annotated[SpringEntry, Field(description="the spring's drawing, or the file of a measured one")]
+    material: Annotated[str, Field(description="name in the library, or path of a material file")] = "ck15"
+    temperature: Annotated[
+        float | None, Field(gt=0, description="of the spring throughout, K; default: the material file's first")
+    ] = None
+    ends: Annotated[Literal["seats", "clamped"], Field(description="seats or clamped")] = "seats"
+    seats: SeatsSpec = SeatsSpec()
+    mesh: MeshSpec = MeshSpec()
+    contact: ContactSpec = ContactSpec()
+    solver: SolverSpec = SolverSpec()
+    loading: Annotated[list[Phase], Field(strict=False, min_length=1, description="targets, one after the other")]
+
+    @field_validator("material")
+    @classmethod
+    def _from_folder(cls, material: str, info: ValidationInfo) -> str:
+        """The path of a material file counts from the folder of the case file, where the context has one."""
+        folder = (info.context or {}).get("folder")
+        return material if folder is None else located("material", material, folder)
+
+    @model_validator(mode="after")
+    def _seats_belong(self) -> Self:
+        if self.ends != "seats" and self.seats != SeatsSpec():
+            raise ValueError("there are no seats between clamped ends; leave the seats out, or give ends: seats")
+        if self.ends != "seats" and self.contact.friction.seats:
+            raise ValueError("there are no seats between clamped ends; leave contact.friction.seats out")
+        shapes = {self.seats.bottom.shape, self.seats.top.shape} - {"flat"}
+        if shapes and any(phase.to == "block" for phase in self.loading):
+            raise ValueError(f"block is known for flat seats; with {shapes.pop()} ones give height, travel or force")
+        return self
+
+
+Group = TypeVar("Group", bound=Strict)
+
+
+def check(data: Any, file: str | Path = "", model: type[Group] = Case) -> Group:  # type: ignore[assignment]
+    """The checked Case (or other `model`) of raw data; paths in it count from the folder of `file`.
+
+    Raises:
+        InputError: one line with file, place, value and what would be right.
+    """
+    return check_entries(data, model, file)
+
+
+def read_case_data(path: str | Path) -> dict[str, Any]:
+    """The raw, unchecked data of a case file.
+
+    Raises:
+        InputError: if it cannot be read.
+    """
+    return read_data(path, "a case file holds entries such as spring:, material: and loading:")
+
+
+def read_case(path: str | Path, settings: Iterable[str] = ()) -> Case:
+    """Read and check a case file.
+
+    Args:
+        path: the YAML file.
+        settings: texts `key=value` that replace entries of the file; paths in them count from the working directory.
+
+    Returns:
+        Case.
+
+    Raises:
+        InputError: one line with file, place, value and what would be right.
+    """
+    data = read_case_data(path)
+    for setting in settings:
+        assign(data, setting)
+    return check(data, path)

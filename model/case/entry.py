@@ -1,0 +1,93 @@
+"""Entries of input files: their strict base, how they are checked, and what was wrong with them in one line."""
+
+import re
+import reprlib
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import ValidationError
+
+from coilset.meshes.entry import WORD_OR_NUMBER, Strict, Whole
+from coilset.model.errors import InputError
+
+__all__ = ["WORD_OR_NUMBER", "Strict", "Whole", "check_entries", "explain", "shown"]
+
+Group = TypeVar("Group", bound=Strict)
+
+LONGEST = 60  # characters of a value or a name in a message
+OWN = ("unknown_entry", "missing_entry")  # errors that name their entry themselves
+TEXTS = {  # what would be right, where pydantic's words are those of a programmer
+    "model_type": "must be a group of entries, as in {name: value}",
+    "model_attributes_type": "must be a group of entries, as in {name: value}",
+    "dict_type": "must be a group of entries, as in {name: value}",
+    "list_type": "must be a list, as in [1, 2]",
+    "tuple_type": "must be a list, as in [1, 2]",
+    "string_type": "must be a word",
+    "int_type": "must be a whole number",
+    "float_type": "must be a number",
+    "bool_type": "must be true or false",
+    "string_pattern_mismatch": "must be a name of letters, digits, _ and in a sweep also full stops",
+}
+ALTERNATIVES = {"(word)": ", or a number", "(none)": ", or a group of constants"}  # to a word, by its tag
+_short = reprlib.Repr()
+_short.maxlevel, _short.maxdict, _short.maxlist, _short.maxtuple = 3, 4, 6, 6
+_short.maxstring = _short.maxlong = _short.maxother = LONGEST
+
+
+def shown(value: Any) -> str:
+    """A value as messages show it: at most `LONGEST` characters, however long it is, in one line."""
+    text = " ".join(_short.repr(value).split())
+    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
+
+
+def shortened(text: str, longest: int = LONGEST) -> str:
+    """A text of the user's as messages show it, without quotation marks."""
+    text = " ".join(str(text).split())
+    return text if len(text) <= longest else text[: longest - 3] + "..."
+
+
+def explain(error: ValidationError) -> tuple[str, str]:
+    """Place and problem of a pydantic error, in one line: the value that was given, and what would be right."""
+    found = _innermost(error.errors(include_url=False))
+    # a misspelt entry first: the one that it was meant for is reported as missing besides
+    first = next((one for one in found if one["type"] == "unknown_entry"), found[0])
+    context = first.get("ctx", {})
+    # what is in brackets is no entry of the file: tags of alternatives, and that an entry's name is meant
+    parts = [shortened(part) for part in first["loc"] if not re.fullmatch(r"\(.*\)|\[key\]", str(part))]
+    if first["type"] in OWN:
+        parts.append(shortened(context["entry"]))
+    given = "" if first["type"] in (*OWN, "value_error") else f"{shown(first['input'])}: "
+    problem = TEXTS.get(first["type"]) or _in_words(first["msg"])
+    problem += ALTERNATIVES.get(first["loc"][-1], "") if first["loc"] else ""
+    more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
+    return ".".join(parts), f"{given}{problem}{more}"
+
+
+def _innermost(found: list[Any]) -> list[Any]:
+    """Without complaints of groups that follow from one within: a list whose only value is wrong is also too short."""
+    outside = {one["loc"][:depth] for one in found for depth in range(len(one["loc"]))}
+    return [one for one in found if one["loc"] not in outside]
+
+
+def _in_words(message: str) -> str:
+    """Pydantic's message as the rest of a sentence."""
+    message = message.removeprefix("Value error, ").replace(" after validation", "")
+    return re.sub(r"^(Input|String|List|Tuple|Dictionary) should (be|have|match)", r"must \2", message)
+
+
+def check_entries(data: Any, model: type[Group], file: str | Path = "") -> Group:
+    """The checked `model` of raw data.
+
+    Args:
+        data: raw data, as `read_data` gives it.
+        model: class of the entries.
+        file: where they come from; paths in them count from its folder.
+
+    Raises:
+        InputError: one line with file, place, value and what would be right.
+    """
+    try:
+        return model.model_validate(data, context={"folder": Path(file).parent})
+    except ValidationError as error:
+        place, problem = explain(error)
+        raise InputError(problem, place, file) from None

@@ -1,0 +1,91 @@
+"""How an axial force or height is put on a spring: by its top seat, or by its clamped top end."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from coilset.model.contact.base import ENDS, LEVEL, SEAT_DOFS
+from coilset.model.equilibrium.layout import LineLayout
+from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.system import System
+
+
+class AxialControl:
+    """The spring between its heads: which unknowns are held, which one is driven, and what force and height mean.
+
+    Args:
+        system: System of a rod with its LineLayout.
+        free_length: height of the unloaded spring, mm.
+        clamped: do the end nodes belong to rigid heads that move along the axis only? Else they stand on seats.
+        tips_held: on seats: are the wire's tips held sideways and against turning, as by pockets? Else contacts alone
+            hold the wire.
+        seats_held: on seats: degrees of freedom of the bottom and of the top seat that are held, without the level.
+
+    Attributes:
+        tips: station of each end and those of its six components that are held or driven, so that they bear reactions.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        free_length: float,
+        clamped: bool,
+        tips_held: bool = True,
+        seats_held: Sequence[Sequence[int]] = ((), ()),
+    ) -> None:
+        layout = system.layout
+        assert isinstance(layout, LineLayout)
+        self.system, self.layout, self.free_length, self.clamped = system, layout, free_length, clamped
+        bottom, top = layout.station_dofs[0], layout.station_dofs[-1]
+        if clamped:
+            self.axial, components = int(top[2]), np.arange(6)
+            held = [*bottom, *np.delete(top, 2), *layout.seat_dofs]
+        else:
+            self.axial = int(layout.seat_dofs[SEAT_DOFS + LEVEL])
+            components = np.delete(np.arange(6), 2) if tips_held else np.arange(0)
+            held = [*bottom[components], *top[components], layout.seat_dofs[LEVEL]]
+            for number, dofs in enumerate(seats_held):
+                held += [layout.seat_dofs[SEAT_DOFS * number + dof] for dof in dofs]
+        self.held = {int(dof): 0.0 for dof in held}
+        self.tips = {"bottom": (0, components), "top": (len(layout.station_dofs) - 1, components)}
+        self._start = self._level()
+
+    def to_height(self, height: float) -> Load:
+        """The load that brings the spring from the last equilibrium to a height, mm."""
+        return Load.of(self.layout, {**self.held, self.axial: height - self.height}, {})
+
+    def to_force(self, force: float) -> Load:
+        """The load that brings the spring to an axial force, compression positive, N."""
+        return Load.of(self.layout, self.held, {self.axial: -force})
+
+    @property
+    def height(self) -> float:
+        """At the last equilibrium, mm."""
+        return self.free_length + (self._level() - self._start)
+
+    @property
+    def force(self) -> float:
+        """Axial force at the last equilibrium, compression positive, N; collective."""
+        return self._force(self.system.state["reactions"].equilibrium)
+
+    @property
+    def trial_force(self) -> float:
+        """Axial force on trial, compression positive, N; collective."""
+        return self._force(self.system.state["reactions"].trial)
+
+    def _level(self) -> float:
+        """Level of the driven head at the last equilibrium, mm; collective."""
+        state = self.system.state
+        if self.clamped:
+            return float(self.layout.gather(state["x"].equilibrium)[-1, 2])
+        return float(state["seats"].equilibrium[SEAT_DOFS + LEVEL])
+
+    def _force(self, reactions: np.ndarray) -> float:
+        return -float(self.layout.values(self.layout.vector(reactions), np.array(self.axial)))
+
+    def centre(self, end: str, x: np.ndarray) -> np.ndarray:
+        """Centre of the seat, or where the axis meets the head, at station positions `x`, shape (3,), mm."""
+        if self.clamped:
+            return np.array([0.0, 0.0, x[self.tips[end][0], 2]])
+        first = SEAT_DOFS * ENDS.index(end)
+        return self.system.seats[first : first + 3]

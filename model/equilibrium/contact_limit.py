@@ -1,0 +1,71 @@
+"""How far a correction may go before coils or seats lie deep in each other.
+
+Bodies that a correction presses far into each other make the wire yield, which the next correction cannot take back. So
+penetrations up to some hundredths of the wire's diameter are free, and a deeper one may grow by a factor only.
+"""
+
+from petsc4py import PETSc
+
+from coilset.model.contact.base import LimitsStep, TrialPositions
+from coilset.model.equilibrium.control import NewtonControl
+from coilset.model.equilibrium.layout import SEATS, LineLayout
+from coilset.model.equilibrium.system import System
+
+
+class ContactLimit:
+    """The limit for a system.
+
+    Args:
+        system: System.
+        control: NewtonControl.
+        free: penetration up to which a correction may press, mm.
+    """
+
+    def __init__(self, system: System, control: NewtonControl, free: float) -> None:
+        self.system, self.control, self.free = system, control, free
+        self.limiting = [contact for contact in system.contacts if isinstance(contact, LimitsStep)]
+
+    def allowed(self, penetration: float) -> float:
+        """Penetration up to which a correction may press, from a state with `penetration`, mm."""
+        return max(self.free, self.control.penetration_growth * penetration)
+
+    def step_length(self, start: PETSc.Vec, direction: PETSc.Vec, sign: float = 1.0) -> float:
+        """Greatest λ ≤ 1 up to which start + λ · sign · direction presses no deeper than allowed; collective."""
+        layout = self.system.layout
+        if not self.limiting:
+            return 1.0
+        assert isinstance(layout, LineLayout)
+        n, state = len(layout.station_dofs), self.system.state
+        before, (x, seats), (u, moved) = (layout.gather(state["x"].equilibrium), *(
+            (values[: 6 * n].reshape(n, 6)[:, :3], values[-SEATS:])
+            for values in (layout.to_order(start.getArray(readonly=True)),
+                           sign * layout.to_order(direction.getArray(readonly=True)))))  # fmt: skip
+        x, seats = before + x, state["seats"].equilibrium + seats
+
+        def penetration(length: float) -> float:
+            trial = TrialPositions(x + length * u, seats + length * moved)
+            return max(contact.max_penetration(trial) for contact in self.limiting)
+
+        allowed = self.allowed(penetration(0.0))
+        if penetration(1.0) <= allowed:
+            return 1.0
+        low, high = self.control.smallest_contact_step, 1.0
+        for _bisection in range(self.control.contact_bisections):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if penetration(middle) <= allowed else (low, middle)
+        return low
+
+    def limit_start(self, guess: PETSc.Vec, start: PETSc.Vec) -> None:
+        """Write into `start` as much of the guess as the contacts allow from the last equilibrium; collective."""
+        guess.copy(start)
+        self.system.evaluate(start)
+        if self.system.max_penetration > self.allowed(0.0):
+            start.set(0.0)
+            length = self.step_length(start, guess)
+            guess.copy(start)
+            start.scale(length)
+
+
+def free_penetration(control: NewtonControl, penetration_limit: float) -> float:
+    """What corrections may press without more ado, in wire diameters: the contacts' limit if nothing else is given."""
+    return penetration_limit if control.free_penetration is None else control.free_penetration

@@ -1,0 +1,90 @@
+"""Every number that steers the iteration and the steps, with its unit and its reason; `solver.control` of a case file.
+
+How much each of them matters is measured in docs/methods.md: each halved and doubled over the shipped springs.
+"""
+
+from dataclasses import dataclass
+from typing import Annotated, ClassVar
+
+from pydantic import ConfigDict, Field
+
+Positive = Annotated[float, Field(gt=0)]
+Share = Annotated[float, Field(gt=0, lt=1)]
+Growth = Annotated[float, Field(ge=1)]
+Count = Annotated[int, Field(ge=1)]
+STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+
+@dataclass(frozen=True)
+class NewtonControl:
+    """How one step is solved.
+
+    Attributes:
+        stagnation: iterations without a new least residual that count as stagnation.
+        part_tolerance: ε of (6.3.1) for a part of a step, which is only a place to go on from.
+        smallest_part: of a step, balanced on the way to the whole; smaller ones are left to the step control.
+        augmentations: of the contacts in a step, at most.
+        accepted_work: |s(λ)/s(0)| of the out-of-balance work up to which a full correction is taken, though the norm
+            grows.
+        sought_work: |s(λ)/s(0)| at which the search for a zero of the work ends.
+        search_trials: of that search, at most.
+        bracket_margin: share of the bracket by which a trial keeps away from its ends.
+        backtrack: factor of the step length where the work has no zero.
+        smallest_step_length: where going back ends.
+        stress_backtrack: factor of the step length where the law finds no stress.
+        free_penetration: wire diameters up to which a correction may press coils and seats; None: the contacts' limit.
+        penetration_growth: factor by which a deeper penetration may grow in one correction.
+        smallest_contact_step: share of a correction that is gone whatever the contacts say.
+        contact_bisections: to find how far a correction may go.
+    """
+
+    __pydantic_config__: ClassVar[ConfigDict] = STRICT
+    stagnation: Count = 25
+    part_tolerance: Share = 0.2
+    smallest_part: Share = 0.1
+    augmentations: Count = 40
+    accepted_work: Share = 0.3
+    sought_work: Share = 0.3
+    search_trials: Count = 6
+    bracket_margin: Share = 0.1
+    backtrack: Share = 0.4
+    smallest_step_length: Share = 1e-3
+    stress_backtrack: Share = 0.25
+    free_penetration: Positive | None = None
+    penetration_growth: Growth = 1.5
+    smallest_contact_step: Share = 0.02
+    contact_bisections: Count = 6
+
+
+@dataclass(frozen=True)
+class StepControl:
+    """How steps follow each other; sizes are in regular steps, of which a phase has its `steps`.
+
+    Attributes:
+        smallest: size below which the walk is given up.
+        attempts: solves for each regular step, and `spare_attempts` more, before the walk is said to stall.
+        spare_attempts: see there.
+        automatic: regular steps of an automatic phase; its first step is one of them.
+        easy: iterations up to which an automatic step lets the next one grow.
+        hard: iterations from which it makes the next one shrink.
+        growth: factor of an automatic step after an easy one.
+        shrinkage: factor of an automatic step after a hard one.
+        largest: size of an automatic step.
+        cut: factor of a step that found no equilibrium.
+        regrowth: factor by which an equal step that was cut grows again, up to 1.
+        probe: travel by which the initial rate is measured, in free lengths.
+    """
+
+    __pydantic_config__: ClassVar[ConfigDict] = STRICT
+    smallest: Share = 2.0**-10
+    attempts: Count = 40
+    spare_attempts: Annotated[int, Field(ge=0)] = 200
+    automatic: Count = 16
+    easy: Count = 5
+    hard: Count = 10
+    growth: Growth = 1.5
+    shrinkage: Share = 0.7
+    largest: Growth = 2.0
+    cut: Share = 0.5
+    regrowth: Growth = 2.0
+    probe: Share = 1e-3

@@ -1,0 +1,124 @@
+"""When a step is in equilibrium: the thesis's measure (6.3.1), and how a solve ended, in words."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from petsc4py import PETSc
+
+from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.system import System
+
+Reason = PETSc.SNES.ConvergedReason
+REASONS = {value: name for name, value in vars(Reason).items() if isinstance(value, int)}
+WORDS = {
+    "DIVERGED_FNORM_NAN": "the residual is not a number, or the law found no stress",
+    "DIVERGED_FUNCTION_DOMAIN": "the law found no stress",
+    "DIVERGED_LINEAR_SOLVE": "the tangent is singular",
+    "DIVERGED_MAX_IT": "no equilibrium within the greatest number of iterations",
+    "DIVERGED_LINE_SEARCH": "the line search found no better state",
+    "DIVERGED_DTOL": "the out-of-balance forces grow without bound",
+    "DIVERGED_LOCAL_MIN": "the iteration stagnates: the out-of-balance forces no longer fall",
+    "DIVERGED_TR_DELTA": "the iteration stagnates: the trust region has shrunk to nothing",
+    "DIVERGED_INNER": "the preconditioning step found no state",
+}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a step ended.
+
+    Attributes:
+        converged: is it in equilibrium?
+        reason: in words.
+        ratio: left side of (6.3.1).
+        iterations: new states; a first one that only meets the prescribed increments counts too.
+        factorisations: tangents set up and factorised.
+        evaluations: residuals evaluated.
+        linear_iterations: inside of iterative linear solvers.
+    """
+
+    converged: bool
+    reason: str
+    ratio: float
+    iterations: int = 0
+    factorisations: int = 0
+    evaluations: int = 0
+    linear_iterations: int = 0
+
+    def __add__(self, following: "Outcome") -> "Outcome":
+        """The outcome of two solves, one after the other."""
+        counts = ("iterations", "factorisations", "evaluations", "linear_iterations")
+        return replace(following, **{name: getattr(self, name) + getattr(following, name) for name in counts})
+
+
+def reason_in_words(reason: int) -> str:
+    """PETSc's reason for the end of a solve."""
+    name = REASONS.get(reason, str(reason))
+    return WORDS.get(name, name)
+
+
+@dataclass(frozen=True)
+class Imbalance:
+    """How far a state is from equilibrium.
+
+    Attributes:
+        rest: norm of the out-of-balance forces |r − f|, N.
+        change: norm of the change of loads and reactions since the step's start |²R − ²F|, N.
+        missed: part of the prescribed increments that is still missing.
+    """
+
+    rest: float
+    change: float
+    missed: float
+
+    @property
+    def ratio(self) -> float:
+        """Left side of (6.3.1)."""
+        return self.rest / self.change if self.change > 0.0 else np.inf
+
+
+def imbalance(system: System, load: Load, F: PETSc.Vec) -> Imbalance:
+    """Imbalance of the state that was evaluated last and has the residual `F`; collective."""
+    rest = F.getArray(readonly=True).copy()
+    rest[load.held] = 0.0
+    supports = np.union1d(load.held, load.loaded) if len(load.loaded) else load.held
+    reactions = system.state["reactions"]
+    change = reactions.trial[supports] - reactions.equilibrium[supports]
+    missed = F.getArray(readonly=True)[load.held] / system.body.constraint_weight
+    squares = np.array([rest @ rest, change @ change, missed @ missed])
+    if system.comm.size > 1:
+        squares = system.comm.allreduce(squares)
+    norms, prescribed = np.sqrt(squares), load.prescribed()
+    return Imbalance(norms[0], norms[1], norms[2] / prescribed if prescribed > 0.0 else norms[2])
+
+
+class EquilibriumTest:
+    """(6.3.1): |r − f| / |²R − ²F| ≤ ε, and prescribed increments met; or the reason why it will not come to that.
+
+    Args:
+        tolerance: ε.
+        stagnation: iterations without a new least residual that count as stagnation.
+    """
+
+    def __init__(self, tolerance: float, stagnation: int) -> None:
+        self.tolerance, self.stagnation = tolerance, stagnation
+        self._first = self._least = np.inf
+        self._least_at = 0
+
+    def begin(self, norm: float) -> None:
+        """Begin a solve with the residual's norm at its start."""
+        self._first, self._least, self._least_at = norm, norm, 0
+
+    def is_met(self, found: Imbalance, tolerance: float, rounding: float) -> bool:
+        """Is it an equilibrium to ε = `tolerance`, or to `rounding`, N?"""
+        return found.missed <= self.tolerance and found.rest <= max(tolerance * found.change, rounding)
+
+    def is_lost(self, iteration: int, norm: float, divergence: float) -> int | None:
+        """The reason to give up: a residual that has grown by the factor `divergence`, or no longer falls."""
+        if norm > divergence * self._first:
+            return Reason.DIVERGED_DTOL
+        if norm < self._least:
+            self._least, self._least_at = norm, iteration
+        elif iteration - self._least_at >= self.stagnation:
+            return Reason.DIVERGED_LOCAL_MIN
+        return None

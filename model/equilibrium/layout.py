@@ -1,0 +1,125 @@
+"""Where each unknown lies in PETSc's vectors, and the natural order that no partition changes."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from dolfinx import fem
+from petsc4py import PETSc
+
+from coilset.model.contact.base import SEAT_DOFS
+from coilset.model.state import Field, Where
+
+if TYPE_CHECKING:
+    from coilset.model.rod.rod import Rod
+
+SEATS = 2 * SEAT_DOFS  # unknowns of bottom and top seat
+
+
+class Layout:
+    """Vectors of a body's unknowns, with `extra` ones behind them on the last rank.
+
+    The body's unknowns keep DOLFINx's numbering, so that DOLFINx assembles into the enlarged vectors as they stand.
+
+    Attributes:
+        owned: number of the body's unknowns on this rank; they come first.
+        size_local, size: of a vector, on this rank and in all.
+        start, stop: range of this rank's unknowns.
+        has_extra: does this rank own the extra unknowns?
+    """
+
+    def __init__(self, space: fem.FunctionSpace, extra: int = 0) -> None:
+        dofmap = space.dofmap
+        self.comm, self.block_size = space.mesh.comm, dofmap.index_map_bs
+        self.index_map = dofmap.index_map
+        self.owned = dofmap.index_map.size_local * self.block_size
+        self.body_size = dofmap.index_map.size_global * self.block_size
+        self.has_extra = self.comm.rank == self.comm.size - 1
+        self.size_local, self.size = self.owned + (extra if self.has_extra else 0), self.body_size + extra
+        self.start = self.index_map.local_range[0] * self.block_size
+        self.stop = self.start + self.size_local
+
+    def vector(self, values: np.ndarray | None = None) -> PETSc.Vec:
+        """A PETSc vector of the unknowns: new and zero, or around this rank's `values`, shape (size_local,)."""
+        if values is None:
+            return PETSc.Vec().createMPI((self.size_local, None), bsize=self.block_size, comm=self.comm)
+        return PETSc.Vec().createWithArray(values, (self.size_local, None), bsize=self.block_size, comm=self.comm)
+
+    def extra(self, values: np.ndarray) -> np.ndarray:
+        """The extra unknowns of this rank's part `values` of a vector, the same on every rank."""
+        mine = values[self.owned :].copy() if self.has_extra else None
+        return mine if self.comm.size == 1 else self.comm.bcast(mine, root=self.comm.size - 1)
+
+    def values(self, vector: PETSc.Vec, dofs: np.ndarray) -> np.ndarray:
+        """Entries of a vector at `dofs`, in their shape, on every rank."""
+        dofs = np.asarray(dofs)
+        mine, out = (dofs >= self.start) & (dofs < self.stop), np.zeros(dofs.shape)
+        out[mine] = vector.getArray(readonly=True)[dofs[mine] - self.start]
+        return self.comm.allreduce(out) if self.comm.size > 1 else out
+
+
+class LineLayout(Layout):
+    """Unknowns of a rod, then x, y, z and rotations of the bottom and of the top seat.
+
+    Attributes:
+        station_dofs: of the stations' displacements and rotations, shape (stations, 6).
+        element_dofs: of the elements' own shear angles, shape (elements, 2).
+        seat_dofs: of the seats, shape (12,).
+        contact_dofs: unknown of each degree of freedom as contacts number them, see coilset.model.contact.base.
+    """
+
+    def __init__(self, rod: "Rod") -> None:
+        super().__init__(rod.V, SEATS)
+        comm, line, index_map = self.comm, rod.line, self.index_map
+        self.line = line
+        self._nodes = line.mesh.geometry.index_map().size_local
+        mine = np.concatenate([rod.u_dofs[: self._nodes], rod.rotation_dofs[: self._nodes]], axis=1)
+        mine = index_map.local_to_global(mine.ravel().astype(np.int32)).reshape(-1, 6)
+        self._order = np.concatenate(comm.allgather(line.node[: self._nodes]))
+        self.station_dofs = np.empty((len(line.stations), 6), dtype=PETSc.IntType)
+        self.station_dofs[self._order] = np.concatenate(comm.allgather(mine))
+        self.seat_dofs = self.body_size + np.arange(SEATS, dtype=PETSc.IntType)
+        self.contact_dofs = np.concatenate(
+            [self.station_dofs[:, :3].ravel(), self.seat_dofs, self.station_dofs[:, 3:].ravel()]
+        )
+        shear = index_map.local_to_global(rod.shear_dofs.ravel().astype(np.int32)).reshape(-1, 2)
+        element = np.concatenate(comm.allgather(line.element[: line.owned_cells]))
+        self.element_dofs = np.empty((len(element), 2), dtype=PETSc.IntType)
+        self.element_dofs[element] = np.concatenate(comm.allgather(shear))
+        self._all_dofs = np.concatenate([self.station_dofs.ravel(), self.element_dofs.ravel(), self.seat_dofs])
+
+    def gather(self, values: np.ndarray) -> np.ndarray:
+        """Values of the local nodes, in the order of the stations on every rank; shape (nodes, …) → (stations, …)."""
+        gathered = values[: self._nodes]
+        if self.comm.size > 1:
+            gathered = np.concatenate(self.comm.allgather(gathered))
+        out = np.empty_like(gathered)
+        out[self._order] = gathered
+        return out
+
+    def to_order(self, values: np.ndarray) -> np.ndarray:
+        """This rank's part of a vector → all by stations, elements and seats, the same on any number of ranks."""
+        return np.concatenate(self.comm.allgather(values))[self._all_dofs]
+
+    def from_order(self, ordered: np.ndarray) -> np.ndarray:
+        """This rank's part of what `to_order` gave."""
+        everything = np.empty(len(ordered))
+        everything[self._all_dofs] = ordered
+        return everything[self.start : self.stop]
+
+    def natural(self, field: Field) -> np.ndarray | None:
+        """A field at the last equilibrium in an order that no partition changes; cells on rank 0 only; collective."""
+        if field.where is Where.STATION:
+            return self.gather(field.equilibrium)
+        if field.where is Where.ELEMENT:
+            return self.line.in_order(field.equilibrium)
+        return self.to_order(field.equilibrium) if field.where is Where.UNKNOWN else field.equilibrium
+
+    def take(self, field: Field, natural: np.ndarray) -> None:
+        """Set a field's last equilibrium from what `natural` gave, the whole on every rank."""
+        if field.where is Where.STATION:
+            natural = natural[self.line.node]
+        elif field.where is Where.ELEMENT:
+            natural = natural[self.line.element[: self.line.owned_cells]]
+        elif field.where is Where.UNKNOWN:
+            natural = self.from_order(natural)
+        field.equilibrium[...] = natural

@@ -1,0 +1,113 @@
+"""How far to go along a Newton correction where coils close and wire yields.
+
+Contacts and yielding bend the residual: its norm often grows over a full correction that is right nevertheless, and a
+search for a smaller norm (PETSc's `bt`) then stalls. Measured instead is the out-of-balance work along the correction,
+s(λ) = y · F(x − λ y), as with Matthies and Strang: s falls from s(0) > 0 through zero where the energy is least.
+
+A correction that presses coils far into each other goes only as far as the contacts allow, and the next one sees them
+closed. If it was the one that meets the prescribed increments, balance is sought there before it goes on: the step is
+solved in parts, see coilset.model.equilibrium.newton.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from petsc4py import PETSc
+
+from coilset.model.equilibrium.contact_limit import ContactLimit
+from coilset.model.equilibrium.control import NewtonControl
+from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.system import System
+
+
+@dataclass(frozen=True)
+class StepLength:
+    """How far to go.
+
+    Attributes:
+        contact_limit: share of the correction that contacts allow.
+        value: share of that.
+        ends_on_the_way: is it short of the prescribed increments, which the whole correction would meet?
+    """
+
+    contact_limit: float
+    value: float
+    ends_on_the_way: bool
+
+
+class WorkSearch:
+    """Search for the zero of the out-of-balance work.
+
+    Args:
+        system: System; it is evaluated at the places that are tried.
+        limit: ContactLimit.
+        control: NewtonControl.
+    """
+
+    def __init__(self, system: System, limit: ContactLimit, control: NewtonControl) -> None:
+        self.system, self.limit, self.control = system, limit, control
+        self._direction, self._free, self._trial, self._force = (system.layout.vector() for _ in range(4))
+
+    def __call__(self, x: PETSc.Vec, y: PETSc.Vec, F: PETSc.Vec, load: Load, load_factor: float) -> StepLength:
+        """How far to go from `x` along −y, with the residual `F` at x; the three stay as they are; collective."""
+        system, control = self.system, self.control
+        self._x, self._load, self._load_factor = x, load, load_factor
+        system.evaluate(x)
+        allowed = self.limit.allowed(system.max_penetration)
+        pending = load.misses(x.getArray(readonly=True), load_factor)
+        y.copy(self._direction)
+        limit, length = 1.0, 1.0
+        work, norm = self._at(1.0)
+        if system.max_penetration > allowed and (limit := self.limit.step_length(x, y, -1.0)) < 1.0:
+            self._direction.scale(limit)
+            work, norm = self._at(1.0)
+        while work is None and length > control.smallest_step_length:
+            length *= control.stress_backtrack
+            work, norm = self._at(length)
+        if work is not None and not pending:
+            start_work, start_norm = F.dot(self._free), self._free_norm(F)
+            if not (norm < start_norm or abs(work) <= control.accepted_work * abs(start_work)):
+                crosses_zero = start_work > 0.0 > work
+                length = self._zero(start_work, length, work) if crosses_zero else self._back(start_norm, length, norm)
+        return StepLength(limit, length, pending and limit * length < 1.0)
+
+    def _at(self, length: float) -> tuple[float | None, float]:
+        """Work and norm of the forces on the free unknowns after `length`; None where the law finds no stress."""
+        self._direction.copy(self._free)
+        self._free.getArray()[self._load.held] = 0.0
+        self._trial.waxpy(-length, self._direction, self._x)
+        self.system.residual(self._trial, self._load, self._load_factor, self._force)
+        if not self.system.last.has_stress:
+            return None, np.inf
+        return self._force.dot(self._free), self._free_norm(self._force)
+
+    def _free_norm(self, F: PETSc.Vec) -> float:
+        F.copy(self._trial)
+        self._trial.getArray()[self._load.held] = 0.0
+        return self._trial.norm()
+
+    def _zero(self, start_work: float, length: float, work: float) -> float:
+        """Step length at which the work is near zero, by the Illinois rule."""
+        control, low, low_work, high, high_work, side = self.control, 0.0, start_work, length, work, 0
+        for _trial in range(control.search_trials):
+            margin, secant = control.bracket_margin * (high - low), (low * high_work - high * low_work)
+            length = min(max(secant / (high_work - low_work), low + margin), high - margin)
+            found, _ = self._at(length)
+            if found is None:
+                high, high_work = length, -start_work
+                continue
+            if abs(found) <= control.sought_work * start_work:
+                break
+            if found > 0.0:
+                low, low_work, high_work, side = length, found, high_work * (0.5 if side > 0 else 1.0), 1
+            else:
+                high, high_work, low_work, side = length, found, low_work * (0.5 if side < 0 else 1.0), -1
+        return length
+
+    def _back(self, start_norm: float, length: float, norm: float) -> float:
+        """Step length at which the norm is less than at the start, or the least that was found."""
+        best = norm, length
+        while length > self.control.smallest_step_length and best[0] >= start_norm:
+            length *= self.control.backtrack
+            best = min(best, (self._at(length)[1], length))
+        return best[1]

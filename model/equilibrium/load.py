@@ -1,0 +1,76 @@
+"""What a step asks for: increments of held unknowns and external forces, whole or a part of them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from mpi4py import MPI
+
+from coilset.model.equilibrium.layout import Layout
+
+
+@dataclass(frozen=True)
+class Load:
+    """Prescribed increments and forces at the end of a step, by this rank's unknowns.
+
+    Attributes:
+        layout: Layout.
+        held: places in this rank's part of a vector whose increments are prescribed, shape (h,).
+        increments: shape (h,), mm and rad.
+        loaded: places that bear an external force, shape (f,).
+        forces: at the end of the step, shape (f,), N and N mm.
+    """
+
+    layout: Layout
+    held: np.ndarray
+    increments: np.ndarray
+    loaded: np.ndarray
+    forces: np.ndarray
+
+    @classmethod
+    def of(cls, layout: Layout, fixed: Mapping[int, float], forces: Mapping[int, float]) -> "Load":
+        """From unknown → increment and unknown → force, each the same on every rank."""
+        return cls(layout, *_mine(layout, fixed), *_mine(layout, forces))
+
+    def at(self, load_factor: float, reactions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Increments and forces of a part of the step.
+
+        Args:
+            load_factor: from 0, the last equilibrium, to 1, the end of the step.
+            reactions: internal forces of the last equilibrium, this rank's part, N and N mm.
+        """
+        forces = load_factor * self.forces + (1.0 - load_factor) * reactions[self.loaded]
+        return load_factor * self.increments, forces
+
+    def prescribed(self) -> float:
+        """Norm of the prescribed increments; collective."""
+        return float(np.sqrt(self._sum(self.increments @ self.increments)))
+
+    def misses(self, increments: np.ndarray, load_factor: float) -> bool:
+        """Do the increments, this rank's part, miss prescribed ones by more than rounding? Collective."""
+        off = np.abs(increments[self.held] - load_factor * self.increments).max(initial=0.0)
+        return self._max(off) > 1e-12 * self._max(np.abs(self.increments).max(initial=0.0))
+
+    def reached(self, increments: np.ndarray) -> float:
+        """Part of the step that the increments have reached, by the greatest prescribed one, else 1; collective."""
+        size, part = 0.0, 1.0
+        if len(self.held):
+            greatest = int(np.abs(self.increments).argmax())
+            size = float(abs(self.increments[greatest]))
+            if size > 0.0:
+                part = float(increments[self.held[greatest]] / self.increments[greatest])
+        if self.layout.comm.size > 1:
+            size, part = max(self.layout.comm.allgather((size, part)))
+        return part if size > 0.0 else 1.0
+
+    def _sum(self, value: float) -> float:
+        return self.layout.comm.allreduce(float(value)) if self.layout.comm.size > 1 else float(value)
+
+    def _max(self, value: float) -> float:
+        return self.layout.comm.allreduce(float(value), op=MPI.MAX) if self.layout.comm.size > 1 else float(value)
+
+
+def _mine(layout: Layout, entries: Mapping[int, float]) -> tuple[np.ndarray, np.ndarray]:
+    """Places in this rank's part of a vector, and values, of entries by unknowns."""
+    dofs = [dof for dof in entries if layout.start <= dof < layout.stop]
+    return np.array(dofs, dtype=np.int64) - layout.start, np.array([entries[dof] for dof in dofs], dtype=float)

@@ -1,0 +1,86 @@
+"""The tangent as a PETSc matrix whose rows have room for what touches.
+
+A row that is full would be moved at each new entry, and the whole matrix with it; so the rows are allocated anew where
+contacts close that the matrix has no places for. At the start of a solve they are allocated for the contacts that are
+closed then and no others, so that the rounding of a factorisation does not depend on how the spring came there.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from petsc4py import PETSc
+from scipy import sparse
+
+from coilset.model.body import Body
+from coilset.model.contact.base import Contribution
+from coilset.model.equilibrium.layout import Layout, LineLayout
+
+
+class TangentMatrix:
+    """A matrix of the system.
+
+    Args:
+        body: Body.
+        layout: Layout of its unknowns.
+
+    Attributes:
+        mat: PETSc's matrix.
+        version: how often its rows were allocated; factors from before are of no use.
+    """
+
+    def __init__(self, body: Body, layout: Layout) -> None:
+        self.layout, self._entries = layout, body.row_entries
+        self.mat, self.version = body.create_matrix(layout.size_local), 0
+        self._places = np.empty(0, dtype=np.int64)
+        if self._entries is not None:
+            self._make_room([])
+
+    def clear(self, contributions: Sequence[Contribution], exactly: bool) -> None:
+        """Zero the matrix, with room for the contacts that are closed; `exactly` for these and no others."""
+        places = self._contact_places(contributions)
+        fits = np.array_equal(places, self._places) if exactly else np.isin(places, self._places).all()
+        if fits:
+            self.mat.zeroEntries()
+        else:
+            self._make_room(contributions)
+
+    def add(self, contributions: Sequence[Contribution]) -> None:
+        """Add the stiffness of contacts; values stay unassembled."""
+        layout = self.layout
+        for part in contributions:
+            assert isinstance(layout, LineLayout)
+            dofs = layout.contact_dofs[part.dofs]
+            mine = ((dofs >= layout.start) & (dofs < layout.stop)).any(axis=1)
+            add_blocks(self.mat, dofs[mine], part.stiffness[mine], layout.start, layout.stop)
+
+    def _make_room(self, contributions: Sequence[Contribution]) -> None:
+        """Allocate the rows anew: a node couples with neighbours, shear angles, and what it touches."""
+        layout, entries = self.layout, np.full(self.layout.size_local, self._entries.max(), dtype=PETSc.IntType)
+        entries[: layout.owned] = self._entries
+        for part in contributions:
+            dofs = layout.contact_dofs[part.dofs]
+            rows, columns = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
+            places = rows.ravel(), columns.ravel()
+            pattern = sparse.coo_array((np.ones(rows.size, np.int8), places), (layout.size, layout.size))
+            entries += np.diff(pattern.tocsr().indptr)[layout.start : layout.stop].astype(PETSc.IntType)
+        here = np.minimum(entries, layout.size_local)  # in columns of this rank
+        there = np.minimum(entries, layout.size - layout.size_local)
+        self.mat.setPreallocationNNZ((here, there) if layout.comm.size > 1 else here)
+        self.mat.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
+        self._places = self._contact_places(contributions)
+        self.version += 1
+
+    def _contact_places(self, contributions: Sequence[Contribution]) -> np.ndarray:
+        """A number for each contact element by its first and last dof, which tell between what it acts."""
+        if not contributions:
+            return np.empty(0, dtype=np.int64)
+        count = len(self.layout.contact_dofs)
+        return np.concatenate([part.dofs[:, 0] * count + part.dofs[:, -1] for part in contributions])
+
+
+def add_blocks(mat: PETSc.Mat, dofs: np.ndarray, blocks: np.ndarray, start: int, stop: int) -> None:
+    """Add element matrices, shape (m, k, k), to the rows start ≤ row < stop of a PETSc matrix."""
+    if not len(dofs):
+        return
+    rows = np.where((dofs >= start) & (dofs < stop), dofs, -1).astype(PETSc.IntType)  # PETSc skips negative rows
+    mat.setValuesRCV(rows, np.ascontiguousarray(dofs, dtype=PETSc.IntType), blocks, addv=PETSc.InsertMode.ADD_VALUES)

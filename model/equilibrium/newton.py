@@ -1,0 +1,240 @@
+"""One step to equilibrium: SNES, with the thesis's test (6.3.1), augmentation of contacts, and parts of a step.
+
+This is the one place that knows the load factor. A step that contacts or a failure stop on its way is balanced roughly
+at the part of its load that it has reached, and goes on from there. The law is integrated over the whole step in any
+case: parts change how a state is found, not the state.
+"""
+
+import logging
+import weakref
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from petsc4py import PETSc
+
+from coilset.model.equilibrium.contact_limit import ContactLimit
+from coilset.model.equilibrium.control import NewtonControl
+from coilset.model.equilibrium.convergence import EquilibriumTest, Outcome, Reason, imbalance, reason_in_words
+from coilset.model.equilibrium.line_search import WorkSearch
+from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.matrix import TangentMatrix
+from coilset.model.equilibrium.methods import ARC_LENGTH, FIRST, Method
+from coilset.model.equilibrium.snes import SnesFactory
+from coilset.model.equilibrium.system import System
+
+log = logging.getLogger("coilset.steps")
+
+
+@dataclass(frozen=True)
+class Start:
+    """Increments to start from, and what it took to find them; None for the last equilibrium."""
+
+    increments: PETSc.Vec | None = None
+    iterations: int = 0
+    linear_iterations: int = 0
+
+
+class Newton:
+    """Solves a System for the increments of one step.
+
+    Args:
+        system: System.
+        method: Method.
+        tolerance: ε of (6.3.1).
+        control: NewtonControl.
+        limit: ContactLimit; None: corrections are not limited.
+        augmentation_tolerance: greatest penetration, mm, that is let be; a greater one is worked off by augmented
+            Lagrange: contacts are pressed harder by what they have sunk in, and the step is solved on.
+        prepare: called with PETSc's matrix after each tangent, for preconditioners that are not PETSc's.
+
+    Raises:
+        InputError: if PETSc refuses an option.
+
+    Attributes:
+        snes: PETSc's solver.
+        matrix: TangentMatrix.
+    """
+
+    def __init__(
+        self,
+        system: System,
+        method: Method,
+        tolerance: float,
+        control: NewtonControl | None = None,
+        limit: ContactLimit | None = None,
+        augmentation_tolerance: float = np.inf,
+        prepare: Callable[[PETSc.Mat], None] | None = None,
+    ) -> None:
+        self.system, self.control = system, control or NewtonControl()
+        self.augmentation_tolerance, self.prepare = augmentation_tolerance, prepare
+        self.limit = limit or ContactLimit(system, self.control, np.inf)
+        self.test = EquilibriumTest(tolerance, self.control.stagnation)
+        self.search = WorkSearch(system, self.limit, self.control)
+        self.F, self._balance, self._arc_load = (system.layout.vector() for _ in range(3))
+        self.matrix = TangentMatrix(system.body, system.layout)
+        self.load, self.load_factor = Load.of(system.layout, {}, {}), 1.0
+        self.ratio, self._evaluations, self._factorisations, self._at_step_start = np.inf, 0, 0, True
+        me = weakref.proxy(self)
+        self._factory = SnesFactory(
+            system.comm, lambda *args: me._residual(*args), lambda *args: me._tangent(*args), self.F, self.matrix.mat
+        )
+        self.snes: PETSc.SNES | None = None
+        self._first: PETSc.SNES | None = None
+        self.use(method)
+
+    def use(self, method: Method) -> None:
+        """Go on with another method.
+
+        Raises:
+            InputError: if PETSc refuses an option.
+        """
+        self.method = method
+        if self.snes is not None:
+            self.snes.destroy()
+        self.snes = self._factory.make("", method.options, method.of_the_user)
+        me = weakref.proxy(self)
+        if method.searches:
+            self.snes.setLineSearchPreCheck(lambda *args: me._shorten(*args))
+        if not method.own_test:
+            self.snes.setConvergenceTest(lambda *args: me._judge(*args))
+
+    # ---- solve -----------------------------------------------------------------------------------------------------
+
+    def solve(self, load: Load, start: Start | None = None) -> Outcome:
+        """Solve one step; the system is left at the last iterate; collective.
+
+        Args:
+            load: what the step asks for.
+            start: where to start; from the last equilibrium if None.
+
+        Returns:
+            Outcome; its counts are those of all solves where contacts are augmented.
+        """
+        start = start or Start()
+        self.load = load
+        self.system.reset_contacts()
+        outcome = self._solve(start.increments)
+        for _attempt in range(self.control.augmentations):
+            if not outcome.converged or self.system.max_penetration <= self.augmentation_tolerance:
+                break
+            self.system.augment()
+            outcome = outcome + self._solve(self.system.increments.copy())
+        else:
+            left, count = self.system.max_penetration, self.control.augmentations
+            outcome = replace(outcome, converged=False,
+                              reason=f"a penetration of {left:.3g} mm is left after {count} augmentations")  # fmt: skip
+        return replace(outcome, iterations=outcome.iterations + start.iterations,
+                       linear_iterations=outcome.linear_iterations + start.linear_iterations)  # fmt: skip
+
+    def _solve(self, guess: PETSc.Vec | None) -> Outcome:
+        system, method, X, first = self.system, self.method, self.system.increments, 0
+        self.ratio, self._evaluations, self._factorisations = np.inf, 0, 0
+        self.load_factor, self._at_step_start = 1.0, True
+        if guess is None or method.is_arc_length:
+            X.set(0.0)
+        elif method.searches:
+            self.limit.limit_start(guess, X)
+        else:
+            guess.copy(X)
+        if method.remembers:
+            self.use(method)
+        if method.is_arc_length:
+            self._set_arc_load()
+        elif method.remembers and self.load.misses(X.getArray(readonly=True), 1.0):
+            # Quasi-Newton vectors belong to the free unknowns: a start that meets the prescribed increments keeps the
+            # rows of these, and their weights, at zero.
+            if self._first is None:
+                self._first = self._factory.make("first_", FIRST | method.factorisation)
+            self._first.solve(None, X)
+            first = 1
+        iterations, linear = self._in_parts() if method.searches else self._once()
+        reason = self.snes.getConvergedReason()
+        system.evaluate(X)
+        return Outcome(reason > 0, reason_in_words(reason), self.ratio, first + iterations, self._factorisations,
+                       self._evaluations, linear)  # fmt: skip
+
+    def _once(self) -> tuple[int, int]:
+        """Numbers of iterations, and of linear ones in them."""
+        self.snes.solve(self._arc_load if self.method.is_arc_length else None, self.system.increments)
+        return self.snes.getIterationNumber(), self.snes.getLinearSolveIterations()
+
+    def _in_parts(self) -> tuple[int, int]:
+        """Solve the step whole, or balance it roughly on the way where contacts or a failure stop it; as `_once`."""
+        X, good, reached, counts = self.system.increments, self.system.increments.duplicate(), 0.0, np.zeros(2, int)
+        good.set(0.0)
+        while True:
+            counts += self._once()
+            if self.snes.getConvergedReason() > 0:
+                if self.load_factor == 1.0:
+                    return int(counts[0]), int(counts[1])
+                X.copy(good)
+                reached, self.load_factor = self.load_factor, 1.0
+            else:
+                part = 0.5 * (self.load_factor - reached)
+                if part < self.control.smallest_part:
+                    return int(counts[0]), int(counts[1])
+                good.copy(X)
+                self.load_factor = reached + part
+                log.info("no equilibrium of the whole step yet: first %.3g of it", self.load_factor)
+
+    def _set_arc_load(self) -> None:
+        """What the step adds to loads and prescribed values: minus the residual at its start."""
+        self.system.residual(self.system.increments, self.load, 1.0, self._arc_load)
+        self._arc_load.scale(-1.0)
+
+    # ---- callbacks of SNES -----------------------------------------------------------------------------------------
+
+    def _residual(self, snes: PETSc.SNES, X: PETSc.Vec, F: PETSc.Vec) -> None:
+        self._evaluations += 1
+        self.system.residual(X, self.load, self.load_factor, F)
+        if snes.getType() == ARC_LENGTH:  # SNES takes its share of the load off: F(x) − λ load
+            F.axpy(1.0, self._arc_load)
+
+    def _tangent(self, snes: PETSc.SNES, X: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
+        self._factorisations += 1
+        version = self.matrix.version
+        self.system.tangent(X, self.load, self.matrix, self._at_step_start)
+        self._at_step_start = False
+        if self.prepare is not None:
+            self.prepare(P)
+        if self.matrix.version != version:  # PETSc may take the new matrix for one with the old pattern
+            for each in (self.snes, self._first, self.snes.getNPC() if self.snes.hasNPC() else None):
+                if each is not None:
+                    each.ksp.reset()
+
+    def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
+        """Before a line search of type `basic`: scale the correction −y."""
+        step = self.search(x, y, self.F, self.load, self.load_factor)
+        for share in (step.contact_limit, step.value):
+            if share != 1.0:
+                y.scale(share)
+        if step.ends_on_the_way:
+            reached = x.copy()
+            reached.axpy(-1.0, y)
+            self.load_factor = self.load.reached(reached.getArray(readonly=True))
+
+    def _judge(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> Any:
+        """SNES's convergence test."""
+        norm, X = norms[2], self.system.increments
+        if iteration == 0:
+            self.test.begin(norm)
+        if not np.isfinite(norm):
+            return Reason.DIVERGED_FNORM_NAN
+        if self.method.is_arc_length:
+            if iteration == 0:
+                return Reason.ITERATING  # at the load share 0 every step is in equilibrium
+            balance = self.F
+        else:  # some methods call a preconditioned step their function: judge the forces themselves
+            balance = self._balance
+            self.system.residual(X, self.load, self.load_factor, balance)
+        found = imbalance(self.system, self.load, balance)
+        self.ratio = found.ratio
+        tolerance = self.test.tolerance if self.load_factor == 1.0 else self.control.part_tolerance
+        if self.test.is_met(found, tolerance, self.system.body.rounding(X.getArray(readonly=True))):
+            return Reason.CONVERGED_FNORM_RELATIVE
+        if iteration >= snes.getTolerances()[3]:
+            return Reason.DIVERGED_MAX_IT
+        lost = None if self.method.is_arc_length else self.test.is_lost(iteration, norm, snes.getDivergenceTolerance())
+        return Reason.ITERATING if lost is None else lost

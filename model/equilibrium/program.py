@@ -1,0 +1,116 @@
+"""The load program of a spring: stages to a height or a force, one after the other."""
+
+import logging
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+from coilset.model.equilibrium.axial_control import AxialControl
+from coilset.model.equilibrium.continuation import Continuation, Path, Position
+from coilset.model.equilibrium.convergence import Outcome
+from coilset.model.equilibrium.load import Load
+
+log = logging.getLogger("coilset.steps")
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Go to a height or to a force.
+
+    Attributes:
+        kind: what is driven.
+        value: at the end, mm or N.
+        steps: number of equal steps, or auto.
+        label: in words.
+    """
+
+    kind: Literal["height", "force"]
+    value: float
+    steps: int | Literal["auto"]
+    label: str
+
+
+@dataclass(frozen=True)
+class ProgramPosition:
+    """Where in the program the spring stands.
+
+    Attributes:
+        stage: number of the stage.
+        height, force: where the stage began, mm and N.
+        walk: Position in the stage.
+    """
+
+    stage: int
+    height: float
+    force: float
+    walk: Position
+
+
+@dataclass(frozen=True)
+class StepTaken:
+    """One converged step: its number from 1, the part of the stage that is behind, how often it was cut, Outcome."""
+
+    number: int
+    progress: float
+    cuts: int
+    outcome: Outcome
+
+
+class LoadProgram:
+    """Drives a spring through stages.
+
+    Args:
+        control: AxialControl.
+        continuation: Continuation.
+    """
+
+    def __init__(self, control: AxialControl, continuation: Continuation) -> None:
+        self.control, self.continuation = control, continuation
+        self.begin(0)
+
+    def begin(self, number: int) -> None:
+        """Stand at the start of a stage."""
+        self.number, self._height, self._force = number, self.control.height, self.control.force
+        self.continuation.begin()
+
+    @property
+    def position(self) -> ProgramPosition:
+        """Where the spring stands."""
+        return ProgramPosition(self.number, self._height, self._force, self.continuation.position)
+
+    @position.setter
+    def position(self, position: ProgramPosition) -> None:
+        self.number, self._height, self._force = position.stage, position.height, position.force
+        self.continuation.position = position.walk
+
+    def run(self, stage: Stage) -> Iterator[StepTaken]:
+        """Go on to the stage's target, step by step.
+
+        Raises:
+            SolveError: as Continuation.advance.
+        """
+        self.stage, walk = stage, self.continuation
+        while walk.position.done < (regular := self._regular(self.stage)):
+            outcome, cuts = walk.advance(self._path(self.stage))
+            log.info("step %d: %.6g mm, %.6g N, %d iterations, out of balance %.1e; next %.4g of a regular step",
+                     walk.number, self.control.height, self.control.force, outcome.iterations, outcome.ratio,
+                     walk.position.size)  # fmt: skip
+            yield StepTaken(walk.number, walk.position.done / regular, cuts, outcome)
+
+    def redirect(self, stage: Stage) -> None:
+        """Go to another target from here on, in place of the stage in progress."""
+        self.begin(self.number)
+        self.stage = stage
+
+    def _regular(self, stage: Stage) -> int:
+        return self.continuation.control.automatic if stage.steps == "auto" else stage.steps
+
+    def _path(self, stage: Stage) -> Path:
+        regular, begin = self._regular(stage), self._force if stage.kind == "force" else self._height
+
+        def load(done: float) -> Load:
+            value = stage.value if done >= regular else begin + done / regular * (stage.value - begin)
+            return self.control.to_force(value) if stage.kind == "force" else self.control.to_height(value)
+
+        return Path(load, regular, stage.label, stage.steps == "auto",
+                    lambda: f"{self.control.height:.6g} mm and {self.control.force:.6g} N")  # fmt: skip

@@ -1,0 +1,62 @@
+"""PETSc's SNES with the options of a method, under a prefix of its own that leaves no trace in PETSc's database."""
+
+import itertools
+import weakref
+from collections.abc import Callable, Collection, Mapping
+from typing import Any
+
+from mpi4py import MPI
+from petsc4py import PETSc
+
+from coilset.model.errors import InputError
+
+numbers = itertools.count()
+
+
+class SnesFactory:
+    """Makes SNES solvers for one residual and tangent.
+
+    Args:
+        comm: MPI communicator.
+        residual: SNES callback (snes, X, F).
+        tangent: SNES callback (snes, X, J, P).
+        F: vector of the residual.
+        matrix: of the tangent.
+
+    PETSc keeps its callbacks out of Python's sight, so they should hold their owner weakly.
+    """
+
+    def __init__(
+        self, comm: MPI.Comm, residual: Callable[..., Any], tangent: Callable[..., Any], F: PETSc.Vec, matrix: PETSc.Mat
+    ) -> None:
+        self.comm, self.residual, self.tangent, self.F, self.matrix = comm, residual, tangent, F, matrix
+        self.prefix, self._keys = f"coilset_{next(numbers)}_", set[str]()
+        weakref.finalize(self, forget, self._keys).atexit = False
+
+    def make(self, part: str, settings: Mapping[str, Any], of_the_user: Collection[str] = ()) -> PETSc.SNES:
+        """A SNES with PETSc's options `settings`; `part` tells it from others of this factory.
+
+        Raises:
+            InputError: if PETSc refuses an option.
+        """
+        database = PETSc.Options()
+        for key, value in settings.items():
+            database[self.prefix + part + key] = value
+            if key not in of_the_user:  # those stay, so that PETSc names those at its end which it did not know
+                self._keys.add(self.prefix + part + key)
+        snes = PETSc.SNES().create(self.comm)
+        snes.setOptionsPrefix(self.prefix + part)
+        snes.setFunction(self.residual, self.F)
+        snes.setJacobian(self.tangent, self.matrix)
+        try:
+            snes.setFromOptions()
+        except PETSc.Error as error:
+            raise InputError(f"PETSc refuses an option: {str(error).splitlines()[-1]}", "solver.options") from None
+        return snes
+
+
+def forget(keys: Collection[str]) -> None:
+    """Take options out of PETSc's database."""
+    database = PETSc.Options()
+    for key in keys:
+        database.delValue(key)

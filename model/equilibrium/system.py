@@ -1,0 +1,197 @@
+"""Residual and tangent of a body and what touches it, as functions of one vector of increments."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from dolfinx import la
+from petsc4py import PETSc
+
+from coilset.model.body import Body
+from coilset.model.contact.base import Augmented, Contact, Contribution, HasMemory, LimitsStep, TrialPositions
+from coilset.model.equilibrium.layout import Layout, LineLayout
+from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.matrix import TangentMatrix
+from coilset.model.state import Where
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """What the last evaluation found.
+
+    Attributes:
+        increments: this rank's part of the vector that it was made at.
+        has_stress: on every rank and at every point?
+        contributions: of the contacts, in their order; empty where there is no stress.
+    """
+
+    increments: np.ndarray
+    has_stress: bool
+    contributions: list[Contribution]
+
+
+class System:
+    """Residual and tangent.
+
+    Args:
+        body: Body.
+        layout: Layout of its unknowns, a LineLayout if there are contacts.
+        contacts: kinds of contact, see coilset.model.contact.base.
+        seats: x, y, z and rotations of the bottom seat, then those of the top seat at the start, shape (12,), mm and
+            rad; None for a body without seats.
+
+    Attributes:
+        state: the body's State, with `seats`, the contacts' memories, the `increments` of the last step and the
+            internal forces `reactions` beside the body's fields.
+        increments: PETSc's vector of the increments on trial, that of the state.
+        internal: internal forces at the last evaluation, without constraints and loads, that of the state.
+        last: Evaluation.
+    """
+
+    def __init__(
+        self, body: Body, layout: Layout, contacts: Sequence[Contact] = (), seats: np.ndarray | None = None
+    ) -> None:
+        self.body, self.layout, self.comm, self.contacts = body, layout, layout.comm, list(contacts)
+        self.state = body.state
+        self.memories = [contact.memory for contact in self.contacts if isinstance(contact, HasMemory)]
+        self._seats = None if seats is None else self.state.add("seats", np.array(seats, float), Where.SHARED)
+        for number, memory in enumerate(self.memories):
+            self.state.include(f"contact_{number}_", memory.state)
+        trial = self.state.add("increments", np.zeros(layout.size_local), Where.UNKNOWN).trial
+        self.increments = layout.vector(trial)
+        self._reactions = self.state.add("reactions", np.zeros(layout.size_local), Where.UNKNOWN)
+        self.internal = layout.vector(self._reactions.trial)
+        self._local = la.vector(layout.index_map, layout.block_size)
+        self.last = Evaluation(np.full(layout.size_local, np.nan), True, [])
+
+    # ---- evaluation ------------------------------------------------------------------------------------------------
+
+    @property
+    def seats(self) -> np.ndarray:
+        """x, y, z and rotations of both seats on trial, shape (12,), mm and rad."""
+        return self._seats.trial
+
+    def evaluate(self, increments: PETSc.Vec) -> bool:
+        """Bring the trial state to increments, unless it is there; False if some point has no stress; collective."""
+        values = increments.getArray(readonly=True)
+        same = np.array_equal(self.last.increments, values)
+        if self.comm.size > 1:
+            same = self.comm.allreduce(int(same)) == self.comm.size
+        if not same:
+            function = self.body.increment
+            function.x.array[: self.layout.owned] = values[: self.layout.owned]
+            function.x.scatter_forward()
+            if self._seats is not None:
+                np.add(self._seats.equilibrium, self.layout.extra(values), out=self._seats.trial)
+            self._evaluate_trial(values.copy())
+        return self.last.has_stress
+
+    def _evaluate_trial(self, values: np.ndarray) -> None:
+        has_stress = self.body.update()
+        if self.comm.size > 1:
+            has_stress = self.comm.allreduce(int(has_stress)) == self.comm.size
+        contributions = self._touch() if self.contacts and has_stress else []
+        self.last = Evaluation(values, has_stress, contributions)
+        if has_stress:
+            self._assemble_internal()
+
+    def _touch(self) -> list[Contribution]:
+        layout, body, rotations = self.layout, self.body, None
+        if any(contact.needs_rotations for contact in self.contacts):
+            rotations = layout.gather(body.increment.x.array[body.rotation_dofs])
+        trial = TrialPositions(layout.gather(self.state["x"].trial), self.seats, rotations)
+        return [contact.evaluate(trial) for contact in self.contacts]
+
+    def _assemble_internal(self) -> None:
+        local, owned = self._local, self.layout.owned
+        local.array[:] = 0.0
+        self.body.internal_forces(local.array)
+        local.scatter_reverse(la.InsertMode.add)
+        with self.internal as values:
+            values[:owned] = local.array[:owned]
+            values[owned:] = 0.0
+        if self.last.contributions:
+            parts, start, stop = self.last.contributions, self.layout.start, self.layout.stop
+            rows = np.concatenate([self.layout.contact_dofs[part.dofs].ravel() for part in parts])
+            forces = np.concatenate([part.forces.ravel() for part in parts])
+            mine = (rows >= start) & (rows < stop)
+            with self.internal as values:
+                np.add.at(values, rows[mine] - start, forces[mine])
+
+    def expire(self) -> None:
+        """The next evaluation is to be made, wherever it is: something else than the increments has changed."""
+        self.last = Evaluation(np.full(self.layout.size_local, np.nan), self.last.has_stress, self.last.contributions)
+
+    @property
+    def max_penetration(self) -> float:
+        """Greatest penetration of coils and seats at the last evaluation, mm; infinite where no stress was found."""
+        if not self.last.has_stress:
+            return np.inf
+        parts = zip(self.contacts, self.last.contributions, strict=False)
+        found = (part.penetration.max(initial=0.0) for contact, part in parts if isinstance(contact, LimitsStep))
+        return max(found, default=0.0)
+
+    # ---- transactions ----------------------------------------------------------------------------------------------
+
+    def commit(self) -> None:
+        """Make the trial state the equilibrium."""
+        self.body.follow()
+        self.state.commit()
+        self.body.increment.x.array[:] = 0.0
+        self.expire()
+
+    def restore(self) -> None:
+        """Go back to the last equilibrium; collective."""
+        self.state.restore()
+        self.body.increment.x.array[:] = 0.0
+        self._evaluate_trial(np.full(self.layout.size_local, np.nan))
+
+    def reset_contacts(self) -> None:
+        """Let contacts remember the last equilibrium and nothing of what was tried since."""
+        for memory in self.memories:
+            memory.state.restore()
+        self.expire()
+
+    def augment(self) -> None:
+        """Press contacts harder where they have sunk in (augmented Lagrange), from now on; collective."""
+        trial = TrialPositions(self.layout.gather(self.state["x"].trial), self.seats)
+        for contact in self.contacts:
+            if isinstance(contact, Augmented):
+                contact.augment(trial)
+        self.expire()
+
+    # ---- residual and tangent --------------------------------------------------------------------------------------
+
+    def residual(self, increments: PETSc.Vec, load: Load, load_factor: float, F: PETSc.Vec) -> None:
+        """Internal minus external forces into F; increment minus prescribed increment where it is held; collective.
+
+        Where there is no stress F is infinite: PETSc's line searches go back, and the step is cut.
+        """
+        if not self.evaluate(increments):
+            F.set(np.inf)
+            return
+        self.internal.copy(F)
+        target, force = load.at(load_factor, self._reactions.equilibrium)
+        values, x = F.getArray(), increments.getArray(readonly=True)
+        values[load.loaded] -= force
+        values[load.held] = self.body.constraint_weight * (x[load.held] - target)
+
+    def tangent(self, increments: PETSc.Vec, load: Load, matrix: TangentMatrix, at_step_start: bool = False) -> None:
+        """Derivative of the residual into `matrix`; collective.
+
+        Args:
+            at_step_start: begin with a matrix that has places for the contacts as they are now only.
+        """
+        self.evaluate(increments)
+        self.last_tangent(load, matrix, at_step_start)
+
+    def last_tangent(self, load: Load, matrix: TangentMatrix, at_step_start: bool = False) -> None:
+        """As `tangent`, with the moduli of the last evaluation, at the state as it is now; collective."""
+        matrix.clear(self.last.contributions, at_step_start)
+        self.body.tangent(matrix.mat)
+        matrix.add(self.last.contributions)
+        if isinstance(self.layout, LineLayout) and self.layout.has_extra:
+            for dof in self.layout.seat_dofs:  # the diagonal must exist for a fixed or untouched seat
+                matrix.mat.setValue(dof, dof, 0.0, addv=PETSc.InsertMode.ADD_VALUES)
+        matrix.mat.assemble()
+        self.body.hold(matrix.mat, load.held + self.layout.start)

@@ -1,0 +1,134 @@
+"""The material file: its schema, and how it is read.
+
+A material file gives, for one or more temperatures, the elastic constants and the constants of k², ζ and κ (6.2.2).
+"""
+
+import math
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Discriminator, Field, Tag
+
+from coilset.model.case.entry import Strict, check_entries
+from coilset.model.case.yaml import read_data
+
+Text = Annotated[str, Field(min_length=1)]
+NONE = "its constants, or 'none' if the material has no such function"
+
+
+class Elasticity(Strict):
+    """Elastic constants (3.1.2)."""
+
+    G: Annotated[float, Field(gt=0, description="the shear modulus, N/mm²")]
+    nu: Annotated[float, Field(gt=-1, lt=0.5, description="Poisson's ratio")]
+    alpha: Annotated[float, Field(ge=0, description="the coefficient of thermal expansion, 1/K")] = 0.0
+
+
+class Saturation(Strict):
+    """Second branch of k², b* ≥ b1."""
+
+    b1: Annotated[float, Field(ge=0, description="the plastic work where it begins, N/mm²")]
+    k1_squared: Annotated[float, Field(gt=0, description="k² there, N²/mm⁴")]
+    k_inf_squared: Annotated[float, Field(gt=0, description="k² far out, N²/mm⁴")]
+    a4: Annotated[float, Field(ge=0, description="a number in mm²/N")]
+
+
+class IsotropicHardening(Strict):
+    """k²(b*): k0² + a1 (1 + a2 b* − exp(−a3 b*)) and, if there is one, the second branch."""
+
+    k0_squared: Annotated[float, Field(gt=0, description="k² at first yield, N²/mm⁴")]
+    a1: Annotated[float, Field(ge=0, description="a number in N²/mm⁴")] = 0.0
+    a2: Annotated[float, Field(description="a number in mm²/N")] = 0.0
+    a3: Annotated[float, Field(ge=0, description="a number in mm²/N")] = 0.0
+    saturation: Saturation | None = None
+
+    def first_branch(self, b: float) -> float:
+        """k² of the first branch at plastic work `b`, N²/mm⁴."""
+        return self.k0_squared + self.a1 * (1 + self.a2 * b - math.exp(-self.a3 * b))
+
+
+class KinematicHardening(Strict):
+    """ζ(b*) = a5 (a6 + a7 exp(−a7 b*)) sqrt(6 k²)."""
+
+    a5: Annotated[float, Field(ge=0, description="a number in N/mm²")]
+    a6: Annotated[float, Field(ge=0, description="a number in mm²/N")]
+    a7: Annotated[float, Field(ge=0, description="a number in mm²/N")]
+
+
+class NonNormality(Strict):
+    """2Gκ(b*) = a b*³."""
+
+    a: Annotated[float, Field(ge=0, description="a number in mm⁶/N³")]
+
+
+def _kind(value: Any) -> str:
+    """Constants of a function, or the word `none`."""
+    return "(none)" if isinstance(value, str) else "(constants)"
+
+
+Word = Annotated[Literal["none"], Tag("(none)")]
+
+
+class Constants(Strict):
+    """All constants at one temperature; a function that the material has not is said to be `none`."""
+
+    temperature: Annotated[float, Field(gt=0, description="the temperature of the constants, K")]
+    elasticity: Annotated[Elasticity, Field(description="G and nu")]
+    isotropic: Annotated[
+        Annotated[IsotropicHardening, Tag("(constants)")] | Word, Discriminator(_kind), Field(description=NONE)
+    ]
+    kinematic: Annotated[
+        Annotated[KinematicHardening, Tag("(constants)")] | Word, Discriminator(_kind), Field(description=NONE)
+    ]
+    non_normality: Annotated[
+        Annotated[NonNormality, Tag("(constants)")] | Word, Discriminator(_kind), Field(description=NONE)
+    ]
+
+
+class Heating(Strict):
+    """Adiabatic heating: of the plastic work b* the fraction `dissipated` warms the material."""
+
+    dissipated: Annotated[float, Field(gt=0, le=1, description="the fraction of plastic work that becomes heat")]
+    density: Annotated[float, Field(gt=0, description="a number in t/mm³")]
+    specific_heat: Annotated[float, Field(gt=0, description="a number in N mm/(t K) = mm²/(s² K)")]
+
+
+class Validity(Strict):
+    """Where the constants may be trusted; the checks of the functions go up to the greatest plastic work."""
+
+    plastic_work: Annotated[float, Field(gt=0, description="the largest b* up to which the constants are valid, N/mm²")]
+    remark: Annotated[Text, Field(description="where else the constants may be trusted")]
+
+
+class MaterialFile(Strict):
+    """A whole material file."""
+
+    name: Annotated[Text, Field(description="a name for the material")]
+    description: Annotated[Text, Field(description="a sentence that says what it is")]
+    source: Annotated[Text, Field(description="where the constants come from")]
+    units: Annotated[
+        Literal["N, mm, K"], Field(description="'N, mm, K', in which all numbers of the file are understood")
+    ]
+    validity: Annotated[Validity, Field(description="plastic_work, the largest b* in N/mm², and a remark")]
+    temperatures: Annotated[
+        tuple[Constants, ...],
+        Field(strict=False, min_length=1, description="a list with the constants at one temperature at least"),
+    ]
+    heating: Heating | None = None
+
+
+UNITS = {
+    "G": "N/mm²", "nu": "", "alpha": "1/K", "k0_squared": "N²/mm⁴", "a1": "N²/mm⁴", "a2": "mm²/N", "a3": "mm²/N",
+    "b1": "N/mm²", "k1_squared": "N²/mm⁴", "k_inf_squared": "N²/mm⁴", "a4": "mm²/N", "a5": "N/mm²", "a6": "mm²/N",
+    "a7": "mm²/N", "a": "mm⁶/N³",
+}  # fmt: skip
+
+
+def read(path: str | Path) -> MaterialFile:
+    """Read a material file.
+
+    Raises:
+        InputError: if the file cannot be read or says something wrong.
+    """
+    kind = "is no material file; it wants name, source, units, validity, ..."
+    return check_entries(read_data(path, kind), MaterialFile, path)

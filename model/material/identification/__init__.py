@@ -1,0 +1,1 @@
+"""Identification of a material's constants from tests."""

@@ -1,0 +1,214 @@
+"""What a run has found, as frozen records: writers, figures and checkpoints take these and nothing else."""
+
+from dataclasses import asdict, dataclass, field, fields
+from typing import Any
+
+import numpy as np
+
+from coilset.meshes.placement import Placement
+from coilset.meshes.spring import Spring
+from coilset.model.contact.base import ENDS
+from coilset.model.rod.kinematics import GAUSS
+from coilset.model.section import surface
+from coilset.model.section.rules import DiskRule
+
+
+@dataclass(frozen=True)
+class Step:
+    """One converged step."""
+
+    number: int
+    phase: int
+    progress: float
+    seat_height_mm: float
+    travel_mm: float
+    force_N: float
+    iterations: int
+    cuts: int
+    contacts: int
+    penetration_mm: float
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """The spring at one moment, in the order of its stations and elements; complete on rank 0.
+
+    Attributes:
+        name: what moment it is, such as `start`, `block`, `force 0 N`.
+        height, force: of the seats, mm and N.
+        x: station positions, shape (n + 1, 3), mm.
+        triads: element triads (columns), shape (n, 3, 3).
+        resultants: N, Q2, Q3, Mt, M2, M3 at the Gauss sections, shape (n, 2, 6), N and N mm.
+        point_state: at the section points, shape (n, 2, points, n_state), MPa.
+        surface_state: at the points on the wire's surface, shape (n, 2, surface points, n_state), MPa.
+        components: names of the columns of both.
+    """
+
+    name: str
+    height: float
+    force: float
+    x: np.ndarray
+    triads: np.ndarray
+    resultants: np.ndarray
+    point_state: np.ndarray
+    surface_state: np.ndarray
+    components: tuple[str, ...]
+
+    @property
+    def shear(self) -> np.ndarray:
+        """Magnitude of the shear stress at the section points, shape (n, 2, points), MPa."""
+        return surface.shear(self.point_state, self.components)
+
+
+@dataclass(frozen=True)
+class SeatReaction:
+    """What one seat, or clamped head, does to the spring.
+
+    Attributes:
+        force_N: axial force, compression positive.
+        lateral_x_N, lateral_y_N: force across the axis, with that of a held tip.
+        moment_x_Nmm, moment_y_Nmm, moment_z_Nmm: about the point where the axis meets the seat, with those of a held
+            tip; z along the axis.
+        centre_x_mm, centre_y_mm: where the resultant crosses the seat (force centre), from the axis.
+        eccentricity_mm: its distance from the axis.
+        pressure_x_mm, pressure_y_mm: centre of the seat's pressure alone, without what a held tip takes.
+        length_mm: length of wire in contact with the seat, to the spacing of its points.
+        down_turns: extent of the contact, turns from the wire's tip to the farthest place where it touches the seat.
+        tilt_rad: angle between the seat's axis and the spring's.
+    """
+
+    force_N: float
+    lateral_x_N: float
+    lateral_y_N: float
+    moment_x_Nmm: float
+    moment_y_Nmm: float
+    moment_z_Nmm: float
+    centre_x_mm: float
+    centre_y_mm: float
+    eccentricity_mm: float
+    pressure_x_mm: float
+    pressure_y_mm: float
+    length_mm: float
+    down_turns: float
+    tilt_rad: float
+
+
+@dataclass(frozen=True)
+class SeatReactions:
+    """Both ends after one step.
+
+    Attributes:
+        step: number of the step.
+        active_turns: turns that bear the load, ∫ (Mt/(F r))² dt: the number of turns under the torque F r throughout
+            that would hold as much torsional energy, as in R = G d⁴/(64 r³ n).
+        free_turns: turns of wire that touch neither seat nor coil.
+        bottom, top: SeatReactions of the ends.
+        pressure: one row for each point of the wire that bears: number of the kind of contact, number of the point,
+            force per length of wire in N/mm; shape (m, 3). Between coils it is twice what the point itself has found,
+            for both wires look for each other with half of the bedding each.
+    """
+
+    step: int
+    active_turns: float
+    free_turns: float
+    bottom: SeatReaction
+    top: SeatReaction
+    pressure: np.ndarray
+
+    def row(self) -> dict[str, Any]:
+        """As flat entries, without the pressure."""
+        flat: dict[str, Any] = {name: getattr(self, name) for name in ("step", "active_turns", "free_turns")}
+        for end in ENDS:
+            flat |= {f"{end}_{name}": value for name, value in asdict(getattr(self, end)).items()}
+        return flat
+
+    @classmethod
+    def from_row(cls, row: dict[str, Any], pressure: np.ndarray) -> "SeatReactions":
+        """The reverse of `row`."""
+        names = [item.name for item in fields(SeatReaction)]
+        ends = [SeatReaction(**{name: row[f"{end}_{name}"] for name in names}) for end in ENDS]
+        return cls(row["step"], row["active_turns"], row["free_turns"], *ends, pressure)
+
+
+@dataclass(frozen=True)
+class ContactRecord:
+    """One kind of contact.
+
+    Attributes:
+        name: for labels.
+        end: `bottom` or `top` for a seat, else None.
+        wire_turns: turns of the points of the wire at which it is evaluated, shape (m,); None for other kinds.
+        tip: number of the point at the wire's tip, of a seat.
+    """
+
+    name: str
+    end: str | None
+    wire_turns: np.ndarray | None
+    tip: int
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What a run was made of.
+
+    Attributes:
+        spring: geometry of the spring.
+        material: name of the law.
+        ends: `seats` or `clamped`.
+        phases: labels of the load program.
+        turns: of the stations, shape (n + 1,).
+        wire_radius: of the elements, shape (n,), mm.
+        rule: DiskRule.
+        contacts: ContactRecords.
+        section_kind: plane, curved or warping.
+        placement: of the sections, Placement.
+    """
+
+    spring: Spring
+    material: str
+    ends: str
+    phases: tuple[str, ...]
+    turns: np.ndarray
+    wire_radius: np.ndarray
+    rule: DiskRule
+    contacts: tuple[ContactRecord, ...]
+    section_kind: str
+    placement: Placement
+
+    @property
+    def section_turns(self) -> np.ndarray:
+        """Turns at which the Gauss sections stand, shape (n, 2)."""
+        return self.turns[:-1, None] + np.diff(self.turns)[:, None] * GAUSS
+
+    @property
+    def inside(self) -> surface.Inside:
+        """Where the inside of the coil is on the wire's surface."""
+        return surface.Inside.of(self.section_kind != "plane", self.spring.hand)
+
+    def outer_length(self, x: np.ndarray) -> float:
+        """Height of the wire between two planes across the axis that just touch it, stations at `x`, mm."""
+        top = x[:, 2] + self.spring.seat_distance(self.turns, "top")
+        bottom = x[:, 2] - self.spring.seat_distance(self.turns, "bottom")
+        return float(top.max() - bottom.min())
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a run has found up to now; `complete` is False if it ended before its program did.
+
+    Attributes:
+        steps: converged Steps, seats: SeatReactions after each of them.
+        snapshots: Snapshots at the start and after each phase.
+        rate: initial rate, N/mm.
+    """
+
+    steps: tuple[Step, ...] = ()
+    seats: tuple[SeatReactions, ...] = ()
+    snapshots: tuple[Snapshot, ...] = field(default=(), repr=False)
+    rate: float = float("nan")
+    complete: bool = False
+
+    @property
+    def greatest_force(self) -> float:
+        """Size of the greatest force so far, N."""
+        return max((abs(step.force_N) for step in self.steps), default=0.0)

@@ -1,0 +1,119 @@
+"""Where the force goes: reactions at both ends of the spring, pressure along the wire, active turns."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from coilset.model.contact.base import ENDS, SEAT_DOFS, Contact, Contribution
+from coilset.model.contact.resultants import Wrench, station_forces, station_moments
+from coilset.model.equilibrium.axial_control import AxialControl
+from coilset.model.equilibrium.layout import LineLayout
+from coilset.model.equilibrium.system import System
+from coilset.model.results.record import SeatReaction, SeatReactions
+from coilset.model.rod.rod import Rod
+from coilset.model.rotations.vectors import rotation_matrix
+
+ROUNDING = 2e-13  # axial forces below this share of E A are rounding, whatever came before
+FAINT = 1e-6  # axial forces below this share of the greatest one so far have no centre and load no turns
+
+
+Parts = Sequence[tuple[Contact, Contribution]]
+
+
+def seat_reactions(
+    system: System, control: AxialControl, turns: np.ndarray, step: int, greatest_force: float
+) -> SeatReactions:
+    """Reactions at the equilibrium that was just reached; collective.
+
+    Args:
+        system: System of a Rod.
+        control: AxialControl.
+        turns: of the stations, shape (n + 1,).
+        step: number of the step.
+        greatest_force: size of the greatest axial force so far, this one's included, N.
+
+    Returns:
+        SeatReactions, the same on every rank.
+    """
+    observer, force = _Observer(system, control), control.force
+    faint = max(FAINT * greatest_force, ROUNDING * system.body.axial_force)
+    pressure = pressures(observer.parts)
+    ends = [observer.reaction(end, faint) for end in ENDS]
+    active = active_turns(system.body, turns, force) if abs(force) > faint else np.nan
+    return SeatReactions(step, active, free_turns(observer.parts, pressure), *ends, pressure)
+
+
+class _Observer:
+    """Reads what acts at the ends of a spring."""
+
+    def __init__(self, system: System, control: AxialControl) -> None:
+        assert isinstance(system.layout, LineLayout)
+        self.layout, self.system, self.control = system.layout, system, control
+        self.x = self.layout.gather(system.state["x"].trial)
+        self.chart = self.layout.gather(system.body.chart)
+        self.parts: Parts = list(zip(system.contacts, system.last.contributions, strict=True))
+
+    def wrench(self, end: str) -> Wrench:
+        """Of everything that an end's seat, or its held unknowns, does to the wire."""
+        own = [part for contact, part in self.parts if contact.end == end]
+        station, components = self.control.tips[end]
+        reaction = np.zeros(6)
+        reaction[components] = self.layout.values(self.system.internal, self.layout.station_dofs[station, components])
+        held = Wrench.of(reaction[None, :3], self.x[[station]], reaction[None, 3:])
+        return Wrench.of(station_forces(own, len(self.x)), self.x, station_moments(own, self.chart)) + held
+
+    def reaction(self, end: str, faint: float) -> SeatReaction:
+        """The SeatReaction of an end."""
+        wrench, centre = self.wrench(end), self.control.centre(end, self.x)
+        side = 1.0 if end == "bottom" else -1.0  # the bottom pushes up
+        crossing = wrench.crossing(centre) if abs(wrench.force[2]) > faint else np.full(2, np.nan)
+        spot, length, down = np.full(2, np.nan), 0.0, 0.0
+        for contact, part in self.parts:
+            if contact.end == end and contact.points is not None:
+                bears = part.bears
+                number, wire = part.point[bears], contact.points
+                points = wire.at(self.x)[number]
+                length += float(wire.length[number].sum())
+                down = float(np.abs(wire.turns[number] - wire.turns[contact.tip]).max(initial=down))
+                if part.pressure.sum() > faint:
+                    spot = part.pressure[bears] @ points[:, :2] / part.pressure[bears].sum()
+        numbers = (side * wrench.force[2], *wrench.force[:2], *wrench.about(centre), *crossing, np.hypot(*crossing),
+                   *spot, length, down, self.tilt(end))  # fmt: skip
+        return SeatReaction(*map(float, numbers))
+
+    def tilt(self, end: str) -> float:
+        """Angle between the axes of a seat and of the spring, rad."""
+        axis = rotation_matrix(self.system.seats[SEAT_DOFS * ENDS.index(end) :][3:SEAT_DOFS])[:, 2]
+        return float(np.arctan2(np.hypot(axis[0], axis[1]), axis[2]))
+
+
+def active_turns(rod: Rod, turns: np.ndarray, force: float) -> float:
+    """∫ (Mt/(F r))² dt over all turns, with the mean torque Mt and the distance r from the axis of each element."""
+    line = rod.line
+    torque = rod.s.values[:, :, 3].mean(axis=1)
+    r = np.hypot(*rod.x[rod.cells].mean(axis=1)[:, :2].T)
+    share = (torque / (force * r)) ** 2 @ np.diff(turns)[line.element[: line.owned_cells]]
+    return float(line.mesh.comm.allreduce(share))
+
+
+def pressures(parts: Parts) -> np.ndarray:
+    """Rows of SeatReactions.pressure: forces of each kind of contact summed over what bears at a point."""
+    rows = [np.empty((0, 3))]
+    for kind, (contact, part) in enumerate(parts):
+        if contact.points is None or not len(part.point):
+            continue
+        force = np.bincount(part.point, np.where(part.bears, part.pressure, 0.0), len(contact.points))
+        bears = np.flatnonzero(force)
+        halves = 1.0 if contact.end else 2.0
+        rows.append(np.stack([np.full(len(bears), kind), bears, halves * force[bears] / contact.lengths[bears]], 1))
+    return np.concatenate(rows)
+
+
+def free_turns(parts: Parts, pressure: np.ndarray) -> float:
+    """Turns of wire that touch nothing, each point for the turns that it stands for."""
+    points = next((contact.points for contact, _ in parts if contact.points is not None), None)
+    if points is None:
+        return float("nan")
+    step = 0.5 * np.diff(points.turns)
+    share = np.append(step, 0.0) + np.append(0.0, step)
+    return float(share.sum() - share[np.unique(pressure[:, 1].astype(int))].sum())

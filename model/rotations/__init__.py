@@ -1,0 +1,1 @@
+"""Finite rotations by rotation vectors: compiled `kernels` for single nodes, `vectors` for arrays, also complex."""

@@ -1,1 +1,0 @@
-"""Iteration methods as PETSc SNES option sets, and the solve of one step."""

@@ -1,0 +1,78 @@
+"""What a step changes: named arrays at the last equilibrium and on trial, and the one way from the one to the other.
+
+Body, contacts, seats and solver register their arrays here; a checkpoint needs nothing else.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+
+class Where(Enum):
+    """What the first axis of an array counts; it tells how ranks share the array."""
+
+    STATION = "stations of the line"
+    ELEMENT = "elements of the line"
+    CELL = "cells of a solid"
+    UNKNOWN = "unknowns of the system"
+    SHARED = "the same on every rank"
+
+
+@dataclass(frozen=True)
+class Field:
+    """An array of the state.
+
+    Attributes:
+        trial: written by evaluations; this object stays the same, so that others may hold it.
+        equilibrium: as it was when the last equilibrium was committed; the same shape.
+        where: what the first axis counts.
+    """
+
+    trial: np.ndarray
+    equilibrium: np.ndarray
+    where: Where
+
+
+class State:
+    """Named fields, committed and restored together, so that a failed step leaves no trace."""
+
+    def __init__(self) -> None:
+        self._fields: dict[str, Field] = {}
+
+    def add(self, name: str, trial: np.ndarray, where: Where) -> Field:
+        """Register an array; it becomes the field's trial as it stands, and a copy of it the equilibrium.
+
+        Raises:
+            ValueError: if the name is taken.
+        """
+        if name in self._fields:
+            raise ValueError(f"the state has a field '{name}' already")
+        self._fields[name] = field = Field(trial, trial.copy(), where)
+        return field
+
+    def include(self, prefix: str, part: "State") -> None:
+        """Take over the fields of a part, their names after `prefix`; they stay the part's too."""
+        for name, field in part.items():
+            self._fields[f"{prefix}{name}"] = field
+
+    def __getitem__(self, name: str) -> Field:
+        return self._fields[name]
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._fields
+
+    def items(self) -> Iterator[tuple[str, Field]]:
+        """Names and fields in the order of their registration."""
+        return iter(self._fields.items())
+
+    def commit(self) -> None:
+        """Make the trial arrays the equilibrium."""
+        for field in self._fields.values():
+            np.copyto(field.equilibrium, field.trial)
+
+    def restore(self) -> None:
+        """Make the trial arrays those of the last equilibrium again."""
+        for field in self._fields.values():
+            np.copyto(field.trial, field.equilibrium)

@@ -1,0 +1,108 @@
+"""Entries of a case: what is no number, what is misspelt, paths, earlier names, and messages in words."""
+
+import pytest
+
+from coilset.model.case import Case, check, read_case
+from coilset.model.case.entry import LONGEST, shown
+from coilset.model.case.settings import assign
+from coilset.model.errors import InputError
+
+SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0}
+TEXT = "spring: {wire_diameter: 5.0, mean_diameter: 40.0, turns: 2.5, pitch: 12.0}\nloading: [{to: block}]\n"
+
+
+def raw(**entries):
+    return {"spring": SPRING, "loading": [{"to": "block"}], **entries}
+
+
+def problem(data):
+    with pytest.raises(InputError) as caught:
+        check(data)
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("entries", "message"),
+    [
+        ({"solver": {"tolerance": True}}, "solver.tolerance: True: must be a number"),
+        ({"solver": {"tolerance": "1e-6"}}, "solver.tolerance: '1e-6': must be a number"),
+        ({"temperature": True}, "temperature: True: must be a number"),
+        ({"loading": [{"to": {"travel": True}}]}, "loading.0.to.travel: True"),
+        ({"mesh": {"section": {"radial": True}}}, "mesh.section.radial: True: must be a whole number"),
+        ({"mesh": {"section": {"radial": 2.5}}}, "mesh.section.radial: 2.5: must be a whole number"),
+        ({"loading": [{"to": "block", "steps": True}]}, "loading.0.steps: True: must be a whole number"),
+        ({"loading": [{"to": "block", "steps": "12"}]}, "loading.0.steps: '12': must be 'auto', or a number"),
+        ({"loading": [{"to": "block", "steps": 0}]}, "loading.0.steps: 0: must be greater than 0"),
+        ({"loading": [{"to": "blok"}]}, "loading.0.to: 'blok': must be 'block'$"),
+        ({"mesh": 5}, "mesh: 5: must be a group of entries, as in {name: value}"),
+        ({"mesh": [1]}, "mesh: [1]: must be a group of entries"),
+        ({"loading": {"to": "block"}}, "loading: {'to': 'block'}: must be a list, as in [1, 2]"),
+        ({"loading": []}, "loading: []: must have at least 1 item, not 0"),
+        ({"seats": {"hold": "groove", "top": {"tilt": "loose"}}}, "seats.top.tilt: 'loose': must be 'held' or 'free'"),
+        ({"seats": {"hold": "groove", "top": {"tilt": [1]}}}, "seats.top.tilt: [1]: must be a number"),
+        ({"solver": {"options": {"snes_max_it": [1]}}}, "solver.options.snes_max_it: must be a word, a finite number"),
+        ({"solver": {"method": "magic"}}, "solver.method: 'magic': must be 'newton', "),
+        ({"material": 5}, "material: 5: must be a word"),
+        ({"mash": {}}, "mash: unknown entry; is mesh meant?"),
+        ({"colour": "red"}, "colour: unknown entry; the entries here are spring, material, "),
+    ],
+)
+def test_wrong_entries_are_told_in_words(entries, message):
+    found = problem(raw(**entries))
+    assert f"{found}$".startswith(message)
+    assert "constrained" not in found
+    assert "instance" not in found
+
+
+def test_a_required_entry_says_what_it_is():
+    assert problem({"spring": SPRING}) == "loading: this entry is required; give targets, one after the other"
+
+
+def test_long_values_are_shortened():
+    found = problem(raw(mesh={"section": {"rule": "x" * 100_000}}))
+    assert len(found) < 200
+    assert problem(raw(**{"m" * 100_000: 1})).startswith("mmmm")
+    assert len(problem(raw(loading={"to": list(range(100_000))}))) < 200
+    assert len(shown({"a": [["b" * 99] * 99] * 99})) <= LONGEST
+    with pytest.raises(InputError) as caught:
+        assign(raw(), "mesh.elements_per_turn.x" + "=" + "9" * 5000)
+    assert len(str(caught.value)) < 300
+
+
+def test_whole_numbers_may_come_as_floats():
+    """A range of a sweep makes 4.0."""
+    assert check(raw(mesh={"section": {"radial": 4.0}})).mesh.section.radial == 4
+
+
+def test_a_material_file_counts_from_the_folder_of_the_case(tmp_path, monkeypatch):
+    (tmp_path / "here").mkdir()
+    (tmp_path / "here" / "case.yaml").write_text(TEXT + "material: mine.yaml\n")
+    monkeypatch.chdir(tmp_path)
+    assert read_case("here/case.yaml").material == "here/mine.yaml"
+    assert read_case("here/case.yaml", ["material=mine.yaml"]).material == str(tmp_path / "mine.yaml")
+    assert read_case("here/case.yaml", ["material=ck15"]).material == "ck15"
+    scan = read_case("here/case.yaml", ["spring={file: scan.csv}"]).spring
+    assert scan.file == str(tmp_path / "scan.csv")
+    assert Case.model_validate(raw(material="mine.yaml")).material == "mine.yaml"
+
+
+def test_earlier_names_are_taken_with_a_notice():
+    case = check(raw(contact={"deepest": 0.05, "penetration": 0.001}))
+    assert (case.contact.penetration_limit, case.contact.augmentation_tolerance) == (0.05, 0.001)
+    assert list(case.notices()) == [
+        "contact.deepest: this entry is now called penetration_limit",
+        "contact.penetration: this entry is now called augmentation_tolerance",
+    ]
+    now = check(raw(contact={"penetration_limit": 0.05, "augmentation_tolerance": 0.001}))
+    assert list(now.notices()) == []
+    assert now.model_dump() == case.model_dump()
+    both = problem(raw(contact={"deepest": 0.05, "penetration_limit": 0.05}))
+    assert both == "contact: deepest is the earlier name of penetration_limit; give one of the two"
+    assert problem(raw(contact={"deepest": -1})).startswith("contact.penetration_limit: -1: must be greater than 0")
+
+
+def test_a_list_takes_no_index_beyond_its_end():
+    for part in ("7", "-1", "x", "9" * 5000, "²"):
+        with pytest.raises(InputError, match="give a number from 0 to 0"):
+            assign(raw(), f"loading.{part}.steps=3")
