@@ -30,6 +30,10 @@ class Body(Protocol):
         """
         ...
 
+    def follow(self) -> None:
+        """Bring to the end of the increment what bears no load, before it becomes the equilibrium."""
+        ...
+
     def internal_forces(self, vector: np.ndarray) -> None:
         """Add ∫ σ : δε of the owned cells at the trial state to a local array (owned and ghost unknowns), N, N mm."""
         ...

@@ -20,13 +20,28 @@ from coilset.model.section import rules
 
 
 class SectionSpec(Strict):
-    """Quadrature of the wire's cross-section."""
+    """The wire's cross-section: what it may do, and its quadrature."""
 
+    kind: Annotated[
+        Literal["plane", "curved", "warping"],
+        Field(description="plane as in the thesis; curved: plane, with fibres as long as the curved wire makes them; "
+                          "warping: free to warp, with all six stresses"),
+    ] = "plane"  # fmt: skip
+    degree: Annotated[Whole, Field(ge=1, le=7, description="of the polynomials of a section that warps")] = 3
     rule: Annotated[Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")] = (
         "polar"
     )
     radial: Annotated[Whole, Field(ge=1, le=64, description="rings of the polar rule")] = 4
     angular: Annotated[Whole, Field(ge=3, le=256, description="angles of the polar rule")] = 12
+
+    @model_validator(mode="after")
+    def _warping_is_integrated(self) -> Self:
+        exact = 5 if self.rule == "abramowitz9" else min(4 * self.radial, self.angular) - 1
+        needed = 2 * self.degree - 2
+        if self.kind == "warping" and exact < needed:
+            raise ValueError(f"the rule is exact for polynomials of degree {exact}, warping of degree {self.degree} "
+                             f"needs {needed}; give more points or a lower degree")  # fmt: skip
+        return self
 
     def build(self) -> rules.DiskRule:
         """The quadrature rule."""
@@ -47,6 +62,12 @@ class MeshSpec(Strict):
         Field(description="curved: the rods' sections lie on the true centre line; chords: the thesis's polygon"),
     ] = "curved"
     section: SectionSpec = SectionSpec()
+
+    @model_validator(mode="after")
+    def _curvature_belongs(self) -> Self:
+        if self.axis == "chords" and self.section.kind != "plane":
+            raise ValueError(f"chords are straight; give section.kind: plane, or axis: curved for {self.section.kind}")
+        return self
 
 
 class FrictionSpec(Strict):

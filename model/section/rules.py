@@ -46,3 +46,12 @@ def upper_half(rule):
     """The points of a symmetric rule with z > 0, weights doubled: for what is the same, or opposite, at z and −z."""
     above = rule.points[:, 1] > 0.0
     return DiskRule(rule.points[above], 2.0 * rule.weights[above], f"upper half of {rule.name}")
+
+
+SURFACE_POINTS = 24
+
+
+def rim(points: int = SURFACE_POINTS) -> np.ndarray:
+    """Points (y, z) of the unit circle at equal angles from the y axis, shape (points, 2)."""
+    angle = 2.0 * np.pi * np.arange(points) / points
+    return np.stack([np.cos(angle), np.sin(angle)], axis=-1)
