@@ -10,6 +10,11 @@ from coilset.model.results.folder import whole
 from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot, SliceStep
 from coilset.model.slice.watch import equivalent, shear
 
+# Entries of a spring's summary that one section cannot know: it has no axis that could bend.
+UNSEEN = (
+    "unstable_steps", "buckled", "buckling_travel_mm", "buckling_force_N", "buckling_travel_EN_13906_1_mm",
+)  # fmt: skip
+
 
 def summarise(analysis: SliceAnalysis) -> dict:
     """Summary of a run as plain numbers; what is not known (no release) is None. Units are in the names."""
@@ -34,6 +39,7 @@ def summarise(analysis: SliceAnalysis) -> dict:
         "iterations": sum(step.iterations for step in result.steps),
         "material": analysis.law.name,
         "ends": analysis.case.ends,
+        **dict.fromkeys(UNSEEN),
         "elements": len(analysis.body.forms.cells),
         "section_rule": f"triangles of degree {section.degree} with {len(analysis.body.forms.points)} points",
         "unknowns": analysis.body.u.size + 2,
