@@ -182,11 +182,11 @@ class Analysis:
         self.result = replace(self.result, steps=(*self.result.steps, step), seats=(*self.result.seats, seats))
         return step
 
-    def _least_eigenvalue(self) -> float:
-        """Of the tangent, N/mm, while a spring slender enough to buckle has not done so; else NaN; collective."""
+    def _least_eigenvalue(self) -> float | None:
+        """Of the tangent, N/mm, while a spring slender enough to buckle has not done so; else None; collective."""
         slender, setup = np.isfinite(self.setup.buckling_travel), self.setup
         if not slender or buckling(self.result.steps, setup.mean_diameter) is not None:
-            return np.nan
+            return None
         return self.stability.weakest_mode(self.newton.load)[0]
 
     def initial_rate(self) -> float:

@@ -36,7 +36,7 @@ def buckling(steps: Sequence[Step], diameter: float) -> Buckling | None:
     seen = next((k for k, step in enumerate(steps) if _has_buckled(step, diameter)), None)
     if seen is None:
         return None
-    values = [(step.travel_mm, step.least_eigenvalue) for step in steps[:seen] if isfinite(step.least_eigenvalue)]
+    values = [(step.travel_mm, least) for step in steps[:seen] if (least := step.least_eigenvalue) is not None]
     before = steps[seen - 1].travel_mm if seen else 0.0
     travel = vanishing([point for point in values if point[1] > 0.0])
     if not isfinite(travel) or not before <= travel <= steps[seen].travel_mm + (steps[seen].travel_mm - before):

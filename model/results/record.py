@@ -21,7 +21,7 @@ class Step:
         negative_pivots: negative eigenvalues of the tangent; the state is unstable if there are any.
         left_branch: 1 if an unstable path was left for a stable one on the way to it, else 0.
         axis_offset_mm: greatest distance by which a turn's mean has moved off the spring's axis.
-        least_eigenvalue: of the tangent, N/mm; NaN where it was not asked for.
+        least_eigenvalue: of the tangent, N/mm; None where it was not asked for.
     """
 
     number: int
@@ -37,7 +37,7 @@ class Step:
     negative_pivots: int = 0
     left_branch: int = 0
     axis_offset_mm: float = 0.0
-    least_eigenvalue: float = float("nan")
+    least_eigenvalue: float | None = None
 
 
 @dataclass(frozen=True)
