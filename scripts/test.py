@@ -1,4 +1,4 @@
-"""`coilset test`: the whole test suite, and the tests marked mpi again on 2 and 3 ranks."""
+"""`coilset test`: the whole test suite, what is quick first, and the tests marked mpi again on 2 and 3 ranks."""
 
 import subprocess
 import sys
@@ -8,10 +8,13 @@ from coilset.meshes.errors import InputError
 from coilset.model.processes import mpi_environment, mpirun
 
 REPOSITORY = Path(__file__).resolve().parent.parent
+# tests that solve springs or solids to their end, or start the command: minutes, where all others take seconds
+SOLVES = ["benchmarks", "commands", "install", "meshes/test_solved_springs.py", "solid", "spring", "sweep",
+          "verification"]  # fmt: skip
 
 
-def test(arguments):
-    """Run pytest; returns its exit code, the first that is not zero.
+def test(arguments: list[str]) -> int:
+    """Run pytest, with arguments once, else stage by stage; returns the exit code of the first that fails, else 0.
 
     Raises:
         InputError: in an installation, which has no tests.
@@ -19,13 +22,18 @@ def test(arguments):
     if not (REPOSITORY / "tests").is_dir():
         raise InputError("the tests are in coilset's repository; there, run scripts/coilset test", "test")
     pytest = [sys.executable, "-m", "pytest", *arguments]
-    print("coilset: tests on one rank", flush=True)
-    status = subprocess.run(pytest, cwd=REPOSITORY, check=False).returncode
     if arguments:
-        return status
+        return run("tests on one rank", pytest)
+    solves = [f"tests/{name}" for name in SOLVES]
+    status = run("tests of parts", [*pytest, *(f"--ignore={path}" for path in solves)])
+    status = status or run("tests of whole solves", [*pytest, *solves])
     for ranks in (2, 3):
-        print(f"coilset: tests on {ranks} ranks", flush=True)
         command = [*mpirun(ranks), *pytest, "-m", "mpi"]
-        done = subprocess.run(command, cwd=REPOSITORY, check=False, env=mpi_environment())
-        status = status or done.returncode
+        status = status or run(f"tests on {ranks} ranks", command, mpi_environment())
     return status
+
+
+def run(title: str, command: list[str], environment: dict[str, str] | None = None) -> int:
+    """Say what is run, and run it from the repository's folder."""
+    print(f"coilset: {title}", flush=True)
+    return subprocess.run(command, cwd=REPOSITORY, check=False, env=environment).returncode
