@@ -2,8 +2,12 @@
 
 import numpy as np
 
+from coilset.meshes.geometry import Spring
 
-def gauss_points(spring, start, end, abscissae):
+
+def gauss_points(
+    spring: Spring, start: np.ndarray, end: np.ndarray, abscissae: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Gauss points on the true centre line between pairs of nodes.
 
     The abscissa is the part of the turns from one node to the other, not of the chord: functions of the turn are
@@ -25,7 +29,7 @@ def gauss_points(spring, start, end, abscissae):
     return spring.centre_line(turn), spring.tangent(turn), spring.speed(turn) * (end - start)
 
 
-def polygon_nodes(spring, turns, keep="points", poisson=0.3):
+def polygon_nodes(spring: Spring, turns: np.ndarray, keep: str = "points", poisson: float = 0.3) -> np.ndarray:
     """Nodes of a polygon of straight rods that represents the wire.
 
     A chord over the angle φ is shorter than its arc and nearer to the axis. Under an axial force F it bears the torque
@@ -60,7 +64,9 @@ def polygon_nodes(spring, turns, keep="points", poisson=0.3):
     return nodes
 
 
-def section_placement(spring, turns, triads, abscissae):
+def section_placement(
+    spring: Spring, turns: np.ndarray, triads: np.ndarray, abscissae: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """How the sections of the curved wire hang on the chords between the nodes.
 
     A section of the true centre line is rigidly tied to the section of the chord at the same ξ, by the offset o. With
@@ -69,8 +75,8 @@ def section_placement(spring, turns, triads, abscissae):
 
         Γ_true = Qᵀ (Γ + K × o) dx/ds,    K_true = Qᵀ K dx/ds,
 
-    so that a rigid motion strains nothing, whatever o and Q are. Q is the least turn that brings the chord's axis to
-    the true tangent.
+    so that a rigid motion strains nothing, whatever o and Q are. Q is the smallest rotation that brings the chord's
+    axis to the true tangent.
 
     Args:
         spring: `Spring`.

@@ -36,7 +36,7 @@ class UniformState:
     Attributes:
         coils: wire diameter, mean diameter, pitch (mm) and number of turns, shape (n, 4).
         q: R̄ (mm), ϑ (rad), h̄ (mm/rad), λ, shape (n, 4).
-        points: history rows of the section points, shape (n, points, n_state), MPa, as in `material.rod`.
+        points: point states of the section points, shape (n, points, n_state), MPa, as in `material.rod`.
         force: axial force, compression positive, shape (n,), N; torque: about the axis, shape (n,), N mm.
         sections: N, Q₃, Mt, M₃, shape (n, 4), N and N mm; tangents: their derivatives by E, shape (n, 4, 4).
     """

@@ -132,8 +132,8 @@ def step(rod, value, elastic, q, points, new, S, T):
     Args:
         rod: Rod.
         elastic: begin with the elastic tangent, not with that of the last step.
-        q, points: coordinates and history rows at the last equilibrium; replaced if there is a new one.
-        new: room for history rows.
+        q, points: coordinates and point states at the last equilibrium; replaced if there is a new one.
+        new: room for point states.
         S, T: resultants and their tangent at the last equilibrium; replaced.
 
     Returns:

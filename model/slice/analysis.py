@@ -1,4 +1,4 @@
-"""From a case to the slice's history: the cylindrical coil of a case file, its section, and its load program."""
+"""From a case to the slice's result: the cylindrical coil of a case file, its section, and its load program."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field

@@ -11,7 +11,7 @@ from coilset.model.slice.gap import gaps
 from coilset.model.slice.slice import Slice
 
 STIFFNESS = 10.0  # default bedding over E/d: as stiff as the triangles at the surface
-ONSET = 1e-4  # way over which contact sets in, in equivalent wire diameters
+ONSET = 1e-4  # distance over which contact sets in, in equivalent wire diameters
 STEEP = 0.3  # component of the normal along the coil's axis from which an edge may touch
 GAUSS = 4  # points of contact on an edge
 

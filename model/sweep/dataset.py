@@ -1,16 +1,20 @@
 """A sweep as one labelled data set: inputs, responses, characteristic and fate of each case."""
 
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
 from coilset.model.results.folder import whole
 from coilset.model.sweep.journal import read_records
+from coilset.model.sweep.plan import Plan
 
 UNITS = {"_N_per_mm": "N/mm", "_MPa": "MPa", "_mm": "mm", "_N": "N"}
 CURVE = {"travel_mm": "mm", "seat_height_mm": "mm", "force_N": "N", "phase": "1"}
 
 
-def quantity(name):
+def quantity(name: str) -> tuple[str, str]:
     """Words and unit of a response by its name, as in `set_mm`."""
     for ending, unit in UNITS.items():
         if name.endswith(ending):
@@ -18,7 +22,7 @@ def quantity(name):
     return name.replace("_", " "), ""
 
 
-def collect(plan, journal):
+def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
     """All cases of a plan that a journal holds.
 
     Args:
@@ -63,11 +67,11 @@ def collect(plan, journal):
     return xr.Dataset(data, coordinates | {"key": ("case", plan.keys)}, attributes)
 
 
-def _attributes(words, unit):
+def _attributes(words: str, unit: str) -> dict[str, str]:
     return {"long_name": words, "units": unit}
 
 
-def _input(plan, k):
+def _input(plan: Plan, k: int) -> tuple[Any, dict[str, str]]:
     """Values of an input for all cases, words where they are not all numbers, and its attributes."""
     vary, values = plan.spec.vary[plan.names[k]], [row[k] for row in plan.rows]
     numbers = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values)
@@ -75,7 +79,7 @@ def _input(plan, k):
     return column, _attributes(vary.label or plan.names[k], vary.unit)
 
 
-def write(path, data):
+def write(path: str | Path, data: xr.Dataset) -> None:
     """Write the data set as NetCDF 4, compressed."""
     packed = {name: {"zlib": True, "complevel": 1} for name in data.data_vars if data[name].dtype.kind == "f"}
     with whole(path) as partial:

@@ -26,7 +26,7 @@ class Indices:
     samples: int
 
 
-def sobol_indices(values, inputs, samples, seed=0):
+def sobol_indices(values: np.ndarray, inputs: int, samples: int, seed: int = 0) -> Indices | None:
     """First-order and total Sobol indices from the cases of the design `sobol_indices`.
 
     Args:
@@ -53,7 +53,7 @@ def sobol_indices(values, inputs, samples, seed=0):
     return Indices(np.ravel(found.first_order), np.ravel(found.total_order), *intervals, n)
 
 
-def rank_correlation(x, values):
+def rank_correlation(x: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Spearman's rank correlation of a response with each input, and its 95 % interval by Fisher's transformation.
 
     Args:

@@ -67,7 +67,7 @@ class Fit:
 
 
 def result(model: FittedLaw, minima: Sequence[Minimum], tests: tuple[Test, ...], temperature: float) -> Fit:
-    """The deepest minimum; others that the scatter of the tests does not exclude widen the uncertainties."""
+    """The lowest minimum; others that the scatter of the tests does not exclude widen the uncertainties."""
     best, found = minima[0]
     if not found.cost < LARGE:
         raise SolveError("no constants were found with which the law can follow these tests; are their units right?")
