@@ -104,9 +104,8 @@ def axial_spin(increment: Increment, W: Any) -> Any:
 
 def spun(increment: Increment, spin: Any) -> Increment:
     """The virtual increment as it appears from a spinning triad: δu → −spin × δu in the fixed frame."""
-    return Increment(
-        *(-cross(spin, v) for v in (increment.d, increment.rotation1, increment.rotation2)), 0 * increment.shear
-    )
+    d, rotation1, rotation2 = (-cross(spin, v) for v in (increment.d, increment.rotation1, increment.rotation2))
+    return Increment(d, rotation1, rotation2, 0 * increment.shear)
 
 
 class RodForms:
