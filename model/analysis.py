@@ -20,14 +20,17 @@ from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.methods import Method, rod_method
 from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.program import LoadProgram, ProgramPosition, Stage, StepTaken
+from coilset.model.equilibrium.stability import Stability
 from coilset.model.equilibrium.system import System
 from coilset.model.material import library
 from coilset.model.results.balance import imbalance
+from coilset.model.results.buckling import axis_offset, buckling
 from coilset.model.results.checkpoint import Saved
 from coilset.model.results.record import ContactRecord, Result, Setup, Snapshot, Step
 from coilset.model.results.seat_reactions import seat_reactions
 from coilset.model.rod.kinematics import GAUSS, chord_triads
 from coilset.model.rod.rod import Rod
+from coilset.model.standards.buckling import buckling_travel
 from coilset.model.state import State
 
 
@@ -76,14 +79,16 @@ class Analysis:
             (case.seats.bottom.held(), case.seats.top.held()),
         )  # fmt: skip
         limit = case.contact.penetration_limit * 2.0 * float(radius.min())
-        self.continuation = Continuation(self.newton, case.solver.control.steps, limit)
+        self.stability = Stability(self.newton)
+        self.continuation = Continuation(self.newton, case.solver.control.steps, limit, stability=self.stability)
         self.program = LoadProgram(self.control, self.continuation)
         records = tuple(
             ContactRecord(one.name, one.end, one.points and one.points.turns, getattr(one, "tip", 0))
             for one in contacts
         )
         self.setup = Setup(spring, self.law.name, self.law.n_state, case.ends, tuple(p.label for p in case.loading),
-                           turns, radius, self.rod.rule, records)  # fmt: skip
+                           turns, radius, self.rod.rule, records,
+                           buckling_travel(spring, self.law.G / self.law.E))  # fmt: skip
         self.result = Result()
 
     def _newton(self, wire_diameter: float) -> Newton:
@@ -166,11 +171,21 @@ class Analysis:
         height, force, last = self.control.height, self.control.force, self.system.last
         contacts = sum(part.closed for part in last.contributions)
         step = Step(taken.number, phase, taken.progress, height, self.spring.free_length - height, force,
-                    taken.outcome.iterations, taken.cuts, contacts, self.system.max_penetration)  # fmt: skip
+                    taken.outcome.iterations, taken.cuts, contacts, self.system.max_penetration,
+                    taken.outcome.negative_pivots, int(taken.outcome.left_branch),
+                    axis_offset(self.layout.gather(self.rod.x), self.rod.line.stations, self.setup.turns),
+                    self._least_eigenvalue())  # fmt: skip
         greatest = max(self.result.greatest_force, abs(force))
         seats = seat_reactions(self.system, self.control, self.setup.turns, step.number, greatest)
         self.result = replace(self.result, steps=(*self.result.steps, step), seats=(*self.result.seats, seats))
         return step
+
+    def _least_eigenvalue(self) -> float:
+        """Of the tangent, N/mm, while a spring slender enough to buckle has not done so; else NaN; collective."""
+        slender, setup = np.isfinite(self.setup.buckling_travel), self.setup
+        if not slender or buckling(self.result.steps, setup.mean_diameter) is not None:
+            return np.nan
+        return self.stability.weakest_mode(self.newton.load)[0]
 
     def initial_rate(self) -> float:
         """Force over the shortening of the wire from tip to tip, at a thousandth of the free length, N/mm; collective.

@@ -11,7 +11,7 @@ ways="No Python with DOLFINx >= 0.9 is found. Ways to get one:
   conda, no root needed      conda env create -f environment.yml; conda activate coilset
   Debian 13, Ubuntu 25.04    or later, as root: run any command, it installs the distribution's packages
   older Debian and Ubuntu    as root: run any command, it makes a private Debian 13 in $COILSET_CACHE (3 GB)
-  neither root nor conda     install Miniforge into your home folder (no root needed), then as with conda"
+  neither root nor conda     install Miniforge into your home folder (no root needed), or wheels: docs/install.md"
 
 say() { printf 'coilset: %s\n' "$*" >&2; }
 fail() { say "$*"; exit 2; }

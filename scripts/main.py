@@ -52,7 +52,7 @@ def options(
         command = sys.argv[sys.argv.index(context.invoked_subcommand) :]
         check(ranks, context.invoked_subcommand)
         if ranks > 1 and not {"-h", "--help"} & set(command):
-            raise typer.Exit(launch(ranks, command))
+            raise SystemExit(launch(ranks, command))  # the ranks have said why
 
 
 @app.command()

@@ -89,7 +89,7 @@ enter_private_root() {
 
 pass_on() { # a signal to the command in bubblewrap; while there is none yet, nothing is lost with bubblewrap itself
     local command=''
-    read -r command < "/proc/$child/task/$child/children" || true
+    { read -r command < "/proc/$child/task/$child/children"; } 2> /dev/null || true
     kill -s "$1" "$command" 2> /dev/null || kill -s KILL "$child" 2> /dev/null || true
 }
 

@@ -166,4 +166,13 @@ def _conclude(console, summary, out, analysed):
     table.add_row("greatest residual shear stress", number(summary["residual_shear_max_MPa"], "MPa", 2))
     table.add_row("results in", f"{out}{os.sep}")
     console.print(table)
+    if summary["buckled"]:
+        standard = summary["buckling_travel_EN_13906_1_mm"]
+        beside = "never" if standard is None else f"at {standard:.4g} mm"
+        where = f"{summary['buckling_travel_mm']:.4g} mm and {summary['buckling_force_N']:.4g} N"
+        console.print(f"[yellow]warning:[/] the spring buckled at a travel of {where} (EN 13906-1: {beside}); "
+                      "what follows is of the buckled shape")  # fmt: skip
+    if summary["unstable_steps"]:
+        console.print(f"[yellow]warning:[/] {summary['unstable_steps']} steps are unstable equilibria, no stable one was "
+                      "found beside them: several branches exist, smaller steps may find another")  # fmt: skip
     console.print(f"analysis {analysed:.2f} s, all {time.time() - STARTED:.2f} s")

@@ -1,5 +1,8 @@
 """Chains of rods, as most benchmarks have them: nodes one after the other, driven in equal steps."""
 
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
 import numpy as np
 
 from coilset.meshes.errors import SolveError
@@ -10,7 +13,7 @@ from coilset.model.section.rules import DiskRule, polar
 from coilset.verification.frame import Frame
 
 ALL = range(6)  # components of a node
-X, Y, Z, TURN_X, TURN_Y, TURN_Z = ALL
+X, Y, Z, ROTATION_X, ROTATION_Y, ROTATION_Z = ALL
 
 
 def elastic(E: float, nu: float) -> Law:
@@ -21,7 +24,12 @@ def elastic(E: float, nu: float) -> Law:
 
 
 def chain(
-    nodes: np.ndarray, radius: float, law: Law, rule: DiskRule | None = None, held=((0, ALL),), **options
+    nodes: np.ndarray,
+    radius: float,
+    law: Law,
+    rule: DiskRule | None = None,
+    held: Iterable[tuple[int, Iterable[int]]] = ((0, ALL),),
+    **options: Any,
 ) -> Frame:
     """A Frame whose rods join each node with the next one.
 
@@ -42,7 +50,13 @@ def straight(length: float, elements: int) -> np.ndarray:
     return np.linspace([0.0, 0.0, 0.0], [length, 0.0, 0.0], elements + 1)
 
 
-def drive(frame: Frame, steps: int, moves=None, forces=None, begin: float = 0.0, after=lambda: None) -> list[int]:
+def drive(
+    frame: Frame,
+    steps: int,
+    moves: Mapping[int, float] | None = None,
+    forces: Mapping[int, float] | None = None,
+    after: Callable[[], object] = lambda: None,
+) -> list[int]:
     """Go in equal steps; each but the first starts from the last one's increments.
 
     Args:
@@ -50,7 +64,6 @@ def drive(frame: Frame, steps: int, moves=None, forces=None, begin: float = 0.0,
         steps: number of steps.
         moves: dof → displacement over all steps, mm or rad.
         forces: dof → force at the end of the steps, N or N mm.
-        begin: share of the forces that acts already.
         after: called after each step.
 
     Returns:
@@ -62,7 +75,7 @@ def drive(frame: Frame, steps: int, moves=None, forces=None, begin: float = 0.0,
     counts = []
     for k in range(1, steps + 1):
         part = {dof: value / steps for dof, value in (moves or {}).items()}
-        loads = {dof: value * (begin + (1.0 - begin) * k / steps) for dof, value in (forces or {}).items()}
+        loads = {dof: value * k / steps for dof, value in (forces or {}).items()}
         outcome = frame.step(moves=part, forces=loads, share=None if k == 1 else 1.0)
         if not outcome.converged:
             raise SolveError(f"step {k} of {steps}: {outcome.reason}")

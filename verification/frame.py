@@ -76,7 +76,7 @@ class Frame:
         """Displacement of a node since the start, mm."""
         return self.layout.gather(self.rod.x)[node] - self.rod.line.stations[node]
 
-    def turned(self, node):
+    def rotation(self, node: int) -> np.ndarray:
         """Rotation vector of a node since the start, up to a whole turn, rad."""
         return Rotation.from_matrix(self.layout.gather(self.system.state["R"].trial)[node]).as_rotvec()
 

@@ -15,6 +15,7 @@ from coilset.model.equilibrium.control import StepControl
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.newton import Newton, Start
+from coilset.model.equilibrium.stability import Stability
 
 log = logging.getLogger("coilset.steps")
 Reading = TypeVar("Reading")
@@ -66,9 +67,12 @@ class Continuation:
         starts: where to begin solving a load for a step of the given size, one start after the other; default: the last
             step's increments, scaled, then the last equilibrium.
 
+        stability: Stability; None: states are not judged.
+
     Attributes:
         position: Position.
         number: steps so far.
+        negative_pivots: of the tangent at the last equilibrium; 0 if it is stable.
     """
 
     def __init__(
@@ -77,18 +81,24 @@ class Continuation:
         control: StepControl | None = None,
         penetration_limit: float = math.inf,
         starts: Callable[[Load, float], Iterable[Start]] | None = None,
+        stability: Stability | None = None,
     ) -> None:
         self.newton, self.system, self.control = newton, newton.system, control or StepControl()
         self.penetration_limit, self.starts = penetration_limit, starts or self.from_last_step
+        self.stability, self.negative_pivots = stability, 0
         self.position, self.number, self._attempts = Position(), 0, 0
+        self._unstable = 0.0  # size of the step in progress at which it ended unstable
 
     # ---- one solve -------------------------------------------------------------------------------------------------
 
     def attempt(self, load: Load, starts: Iterable[Start] = (Start(),)) -> Outcome:
         """Solve a step; its state is the last equilibrium, or all is as it was before; collective."""
-        outcome = self._solve(load, starts)
+        return self._conclude(self._stable(self._solve(load, starts), load))
+
+    def _conclude(self, outcome: Outcome) -> Outcome:
         if outcome.converged:
             self.system.commit()
+            self.negative_pivots = outcome.negative_pivots
         else:
             self.system.restore()
         return outcome
@@ -118,6 +128,48 @@ class Continuation:
             return replace(outcome, converged=False, reason=reason)
         return outcome
 
+    # ---- stability -------------------------------------------------------------------------------------------------
+
+    def _stable(self, outcome: Outcome, load: Load) -> Outcome:
+        """A state that is less stable than the last equilibrium counts as none: another path goes on from there."""
+        if not outcome.converged or self.stability is None:
+            return outcome
+        negative = self.stability.negative_pivots(load)
+        outcome = replace(outcome, negative_pivots=negative)
+        if negative <= self.negative_pivots:
+            return outcome
+        reason = f"the equilibrium is unstable: {negative} of the tangent's eigenvalues are negative"
+        return replace(outcome, converged=False, reason=reason)
+
+    def _is_cut_enough(self, size: float) -> bool:
+        """Is the way to an unstable state so short that the path must be left here?"""
+        return self.position.cuts >= self.control.unstable_cuts or self.control.cut * size < self.control.smallest
+
+    def _leave_branch(self, load: Load, size: float) -> Outcome:
+        """Solve again a step that ends unstable, and go off along the weakest mode until a stable state is found.
+
+        Where none is found the unstable state is kept, with its negative pivots.
+        """
+        assert self.stability is not None
+        unstable = self._solve(load, self.starts(load, size))
+        if not unstable.converged:
+            return self._conclude(unstable)
+        unstable = replace(unstable, negative_pivots=self.stability.negative_pivots(load))
+        there, (_value, mode) = self.system.increments.copy(), self.stability.weakest_mode(load)
+        amplitude = self.control.branch_amplitude * self.system.body.largest_radius
+        for _trial in range(self.control.branch_trials):
+            for sign in (1.0, -1.0):
+                start = there.copy()
+                start.axpy(sign * amplitude, mode)
+                outcome = self._stable(self._judged(self.newton.solve(load, Start(start))), load)
+                if outcome.converged:
+                    log.info("step %d: the unstable path is left by %.3g mm", self.number + 1, sign * amplitude)
+                    return self._conclude(replace(outcome, left_branch=True))
+            amplitude *= self.control.branch_growth
+        log.info("step %d: no stable state beside the unstable one was found", self.number + 1)
+        self._solve(load, (Start(there),))
+        return self._conclude(unstable)
+
     def from_last_step(self, load: Load, size: float) -> Iterator[Start]:
         """The last step's increments, scaled to a step of this size; then the last equilibrium."""
         if self.position.last:
@@ -134,7 +186,7 @@ class Continuation:
 
     def begin(self) -> None:
         """Stand at the start of a path."""
-        self.position, self._attempts = Position(), 0
+        self.position, self._attempts, self._unstable = Position(), 0, 0.0
 
     def resize(self, size: float) -> None:
         """Make the next step as large as `size` regular steps."""
@@ -161,8 +213,13 @@ class Continuation:
                 size = min(size, int(position.done + 1e-9) + 1 - position.done)
             load = path.load(position.done + size)
             outcome = self.attempt(load, self.starts(load, size))
+            if outcome.negative_pivots > self.negative_pivots:
+                self._unstable = size
+            if not outcome.converged and self._unstable and self._is_cut_enough(size):
+                size = self._unstable
+                outcome = self._leave_branch(path.load(position.done + size), size)
             if outcome.converged:
-                self.number += 1
+                self.number, self._unstable = self.number + 1, 0.0
                 self.position = Position(position.done + size, self._following(path, outcome, size), 0, size)
                 return outcome, position.cuts
             self._cut(path, outcome, size)

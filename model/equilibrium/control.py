@@ -73,6 +73,10 @@ class StepControl:
         cut: factor of a step that found no equilibrium.
         regrowth: factor by which an equal step that was cut grows again, up to 1.
         probe: travel by which the initial rate is measured, in free lengths.
+        unstable_cuts: how often a step is cut where it ends in an unstable state, before its path is left.
+        branch_amplitude: greatest displacement of the weakest mode by which a path is left at first, in wire radii.
+        branch_trials: amplitudes that are tried, each `branch_growth` times the one before.
+        branch_growth: see there.
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = STRICT
@@ -88,3 +92,7 @@ class StepControl:
     cut: Share = 0.5
     regrowth: Growth = 2.0
     probe: Share = 1e-3
+    unstable_cuts: Count = 6
+    branch_amplitude: Positive = 0.2
+    branch_trials: Count = 6
+    branch_growth: Growth = 2.5

@@ -36,6 +36,8 @@ class Outcome:
         factorisations: tangents set up and factorised.
         evaluations: residuals evaluated.
         linear_iterations: inside of iterative linear solvers.
+        negative_pivots: negative eigenvalues of the tangent where they were counted; the state is unstable if there
+        are. left_branch: was an unstable path left for a stable one on the way to this state?
     """
 
     converged: bool
@@ -45,6 +47,8 @@ class Outcome:
     factorisations: int = 0
     evaluations: int = 0
     linear_iterations: int = 0
+    negative_pivots: int = 0
+    left_branch: bool = False
 
     def __add__(self, following: "Outcome") -> "Outcome":
         """The outcome of two solves, one after the other."""

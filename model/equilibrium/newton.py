@@ -180,6 +180,13 @@ class Newton:
                 self.load_factor = reached + part
                 log.info("no equilibrium of the whole step yet: first %.3g of it", self.load_factor)
 
+    def negative_pivots(self) -> int | None:
+        """Number of negative pivots of the last factors L U; None where PETSc does not show them or they are old."""
+        if self.system.comm.size > 1 or not self.method.searches:
+            return None
+        factors = self.snes.getKSP().getPC().getFactorMatrix()
+        return int(np.count_nonzero(factors.getDiagonal().getArray(readonly=True) < 0.0))
+
     def _set_arc_load(self) -> None:
         """What the step adds to loads and prescribed values: minus the residual at its start."""
         self.system.residual(self.system.increments, self.load, 1.0, self._arc_load)

@@ -12,7 +12,14 @@ from coilset.model.section.rules import DiskRule
 
 @dataclass(frozen=True)
 class Step:
-    """One converged step."""
+    """One converged step.
+
+    Attributes:
+        negative_pivots: negative eigenvalues of the tangent; the state is unstable if there are any.
+        left_branch: 1 if an unstable path was left for a stable one on the way to it, else 0.
+        axis_offset_mm: greatest distance by which a turn's mean has moved off the spring's axis.
+        least_eigenvalue: of the tangent, N/mm; NaN where it was not asked for.
+    """
 
     number: int
     phase: int
@@ -24,6 +31,10 @@ class Step:
     cuts: int
     contacts: int
     penetration_mm: float
+    negative_pivots: int = 0
+    left_branch: int = 0
+    axis_offset_mm: float = 0.0
+    least_eigenvalue: float = float("nan")
 
 
 @dataclass(frozen=True)
@@ -153,6 +164,7 @@ class Setup:
         wire_radius: of the elements, shape (n,), mm.
         rule: DiskRule.
         contacts: ContactRecords.
+        buckling_travel: at which the spring buckles after EN 13906-1, mm; infinite if it never does.
     """
 
     spring: Spring
@@ -164,6 +176,12 @@ class Setup:
     wire_radius: np.ndarray
     rule: DiskRule
     contacts: tuple[ContactRecord, ...]
+    buckling_travel: float
+
+    @property
+    def mean_diameter(self) -> float:
+        """Mean diameter of the coil at half of its turns, mm."""
+        return 2.0 * float(self.spring.mean_radius(0.5 * self.spring.turns))
 
     def outer_length(self, x: np.ndarray) -> float:
         """Height of the wire between two planes across the axis that just touch it, stations at `x`, mm."""

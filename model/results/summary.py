@@ -1,7 +1,9 @@
 """The few numbers that answer the question."""
 
+from math import isfinite
 from typing import Any
 
+from coilset.model.results.buckling import buckling
 from coilset.model.results.record import Result, Setup
 
 
@@ -16,7 +18,7 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
     forces = [step.force_N for step in result.steps]
     greatest = max(forces, default=0.0, key=abs)
     released = bool(result.steps) and abs(last.force) <= 1e-6 * abs(greatest)
-    before = setup.spring.free_length
+    before, buckled = setup.spring.free_length, buckling(result.steps, setup.mean_diameter)
     after = setup.outer_length(last.x) if released else None
     return {
         "complete": result.complete,
@@ -32,6 +34,11 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         "iterations": sum(step.iterations for step in result.steps),
         "material": setup.material,
         "ends": setup.ends,
+        "unstable_steps": sum(step.negative_pivots > 0 for step in result.steps),
+        "buckled": buckled is not None,
+        "buckling_travel_mm": buckled and buckled.travel_mm,
+        "buckling_force_N": buckled and buckled.force_N,
+        "buckling_travel_EN_13906_1_mm": setup.buckling_travel if isfinite(setup.buckling_travel) else None,
         "elements": len(setup.turns) - 1,
         "section_rule": setup.rule.name,
     }

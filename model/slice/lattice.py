@@ -3,6 +3,7 @@
 import basix
 import numpy as np
 
+from coilset.meshes.compat import geometry_dofs
 from coilset.model.slice.slice import Slice
 
 DIVISIONS = 4  # of the sides of the mesh's triangles
@@ -24,7 +25,7 @@ class Lattice:
         mesh, V = body.section.mesh, body.forms.V
         local = basix.create_lattice(basix.CellType.triangle, DIVISIONS, basix.LatticeType.equispaced, True)
         element = mesh.ufl_domain().ufl_coordinate_element().basix_element
-        nodes = mesh.geometry.x[mesh.geometry.dofmap][:, :, :2]
+        nodes = mesh.geometry.x[geometry_dofs(mesh)][:, :, :2]
         self.places = np.einsum("qb,cbi->cqi", element.tabulate(0, local)[0, :, :, 0], nodes).reshape(-1, 2)
         self._shape, self._dofs = V.element.basix_element.tabulate(0, local)[0, :, :, 0], V.dofmap.list
         self.triangles = _all_cells(_small_triangles(), len(nodes), len(local))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from dolfinx import fem
 
+from coilset.meshes.compat import geometry_dofs
 from coilset.meshes.errors import InputError
 from coilset.meshes.section import SectionMesh
 from coilset.model.material.law import Law
@@ -87,7 +88,7 @@ class Slice:
     def _places(self):
         """Where the points lie in the unloaded section, shape (points, 2), mm, and their areas, mm²."""
         mesh, element = self.section.mesh, self.section.mesh.ufl_domain().ufl_coordinate_element().basix_element
-        nodes = mesh.geometry.x[mesh.geometry.dofmap][:, :, :2]
+        nodes = mesh.geometry.x[geometry_dofs(mesh)][:, :, :2]
         tables = element.tabulate(1, self.forms.points)[:, :, :, 0]
         places = np.einsum("qb,cbi->cqi", tables[0], nodes).reshape(-1, 2)
         first, second = (np.einsum("qb,cbi->cqi", table, nodes) for table in tables[1:])

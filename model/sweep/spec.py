@@ -13,7 +13,8 @@ from coilset.model.case.entry import Strict, Whole, shortened
 # numbers of a case's summary, and how long it took
 RESPONSES = (
     "free_length_before_mm", "free_length_after_mm", "set_mm", "rate_N_per_mm", "force_max_N", "block_height_mm",
-    "residual_shear_max_MPa", "shear_max_MPa", "steps", "iterations", "elements", "seconds",
+    "residual_shear_max_MPa", "shear_max_MPa", "steps", "iterations", "unstable_steps", "buckled",
+    "buckling_travel_mm", "buckling_force_N", "buckling_travel_EN_13906_1_mm", "elements", "seconds",
 )  # fmt: skip
 
 

@@ -65,6 +65,14 @@ def test_it_is_the_wheel_that_runs(installed, tmp_path):
     assert (installed / "bin" / "coilset").is_file()
 
 
+def test_every_file_of_data_is_there(installed):
+    rooms = [path for room in ROOMS for path in (REPOSITORY / room).rglob("*.*")]
+    data = [path for path in rooms if path.suffix in (".yaml", ".csv")]
+    assert len(data) > 20
+    missing = [path for path in data if not (installed / "coilset" / path.relative_to(REPOSITORY)).is_file()]
+    assert missing == []
+
+
 def test_an_example_is_listed_copied_and_solved(installed, tmp_path):
     assert "sweeps/tolerances.yaml" in coilset(installed, tmp_path, "examples")
     coilset(installed, tmp_path, "examples", "ck15_presetting")

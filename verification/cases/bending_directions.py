@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
-from coilset.verification.chain import ALL, TURN_X, TURN_Y, TURN_Z, chain, drive, straight
+from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, chain, drive, straight
 from coilset.verification.references.section_integrals import bending_moment
 
 FAST = True
@@ -28,9 +28,11 @@ DIRECTIONS = np.arange(0.0, 31.0, 7.5)  # of the axis, degrees
 
 def moment(law, rule, curvature, direction):
     """Moment about the axis of bending, N mm."""
-    frame = chain(straight(LENGTH, 1), RADIUS, law, polar(*rule), [(0, ALL), (1, (TURN_X,))])
+    frame = chain(straight(LENGTH, 1), RADIUS, law, polar(*rule), [(0, ALL), (1, (ROTATION_X,))])
     axis = np.array([np.cos(np.radians(direction)), np.sin(np.radians(direction))])
-    moves = {frame.dof(1, dof): curvature * LENGTH * part for dof, part in zip((TURN_Y, TURN_Z), axis, strict=True)}
+    moves = {
+        frame.dof(1, dof): curvature * LENGTH * part for dof, part in zip((ROTATION_Y, ROTATION_Z), axis, strict=True)
+    }
     drive(frame, STEPS, moves)
     return float(frame.resultants[0].mean(axis=0)[4:] @ axis)
 

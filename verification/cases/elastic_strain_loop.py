@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import DiskRule
-from coilset.verification.chain import ALL, TURN_X, X, chain, drive, straight
+from coilset.verification.chain import ALL, ROTATION_X, X, chain, drive, straight
 
 FAST = True
 LENGTH, RADIUS, STRETCH, SHEAR = 10.0, 1.0, 0.01, 0.02
@@ -33,7 +33,7 @@ RING = DiskRule(
 def loop(law, steps):
     """σ and τ of the surface on the way, MPa, shape (4 steps + 1, 2)."""
     frame = chain(straight(LENGTH, 1), RADIUS, law, RING, [(0, ALL), (1, range(1, 6))])
-    pull, turn, rows = frame.dof(1, X), frame.dof(1, TURN_X), [(0.0, 0.0)]
+    pull, turn, rows = frame.dof(1, X), frame.dof(1, ROTATION_X), [(0.0, 0.0)]
     length, twist = LENGTH * np.expm1(STRETCH), SHEAR / RADIUS * LENGTH
     # φ′ counts per current length: as the bar is shortened, it is turned back so far that γ stays
     more = twist * np.expm1(STRETCH)

@@ -20,7 +20,7 @@ from coilset.meshes.spring import SpringSpec
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
 from coilset.model.rod.kinematics import GAUSS, chord_triads
-from coilset.verification.chain import TURN_X, TURN_Y, TURN_Z, X, Y, Z, chain, drive
+from coilset.verification.chain import ROTATION_X, ROTATION_Y, ROTATION_Z, X, Y, Z, chain, drive
 from coilset.verification.references.rod_shooting import Stiffness
 from coilset.verification.references.uniform_helix import deformed
 
@@ -43,11 +43,11 @@ def press(pitch, helix, mesh):
     tilt = helix.inclination - np.arctan2(rise, 0.5 * DIAMETER)
     moves = {}
     for node, sinks in ((0, 0.0), (last, TURNS * 2.0 * np.pi * (helix.rise - rise))):
-        way = {X: helix.radius - 0.5 * DIAMETER, Y: 0.0, Z: sinks, TURN_X: tilt, TURN_Y: 0.0, TURN_Z: 0.0}
+        way = {X: helix.radius - 0.5 * DIAMETER, Y: 0.0, Z: sinks, ROTATION_X: tilt, ROTATION_Y: 0.0, ROTATION_Z: 0.0}
         moves |= {frame.dof(node, component): value for component, value in way.items()}
     drive(frame, STEPS, moves)
     frame.step(moves=dict.fromkeys(moves, 0.0))  # at rest: moments on turns belong to the chart, which starts anew here
-    force, torque = frame.force(frame.dof(last, Z)), frame.force(frame.dof(last, TURN_Z))
+    force, torque = frame.force(frame.dof(last, Z)), frame.force(frame.dof(last, ROTATION_Z))
     x = nodes + np.array([frame.moved(k) for k in range(last + 1)])
     torque += x[-1, 0] * frame.force(frame.dof(last, Y)) - x[-1, 1] * frame.force(frame.dof(last, X))
     return force, torque, np.hypot(x[:, 0], x[:, 1])

@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 from coilset.meshes.errors import SolveError
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
-from coilset.verification.chain import ALL, TURN_X, TURN_Y, TURN_Z, X, Y, Z, chain, straight
+from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, X, Y, Z, chain, straight
 from coilset.verification.references.stability import twisted_rod
 from coilset.verification.stability import lowest_eigenvalue, negative_pivots, tangent
 
@@ -34,8 +34,10 @@ class TwistedRod:
     def __init__(self, tension, elements):
         law = library.load("elastic")
         self.EI, self.GJ = law.E * np.pi * RADIUS**4 / 4.0, law.G * np.pi * RADIUS**4 / 2.0
-        self.frame = chain(straight(LENGTH, elements), RADIUS, law, held=[(0, ALL), (elements, (Y, Z, TURN_Y, TURN_Z))])
-        self.turn, self.torque = self.frame.dof(elements, TURN_X), 0.0
+        self.frame = chain(
+            straight(LENGTH, elements), RADIUS, law, held=[(0, ALL), (elements, (Y, Z, ROTATION_Y, ROTATION_Z))]
+        )
+        self.turn, self.torque = self.frame.dof(elements, ROTATION_X), 0.0
         self.pull = {self.frame.dof(elements, X): tension * 4.0 * np.pi**2 * self.EI / LENGTH**2}
         self.twist(0.0)
 

@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
-from coilset.verification.chain import ALL, TURN_X, TURN_Y, TURN_Z, Y, Z, chain, straight
+from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, Y, Z, chain, straight
 from coilset.verification.references.elastica import cantilever
 
 FAST = False
@@ -47,9 +47,9 @@ def elastica(slenderness, elements):
 
 def circles(slenderness, elements):
     """Iterations, whether all steps converged, and the distance of the tip from the clamp over L."""
-    plane = [(node, (Z, TURN_X, TURN_Y)) for node in range(1, elements + 1)]
+    plane = [(node, (Z, ROTATION_X, ROTATION_Y)) for node in range(1, elements + 1)]
     frame = chain(straight(LENGTH, elements), slenderness * LENGTH, library.load("elastic"), held=[(0, ALL), *plane])
-    counts, done = walk(frame, moves={frame.dof(elements, TURN_Z): 4.0 * np.pi})
+    counts, done = walk(frame, moves={frame.dof(elements, ROTATION_Z): 4.0 * np.pi})
     return counts, done, np.linalg.norm(np.add(frame.moved(elements), [LENGTH, 0.0, 0.0])) / LENGTH
 
 
@@ -91,6 +91,6 @@ def run(study):
             axes.text(place + 0.25 * (k - 1), 1.12 * top, "failed", ha="center", va="bottom", rotation=90, fontsize=7)
         axes.axhline(WANTED, color="0.4", lw=0.8, ls="--", label="wanted")
         axes.set_xticks(range(4), names)
-        axes.set(ylabel="most iterations of a step", ylim=(0, 1.5 * top))
-        axes.legend(fontsize=8)
+        axes.set(ylabel="most iterations of a step", ylim=(0, 1.6 * top))
+        axes.legend(fontsize=8, ncols=4, loc="upper center")
     study.figure("slender_rods", figure)

@@ -9,8 +9,6 @@ of the limit; the table says how far 12 steps are off, which is the default. A s
 is shown and not judged: its limit would mean nothing.
 """
 
-from pathlib import Path
-
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
@@ -19,11 +17,11 @@ from mpi4py import MPI
 from coilset.meshes.errors import SolveError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
+from coilset.model.examples import EXAMPLES
 from coilset.model.results.figures import STYLE
 from coilset.model.results.summary import summarise
 
 FAST = False
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 SPRINGS = {
     "example": "ck15_presetting.yaml", "cone": "springs/cone.yaml", "barrel": "springs/barrel.yaml",
     "funnel": "springs/funnel.yaml",

@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import DiskRule, polar
-from coilset.verification.chain import ALL, TURN_X, X, chain, drive, straight
+from coilset.verification.chain import ALL, ROTATION_X, X, chain, drive, straight
 from coilset.verification.references.section_integrals import plastic_path, tube_shear
 
 FAST = True
@@ -40,7 +40,7 @@ def pull_and_twist(law, rule):
     drive(frame, 40, {frame.dof(1, X): length})
     keep()
     twist = SHEAR / RADIUS * LENGTH * np.exp(STRETCH)  # φ′ counts per current length
-    drive(frame, STEPS, {frame.dof(1, X): 0.0, frame.dof(1, TURN_X): twist}, after=keep)
+    drive(frame, STEPS, {frame.dof(1, X): 0.0, frame.dof(1, ROTATION_X): twist}, after=keep)
     return np.array(rows)
 
 

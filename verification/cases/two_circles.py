@@ -2,11 +2,11 @@
 
 An end moment bends a straight rod to a circle of curvature M/EI; at M = 4π EI/L it closes twice. The tip is turned by
 4π about the axis across the plane and free in it; the moment is what it takes. (Out of the plane all nodes are held: a
-rod whose end was turned by 4π can unwind through space, and the plane state is unstable from 1.2 circles on.) Straight
-rods of length l = L/n form a polygon of equal angles φ = 4π/n with M = EI φ/l: tip and moment are those of the circle
-whatever n is, up to the axial strain, which is none. Tolerance: the iteration's, 1e-7. The polygon's corners lie on a
-circle of radius l/(2 sin(φ/2)) in the place of l/φ: the rod's greatest height 2R is too large by φ²/24, and the
-tolerance is φ²/20.
+rod whose end was turned by 4π can unwind through space, and with the other nodes free the tangent has a negative pivot
+from 0.8 circles on.) Straight rods of length l = L/n form a polygon of equal angles φ = 4π/n with M = EI φ/l: tip and
+moment are those of the circle whatever n is, up to the axial strain, which is none. Tolerance: the iteration's, 1e-7.
+The polygon's corners lie on a circle of radius l/(2 sin(φ/2)) in the place of l/φ: the rod's greatest height 2R is too
+large by φ²/24, and the tolerance is φ²/20.
 """
 
 import matplotlib as mpl
@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
-from coilset.verification.chain import ALL, TURN_X, TURN_Y, TURN_Z, Z, chain, drive, straight
+from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, Z, chain, drive, straight
 
 FAST = True
 LENGTH, RADIUS = 100.0, 1.0  # mm
@@ -26,9 +26,9 @@ MESHES = (16, 32, 64)
 def roll(elements):
     """M L/EI, positions of all nodes after half and after all of the steps, and iterations of the steps."""
     law, nodes, shapes = library.load("elastic"), straight(LENGTH, elements), []
-    plane = [(node, (Z, TURN_X, TURN_Y)) for node in range(1, elements + 1)]
+    plane = [(node, (Z, ROTATION_X, ROTATION_Y)) for node in range(1, elements + 1)]
     frame = chain(nodes, RADIUS, law, held=[(0, ALL), *plane])
-    turn = frame.dof(elements, TURN_Z)
+    turn = frame.dof(elements, ROTATION_Z)
     counts = drive(frame, STEPS, {turn: 4.0 * np.pi}, after=lambda: shapes.append(positions(frame, nodes)))
     EI = law.E * np.pi * RADIUS**4 / 4.0
     return frame.force(turn) * LENGTH / EI, shapes, counts

@@ -1,6 +1,6 @@
-"""Curved rod turned rigidly four times about a skew axis: no stress, and back where it was
+"""Curved rod rotated rigidly four times about a skew axis: no stress, and back where it was
 
-One end of a stress-free helix is turned by 8π about the axis (1, 2, 3), which is no axis of anything; the other nodes
+One end of a stress-free helix is rotated by 8π about the axis (1, 2, 3), which is no axis of anything; the other nodes
 are free. Every state is a rigid motion. Tolerance: 1e-9 MPa, some 1e-14 of the elastic modulus times the number of
 steps; positions to 1e-9 mm.
 """
@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
-from coilset.verification.chain import TURN_X, X, chain, drive
+from coilset.verification.chain import ROTATION_X, X, chain, drive
 
 FAST = True
 ELEMENTS, RADIUS = 24, 2.5
@@ -19,22 +19,24 @@ AXIS, ANGLE = np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0), 8.0 * np.pi
 STEPS = (32, 64)
 
 
-def turn(steps):
+def rotate(steps):
     """Greatest stress after each step, MPa, distance of the nodes from their start, mm, and iterations of the steps."""
     angle = np.linspace(0.0, 3.0 * np.pi, ELEMENTS + 1)
     nodes = np.stack([20.0 * np.cos(angle), 20.0 * np.sin(angle), 2.0 * angle], axis=1)
     frame, stress = chain(nodes, RADIUS, library.load("elastic"), held=()), []
-    moves = {frame.dof(0, X + k): 0.0 for k in range(3)} | {frame.dof(0, TURN_X + k): ANGLE * AXIS[k] for k in range(3)}
+    moves = {frame.dof(0, X + k): 0.0 for k in range(3)} | {
+        frame.dof(0, ROTATION_X + k): ANGLE * AXIS[k] for k in range(3)
+    }
     counts = drive(frame, steps, moves, after=lambda: stress.append(np.abs(frame.rod.point_state[..., :3]).max()))
     back = max(np.linalg.norm(frame.moved(node)) for node in range(ELEMENTS + 1))
     return np.array(stress), back, counts
 
 
 def run(study):
-    """Stress and place after four whole turns."""
+    """Stress and place after four whole rotations."""
     rows, found = [], {}
     for steps in STEPS:
-        found[steps], back, counts = turn(steps)
+        found[steps], back, counts = rotate(steps)
         at = f"after {ANGLE / np.pi:g}π in {steps} steps"
         study.check(f"greatest stress on the way, MPa, {at}", found[steps].max(), 0.0, "rigid", 1e-9, "absolute")
         study.check(f"greatest distance from the start, mm, {at}", back, 0.0, "rigid", 1e-9, "absolute")
@@ -48,7 +50,7 @@ def run(study):
                 ANGLE / np.pi * np.arange(1, steps + 1) / steps, stress, "o-", ms=3, lw=0.8, label=f"{steps} steps"
             )
         axes.axhline(1e-9, color="0.5", lw=0.8, ls="--", label="tolerance")
-        axes.set(xlabel="angle over π", ylabel="greatest stress in MPa", title="Helix turned rigidly")
+        axes.set(xlabel="angle over π", ylabel="greatest stress in MPa", title="Helix rotated rigidly")
         axes.grid(lw=0.3)
         axes.legend(fontsize=8)
-    study.figure("rigid_turns", figure)
+    study.figure("rigid_rotations", figure)

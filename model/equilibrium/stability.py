@@ -1,0 +1,146 @@
+"""Is an equilibrium stable? The sign of the tangent, its weakest mode, and the way off an unstable path.
+
+A state of equilibrium is stable where the symmetric part of the tangent of the free unknowns is positive definite. By
+Sylvester's law it has as many negative eigenvalues as its factors L D Lᵀ have negative pivots. On one rank Newton's own
+factors L U show the signs of the pivots at the last iterate for nothing; where one of them is negative, on more ranks,
+and with methods that keep a matrix, the symmetric part is factorised at the state itself.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from petsc4py import PETSc
+
+from coilset.model.equilibrium.layout import LineLayout
+from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.newton import Newton
+
+BLOCK = 4  # vectors of the inverse iteration: a double eigenvalue and its neighbours
+ITERATIONS = 12
+
+
+class Stability:
+    """Judges the states of a Newton solver.
+
+    Args:
+        newton: Newton of a rod.
+    """
+
+    def __init__(self, newton: Newton) -> None:
+        self.newton, self.system, self.layout = newton, newton.system, newton.system.layout
+        self._parts = self._start_block()
+
+    def negative_pivots(self, load: Load) -> int:
+        """Number of negative eigenvalues of the symmetric part of the tangent at the last evaluation; collective."""
+        if self.newton.negative_pivots() == 0:
+            return 0
+        return self._factors(load).getFactorMatrix().getInertia()[0]
+
+    def weakest_mode(self, load: Load) -> tuple[float, PETSc.Vec]:
+        """Least of the eigenvalues nearest to zero at the last evaluation, and its mode; collective.
+
+        Returns:
+            The eigenvalue, N/mm, with rotations counted in coil radii, and increments of the mode whose greatest
+            displacement is 1 mm.
+        """
+        factors, matrix = self._factors(load), self._matrix
+        scale = self._scale(load)
+        block = [vector.copy() for vector in self._parts]
+        values = np.zeros(len(block))
+        for _iteration in range(ITERATIONS):
+            for vector in block:
+                right = vector.duplicate()
+                right.pointwiseMult(scale, vector)
+                factors.apply(right, vector)
+            values, block = _rayleigh_ritz(matrix, scale, block)
+        mode = block[int(values.argmin())]
+        mode.scale(1.0 / self._greatest_displacement(mode))
+        return float(values.min()), mode
+
+    # ---- matrix ----------------------------------------------------------------------------------------------------
+
+    def _factors(self, load: Load) -> PETSc.PC:
+        """Factors of the symmetric part of the tangent at the last evaluation."""
+        tangent = self.newton.matrix
+        self.system.last_tangent(load, tangent, at_step_start=True)
+        transposed = tangent.mat.copy()
+        transposed.transpose()
+        self._matrix = matrix = tangent.mat.copy()
+        matrix.axpy(1.0, transposed)
+        matrix.scale(0.5)
+        rows = (load.held + self.layout.start).astype(PETSc.IntType)
+        matrix.zeroRowsColumns(rows, diag=self.system.body.constraint_weight)
+        matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)
+        factors = PETSc.PC().create(self.system.comm)
+        factors.setOperators(matrix)
+        factors.setType(PETSc.PC.Type.CHOLESKY)
+        if self.system.comm.size > 1:
+            factors.setFactorSolverType("mumps")
+            factors.setFactorSetUpSolverType()
+            factors.getFactorMatrix().setMumpsIcntl(13, 1)  # the root's pivots are counted, too
+        else:
+            factors.setFactorOrdering("natural")
+        factors.setUp()
+        return factors
+
+    def _scale(self, load: Load) -> PETSc.Vec:
+        """Weights of unknowns in a mode's norm: 1 for displacements, a tenth of the extent squared for rotations."""
+        assert isinstance(self.layout, LineLayout)
+        n, extent = len(self.layout.station_dofs), self.system.body.extent
+        natural = np.ones(self.layout.size)
+        natural[: 6 * n].reshape(n, 6)[:, 3:] = (0.1 * extent) ** 2
+        scale = self.layout.from_order(natural)
+        scale[load.held] = 0.0
+        return self.layout.vector(scale.copy())
+
+    def _start_block(self) -> list[PETSc.Vec]:
+        """Vectors to begin with, the same on any number of ranks."""
+        assert isinstance(self.layout, LineLayout)
+        rng = np.random.default_rng(1)
+        natural = [rng.normal(size=self.layout.size) for _vector in range(BLOCK)]
+        return [self.layout.vector(self.layout.from_order(values).copy()) for values in natural]
+
+    def _greatest_displacement(self, mode: PETSc.Vec) -> float:
+        assert isinstance(self.layout, LineLayout)
+        n = len(self.layout.station_dofs)
+        natural = self.layout.to_order(mode.getArray(readonly=True))[: 6 * n].reshape(n, 6)
+        return float(np.linalg.norm(natural[:, :3], axis=1).max())
+
+
+def _rayleigh_ritz(matrix: PETSc.Mat, scale: PETSc.Vec, block: list[PETSc.Vec]) -> tuple[np.ndarray, list[PETSc.Vec]]:
+    """Eigenvalues of K v = λ M v in the span of a block, and its vectors, M = diag(scale), of length 1."""
+    size = len(block)
+    K, M = np.empty((size, size)), np.empty((size, size))
+    for j, right in enumerate(block):
+        image, weighted = matrix * right, right.duplicate()
+        weighted.pointwiseMult(scale, right)
+        for i, left in enumerate(block):
+            K[i, j], M[i, j] = left.dot(image), left.dot(weighted)
+    lengths = np.sqrt(np.diag(M))
+    K, M = K / np.outer(lengths, lengths), M / np.outer(lengths, lengths)
+    roots, axes = np.linalg.eigh(0.5 * (M + M.T))
+    kept = roots > 1e-12 * roots.max()
+    basis = axes[:, kept] / np.sqrt(roots[kept])
+    values, vectors = np.linalg.eigh(basis.T @ (0.5 * (K + K.T)) @ basis)
+    combined = []
+    for column in (basis @ vectors).T:
+        vector = block[0].duplicate()
+        for weight, part in zip(column / lengths, block, strict=True):
+            vector.axpy(float(weight), part)
+        combined.append(vector)
+    return values, combined
+
+
+def vanishing(points: Sequence[tuple[float, float]]) -> float:
+    """Where the least eigenvalue vanishes, by a parabola through its last three values; NaN if it does not fall.
+
+    Args:
+        points: travel, mm, and eigenvalue of stable states, in the order of the walk.
+    """
+    if len(points) < 3:
+        return math.nan
+    travel, values = np.array(points[-3:]).T
+    ahead = np.roots(np.polyfit(travel - travel[-1], values, 2))
+    ahead = ahead.real[(np.abs(ahead.imag) < 1e-12) & (ahead.real >= 0.0)]
+    return float(travel[-1] + ahead.min()) if len(ahead) and values[-1] < values[-2] else math.nan

@@ -1,0 +1,104 @@
+"""Unstable equilibria are no answer: pivots against eigenvalues, long springs with few and many steps, what is said."""
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from coilset.model.analysis import Analysis
+from coilset.model.case import Case
+from coilset.model.equilibrium.continuation import Continuation
+from coilset.model.equilibrium.stability import vanishing
+from coilset.model.results.buckling import axis_offset, buckling
+from coilset.model.results.summary import summarise
+
+LONG = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 40, "pitch": 12.0}
+HARINGX = 39.16  # mm, of this spring between clamped heads; coilset.verification.references.stability
+
+
+def pressed(travel, steps, comm=MPI.COMM_SELF, mesh=8, **more):
+    """The long elastic spring between clamped heads."""
+    data = {"spring": LONG, "material": "elastic", "ends": "clamped", "mesh": {"elements_per_turn": mesh},
+            "loading": [{"to": {"travel": travel}, "steps": steps}], **more}  # fmt: skip
+    return Analysis(Case.model_validate(data), comm)
+
+
+def dense(analysis):
+    """Symmetric part of the tangent of the free unknowns at the last equilibrium."""
+    system, load, matrix = analysis.system, analysis.newton.load, analysis.newton.matrix
+    system.tangent(system.layout.vector(), load, matrix)
+    n = system.layout.size
+    K = matrix.mat.getValues(range(n), range(n))
+    free = np.setdiff1d(np.arange(n), load.held)
+    return 0.5 * (K + K.T)[np.ix_(free, free)]
+
+
+@pytest.mark.parametrize("travel", [20.0, 60.0, 120.0])
+def test_negative_pivots_are_negative_eigenvalues(travel):
+    """On a path whose states are not judged: none before Haringx's travel, some far beyond it."""
+    analysis = pressed(travel, 1, mesh=6)
+    analysis.program.continuation = analysis.continuation = Continuation(analysis.newton)
+    analysis.program.begin(0)
+    analysis.run()
+    expected = int((np.linalg.eigvalsh(dense(analysis)) < 0.0).sum())
+    assert (expected > 0) == (travel > HARINGX)
+    assert analysis.stability._factors(analysis.newton.load).getFactorMatrix().getInertia()[0] == expected
+
+
+def test_few_steps_end_on_the_stable_branch():
+    """One, three and sixteen steps to four times the critical travel: the same force, and no word of doubt."""
+    forces = []
+    for steps in (1, 3, 16):
+        result = pressed(160.0, steps).run()
+        assert result.steps[-1].negative_pivots == 0
+        forces.append(result.steps[-1].force_N)
+    np.testing.assert_allclose(forces, forces[-1], rtol=1e-6)
+
+
+def test_critical_travel_is_haringxs():
+    """Steps of 4 mm; 1.5 % since Haringx leaves out the pitch, and what 8 rods a turn leave."""
+    analysis = pressed(48.0, 12)
+    summary = summarise(analysis.setup, analysis.run())
+    assert summary["buckled"]
+    assert summary["buckling_travel_mm"] == pytest.approx(HARINGX, rel=0.02)
+    assert summary["buckling_force_N"] == pytest.approx(96.51, rel=0.02)
+    assert summary["buckling_travel_EN_13906_1_mm"] == pytest.approx(HARINGX, rel=0.02)
+
+
+def test_a_short_spring_does_not_buckle(example):
+    from coilset.model.case import read_case
+
+    settings = ["mesh.section.rule=abramowitz9", "loading.0.steps=6", "loading.1.steps=3"]
+    analysis = Analysis(read_case(example, settings), MPI.COMM_SELF)
+    result = analysis.run()
+    assert buckling(result.steps, 40.0) is None
+    assert all(step.negative_pivots == 0 for step in result.steps)
+    assert all(np.isnan(step.least_eigenvalue) for step in result.steps)
+
+
+def test_vanishing_of_a_parabola():
+    points = [(travel, (10.0 - travel) * (20.0 - travel)) for travel in (2.0, 4.0, 7.0)]
+    assert vanishing(points) == pytest.approx(10.0, rel=1e-12)
+    assert np.isnan(vanishing(points[:2]))
+    assert np.isnan(vanishing([(1.0, 1.0), (2.0, 2.0), (3.0, 3.0)]))  # rises
+
+
+def test_offset_of_the_axis_is_the_mean_of_a_turn():
+    turns = np.linspace(0.0, 6.0, 97)
+    start = np.stack([20 * np.cos(2 * np.pi * turns), 20 * np.sin(2 * np.pi * turns), 12 * turns], axis=1)
+    wider = start * [1.1, 1.1, 1.0]  # breathing moves no axis
+    assert axis_offset(wider, start, turns) < 1e-2
+    moved = start + np.outer(np.sin(np.pi * turns / 6.0), [0.3, 0.4, 0.0])
+    assert axis_offset(moved, start, turns) == pytest.approx(0.5 * np.sinc(1 / 12), rel=2e-3)
+
+
+@pytest.mark.mpi
+def test_ranks_count_and_weigh_alike():
+    found = []
+    for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
+        analysis = pressed(30.0, 2, comm)
+        analysis.run()
+        load = analysis.newton.load
+        negative = analysis.stability._factors(load).getFactorMatrix().getInertia()[0]
+        found.append((negative, analysis.stability.weakest_mode(load)[0]))
+    assert found[0][0] == found[1][0] == 0
+    assert found[0][1] == pytest.approx(found[1][1], rel=1e-6)
