@@ -121,7 +121,23 @@ def press(
 
 
 @njit(cache=True)
-def _press(p, y, z, w, coils, targets, by_force, free, q, points, force, torque, sections, tangents, found):
+def _press(
+    p: np.ndarray,
+    y: np.ndarray,
+    z: np.ndarray,
+    w: np.ndarray,
+    coils: np.ndarray,
+    targets: np.ndarray,
+    by_force: bool,
+    free: bool,
+    q: np.ndarray,
+    points: np.ndarray,
+    force: np.ndarray,
+    torque: np.ndarray,
+    sections: np.ndarray,
+    tangents: np.ndarray,
+    found: np.ndarray,
+) -> int:
     """Take all coils through their targets; the number of the first one that finds no equilibrium, or -1."""
     new = np.empty_like(points[0])
     for i in range(len(coils)):

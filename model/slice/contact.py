@@ -64,7 +64,7 @@ class SelfContact:
         self._gap, self._where = np.empty(self._areas.shape), np.empty((points, 3), np.int64)
         self._gradient, self._hessian = np.empty((points, size)), np.empty((points, size, size))
 
-    def _points_areas(self, weights):
+    def _points_areas(self, weights: np.ndarray) -> np.ndarray:
         """Surface of the unloaded wire that each point stands for, per radian, mm²."""
         t, powers = self._gauss[:, None], np.arange(len(self._edges.polynomials))
         values = t**powers @ self._edges.polynomials.T
