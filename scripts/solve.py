@@ -173,6 +173,6 @@ def _conclude(console, summary, out, analysed):
         console.print(f"[yellow]warning:[/] the spring buckled at a travel of {where} (EN 13906-1: {beside}); "
                       "what follows is of the buckled shape")  # fmt: skip
     if summary["unstable_steps"]:
-        console.print(f"[yellow]warning:[/] {summary['unstable_steps']} steps are unstable equilibria, no stable one was "
-                      "found beside them: several branches exist, smaller steps may find another")  # fmt: skip
+        console.print(f"[yellow]warning:[/] {summary['unstable_steps']} steps are unstable equilibria, no stable one "
+                      "was found beside them: several branches exist, smaller steps may find another")  # fmt: skip
     console.print(f"analysis {analysed:.2f} s, all {time.time() - STARTED:.2f} s")
