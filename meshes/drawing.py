@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from itertools import pairwise
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -122,7 +123,7 @@ def _dimensions(axes: Axes, spring: Spring, reach: float, size: float) -> None:
         )
 
 
-def _dimension(axes: Axes, start: tuple[float, float], end: tuple[float, float], text: str) -> None:
+def _dimension(axes: Axes, start: tuple[Any, Any], end: tuple[Any, Any], text: str) -> None:
     axes.annotate(
         "", start, end, arrowprops={"arrowstyle": "<->", "color": DIMENSION, "lw": 0.9, "shrinkA": 0, "shrinkB": 0}
     )

@@ -35,7 +35,7 @@ def write_mesh(spring: Spring, turns: np.ndarray, path: str | Path) -> None:
         _write_meshio(points, coil, data, path)
 
 
-def _write_meshio(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarray], path: str | Path) -> None:
+def _write_meshio(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarray], path: Path) -> None:
     nodes = np.arange(len(points))
     lines = np.stack([nodes[:-1], nodes[1:]], axis=1)
     mesh = meshio.Mesh(points, [("line", lines)], point_data=data, cell_data={"end_coil": [(coil != 1).astype(int)]})
@@ -58,7 +58,7 @@ def _write_meshio(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarr
         raise InputError(f"{path.suffix} files hold no line elements; take .vtu, .msh, .inp or .xdmf", "", path)
 
 
-def _write_gmsh(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarray], path: str | Path) -> None:
+def _write_gmsh(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarray], path: Path) -> None:
     """The model has one curve for the body and one for each closed end; the group wire is all of them."""
     started = gmsh.isInitialized()
     if not started:

@@ -11,6 +11,7 @@ from coilset.meshes.ends import OPEN, EndCoils, touching_pitch
 from coilset.meshes.stations import ElementsPerTurn, stations
 
 INTERVALS_PER_TURN = 64
+STRAIGHT = 1e-9  # of |c′ × c″| over |c′|²: below it a wire has no normal
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +105,13 @@ class Spring:
         r, dr, ddr, dθ = self.radius(turn), self.slope(turn), self.slope.derivative()(turn), self.hand * 2 * np.pi
         return _in_plane(θ, ddr - r * dθ**2, 2 * dr * dθ, self._pitch.derivative()(turn))
 
+    def jerk(self, turn: np.ndarray | float) -> np.ndarray:
+        """Third derivative of the centre line by the turn, mm, shape (..., 3); it jumps where two polynomials meet."""
+        θ = self.angle(turn)
+        r, dr, dθ = self.radius(turn), self.slope(turn), self.hand * 2 * np.pi
+        ddr, dddr = self.slope.derivative()(turn), self.slope.derivative(2)(turn)
+        return _in_plane(θ, dddr - 3 * dr * dθ**2, 3 * ddr * dθ - r * dθ**3, self._pitch.derivative(2)(turn))
+
     def speed(self, turn: np.ndarray | float) -> np.ndarray:
         """Length of wire per turn at the turns, ds/dt, mm, in their shape."""
         return np.sqrt(self.slope(turn) ** 2 + (2 * np.pi * self.radius(turn)) ** 2 + self._pitch(turn) ** 2)
@@ -115,6 +123,22 @@ class Spring:
     def curvature(self, turn: np.ndarray | float) -> np.ndarray:
         """Curvature of the centre line at the turns, κ = |c′ × c″| / |c′|³, 1/mm, in their shape."""
         return np.linalg.norm(np.cross(self.velocity(turn), self.acceleration(turn)), axis=-1) / self.speed(turn) ** 3
+
+    def curvature_vector(self, turn: np.ndarray | float) -> np.ndarray:
+        """κ n at the turns, 1/mm, shape (..., 3): towards the centre of curvature; zero where the wire is straight."""
+        t, speed = self.tangent(turn), self.speed(turn)[..., None]
+        acceleration = self.acceleration(turn)
+        return (acceleration - np.sum(acceleration * t, axis=-1, keepdims=True) * t) / speed**2
+
+    def torsion(self, turn: np.ndarray | float) -> np.ndarray:
+        """Torsion of the centre line, τ = (c′ × c″) · c‴ / |c′ × c″|², 1/mm; 0 where the wire is straight.
+
+        A helix of radius R that rises by h per radian has τ = h/(R² + h²), negative if it is left-handed.
+        """
+        binormal = np.cross(self.velocity(turn), self.acceleration(turn))
+        square = np.sum(binormal**2, axis=-1)
+        straight = square < (STRAIGHT * self.speed(turn) ** 2) ** 2
+        return np.sum(binormal * self.jerk(turn), axis=-1) / np.where(straight, np.inf, square)
 
     @cached_property
     def _lengths(self) -> np.ndarray:

@@ -103,7 +103,7 @@ def read_centre_line(path: str | Path) -> tuple[np.ndarray, np.ndarray | None]:
     return points, wire
 
 
-def _read_csv(path: str | Path) -> tuple[np.ndarray, np.ndarray | None]:
+def _read_csv(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
     """Columns x, y, z and perhaps wire_diameter, named in the first line, separated by commas."""
     try:
         lines = [line for line in path.read_text(encoding="utf-8-sig").splitlines() if line.strip()]
@@ -125,7 +125,7 @@ def _read_csv(path: str | Path) -> tuple[np.ndarray, np.ndarray | None]:
     return table[:, :3], table[:, 3] if len(names) > 3 else None
 
 
-def _read_mesh(path: str | Path) -> tuple[np.ndarray, np.ndarray | None]:
+def _read_mesh(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
     """The only chain of line elements in a mesh; points of other elements and loose points do not count."""
     try:
         mesh = meshio.read(path)

@@ -1,8 +1,12 @@
 """Where straight rods and their Gauss points stand so that they represent the curved wire between the nodes."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from coilset.meshes.geometry import Spring
+
+STRAIGHT = 1e-9  # curvature, 1/mm, below which a section has no normal
 
 
 def gauss_points(
@@ -64,9 +68,32 @@ def polygon_nodes(spring: Spring, turns: np.ndarray, keep: str = "points", poiss
     return nodes
 
 
+class Placement(NamedTuple):
+    """Where the true sections of a curved wire lie in relation to the chords, and how the wire is curved there.
+
+    Attributes:
+        matrices: from the chord's strains (ε, γ12, γ13, φ′, κ2, κ3) to the section's, shape (n, g, 6, 6).
+        stretch: ds/dx, length of wire over length of chord, shape (n, g).
+        curvature: κ of the wire, 1/mm, towards the section's y axis, shape (n, g); 0 for sections that know nothing of
+            it.
+        torsion: τ of the wire, 1/mm, shape (n, g).
+    """
+
+    matrices: np.ndarray
+    stretch: np.ndarray
+    curvature: np.ndarray
+    torsion: np.ndarray
+
+
+def straight(elements: int) -> Placement:
+    """The placement of sections that lie on their straight rods, two for each."""
+    zero = np.zeros((elements, 2))
+    return Placement(np.tile(np.eye(6), (elements, 2, 1, 1)), np.ones_like(zero), zero, zero.copy())
+
+
 def section_placement(
-    spring: Spring, turns: np.ndarray, triads: np.ndarray, abscissae: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+    spring: Spring, turns: np.ndarray, triads: np.ndarray, abscissae: np.ndarray, curved: bool = False
+) -> Placement:
     """How the sections of the curved wire hang on the chords between the nodes.
 
     A section of the true centre line is rigidly tied to the section of the chord at the same ξ, by the offset o. With
@@ -76,16 +103,19 @@ def section_placement(
         Γ_true = Qᵀ (Γ + K × o) dx/ds,    K_true = Qᵀ K dx/ds,
 
     so that a rigid motion strains nothing, whatever o and Q are. Q is the smallest rotation that brings the chord's
-    axis to the true tangent.
+    axis to the true tangent t; of a curved wire it is followed by the rotation about t that brings the section's
+    y axis to the normal n, the direction of the centre of curvature. Where the wire is straight there is no normal, and
+    none is needed.
 
     Args:
         spring: `Spring`.
         turns: increasing turns of the nodes, shape (n + 1,); the nodes lie on the centre line.
         triads: the chords' triads, columns, shape (n, 3, 3).
         abscissae: ξ of the Gauss sections, from 0 to 1, shape (g,).
+        curved: whether the sections know of the wire's curvature and torsion, and stand with y along the normal.
 
     Returns:
-        The matrices from (Γ, K) to (Γ_true, K_true), shape (n, g, 6, 6), and ds/dx, shape (n, g).
+        Placement.
     """
     position, tangent, length = gauss_points(spring, turns[:-1], turns[1:], abscissae)
     nodes = spring.centre_line(turns)
@@ -93,12 +123,13 @@ def section_placement(
     stretch = length / np.linalg.norm(chord, axis=1)[:, None]
     on_chord = nodes[:-1, None] + chord[:, None] * np.asarray(abscissae)[:, None]
     offset = np.einsum("nki,ngk->ngi", triads, position - on_chord)
-    t = np.einsum("nki,ngk->ngi", triads, tangent)
-
-    Q = np.zeros((*stretch.shape, 3, 3))
-    Q[..., :, 0] = t
-    Q[..., 0, 1:] = -t[..., 1:]
-    Q[..., 1:, 1:] = np.eye(2) - t[..., 1:, None] * t[..., None, 1:] / (1 + t[..., 0])[..., None, None]
+    Q = _least_turn(np.einsum("nki,ngk->ngi", triads, tangent))
+    curvature, torsion = np.zeros_like(stretch), np.zeros_like(stretch)
+    if curved:
+        turn = turns[:-1, None] + np.diff(turns)[:, None] * np.asarray(abscissae)
+        normal = np.einsum("ngik,nji,ngj->ngk", Q, triads, spring.curvature_vector(turn))[..., 1:]
+        curvature, torsion = np.linalg.norm(normal, axis=-1), spring.torsion(turn)
+        Q = Q @ _to_normal(normal, curvature)
 
     o = np.moveaxis(offset, -1, 0)
     zero = np.zeros_like(o[0])
@@ -106,4 +137,22 @@ def section_placement(
     P = np.zeros((*stretch.shape, 6, 6))
     P[..., :3, :3] = P[..., 3:, 3:] = np.swapaxes(Q, -1, -2)
     P[..., :3, 3:] = np.swapaxes(Q, -1, -2) @ K_cross_o
-    return P / stretch[..., None, None], stretch
+    return Placement(P / stretch[..., None, None], stretch, curvature, torsion)
+
+
+def _least_turn(t: np.ndarray) -> np.ndarray:
+    """The least turn that brings the first axis to the unit vectors `t`, shape (..., 3) → (..., 3, 3)."""
+    Q = np.zeros((*t.shape, 3))
+    Q[..., :, 0] = t
+    Q[..., 0, 1:] = -t[..., 1:]
+    Q[..., 1:, 1:] = np.eye(2) - t[..., 1:, None] * t[..., None, 1:] / (1 + t[..., 0])[..., None, None]
+    return Q
+
+
+def _to_normal(normal: np.ndarray, curvature: np.ndarray) -> np.ndarray:
+    """The turn about the first axis that brings the second to κ n = `normal`, shape (..., 2) → (..., 3, 3)."""
+    straight = curvature < STRAIGHT
+    cos, sin = np.moveaxis(normal, -1, 0) / np.where(straight, np.inf, curvature)
+    cos = np.where(straight, 1.0, cos)
+    zero, one = np.zeros_like(cos), np.ones_like(cos)
+    return np.moveaxis(np.array([[one, zero, zero], [zero, cos, -sin], [zero, sin, cos]]), (0, 1), (-2, -1))

@@ -136,17 +136,20 @@ class SpringSpec(Strict):
     def _with_free_length(self, spring: Callable[[functions.PPoly], Spring], body_turns: float) -> Spring:
         """The spring whose body has the pitch that makes the free length; this grows with the pitch."""
 
-        def too_long(pitch: float) -> float:
-            return spring(functions.constant(pitch, self.turns)).free_length - self.free_length
+        free_length = self.free_length
+        assert free_length is not None
 
-        least = too_long(0.0) + self.free_length
-        if least >= self.free_length:
+        def too_long(pitch: float) -> float:
+            return spring(functions.constant(pitch, self.turns)).free_length - free_length
+
+        least = too_long(0.0) + free_length
+        if least >= free_length:
             raise InputError(
-                f"{self.free_length:g} mm leave no pitch: end coils and wire alone need {least:.4g} mm",
+                f"{free_length:g} mm leave no pitch: end coils and wire alone need {least:.4g} mm",
                 "spring.free_length",
             )
         # the body alone rises by the greatest pitch times its turns
-        pitch = brentq(too_long, 0.0, self.free_length / body_turns, xtol=1e-12, rtol=1e-14)
+        pitch = brentq(too_long, 0.0, free_length / body_turns, xtol=1e-12, rtol=1e-14)
         return spring(functions.constant(pitch, self.turns))
 
 

@@ -9,7 +9,7 @@ from mpi4py import MPI
 
 from coilset.meshes.errors import SolveError
 from coilset.meshes.line import line_mesh
-from coilset.meshes.placement import section_placement
+from coilset.meshes.placement import section_placement, straight
 from coilset.model.case import Case
 from coilset.model.case.phases import Phase
 from coilset.model.contact.build import build_contacts, seats_at
@@ -22,7 +22,6 @@ from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.program import LoadProgram, ProgramPosition, Stage, StepTaken
 from coilset.model.equilibrium.stability import Stability
 from coilset.model.equilibrium.system import System
-from coilset.model.material import library
 from coilset.model.results.balance import imbalance
 from coilset.model.results.buckling import axis_offset, buckling
 from coilset.model.results.checkpoint import Saved
@@ -31,6 +30,7 @@ from coilset.model.results.seat_reactions import seat_reactions
 from coilset.model.rod.kinematics import GAUSS, chord_triads
 from coilset.model.rod.rod import Rod
 from coilset.model.standards.buckling import buckling_travel
+from coilset.model.standards.wires.law import case_law
 from coilset.model.state import State
 
 
@@ -62,13 +62,15 @@ class Analysis:
         self.case, self.comm = case, comm
         self.spring = spring = case.spring.build()
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
-        self.law = library.load(case.material)
+        self.law = case_law(case, spring)
         line = line_mesh(spring.centre_line(turns), comm)
         radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
-        placement = None
+        section, placement = case.mesh.section, straight(len(turns) - 1)
         if case.mesh.axis == "curved":
-            placement = section_placement(spring, turns, chord_triads(np.diff(line.stations, axis=0)), GAUSS)
-        self.rod = Rod(line, radius, self.law, case.mesh.section.build(), placement, case.temperature)
+            chords = chord_triads(np.diff(line.stations, axis=0))
+            placement = section_placement(spring, turns, chords, GAUSS, section.kind != "plane")
+        self.rod = Rod(line, radius, self.law, section.build(), placement, case.temperature, section.kind,
+                       section.degree)  # fmt: skip
         seats = case.seats if case.ends == "seats" else None
         contacts = build_contacts(case.contact, seats, spring, turns, line.stations, self.law.E)
         self.layout = LineLayout(self.rod)
@@ -86,8 +88,8 @@ class Analysis:
             ContactRecord(one.name, one.end, one.points and one.points.turns, getattr(one, "tip", 0))
             for one in contacts
         )
-        self.setup = Setup(spring, self.law.name, self.law.n_state, case.ends, tuple(p.label for p in case.loading),
-                           turns, radius, self.rod.rule, records,
+        self.setup = Setup(spring, self.law.name, case.ends, tuple(p.label for p in case.loading), turns, radius,
+                           self.rod.rule, records, section.kind, placement,
                            buckling_travel(spring, self.law.G / self.law.E))  # fmt: skip
         self.result = Result()
 
@@ -214,7 +216,9 @@ class Analysis:
     def snapshot(self, name: str) -> Snapshot:
         """The spring as it stands, gathered on rank 0; collective."""
         rod = self.rod
-        cells = [rod.line.in_order(values) for values in (rod.triads.values, rod.s.values, rod.point_state)]
+        parts = (rod.triads.values, rod.s.values, rod.point_state, rod.surface_state)
+        cells = [rod.line.in_order(values) for values in parts]
         if self.comm.rank:
-            cells = [np.empty(0)] * 3
-        return Snapshot(name, self.control.height, self.control.force, self.layout.gather(rod.x), *cells)
+            cells = [np.empty(0)] * len(parts)
+        x, components = self.layout.gather(rod.x), rod.sections.components
+        return Snapshot(name, self.control.height, self.control.force, x, *cells, components)

@@ -83,6 +83,7 @@ def press(
     rule: DiskRule | None = None,
     free_ends: bool = False,
     temperature: float | None = None,
+    plain: bool = False,
 ) -> tuple[np.ndarray, UniformState]:
     """Take coils through travels, or through forces, one step after the other.
 
@@ -95,6 +96,7 @@ def press(
             the coil's plane mirrors ε₁₁ and γ₁₃, and turns the sign of γ₁₂.
         free_ends: the ends may turn about the coil's axis (no torque); else they keep the turn λ that they have.
         temperature: K; default is the law's reference temperature.
+        plain: m = 1, all fibres of the section count as equally long; for comparisons.
 
     Returns:
         What was not given, forces (N) or travels (mm), shape (n, steps), and the UniformState at the end.
@@ -112,7 +114,7 @@ def press(
     targets = np.array(np.broadcast_to(targets, (len(state.coils), targets.shape[-1])))
     found = np.empty(targets.shape)
     y, z = np.ascontiguousarray(rule.points.T)
-    lost = _press(law.parameters(temperature), y, z, rule.weights, state.coils, targets, by_force, free_ends,
+    lost = _press(law.parameters(temperature), y, z, rule.weights, state.coils, targets, by_force, free_ends, plain,
                   state.q, state.points, state.force, state.torque, state.sections, state.tangents, found)  # fmt: skip
     if lost >= 0:
         d, D, pitch = state.coils[lost, :3]
@@ -130,6 +132,7 @@ def _press(
     targets: np.ndarray,
     by_force: bool,
     free: bool,
+    plain: np.ndarray,
     q: np.ndarray,
     points: np.ndarray,
     force: np.ndarray,
@@ -143,7 +146,8 @@ def _press(
     for i in range(len(coils)):
         d, D, pitch, turns = coils[i]
         R, h = 0.5 * D, pitch / (2.0 * math.pi)
-        rod = Rod(p, R, h, math.hypot(R, h), 0.5 * d * y, 0.5 * d * z, 0.25 * math.pi * d * d * w, by_force, free)
+        j, area, bend = math.hypot(R, h), 0.25 * math.pi * d * d * w, 0.0 if plain else R / (R * R + h * h)
+        rod = Rod(p, R, h, j, 0.5 * d * y, 0.5 * d * z, area, bend, by_force, free)
         last = 0.0
         for k in range(targets.shape[1]):
             start, end = force[i], targets[i, k]

@@ -9,11 +9,11 @@ from rich.table import Table
 
 from coilset.meshes.errors import InputError
 from coilset.model.case import read_case
-from coilset.model.material import library
 from coilset.model.results.folder import whole
 from coilset.model.standards.data import spring_data
 from coilset.model.standards.steel import STEEL, Elastic
 from coilset.model.standards.warnings import spring_warnings
+from coilset.model.standards.wires.law import case_law
 
 FILES = ("drawing.png", "spring.png")
 
@@ -41,7 +41,7 @@ def mesh(case_file, out=None, force=False, settings=(), write=(), pictures=True)
     try:
         spring = case.spring.build()
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
-        law = library.load(case.material)
+        law = case_law(case, spring)
     except InputError as error:
         raise InputError(error.problem, error.place, error.file or case_file) from None
     console.print(_table(spring_data(spring, Elastic(law.G, law.E, getattr(law, "density", STEEL.density))), turns))

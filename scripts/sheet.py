@@ -9,7 +9,6 @@ from rich.console import Console
 
 from coilset.meshes.errors import InputError
 from coilset.model.case import read_case
-from coilset.model.material import library
 from coilset.model.standards import found, goodman
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.rows import sections
@@ -17,6 +16,7 @@ from coilset.model.standards.sheet import Sheet, working_lengths
 from coilset.model.standards.steel import STEEL, Elastic
 from coilset.model.standards.warnings import spring_warnings
 from coilset.model.standards.wires import names, wire
+from coilset.model.standards.wires.law import case_law
 from coilset.model.standards.working import endurance_warnings, gap_warnings, presetting_warning, stress_warnings
 
 FIGURE = "goodman.png"
@@ -49,7 +49,7 @@ def sheet(case_file, results=None, wire_name=None, lengths=(), grade=2, surface=
         console.print(f"[bold]{title}[/]")
         for line in _lines(rows, run is not None):
             console.print(line, soft_wrap=True)
-    if run and made.wire:
+    if run and made.wire and not str(run.summary.get("material")).startswith(made.wire.name):
         console.print(f"the run was made with the material {run.summary.get('material')}, not with {made.wire.name}")
     for warning in _warnings(spring, made):
         console.print(f"[yellow]warning:[/] {warning.text}")
@@ -70,8 +70,9 @@ def list_wires():
 
 
 def _sheet(case, spring, run, wire_name, lengths, grade, surface, dynamic):
-    law, cylinder = library.load(case.material), Cylinder.of(spring)
-    known = wire(wire_name) if wire_name else None
+    law, cylinder = case_law(case, spring), Cylinder.of(spring)
+    named = wire_name or getattr(case.material, "wire", None)
+    known = wire(named) if named else None
     elastic = known.elastic(cylinder.d) if known else Elastic(law.G, law.E, getattr(law, "density", STEEL.density))
     for length in lengths:
         if not cylinder.solid < length < cylinder.length:

@@ -164,6 +164,7 @@ def _conclude(console, summary, out, analysed):
     table.add_row("greatest force", number(summary["force_max_N"], "N", 2))
     table.add_row("block height", number(summary["block_height_mm"], "mm"))
     table.add_row("greatest residual shear stress", number(summary["residual_shear_max_MPa"], "MPa", 2))
+    table.add_row("residual shear stress, coil's inside", number(summary["residual_shear_inside_MPa"], "MPa", 2))
     table.add_row("results in", f"{out}{os.sep}")
     console.print(table)
     if summary["buckled"]:

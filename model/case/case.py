@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
 
-from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
 from coilset.meshes.spring import SpringEntry
 from coilset.meshes.stations import ElementsPerTurn
@@ -20,13 +20,28 @@ from coilset.model.section import rules
 
 
 class SectionSpec(Strict):
-    """Quadrature of the wire's cross-section."""
+    """The wire's cross-section: what it may do, and its quadrature."""
 
+    kind: Annotated[
+        Literal["plane", "curved", "warping"],
+        Field(description="plane as in the thesis; curved: plane, with fibres as long as the curved wire makes them; "
+                          "warping: free to warp, with all six stresses"),
+    ] = "plane"  # fmt: skip
+    degree: Annotated[Whole, Field(ge=1, le=7, description="of the polynomials of a section that warps")] = 3
     rule: Annotated[Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")] = (
         "polar"
     )
     radial: Annotated[Whole, Field(ge=1, le=64, description="rings of the polar rule")] = 4
     angular: Annotated[Whole, Field(ge=3, le=256, description="angles of the polar rule")] = 12
+
+    @model_validator(mode="after")
+    def _warping_is_integrated(self) -> Self:
+        exact = 5 if self.rule == "abramowitz9" else min(4 * self.radial, self.angular) - 1
+        needed = 2 * self.degree - 2
+        if self.kind == "warping" and exact < needed:
+            raise ValueError(f"the rule is exact for polynomials of degree {exact}, warping of degree {self.degree} "
+                             f"needs {needed}; give more points or a lower degree")  # fmt: skip
+        return self
 
     def build(self) -> rules.DiskRule:
         """The quadrature rule."""
@@ -47,6 +62,12 @@ class MeshSpec(Strict):
         Field(description="curved: the rods' sections lie on the true centre line; chords: the thesis's polygon"),
     ] = "curved"
     section: SectionSpec = SectionSpec()
+
+    @model_validator(mode="after")
+    def _curvature_belongs(self) -> Self:
+        if self.axis == "chords" and self.section.kind != "plane":
+            raise ValueError(f"chords are straight; give section.kind: plane, or axis: curved for {self.section.kind}")
+        return self
 
 
 class FrictionSpec(Strict):
@@ -112,11 +133,26 @@ class SolverSpec(Strict):
     control: ControlSpec = ControlSpec()
 
 
+class NamedWire(Strict):
+    """A wire of a standard in the place of a material; it takes the wire's diameter from the spring."""
+
+    wire: Annotated[str, Field(description="name of a wire, such as EN 10270-1 SH; `coilset sheet --wires` lists them")]
+
+
+Material = Annotated[
+    Annotated[str, Tag("(name)")] | Annotated[NamedWire, Tag("(wire)")],
+    Discriminator(lambda value: "(wire)" if isinstance(value, dict | NamedWire) else "(name)"),
+]
+"""A material by its name or file, or a wire by its name."""
+
+
 class Case(Strict):
     """A whole case; units mm, N, MPa, K."""
 
     spring: Annotated[SpringEntry, Field(description="the spring's drawing, or the file of a measured one")]
-    material: Annotated[str, Field(description="name in the library, or path of a material file")] = "ck15"
+    material: Annotated[
+        Material, Field(description="name in the library, path of a material file, or {wire: name of a wire}")
+    ] = "ck15"
     temperature: Annotated[
         float | None, Field(gt=0, description="of the spring throughout, K; default: the material file's first")
     ] = None
@@ -129,10 +165,10 @@ class Case(Strict):
 
     @field_validator("material")
     @classmethod
-    def _from_folder(cls, material: str, info: ValidationInfo) -> str:
+    def _from_folder(cls, material: str | NamedWire, info: ValidationInfo) -> str | NamedWire:
         """The path of a material file counts from the folder of the case file, where the context has one."""
         folder = (info.context or {}).get("folder")
-        return material if folder is None else located("material", material, folder)
+        return material if folder is None or isinstance(material, NamedWire) else located("material", material, folder)
 
     @model_validator(mode="after")
     def _seats_belong(self) -> Self:

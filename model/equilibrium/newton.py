@@ -81,7 +81,7 @@ class Newton:
         self._factory = SnesFactory(
             system.comm, lambda *args: me._residual(*args), lambda *args: me._tangent(*args), self.F, self.matrix.mat
         )
-        self.snes: PETSc.SNES | None = None
+        self.snes: PETSc.SNES = None  # until `use` makes it
         self._first: PETSc.SNES | None = None
         self.use(method)
 

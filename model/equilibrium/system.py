@@ -135,6 +135,7 @@ class System:
 
     def commit(self) -> None:
         """Make the trial state the equilibrium."""
+        self.body.follow()
         self.state.commit()
         self.body.increment.x.array[:] = 0.0
         self.expire()

@@ -62,9 +62,7 @@ LOOPS = {
 }
 
 
-def initial_state(
-    law: Law, points: int, components: int = 3, temperature: float | tuple[float, float] | None = None
-) -> np.ndarray:
+def initial_state(law: Law, points: int, components: int = 3, temperature: float | None = None) -> np.ndarray:
     """Point states of unstressed points.
 
     Args:
@@ -122,9 +120,9 @@ def update(
         raise ValueError(f"state of shape {state.shape} does not fit strain increments of shape {increments.shape}")
     loop = LOOPS[components, integrator]
     divided = tolerance is not None and integrator == "return_mapping"
-    start, end = temperature if isinstance(temperature, tuple) else (temperature, temperature)
-    p = law.parameters(end)
-    if start != end:
+    p = law.parameters(temperature[1] if isinstance(temperature, tuple) else temperature)
+    if isinstance(temperature, tuple) and temperature[0] != temperature[1]:
+        start, end = temperature
         if law.is_adiabatic or divided:
             raise ValueError(
                 "temperature changes neither with adiabatic heating nor with the return mapping's tolerance"

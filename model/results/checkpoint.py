@@ -136,8 +136,9 @@ class Checkpoint:
             found: dict[str, Any] = {name: file[name] for name in file.files}
         for name, kind in (("name", str), ("height", float), ("force", float)):
             found[name] = kind(found[name])
+        found["components"] = tuple(str(name) for name in found["components"])
         if rank:
-            found |= {name: np.empty(0) for name in ("triads", "resultants", "point_state")}
+            found |= {name: np.empty(0) for name in ("triads", "resultants", "point_state", "surface_state")}
         return Snapshot(**found)
 
     def _position(self, about: Mapping[str, Any]) -> ProgramPosition:

@@ -9,19 +9,26 @@ import xarray as xr
 
 from coilset.model.results.folder import whole
 from coilset.model.results.record import Result, Setup, Snapshot
+from coilset.model.section.rules import SURFACE_POINTS
+from coilset.model.section.surface import component, shear
 
-COMPONENTS = ["s11", "t12", "t13", "B11", "B12", "B13", "b"]
 RESULTANTS = ["N", "Q2", "Q3", "Mt", "M2", "M3"]
 
 
 def point_state(setup: Setup, result: Result) -> xr.Dataset:
     """All section points at all snapshots as an xarray data set with units and coordinates."""
     rule, radius, snapshots = setup.rule, setup.wire_radius, result.snapshots
-    names = COMPONENTS + ["temperature"] * (setup.n_state - len(COMPONENTS))
+    names = list(snapshots[0].components)
+    names += ["temperature"] * (snapshots[0].point_state.shape[-1] - len(names))
     history = ("snapshot", "element", "gauss", "point", "component")
     data = xr.Dataset(
         {
             "history": (history, np.stack([shot.point_state for shot in snapshots]), {"units": "MPa"}),
+            "surface": (
+                ("snapshot", "element", "gauss", "angle", "component"),
+                np.stack([shot.surface_state for shot in snapshots]),
+                {"units": "MPa", "about": "points on the wire's surface; the angle is counted from y to z"},
+            ),
             "resultants": (
                 ("snapshot", "element", "gauss", "resultant"),
                 np.stack([shot.resultants for shot in snapshots]),
@@ -35,15 +42,19 @@ def point_state(setup: Setup, result: Result) -> xr.Dataset:
             "y": (("element", "point"), np.outer(radius, rule.points[:, 0]), {"units": "mm"}),
             "z": (("element", "point"), np.outer(radius, rule.points[:, 1]), {"units": "mm"}),
             "weight": ("point", rule.weights),
+            "curvature": (("element", "gauss"), setup.placement.curvature, {"units": "1/mm", "about": "towards y"}),
+            "torsion": (("element", "gauss"), setup.placement.torsion, {"units": "1/mm"}),
         },
         coords={
             "snapshot": [shot.name for shot in snapshots],
             "turn": ("station", setup.turns, {"units": "1"}),
             "component": names,
+            "angle": ("angle", np.arange(SURFACE_POINTS) * 360.0 / SURFACE_POINTS, {"units": "degree"}),
             "resultant": RESULTANTS,
             "axis": ["x", "y", "z"],
         },
-        attrs={"title": "section points of the rod", "material": setup.material, "section_rule": rule.name},
+        attrs={"title": "section points of the rod", "material": setup.material, "section_rule": rule.name,
+               "section_kind": setup.section_kind},
     )  # fmt: skip
     return data.merge(pressure_along_wire(setup, result))
 
@@ -87,7 +98,9 @@ def write_fields(folder: str | Path, setup: Setup, snapshots: Sequence[Snapshot]
         data = {name: [mean[:, k]] for k, name in enumerate(RESULTANTS)}
         data["shear_max_MPa"] = [shot.shear.max(axis=(1, 2))]
         data["normal_max_MPa"] = [np.abs(shot.point_state[..., 0]).max(axis=(1, 2))]
-        data["work_max_MPa"] = [shot.point_state[..., 6].max(axis=(1, 2))]
+        data["work_max_MPa"] = [component(shot.point_state, shot.components, "b").max(axis=(1, 2))]
+        data["surface_shear_max_MPa"] = [shear(shot.surface_state, shot.components).max(axis=(1, 2))]
+        data["surface_shear_inside_MPa"] = [setup.inside.shear(shot.surface_state, shot.components).mean(axis=1)]
         data["wire_radius_mm"] = [setup.wire_radius]
         with whole(folder / f"{number:02d}.vtu") as path:
             meshio.write(path, meshio.Mesh(shot.x, cells, cell_data=data))

@@ -49,27 +49,48 @@ def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapp
         save(figure, path)
 
 
+ROUND = 96  # points of the rim in a picture
+
+
 def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
-    """Stress over the cross-section at mid height: circumferential shear and normal stress."""
-    n, points = len(setup.turns) - 1, setup.rule.points
-    state = snapshot.point_state[n // 2].mean(axis=0)
+    """Stress over the cross-section at mid height, to the wire's surface: circumferential shear and normal stress."""
+    n = len(setup.turns) - 1
+    inner = setup.rule.points
+    angle = 2.0 * np.pi * np.arange(ROUND) / ROUND
+    points = np.concatenate([inner, np.stack([np.cos(angle), np.sin(angle)], axis=-1)])
     radius = setup.wire_radius[n // 2]
     y, z = radius * points.T
+
+    def stress(name: str) -> np.ndarray:
+        column = snapshot.components.index(name)
+        states = snapshot.point_state, snapshot.surface_state
+        at_points, rim = (state[n // 2, ..., column].mean(axis=0) for state in states)
+        return np.concatenate([at_points, refined(rim, ROUND)])
+
     distance = np.hypot(points[:, 0], points[:, 1])
-    around = (state[:, 2] * points[:, 0] - state[:, 1] * points[:, 1]) / np.where(distance > 0, distance, 1.0)
+    around = (stress("t13") * points[:, 0] - stress("t12") * points[:, 1]) / np.where(distance > 0, distance, 1.0)
+    inwards = np.cos(setup.inside.angle) > 0
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.2, 3.9), layout="constrained")
-        panels = ((around, "shear about the wire's axis"), (state[:, 0], "normal stress"))
+        panels = ((around, "shear about the wire's axis"), (stress("s11"), "normal stress"))
         for place, (values, name) in enumerate(panels):
             axes = figure.add_subplot(1, 2, place + 1)
             limit = max(float(np.abs(values).max()), 1e-9)
             levels = np.linspace(-limit, limit, 25)
             shown = axes.tricontourf(y, z, values, levels=levels, cmap="RdBu_r")
-            axes.plot(y, z, "k.", ms=2, alpha=0.5)
-            angle = np.linspace(0, 2 * np.pi, 181)
-            axes.plot(radius * np.cos(angle), radius * np.sin(angle), "k-", lw=0.8)
-            axes.set(aspect="equal", xlabel="towards the coil's axis, mm", ylabel="along the spring, mm", title=name)
+            axes.plot(*radius * inner.T, "k.", ms=2, alpha=0.5)
+            axes.plot(radius * np.cos([*angle, 0.0]), radius * np.sin([*angle, 0.0]), "k-", lw=0.8)
+            direction = "towards" if inwards else "away from"
+            axes.set(aspect="equal", xlabel=f"{direction} the coil's axis, mm", ylabel="across, mm", title=name)
             figure.colorbar(shown, ax=axes, label="MPa", shrink=0.85)
         force = f"F = {abs(snapshot.force):.1f} N"
         figure.suptitle(f"Cross-section at mid height, {snapshot.name} ({force}); dots: section points")
         save(figure, path)
+
+
+def refined(values: np.ndarray, points: int) -> np.ndarray:
+    """Values at equal angles of a circle, shape (n,), at more such angles, by the trigonometric polynomial."""
+    waves = np.fft.rfft(values)
+    if len(values) % 2 == 0:
+        waves[-1] *= 0.5  # its half of the highest wave
+    return np.fft.irfft(waves, points) * points / len(values)

@@ -5,8 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from coilset.meshes.placement import Placement
 from coilset.meshes.spring import Spring
 from coilset.model.contact.base import ENDS
+from coilset.model.rod.kinematics import GAUSS
+from coilset.model.section import surface
 from coilset.model.section.rules import DiskRule
 
 
@@ -47,7 +50,9 @@ class Snapshot:
         x: station positions, shape (n + 1, 3), mm.
         triads: element triads (columns), shape (n, 3, 3).
         resultants: N, Q2, Q3, Mt, M2, M3 at the Gauss sections, shape (n, 2, 6), N and N mm.
-        point_state: σ11, τ12, τ13, B11, B12, B13, b* at the section points, shape (n, 2, points, n_state), MPa.
+        point_state: at the section points, shape (n, 2, points, n_state), MPa.
+        surface_state: at the points on the wire's surface, shape (n, 2, surface points, n_state), MPa.
+        components: names of the columns of both.
     """
 
     name: str
@@ -57,11 +62,13 @@ class Snapshot:
     triads: np.ndarray
     resultants: np.ndarray
     point_state: np.ndarray
+    surface_state: np.ndarray
+    components: tuple[str, ...]
 
     @property
     def shear(self) -> np.ndarray:
         """Magnitude of the shear stress at the section points, shape (n, 2, points), MPa."""
-        return np.hypot(self.point_state[..., 1], self.point_state[..., 2])
+        return surface.shear(self.point_state, self.components)
 
 
 @dataclass(frozen=True)
@@ -130,8 +137,8 @@ class SeatReactions:
     def from_row(cls, row: dict[str, Any], pressure: np.ndarray) -> "SeatReactions":
         """The reverse of `row`."""
         names = [item.name for item in fields(SeatReaction)]
-        ends = [SeatReaction(**{name: row[f"{end}_{name}"] for name in names}) for end in ENDS]
-        return cls(row["step"], row["active_turns"], row["free_turns"], *ends, pressure)
+        bottom, top = (SeatReaction(**{name: row[f"{end}_{name}"] for name in names}) for end in ENDS)
+        return cls(row["step"], row["active_turns"], row["free_turns"], bottom, top, pressure)
 
 
 @dataclass(frozen=True)
@@ -157,26 +164,39 @@ class Setup:
 
     Attributes:
         spring: geometry of the spring.
-        material: name of the law, n_state: numbers of a point's state.
+        material: name of the law.
         ends: `seats` or `clamped`.
         phases: labels of the load program.
         turns: of the stations, shape (n + 1,).
         wire_radius: of the elements, shape (n,), mm.
         rule: DiskRule.
         contacts: ContactRecords.
+        section_kind: plane, curved or warping.
+        placement: of the sections, Placement.
         buckling_travel: at which the spring buckles after EN 13906-1, mm; infinite if it never does.
     """
 
     spring: Spring
     material: str
-    n_state: int
     ends: str
     phases: tuple[str, ...]
     turns: np.ndarray
     wire_radius: np.ndarray
     rule: DiskRule
     contacts: tuple[ContactRecord, ...]
+    section_kind: str
+    placement: Placement
     buckling_travel: float
+
+    @property
+    def section_turns(self) -> np.ndarray:
+        """Turns at which the Gauss sections stand, shape (n, 2)."""
+        return self.turns[:-1, None] + np.diff(self.turns)[:, None] * GAUSS
+
+    @property
+    def inside(self) -> surface.Inside:
+        """Where the inside of the coil is on the wire's surface."""
+        return surface.Inside.of(self.section_kind != "plane", self.spring.hand)
 
     @property
     def mean_diameter(self) -> float:

@@ -1,10 +1,14 @@
 """The few numbers that answer the question."""
 
+from collections.abc import Sequence
 from math import isfinite
 from typing import Any
 
+import numpy as np
+
 from coilset.model.results.buckling import buckling
-from coilset.model.results.record import Result, Setup
+from coilset.model.results.record import Result, Setup, Snapshot
+from coilset.model.section import surface
 
 
 def summarise(setup: Setup, result: Result) -> dict[str, Any]:
@@ -30,6 +34,10 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         "block_height_mm": setup.spring.block_height,
         "residual_shear_max_MPa": float(last.shear.max()) if released else None,
         "shear_max_MPa": max(float(shot.shear.max()) for shot in result.snapshots),
+        "residual_shear_inside_MPa": shear_inside(setup, last) if released else None,
+        "shear_inside_max_MPa": max(shear_inside(setup, shot) for shot in result.snapshots),
+        **peaks(setup, "residual_", [last] if released else []),
+        **peaks(setup, "", result.snapshots),
         "steps": len(result.steps),
         "iterations": sum(step.iterations for step in result.steps),
         "material": setup.material,
@@ -40,5 +48,31 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         "buckling_force_N": buckled and buckled.force_N,
         "buckling_travel_EN_13906_1_mm": setup.buckling_travel if isfinite(setup.buckling_travel) else None,
         "elements": len(setup.turns) - 1,
+        "section_kind": setup.section_kind,
         "section_rule": setup.rule.name,
     }
+
+
+def shear_inside(setup: Setup, snapshot: Snapshot) -> float:
+    """Shear stress on the wire's surface at the inside of the coil, MPa, positive as in a compressed spring.
+
+    That of greatest magnitude in the middle turns: half a turn from the tips, or from the end coils of closed ends.
+    """
+    spring = setup.spring
+    first, last = spring.bottom.end_turns, spring.turns - spring.top.end_turns
+    stress = setup.inside.shear(snapshot.surface_state, snapshot.components)
+    middle = stress[surface.is_middle(setup.section_turns, first, last)]
+    return float(middle[np.argmax(np.abs(middle))])
+
+
+def peaks(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, float | None]:
+    """The greatest shear and equivalent stress on the surface in the snapshots, MPa, and where: turn, and angle from
+    the inside of the coil, degrees; None without snapshots."""
+    found = {}
+    for name, stress in (("shear", surface.shear), ("equivalent", surface.equivalent)):
+        tops = [surface.peak(stress(shot.surface_state, shot.components), setup.section_turns, setup.inside)
+                for shot in snapshots]  # fmt: skip
+        top = max(tops, key=lambda one: one.value, default=None)
+        for unit, value in (("MPa", "value"), ("turn", "turn"), ("angle_deg", "angle")):
+            found[f"{prefix}{name}_surface_max_{unit}"] = getattr(top, value) if top else None
+    return found

@@ -1,26 +1,27 @@
 """A rod structure, a Body: state of its nodes and section points, and the forms assembled from them."""
 
+from typing import Any
+
 import numpy as np
 from dolfinx import fem
+from dolfinx import mesh as dmesh
 from dolfinx.fem.petsc import assemble_matrix
 from mpi4py import MPI
 from petsc4py import PETSc
 
 from coilset.meshes.compat import geometry_dofs
 from coilset.meshes.line import LineMesh
+from coilset.meshes.placement import Placement, straight
 from coilset.model.material.law import Law
-from coilset.model.material.points import initial_state
 from coilset.model.rod import forms
 from coilset.model.rod.kinematics import GAUSS, chord_triads, section_strains
 from coilset.model.rotations.kernels import rotate_nodes
+from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule
-from coilset.model.section.update import update_sections
 from coilset.model.state import State, Where
 
 NODAL_ENTRIES = 22  # in a row of the tangent: three nodes with 6 unknowns each, and two elements with 2
 SHEAR_ENTRIES = 14  # two nodes and the element's own 2
-STRAIGHT = np.eye(6)[None, None].repeat(2, axis=1)  # section placement of a straight rod
-STRAIGHT_STRETCH = np.ones((1, 2))
 
 
 def comm_max(comm: MPI.Comm, value: float) -> float:
@@ -31,7 +32,7 @@ def comm_max(comm: MPI.Comm, value: float) -> float:
 class CellField:
     """A coefficient of the forms, its values reached as an array in the order of the cells."""
 
-    def __init__(self, mesh, element, shape, cells):
+    def __init__(self, mesh: dmesh.Mesh, element: Any, shape: tuple[int, ...], cells: int) -> None:
         self.function = fem.Function(fem.functionspace(mesh, element))
         dofs = self.function.function_space.dofmap.list[:cells]
         if not np.array_equal(dofs.ravel(), np.arange(dofs.size)):
@@ -48,9 +49,10 @@ class Rod:
         radius: wire radius of every element in the order of the elements, shape (elements,), mm.
         law: material law (`coilset.model.material.library.load`).
         rule: quadrature of the wire's disk, DiskRule.
-        placement: where the true sections lie in relation to the chords, `(matrices, stretch)` with shapes
-            (elements, 2, 6, 6) and (elements, 2); None for straight rods.
+        placement: Placement of the true sections in relation to the chords, in the order of the elements; None for
+            straight rods.
         temperature: of the rod, K; where plastic work heats it, at the start. None: the material's first.
+        kind: of the sections, see `coilset.model.section.kinds`, and `degree` of those that warp.
 
     Raises:
         InputError: if the temperature lies outside the material's table.
@@ -58,8 +60,8 @@ class Rod:
     Attributes:
         increment: function of the increments since the last equilibrium.
         state: State with `x`, mm, and `R`, rotations since the stress-free state, of the local nodes; `chord`, mm,
-            `shear`, `strain`, shape (cells, 2, 6), and `point_state`, shape (cells, 2, points, n_state), of the owned
-            cells.
+            `shear`, `strain`, shape (cells, 2, 6), and the arrays of the sections, of the owned cells; of these
+            `point_state`, shape (cells, 2, points, n_state), and `surface_state` are always there.
         chart: tangents of the nodes' rotation charts on trial, shape (nodes, 3, 3).
     """
 
@@ -69,17 +71,22 @@ class Rod:
         radius: np.ndarray,
         law: Law,
         rule: DiskRule,
-        placement: tuple[np.ndarray, np.ndarray] | None = None,
+        placement: Placement | None = None,
         temperature: float | None = None,
+        kind: str = "plane",
+        degree: int = 3,
     ) -> None:
         self.line, self.law, self.rule = line, law, rule
         mesh, n = line.mesh, line.owned_cells
         self.mesh, self.parameters = mesh, law.parameters(temperature)
         element = line.element[:n]
         self.radius = np.ascontiguousarray(np.asarray(radius, float)[element])
-        self.placement, self.stretch = STRAIGHT, STRAIGHT_STRETCH
+        self.placement = straight(n)
         if placement is not None:
-            self.placement, self.stretch = (np.ascontiguousarray(part[element]) for part in placement)
+            self.placement = Placement(*(np.ascontiguousarray(part[element]) for part in placement))
+        self.sections = make_sections(
+            kind, law, self.parameters, rule, self.radius, self.placement, temperature, degree
+        )
 
         self.V = fem.functionspace(mesh, forms.rod_element())
         self.increment = fem.Function(self.V)
@@ -111,7 +118,7 @@ class Rod:
         self.axial_force = law.E * np.pi * self.largest_radius**2  # E A
         self.extent = float(np.ptp(line.stations, axis=0).max())
         self._constraint_weight = comm_max(mesh.comm, (law.E * np.pi * self.radius**2 / self.l0).max(initial=0.0))
-        self._start(x, temperature)
+        self._start(x)
 
     def _number_dofs(self) -> None:
         """Local dofs of the nodes' displacements and rotations, shape (nodes, 3), and of the cells' shear angles."""
@@ -123,16 +130,18 @@ class Rod:
             self.rotation_dofs[nodes, i] = nodal.sub(i + 3).dofmap.list
         self.shear_dofs = np.stack([shear.sub(i).dofmap.list[: self.line.owned_cells, 0] for i in range(2)], axis=1)
 
-    def _start(self, x: np.ndarray, temperature: float | None) -> None:
+    def _start(self, x: np.ndarray) -> None:
         """The stress-free state; the mesh's coordinates are the trial positions, as forms need it."""
         n, state = len(self.cells), State()
-        history = np.tile(initial_state(self.law, 1, temperature=temperature), (n, 2, len(self.rule), 1))
         self._x = state.add("x", x, Where.STATION)
         self._R = state.add("R", np.tile(np.eye(3), (len(x), 1, 1)), Where.STATION)
         self._chord = state.add("chord", x[self.cells[:, 1]] - x[self.cells[:, 0]], Where.ELEMENT)
         self._shear = state.add("shear", np.zeros((n, 2)), Where.ELEMENT)
         self._strain = state.add("strain", self.e.values, Where.ELEMENT)
-        self._points = state.add("point_state", history, Where.ELEMENT)
+        points = {name: state.add(name, rows, Where.ELEMENT) for name, rows in self.sections.initial_state().items()}
+        self._section_start = {name: field.equilibrium for name, field in points.items()}
+        self._section_trial = {name: field.trial for name, field in points.items()}
+        self._section_start["strain"] = self._strain.equilibrium
         self.state, self.chart = state, np.tile(np.eye(3), (len(x), 1, 1))
         self.update()
 
@@ -146,7 +155,12 @@ class Rod:
     @property
     def point_state(self) -> np.ndarray:
         """State at the section points on trial, shape (cells, 2, points, n_state), MPa."""
-        return self._points.trial
+        return self._section_trial["point_state"]
+
+    @property
+    def surface_state(self) -> np.ndarray:
+        """State of the points on the wire's surface, shape (cells, 2, surface points, n_state), MPa."""
+        return self._section_trial["surface_state"]
 
     # ---- Body ------------------------------------------------------------------------------------------------------
 
@@ -165,12 +179,12 @@ class Rod:
             self._strain.trial,
         )  # fmt: skip
         self.T.values[:] = self.chart[self.cells]
-        status = update_sections(
-            self.parameters, *self.rule.points.T.copy(), self.rule.weights, self.radius,
-            self._strain.trial - self._strain.equilibrium, self.placement, self.stretch, self._points.equilibrium,
-            self._points.trial, self.s.values, self.D.values,
-        )  # fmt: skip
-        return status == 0
+        start, trial = self._section_start, self._section_trial
+        return self.sections.update(self._strain.trial, start, trial, self.s.values, self.D.values)
+
+    def follow(self) -> None:
+        """Bring the points on the wire's surface to the end of the increment; see Body."""
+        self.sections.update_surface(self._strain.trial, self._section_start, self._section_trial)
 
     def internal_forces(self, vector: np.ndarray) -> None:
         """Add ∫ ¹σ : δΔE_l of the owned cells; see Body."""

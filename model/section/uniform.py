@@ -17,12 +17,13 @@ MAX_ITERATIONS = 25
 PRECISION = 1e-9  # out-of-balance force over that which the step puts on the coil
 ROUNDING = 1e-13  # below which, times the greatest resultant, nothing is out of balance
 
-# One coil and how it is driven: constants of the law; radius R, rise h, j = √(R² + h²); places and areas of the points.
-Rod = namedtuple("Rod", "p R h j y z area by_force free")
+# One coil and how it is driven: constants of the law; radius R, rise h, j = √(R² + h²); places and areas of the points;
+# dm/dy, R/j² or, for a plain section, 0.
+Rod = namedtuple("Rod", "p R h j y z area bend by_force free")
 
 
 @njit(**INLINE)
-def strains(rod, q, E):
+def strains(rod: Rod, q: np.ndarray, E: np.ndarray) -> None:
     """Write E = (Γ₁, Γ₃, K₁, K₃) at the coordinates q."""
     c, s, j = math.cos(q[INCLINATION]), math.sin(q[INCLINATION]), rod.j
     around, up = q[TURN] * q[RADIUS], q[RISE]
@@ -33,7 +34,7 @@ def strains(rod, q, E):
 
 
 @njit(**INLINE)
-def derivatives(rod, q, S, B, H):
+def derivatives(rod: Rod, q: np.ndarray, S: np.ndarray, B: np.ndarray, H: np.ndarray) -> None:
     """Write B = ∂E/∂q and H = Σ S_k ∂²E_k/∂q², both 4 × 4."""
     c, s, j = math.cos(q[INCLINATION]), math.sin(q[INCLINATION]), rod.j
     r, up, λ = q[RADIUS], q[RISE], q[TURN]
@@ -56,7 +57,16 @@ def derivatives(rod, q, S, B, H):
 
 
 @njit(**INLINE)
-def integrate(rod, E, old_E, old, new, C, S, T):
+def integrate(
+    rod: Rod,
+    E: np.ndarray,
+    old_E: np.ndarray,
+    old: np.ndarray,
+    new: np.ndarray,
+    C: np.ndarray,
+    S: np.ndarray,
+    T: np.ndarray,
+) -> bool:
     """Resultants S = (N, Q₃, Mt, M₃) and T = ∂S/∂E of the strains E, reached from `old_E` and the rows `old`.
 
     Returns:
@@ -66,7 +76,7 @@ def integrate(rod, E, old_E, old, new, C, S, T):
     T[:] = 0.0
     for k in range(len(rod.y)):
         y, z = rod.y[k], rod.z[k]
-        m = 1.0 + y * rod.R / rod.j**2
+        m = 1.0 + y * rod.bend
         stretched, before = m + E[0] + y * E[3], m + old_E[0] + y * old_E[3]
         if not stretched > 0.0:
             return False
@@ -109,7 +119,7 @@ def integrate(rod, E, old_E, old, new, C, S, T):
 
 
 @njit(cache=True)
-def residual_and_tangent(rod, q, S, T, f, K):
+def residual_and_tangent(rod: Rod, q: np.ndarray, S: np.ndarray, T: np.ndarray, f: np.ndarray, K: np.ndarray) -> None:
     """Write f = ∂W/∂q per radian (N, and N mm for ϑ and λ) and its derivative K; ∂W/∂h̄ is the force that pulls."""
     B, H = np.empty((4, 4)), np.empty((4, 4))
     derivatives(rod, q, S, B, H)
@@ -126,7 +136,16 @@ def residual_and_tangent(rod, q, S, T, f, K):
 
 
 @njit(cache=True)
-def step(rod, value, elastic, q, points, new, S, T):
+def step(
+    rod: Rod,
+    value: float,
+    elastic: bool,
+    q: np.ndarray,
+    points: np.ndarray,
+    new: np.ndarray,
+    S: np.ndarray,
+    T: np.ndarray,
+) -> tuple[bool, float, float]:
     """One step: to the rise `value` (mm/rad), or under the axial force `value` (compression positive, N).
 
     Args:

@@ -1,4 +1,4 @@
-"""From a case to the slice's result: the cylindrical coil of a case file, its section, and its load program."""
+"""From a case to the slice's history: the cylindrical coil of a case file, its section, and its load program."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -11,12 +11,12 @@ from coilset.meshes.section import section_mesh
 from coilset.meshes.section_shapes import Outline, round_wire
 from coilset.model.case import Case
 from coilset.model.case.phases import Phase
-from coilset.model.material import library
 from coilset.model.slice.contact import SelfContact
 from coilset.model.slice.lattice import Lattice
 from coilset.model.slice.problem import Effort, SliceProblem
 from coilset.model.slice.slice import Coil, Slice
 from coilset.model.slice.watch import Watch
+from coilset.model.standards.wires.law import case_law
 
 ACROSS = 6.5  # triangles across the section: 600 unknowns of a round wire
 AUTOMATIC = 16  # equal steps of a phase whose steps are `auto`
@@ -99,7 +99,7 @@ class SliceAnalysis:
 
     def __init__(self, case: Case, outline: Outline | None = None, across: float = ACROSS, degree: int = 2):
         self.case, self.spring = case, case.spring.build()
-        self.law = library.load(case.material)
+        self.law = case_law(case, self.spring)
         d, D, pitch = (_same_in_all_turns(self.spring, name) for name in ("wire_diameter", "mean_diameter", "pitch"))
         self.wire_diameter, self.mean_diameter, self.is_round = d, D, outline is None
         self.coil, self.turns = Coil(0.5 * D, pitch), self.spring.turns
@@ -232,7 +232,7 @@ def _same_in_all_turns(spring: Spring, name: str) -> float:
     return float(values.mean())
 
 
-def _fits(extent: np.ndarray, diameter: float) -> None:
+def _fits(extent: tuple[float, float, float, float], diameter: float) -> None:
     height = extent[3] - extent[2]
     if abs(height - diameter) > 1e-3 * diameter:
         raise InputError(f"{diameter:g} mm, but the section is {height:.5g} mm high along the spring; give its height",

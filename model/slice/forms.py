@@ -122,7 +122,7 @@ class SliceForms:
             ("corner", i, j): lambda i=i, j=j: change(variation[i], variation[j])
             for i in (RISE, TURN) for j in (RISE, TURN)
         }  # fmt: skip
-        self._compiled = {}
+        self._compiled: dict[str | tuple, fem.Form] = {}
         self._motion(F, inverse)
         self.cells = np.arange(mesh.topology.index_map(2).size_local, dtype=np.int32)
 
@@ -138,7 +138,7 @@ class SliceForms:
             self._compiled[name] = fem.form(self._expressions[name]())
         return self._compiled[name]
 
-    def _motion(self, F: Any, inverse: Any) -> tuple[Any, Any]:
+    def _motion(self, F: Any, inverse: Any) -> None:
         """1 − F̂_old F̂⁻¹ = ΔF̂ F̂⁻¹, the increment's gradient in its end configuration, and F̂ itself."""
         x, u, old, new = self.x, self.u, self.old, self.increment
         third = new[TURN] * about_axis(x + u) + old[TURN] * about_axis(u) + along_axis(new[RISE])

@@ -64,7 +64,7 @@ class SliceProblem:
         self._n = body.u.size
         self.force, self.torque, self._direction = 0.0, 0.0, 0.0
         self.pressure = contact.evaluate() if contact else None
-        self._solvers = {}
+        self._solvers: dict[bool, tuple[BorderedMatrix, PETSc.SNES]] = {}
         self._let_touch(False)
 
     def _let_touch(self, touching: bool) -> None:
@@ -140,7 +140,7 @@ class SliceProblem:
                 corner[i, j] = fem.assemble_scalar(forms["corner", i, j]) / (scale[i] * scale[j]) if moves[j] else 0.0
         self._matrix.assemble(columns, rows, corner, self._of_contact(free, moves))
 
-    def _of_contact(self, free: np.ndarray, moves: np.ndarray) -> Any:
+    def _of_contact(self, free: list[bool], moves: list[bool]) -> Any:
         """Places and values in the matrix of the contact's stiffness, without equations of prescribed numbers."""
         if not self.touching:
             return None

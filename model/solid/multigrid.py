@@ -26,7 +26,7 @@ class VertexMultigrid:
         self.configuration, self.pc = configuration, pc
         number, self._mine = _number_vertices(configuration.V, held)
         self.P = _prolongation(configuration.V, held, number, len(self._mine))
-        self.coarse = None
+        self.coarse: PETSc.Mat = None
         pc.setType("mg")
         pc.setMGLevels(2)
         pc.setMGInterpolation(1, self.P)

@@ -1,6 +1,6 @@
 """The solid's fields for ParaView, and pictures of them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 import basix
@@ -84,7 +84,7 @@ def write_fields(path: str | Path, solid: Solid) -> None:
             body.save(part)
 
 
-def picture(path: str | Path, bodies: Sequence[pyvista.DataSet], field: str, unit: str) -> None:
+def picture(path: str | Path, bodies: Mapping[str, pyvista.DataSet], field: str, unit: str) -> None:
     """Draw the far halves (y > 0) of bodies beside each other, coloured by a field; the cut shows their sections.
 
     Needs a display, see `coilset.model.results.display`.

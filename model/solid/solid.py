@@ -86,6 +86,9 @@ class Solid:
         self.seconds["points"] += time.perf_counter() - began
         return good
 
+    def follow(self) -> None:
+        """Nothing in a solid bears no load; see Body."""
+
     def _update_chunk(self, first: int) -> bool:
         cells = slice(first, min(first + CHUNK, self.n_cells))
         gradient = self.forms.evaluate_gradient(np.arange(cells.start, cells.stop))

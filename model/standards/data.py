@@ -39,7 +39,7 @@ class SpringData:
     def rows(self) -> list[tuple[str, str, str]]:
         """Label, text and unit of every entry, for a table."""
 
-        def span(pair: tuple[float, float]) -> tuple[float, float]:
+        def span(pair: tuple[float, float]) -> str:
             low, high = pair
             return f"{low:.4g}" if high - low < 5e-4 * high else f"{low:.4g} to {high:.4g}"
 

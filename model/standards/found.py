@@ -80,7 +80,7 @@ def read(folder: str | Path) -> Found:
 Parsed = TypeVar("Parsed")
 
 
-def _read(path: Path, parse: Callable[[TextIO], Parsed]) -> Parsed | None:
+def _read(path: Path, parse: Callable[[TextIO], Parsed]) -> Parsed:
     try:
         with open(path, encoding="utf-8", newline="") as file:
             return parse(file)

@@ -99,8 +99,8 @@ def _why_block(sheet: Sheet) -> str:
         return ""
     first = sheet.yield_stress / sqrt(3)
     if sheet.stress(sheet.spring.solid) <= first:
-        return "coils lie down before block"
-    return f"plastic: τc is above the first yield of {first:.4g} MPa"
+        return "coils that lie down before block raise it"
+    return f"plastic flow lowers it, τc is above the first yield of {first:.4g} MPa; coils that lie down raise it"
 
 
 def _stresses(sheet: Sheet) -> Iterator[Row]:

@@ -34,14 +34,14 @@ def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
         case that failed has no responses, but its reason and its characteristic up to there. Characteristics shorter
         than the longest end in NaN. A response with the name of an input gets the ending `_found`.
     """
-    places = {}
+    places: dict[str, list[int]] = {}
     for place, key in enumerate(plan.keys):
         places.setdefault(key, []).append(place)
     records = {record["key"]: record for record in read_records(journal) if record["key"] in places}
     n = len(plan)
     status, reason = np.full(n, "missing", dtype=object), np.full(n, "", dtype=object)
     seconds = np.full(n, np.nan)
-    responses = {}
+    responses: dict[str, np.ndarray] = {}
     longest = max((len(record["steps"].get("force_N", ())) for record in records.values()), default=0)
     curves = {name: np.full((n, longest), np.nan) for name in CURVE}
     for key, record in records.items():
@@ -56,12 +56,12 @@ def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
                     name = f"{name}_found" if name in plan.names else name
                     column = responses.setdefault(name, np.full(n, np.nan))
                     column[at] = np.nan if value is None else value
-    data = {name: ("case", column, _attributes(*quantity(name))) for name, column in responses.items()}
+    data: dict[str, Any] = {name: ("case", column, _attributes(*quantity(name))) for name, column in responses.items()}
     data |= {f"curve_{name}": (("case", "step"), curve, _attributes(*quantity(name)) | {"units": CURVE[name]})
              for name, curve in curves.items()}  # fmt: skip
     data |= {"status": ("case", status), "reason": ("case", reason), "seconds": ("case", seconds, {"units": "s"})}
-    coordinates = {name: ("case", *_input(plan, k)) for k, name in enumerate(plan.names)}
-    attributes = {"title": f"sweep {plan.path.stem}", "design": plan.spec.design, "inputs": plan.names}
+    coordinates: dict[str, Any] = {name: ("case", *_input(plan, k)) for k, name in enumerate(plan.names)}
+    attributes: dict[str, Any] = {"title": f"sweep {plan.path.stem}", "design": plan.spec.design, "inputs": plan.names}
     if plan.spec.samples is not None:
         attributes |= {"samples": plan.spec.samples, "seed": plan.spec.seed}
     return xr.Dataset(data, coordinates | {"key": ("case", plan.keys)}, attributes)

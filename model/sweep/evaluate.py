@@ -44,8 +44,8 @@ def evaluate(data: dict[str, Any], comm: MPI.Comm, file: str = "", time_limit: f
             comm.Abort(1)
         reason = f"{type(error).__name__}: {error}"
     result = getattr(analysis, "result", None)
-    record = {"status": "failed" if reason else "done", "reason": reason, "summary": {}, "steps": {}}
-    if result is not None and result.snapshots and comm.rank == 0:
+    record: dict[str, Any] = {"status": "failed" if reason else "done", "reason": reason, "summary": {}, "steps": {}}
+    if analysis is not None and result is not None and result.snapshots and comm.rank == 0:
         record["summary"] = {key: plain(value) for key, value in summarise(analysis.setup, result).items()}
         rows = [asdict(step) for step in result.steps]
         record["steps"] = {column.name: [plain(row[column.name]) for row in rows] for column in fields(Step)}

@@ -35,7 +35,7 @@ def chosen(plan: Plan) -> list[Any]:
     return [sp.Family(kind="characteristics"), sp.Scatter(kind="scatter"), sp.Sensitivity(kind="sensitivity")]
 
 
-def draw(folder: Path, plan: Plan, data: xr.Dataset) -> tuple[list[Any], list[str]]:
+def draw(folder: Path, plan: Plan, data: xr.Dataset) -> tuple[list[str], list[InputError]]:
     """Draw the figures of a sweep.
 
     Args:
@@ -205,6 +205,7 @@ def sensitivity(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any
         values = _response(data, of, place)
         place_y = np.arange(len(names))
         if sobol:
+            assert plan.spec.samples is not None
             found = sobol_indices(values, len(names), plan.spec.samples, plan.spec.seed)
             if found is None:
                 return None
@@ -214,8 +215,8 @@ def sensitivity(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any
             panel.set_xlim(left=min(0.0, panel.get_xlim()[0]))
         else:
             x = np.stack([data[name].to_numpy() for name in names], axis=1)
-            found, interval = rank_correlation(x, values)
-            _bars(panel, place_y, 0.6, found, interval, "C0", "Spearman, 95 % interval")
+            correlation, interval = rank_correlation(x, values)
+            _bars(panel, place_y, 0.6, correlation, interval, "C0", "Spearman, 95 % interval")
             panel.set(xlabel=f"rank correlation with {data[of].attrs['long_name']}", xlim=(-1.05, 1.05))
         panel.axvline(0.0, color="k", lw=0.6)
         panel.set_yticks(place_y, [data[name].attrs["long_name"] for name in names])

@@ -13,7 +13,7 @@ from coilset.meshes.errors import InputError
 from coilset.model.sweep.evaluate import evaluate
 from coilset.model.sweep.pools import Pool
 
-_group = None  # communicator of the ranks that share a case with this one
+_group: MPI.Comm = None  # communicator of the ranks that share a case with this one
 
 
 def solve_in_group(task: dict[str, Any]) -> dict[str, Any]:

@@ -10,10 +10,12 @@ from typing import Any
 
 from coilset.meshes.errors import InputError
 from coilset.model.case import Case, check, read_case_data
+from coilset.model.case.case import NamedWire
 from coilset.model.case.entry import shown
 from coilset.model.case.settings import located, put
 from coilset.model.case.yaml import read_data
 from coilset.model.material import library
+from coilset.model.standards.wires import wire
 from coilset.model.sweep.design import rows
 from coilset.model.sweep.rehearsal import Rehearsal
 from coilset.model.sweep.spec import SweepSpec
@@ -122,9 +124,11 @@ def _digest(content: bytes) -> str:
 
 
 @lru_cache
-def material_digest(name: str) -> str:
+def material_digest(material: str | NamedWire) -> str:
     """Digest of a material's constants, so that a changed material file makes new cases."""
-    return _digest(library.load(name).parameters().tobytes())
+    if isinstance(material, NamedWire):  # its diameter is the spring's, which is in the digest of the case
+        return _digest(wire(material.wire).entry.model_dump_json().encode())
+    return _digest(library.load(material).parameters().tobytes())
 
 
 @lru_cache

@@ -26,7 +26,8 @@ class Process:
     """
 
     def __init__(self, environment: Mapping[str, str], log: IO[str]) -> None:
-        self.environment, self.log, self.process = environment, log, None
+        self.environment, self.log = environment, log
+        self.process: subprocess.Popen[str] | None = None
 
     def run(self, task: dict[str, Any]) -> dict[str, Any]:
         """The record of a task; a process that dies is the reason of a failed case."""
@@ -36,6 +37,8 @@ class Process:
                 encoding="utf-8", start_new_session=True,
             )  # fmt: skip
         process, answer = self.process, ""
+        assert process.stdin is not None
+        assert process.stdout is not None
         try:
             process.stdin.write(json.dumps(task) + "\n")
             process.stdin.flush()
@@ -56,8 +59,9 @@ class Process:
         if process is not None:
             process.kill()
             process.wait()
-            process.stdin.close()
-            process.stdout.close()
+            for pipe in (process.stdin, process.stdout):
+                if pipe is not None:
+                    pipe.close()
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from typing import Any
 from coilset.meshes.errors import InputError
 from coilset.model.case import Case
 from coilset.model.case.entry import shown
-from coilset.model.material import library
+from coilset.model.standards.wires.law import case_law
 from coilset.model.sweep.spec import SweepSpec, Values
 
 
@@ -21,7 +21,7 @@ def build_input(case: Case) -> None:
     """
     spring = case.spring.build()
     spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
-    law = library.load(case.material)
+    law = case_law(case, spring)
     if case.temperature is not None:
         law.known(case.temperature)
 

@@ -42,9 +42,9 @@ def run(
         journal: Journal.
         report: called with each record, after it has been written.
     """
-    waiting, todo = {}, iter(todo)
+    waiting: dict[Future[dict[str, Any]], str] = {}
     try:
-        _keep_busy(plan, todo, pool, journal, report, waiting)
+        _keep_busy(plan, iter(todo), pool, journal, report, waiting)
     finally:
         for future in waiting:
             future.cancel()

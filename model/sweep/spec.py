@@ -13,8 +13,13 @@ from coilset.model.case.entry import Strict, Whole, shortened
 # numbers of a case's summary, and how long it took
 RESPONSES = (
     "free_length_before_mm", "free_length_after_mm", "set_mm", "rate_N_per_mm", "force_max_N", "block_height_mm",
-    "residual_shear_max_MPa", "shear_max_MPa", "steps", "iterations", "unstable_steps", "buckled",
-    "buckling_travel_mm", "buckling_force_N", "buckling_travel_EN_13906_1_mm", "elements", "seconds",
+    "residual_shear_max_MPa", "shear_max_MPa", "shear_inside_max_MPa", "residual_shear_inside_MPa",
+    "shear_surface_max_MPa", "shear_surface_max_turn", "shear_surface_max_angle_deg", "equivalent_surface_max_MPa",
+    "equivalent_surface_max_turn", "equivalent_surface_max_angle_deg", "residual_shear_surface_max_MPa",
+    "residual_shear_surface_max_turn", "residual_shear_surface_max_angle_deg", "residual_equivalent_surface_max_MPa",
+    "residual_equivalent_surface_max_turn", "residual_equivalent_surface_max_angle_deg", "steps", "iterations",
+    "unstable_steps", "buckled", "buckling_travel_mm", "buckling_force_N", "buckling_travel_EN_13906_1_mm", "elements",
+    "seconds",
 )  # fmt: skip
 
 
@@ -196,7 +201,7 @@ class SweepSpec(Strict):
             raise ValueError(f"the design {self.design} needs 'samples'")
         if self.design in GRIDS and self.samples is not None:
             raise ValueError(f"the design {self.design} has no 'samples': its number of cases follows from the values")
-        if self.design in ("sobol", "sobol_indices") and self.samples & (self.samples - 1):
+        if self.design in ("sobol", "sobol_indices") and self.samples is not None and self.samples & (self.samples - 1):
             raise ValueError(f"the design {self.design} needs a power of 2 as 'samples', not {self.samples}")
         return self
 

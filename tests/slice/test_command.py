@@ -38,7 +38,7 @@ def test_summary_has_the_entries_of_a_springs_run(example):
     spring, coil = Analysis(case), SliceAnalysis(case, across=3.0)
     spring.run()
     coil.run()
-    theirs, ours = of_spring.summarise(spring, spring.result), summarise(coil)
+    theirs, ours = of_spring.summarise(spring.setup, spring.result), summarise(coil)
     assert set(theirs) <= set(ours)
     for entry in ("free_length_before_mm", "block_height_mm", "steps", "material", "ends"):
         assert ours[entry] == theirs[entry]

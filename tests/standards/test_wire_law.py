@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from coilset.meshes.errors import InputError
+from coilset.model.case import check
 from coilset.model.material.points import initial_state, update
 from coilset.model.standards.wires import wire
 from coilset.model.standards.wires.hardening import curve
-from coilset.model.standards.wires.law import wire_law
+from coilset.model.standards.wires.law import case_law, wire_law
+from coilset.model.sweep.plan import key
 
 
 def tensile_test(law, strain_end=0.04, steps=4000):
@@ -57,6 +59,41 @@ def test_stronger_wire_yields_later():
 def test_curve_wants_ascending_numbers():
     with pytest.raises(ValueError, match="must ascend"):
         curve(900.0, 800.0, 1000.0, 206e3, 0.3)
+
+
+SPRING = {"wire_diameter": 4.0, "mean_diameter": 32.0, "turns": 7.5, "free_length": 75.0, "end_coils": "closed"}
+
+
+def case(material, **entries):
+    return check({"spring": SPRING | entries, "material": material, "loading": [{"to": "block"}]})
+
+
+def test_wire_of_a_case_takes_its_diameter_from_the_spring():
+    for d in (4.0, 3.0):
+        asked = case({"wire": "EN 10270-1 SH"}, wire_diameter=d)
+        law = case_law(asked, asked.spring.build())
+        assert law.name == f"EN 10270-1 SH, {d:g} mm"
+        assert law.parameters().tolist() == wire_law("EN 10270-1 SH", d).parameters().tolist()
+    named = case("ck15")
+    assert case_law(named, named.spring.build()).name == "ck15"
+
+
+def test_cases_of_a_sweep_are_told_apart_by_their_wires():
+    keys = [key(case(material)) for material in ({"wire": "EN 10270-1 SH"}, {"wire": "EN 10270-1 SM"}, "ck15")]
+    assert len(set(keys)) == 3
+    assert key(case({"wire": "EN 10270-1 SH"})) == keys[0]
+
+
+def test_wire_that_changes_its_diameter_has_no_law():
+    table = {"turns": [0, 7.5], "values": [3.0, 5.0], "interpolation": "linear"}
+    asked = case({"wire": "EN 10270-1 SH"}, wire_diameter=table)
+    with pytest.raises(InputError, match="a wire of a standard has one diameter; this spring's goes from 3 to 5 mm"):
+        case_law(asked, asked.spring.build())
+
+
+def test_wrong_entry_of_a_wire():
+    with pytest.raises(InputError, match=r"material\.wires: unknown entry; is wire meant\?"):
+        case({"wires": "EN 10270-1 SH"})
 
 
 def test_unknown_diameter_is_refused():

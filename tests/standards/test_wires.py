@@ -6,7 +6,7 @@ import pytest
 
 from coilset.meshes.errors import InputError
 from coilset.model.standards.wires import names, wire
-from coilset.model.standards.wires.file import WireFile
+from coilset.model.standards.wires.file import WireFile, with_common
 
 # Least strengths of EN 10270-1, N/mm², some rows of the tables of springcalc 0.1.24, which are rounded to 10
 TABLES = {
@@ -114,10 +114,9 @@ def test_numbers_without_their_sources_are_refused():
                                         "proof_stress")}  # fmt: skip
     file = {"standard": "S", "title": "T", "sources": {"a": "A"}, "common": common,
             "wires": [{"grade": "G", "strength": strength}]}  # fmt: skip
-    assert WireFile.model_validate(file).wires[0].strength.at(2.0) == 0.5
+    assert WireFile.model_validate(with_common(file)).wires[0].strength.at(2.0) == 0.5
     with pytest.raises(ValueError, match="the source 'b' is not among"):
-        WireFile.model_validate(file | {"common": common | {"density": number | {"sources": ["b"]}}})
+        WireFile.model_validate(with_common(file | {"common": common | {"density": number | {"sources": ["b"]}}}))
+    other = number | {"sure": "checked against a second source"}
     with pytest.raises(ValueError, match=r"needs 2 source\(s\), 1 given"):
-        WireFile.model_validate(
-            file | {"common": common | {"density": number | {"sure": "checked against a second source"}}}
-        )
+        WireFile.model_validate(with_common(file | {"common": common | {"density": other}}))

@@ -4,8 +4,8 @@ A ring whose turns are pulled apart along its axis (pitch → 0) is Göhner's pr
 inside and at the outside of a round wire come from polynomials of degree 16 in the displacements; Göhner's equation for
 the stress function, solved elsewhere in the project, gives the same factors to 1e-8. A coil of D = 200 times the
 section's size is nearly straight wire (terms of (d/D)², 2e-5): its rate is G J / R³ per radian with the torsion
-constants of the ellipse (closed form) and the rectangle (series). The tolerances are those that were asked for, 0.05
-and 0.1 %; the refinement in the figure shows that they are reached by convergence.
+constants of the ellipse (closed form) and the rectangle (series). The tolerances are 0.05 and 0.1 %; the
+refinement in the figure shows that they are reached by convergence.
 """
 
 import matplotlib as mpl

@@ -10,6 +10,7 @@ from coilset.meshes.solid import SectionGrid, coil_section
 from coilset.model.analysis import Analysis
 from coilset.model.case import Case
 from coilset.model.material import library
+from coilset.model.section.surface import component
 from coilset.model.solid.points import MaterialPoints
 from coilset.model.solid.problem import SolidProblem
 from coilset.model.solid.program import AxialProgram
@@ -17,6 +18,8 @@ from coilset.model.solid.sampling import SectionSample, disk_grid
 
 WIRE = 5.0  # mm
 ROD_ELEMENTS = 33  # an odd number, so that an element lies in the middle
+FINE = {"radial": 8, "angular": 24}
+PLANE = {"kind": "plane", **FINE}
 
 
 @dataclass(frozen=True)
@@ -107,8 +110,12 @@ def _looked_at(sample):
     return {"y": sample.y.tolist(), "z": sample.z.tolist(), "stress": stress.tolist()}
 
 
-def run_rod(case):
+def run_rod(case, section=PLANE):
     """Press and release the rod, on this rank alone.
+
+    Args:
+        case: PressedSection.
+        section: entries of the case's `mesh.section`; the thesis's section on a fine rule, if not given.
 
     Returns:
         The same as `run_solid`, with the section points of the middle element in place of the sample points.
@@ -117,7 +124,7 @@ def run_rod(case):
     loading = [{"to": {"travel": case.travel}, "steps": case.steps},
                {"to": {"force": 0}, "steps": max(case.steps // 3, 2)}]  # fmt: skip
     spring = {"wire_diameter": WIRE, "mean_diameter": case.mean_diameter, "turns": 1.0, "pitch": case.pitch}
-    mesh = {"elements_per_turn": ROD_ELEMENTS, "section": {"rule": "polar", "radial": 8, "angular": 24}}
+    mesh = {"elements_per_turn": ROD_ELEMENTS, "section": section}
     analysis = Analysis(
         Case.model_validate({"spring": spring, "material": case.material, "ends": "clamped", "mesh": mesh,
                              "loading": loading}), MPI.COMM_SELF)  # fmt: skip
@@ -131,6 +138,8 @@ def run_rod(case):
         "force": [0.0] + [step.force_N for step in result.steps], "torque": torque,
         "set": result.steps[-1].travel_mm,
         "full": _rod_section(analysis, result.snapshots[1]), "end": _rod_section(analysis, result.snapshots[2]),
+        "inside": [float(analysis.setup.inside.shear(shot.surface_state, shot.components)[ROD_ELEMENTS // 2].mean())
+                   for shot in result.snapshots[1:3]],
     }  # fmt: skip
 
 
@@ -155,5 +164,6 @@ def _rod_section(analysis, snapshot):
     turn = np.stack([outward, np.cross(E[:, 0], outward)]) @ E[:, 1:]  # local y, z → outward, t × outward
     places = radius * analysis.rod.rule.points @ turn.T
     state = snapshot.point_state[middle].mean(axis=0)
-    stress = np.column_stack([state[:, 0], state[:, 1:3] @ turn.T])
+    normal, *shears = (component(state, snapshot.components, name) for name in ("s11", "t12", "t13"))
+    stress = np.column_stack([normal, np.column_stack(shears) @ turn.T])
     return {"y": places[:, 0].tolist(), "z": places[:, 1].tolist(), "stress": stress.tolist()}

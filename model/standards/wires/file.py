@@ -6,25 +6,21 @@ from collections.abc import Sequence
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
+
+from coilset.meshes.entry import Strict
 
 Sure = Literal["checked against a second source", "one source", "estimate"]
 Text = Annotated[str, Field(min_length=1)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-Numbers = Annotated[tuple[Positive, ...], Field(min_length=1)]
-Decade = tuple[Positive, Positive]  # value at 1 mm, decrease per decade of the diameter
+Numbers = Annotated[tuple[Positive, ...], Field(strict=False, min_length=1)]
+Pair = Annotated[tuple[Positive, Positive], Field(strict=False)]
 
 
-class Entry(BaseModel):
-    """A part of a file of wires."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Sourced(Entry):
+class Sourced(Strict):
     """What every number says of itself: keys of the file's sources, and how sure it is."""
 
-    sources: tuple[Text, ...]
+    sources: Annotated[tuple[Text, ...], Field(strict=False)]
     sure: Sure
     remark: Text = ""
 
@@ -75,8 +71,8 @@ class Tolerance(Sourced):
         return self.plus_minus[i] if i < len(self.plus_minus) else None
 
 
-class _Piece(Entry):
-    diameters: tuple[Positive, Positive]
+class _Piece(Strict):
+    diameters: Pair
 
     def covers(self, diameter: float) -> bool:
         """Whether the diameter is in the range of this piece, both ends included."""
@@ -147,7 +143,8 @@ class Strength(Sourced):
     """Least tensile strength Rm over the diameter, in pieces."""
 
     pieces: Annotated[
-        tuple[Annotated[Logarithm | Power | Table | Steps, Field(discriminator="form")], ...], Field(min_length=1)
+        tuple[Annotated[Logarithm | Power | Table | Steps, Field(discriminator="form")], ...],
+        Field(strict=False, min_length=1),
     ]
     greatest: Positive | None = None  # N/mm²
 
@@ -167,12 +164,12 @@ class Endurance(Sourced):
 
     surface: Literal["as coiled", "shot peened"]
     cycles: Positive
-    at_zero: Decade
-    knee: Decade
-    limit: Decade
+    at_zero: Pair
+    knee: Pair
+    limit: Pair
 
 
-class WireEntry(Entry):
+class WireEntry(Strict):
     """One wire; moduli and strengths in N/mm², density in kg/mm³, decrease of G in 1/K, the others shares of Rm."""
 
     grade: Text
@@ -185,7 +182,7 @@ class WireEntry(Entry):
     elastic_limit: Number
     proof_stress: Number
     diameter_tolerance: Tolerance | None = None
-    endurance: tuple[Endurance, ...] = ()
+    endurance: Annotated[tuple[Endurance, ...], Field(strict=False)] = ()
 
     def sourced(self) -> list[tuple[str, Sourced]]:
         """All sourced entries by name."""
@@ -193,21 +190,14 @@ class WireEntry(Entry):
         return found + [(f"endurance, {line.surface}", line) for line in self.endurance]
 
 
-class WireFile(Entry):
-    """A whole file: the sources, what all its wires have in common, the wires, and what could not be found."""
+class WireFile(Strict):
+    """A whole file: the sources, the wires with what all of them have in common, and what could not be found."""
 
     standard: Text
     title: Text
     sources: dict[str, Text]
-    wires: Annotated[tuple[WireEntry, ...], Field(min_length=1)]
-    missing: tuple[Text, ...] = ()
-
-    @model_validator(mode="before")
-    @classmethod
-    def _with_common(cls, data: Any) -> Any:
-        data = dict(data)
-        common = data.pop("common", {})
-        return data | {"wires": [common | wire for wire in data.get("wires", [])]}
+    wires: Annotated[tuple[WireEntry, ...], Field(strict=False, min_length=1)]
+    missing: Annotated[tuple[Text, ...], Field(strict=False)] = ()
 
     @model_validator(mode="after")
     def _known_sources(self) -> Self:
@@ -219,6 +209,13 @@ class WireFile(Entry):
         return self
 
 
-def _same_length(first: Sequence[object], second: Sequence[object]) -> None:
+def with_common(data: dict[str, Any]) -> dict[str, Any]:
+    """Raw data of a file whose `common` entries are put into each wire that does not give its own."""
+    common = data.get("common") or {}
+    wires = [common | wire if isinstance(wire, dict) else wire for wire in data.get("wires") or []]
+    return {name: value for name, value in data.items() if name != "common"} | {"wires": wires}
+
+
+def _same_length(first: Sequence[object] | None, second: Sequence[object] | None) -> None:
     if first is not None and len(first) != len(second):
         raise ValueError(f"{len(first)} diameters but {len(second)} values")

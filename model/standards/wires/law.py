@@ -1,11 +1,17 @@
 """The law of a wire by its name: elasticity of the standard, hardening estimated from its least strength."""
 
-from coilset.model.material.law import Law, MaterialFile
+from coilset.meshes.errors import InputError
+from coilset.meshes.geometry import Spring
+from coilset.model.case import Case
+from coilset.model.material import library
+from coilset.model.material.file import MaterialFile
+from coilset.model.material.law import Law
 from coilset.model.standards.steel import Elastic
 from coilset.model.standards.wires.hardening import Curve, curve
 from coilset.model.standards.wires.library import wire
 from coilset.model.standards.wires.wire import ROOM_TEMPERATURE, Wire
 
+SAME = 0.02  # relative change of the diameter along one wire
 ASSUMPTIONS = (
     "estimate, until a test of the wire is given: saturating isotropic hardening (Voce, in the plastic work) through "
     "the elastic limit {elastic:.4g} and the 0.2 % proof stress {proof:.4g} to the least strength {strength:.4g} "
@@ -67,3 +73,28 @@ def wire_law(name: str, diameter: float) -> Law:
         }],
     }  # fmt: skip
     return Law(MaterialFile.model_validate(data))
+
+
+def case_law(case: Case, spring: Spring) -> Law:
+    """The law of a case's material: of the library, of a file, or of a wire by its name and the spring's diameter.
+
+    Raises:
+        InputError: no such material or wire, a file that is wrong, or a wire whose diameter is not one number.
+    """
+    if isinstance(case.material, str):
+        return library.load(case.material)
+    return wire_law(case.material.wire, wire_diameter(spring))
+
+
+def wire_diameter(spring: Spring) -> float:
+    """The one wire diameter of a spring, mm; that of a measured spring may vary by the tolerance of wires, 2 %.
+
+    Raises:
+        InputError: if it changes along the wire.
+    """
+    d = spring.wire_diameter(spring.breaks)
+    low, high = float(d.min()), float(d.max())
+    if high - low > SAME * high:
+        raise InputError(f"a wire of a standard has one diameter; this spring's goes from {low:.4g} to {high:.4g} mm",
+                         "material.wire")  # fmt: skip
+    return 0.5 * (low + high)

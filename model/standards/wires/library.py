@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from coilset.meshes.errors import InputError
-from coilset.model.case import check
+from coilset.model.case.entry import check_entries
 from coilset.model.case.yaml import read_data
-from coilset.model.standards.wires.file import WireFile
+from coilset.model.standards.wires.file import WireFile, with_common
 from coilset.model.standards.wires.wire import Wire
 
 FOLDER = Path(__file__).parent
@@ -19,7 +19,7 @@ def files() -> dict[str, WireFile]:
     """The checked files by the name of their standard."""
     read = {}
     for path in sorted(FOLDER.glob("*.yaml")):
-        file = check(read_data(path), path, WireFile)
+        file = check_entries(with_common(read_data(path, "holds standard, sources and wires")), WireFile, path)
         read[file.standard] = file
     return read
 

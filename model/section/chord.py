@@ -1,0 +1,40 @@
+"""From the chord's strains to those of the true section, and back with its resultants and its tangent."""
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True)
+def to_section(P: np.ndarray, de: np.ndarray, d: np.ndarray) -> None:
+    """Write into `d` the section's strains P de."""
+    for i in range(6):
+        d[i] = 0.0
+        for j in range(6):
+            d[i] += P[i, j] * de[j]
+
+
+@njit(cache=True)
+def to_chord(
+    P: np.ndarray,
+    stretch: float,
+    resultant: np.ndarray,
+    tangent: np.ndarray,
+    work: np.ndarray,
+    s: np.ndarray,
+    D: np.ndarray,
+) -> None:
+    """s = Pᵀ s_true ds/dx, D = Pᵀ D_true P ds/dx; `work` is 6 × 6."""
+    for i in range(6):
+        s[i] = 0.0
+        for k in range(6):
+            s[i] += P[k, i] * resultant[k] * stretch
+    for i in range(6):
+        for j in range(6):
+            work[i, j] = 0.0
+            for k in range(6):
+                work[i, j] += tangent[i, k] * P[k, j] * stretch
+    for i in range(6):
+        for j in range(6):
+            D[i, j] = 0.0
+            for k in range(6):
+                D[i, j] += P[k, i] * work[k, j]

@@ -1,0 +1,51 @@
+"""The kinds of sections: what a wire's cross-section may do, and what it knows of the wire's curvature.
+
+- plane: the thesis's; it stays plane and knows nothing of the curvature,
+- curved: it stays plane, and its fibres are as long as the curved wire makes them,
+- warping: it warps as the curved and twisted wire asks, and bears all six stresses.
+"""
+
+from typing import Protocol
+
+import numpy as np
+
+from coilset.meshes.placement import Placement
+from coilset.model.material.law import Law
+from coilset.model.section.plane import PlaneSections
+from coilset.model.section.rules import DiskRule
+from coilset.model.section.warping import WarpingSections
+
+KINDS = ("plane", "curved", "warping")
+
+
+class Sections(Protocol):
+    """What the rod asks of its sections; `PlaneSections` says what the methods do."""
+
+    components: tuple[str, ...]
+    initial_state: object
+    update: object
+    update_surface: object
+
+
+def make_sections(
+    kind: str,
+    law: Law,
+    parameters: np.ndarray,
+    rule: DiskRule,
+    radius: np.ndarray,
+    placement: Placement,
+    temperature: float | None = None,
+    degree: int = 3,
+) -> Sections:
+    """The sections of a kind; arguments as in `PlaneSections` and, for the degree, `WarpingSections`.
+
+    Raises:
+        ValueError: if there is no such kind.
+    """
+    if kind not in KINDS:
+        raise ValueError(f"kind '{kind}' is none of {', '.join(KINDS)}")
+    if kind == "warping":
+        return WarpingSections(law, parameters, rule, radius, placement, temperature, degree)
+    if kind == "plane":
+        placement = placement._replace(curvature=np.zeros_like(placement.curvature))
+    return PlaneSections(law, parameters, rule, radius, placement, temperature)

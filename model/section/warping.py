@@ -1,0 +1,216 @@
+"""Sections that warp: all six stresses of a curved and twisted wire, its warping condensed at each section.
+
+The wire's axis has the tangent t, the normal n, the binormal b, curvature κ and torsion τ. A point of the section is
+r = y n + z b, and g = 1 − κ y is the length of its fibre over that of the axis. To the rigid motion with the section
+strains Γ, K comes a warping w(y, z), constant along the wire in the frame that turns with Ω = τ t + κ b. The columns of
+the displacement's gradient along t, n, b are
+
+    H_t = [Γ + K × r + Ω × w + τ (z w,y − y w,z)] / g,     H_n = w,y,     H_b = w,z,     ε = sym H.
+
+Nothing works on w, so that ∫ σ : δε g dA = s · δe for all δe, δw. w is a polynomial w = r Σ a_k f_k(y/r, z/r) without
+the six rigid modes, which would only rename Γ and K: ∫ w dA = 0, ∫ r × w dA = 0. Newton's method finds the a at given
+e, and the section tangent follows by condensation, D = D_ee − D_ea D_aa⁻¹ D_ae. The spin of the increment is left out.
+
+The iteration begins where the slope da/de of the last equilibrium leads, so that stresses and resultants are a function
+of the state at the last equilibrium and of the strains, whatever was tried in between.
+"""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from numba import njit
+
+from coilset.meshes.placement import Placement
+from coilset.model.material.law import Law
+from coilset.model.material.points import initial_state
+from coilset.model.material.solid import return_map
+from coilset.model.section.chord import to_chord, to_section
+from coilset.model.section.condensation import condense, find_warping, strain_operator
+from coilset.model.section.polynomials import values_and_slopes
+from coilset.model.section.rules import DiskRule, rim
+
+
+class WarpingSections:
+    """All sections of a rod on this rank; arguments as in `PlaneSections`.
+
+    Args:
+        degree: of the polynomials.
+
+    Attributes:
+        components: names of the columns of a point's state.
+        unknowns: number of warping unknowns of a section.
+    """
+
+    components = ("s11", "s22", "s33", "t12", "t13", "t23", "B11", "B22", "B33", "B12", "B13", "B23", "b")
+
+    def __init__(
+        self,
+        law: Law,
+        parameters: np.ndarray,
+        rule: DiskRule,
+        radius: np.ndarray,
+        placement: Placement,
+        temperature: float | None = None,
+        degree: int = 3,
+    ) -> None:
+        self.law, self.parameters, self.radius, self.placement = law, parameters, radius, placement
+        self.temperature, self.weights = temperature, rule.weights
+        self.points = _with_polynomials(rule.points, degree)
+        self.rim = _with_polynomials(rim(), degree)
+        self.unknowns = 3 + 3 * self.points[2].shape[2]
+        self.iterations = np.zeros(2, dtype=np.int64)  # sections brought up to date, local iterations on the way
+
+    def initial_state(self) -> dict[str, np.ndarray]:
+        """Unstressed points, `point_state` and `surface_state` as in `PlaneSections`, and the warping.
+
+        `warping` are the a, shape (cells, 2, unknowns), and `warping_slope` is da/de, shape (cells, 2, unknowns, 6).
+        """
+        row = initial_state(self.law, 1, 6, self.temperature)
+        shape = (len(self.radius), 2)
+        return {
+            "point_state": np.tile(row, (*shape, len(self.weights), 1)),
+            "surface_state": np.tile(row, (*shape, len(self.rim[0]), 1)),
+            "warping": np.zeros((*shape, self.unknowns)),
+            "warping_slope": np.zeros((*shape, self.unknowns, 6)),
+        }
+
+    def update(
+        self,
+        strain: np.ndarray,
+        start: Mapping[str, np.ndarray],
+        trial: dict[str, np.ndarray],
+        s: np.ndarray,
+        D: np.ndarray,
+    ) -> bool:
+        """Bring all sections to the end of the increment; as `PlaneSections.update`."""
+        place = self.placement
+        status = update_sections(
+            self.parameters, *self.points, self.weights, self.radius, place.curvature, place.torsion,
+            strain - start["strain"], place.matrices, place.stretch, start["point_state"], start["warping"],
+            start["warping_slope"], trial["point_state"], trial["warping"], trial["warping_slope"], s, D,
+            self.iterations,
+        )  # fmt: skip
+        return status == 0
+
+    def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
+        """Bring the points on the wire's surface to the end of the increment; as `PlaneSections.update_surface`."""
+        place = self.placement
+        update_surface(
+            self.parameters, *self.rim, self.radius, place.curvature, place.torsion, strain - start["strain"],
+            place.matrices, start["surface_state"], trial["warping"] - start["warping"], trial["surface_state"],
+        )  # fmt: skip
+
+
+def _with_polynomials(points: np.ndarray, degree: int) -> tuple[np.ndarray, ...]:
+    """y, z, and the polynomials and their slopes there."""
+    y, z = np.ascontiguousarray(points.T)
+    return y, z, values_and_slopes(degree, y, z)
+
+
+@njit(cache=True)
+def update_sections(
+    p: np.ndarray,
+    y: np.ndarray,
+    z: np.ndarray,
+    f: np.ndarray,
+    w: np.ndarray,
+    radius: np.ndarray,
+    curvature: np.ndarray,
+    torsion: np.ndarray,
+    de: np.ndarray,
+    placement: np.ndarray,
+    stretch: np.ndarray,
+    old: np.ndarray,
+    old_a: np.ndarray,
+    old_slope: np.ndarray,
+    new: np.ndarray,
+    a: np.ndarray,
+    slope: np.ndarray,
+    s: np.ndarray,
+    D: np.ndarray,
+    count: np.ndarray,
+) -> int:
+    """Bring all sections to the end of the increment.
+
+    Args:
+        p: parameters of the material law.
+        y, z, f, w: points, polynomials and weights of the unit disk.
+        radius, curvature, torsion: of the wire, shape (cells,), (cells, 2), (cells, 2), mm and 1/mm.
+        de, placement, stretch, s, D: as in `plane.update_sections`.
+        old, old_a, old_slope: state of the points with all six stresses, warping, and its slope da/de in the section's
+            own strains, at the last equilibrium, shapes (cells, 2, points, n_state), (cells, 2, unknowns) and
+            (cells, 2, unknowns, 6); not changed.
+        new, a, slope: written, the same at the end of the increment.
+        count: sections and local iterations are added to it, shape (2,).
+
+    Returns:
+        0, or -1 if the law or the warping found no solution, or the strains are no numbers.
+    """
+    n = a.shape[2]
+    size = 6 + n
+    points = len(w)
+    B, CB = np.zeros((points, 6, size)), np.empty((6, size))
+    K, r, X = np.empty((size, size)), np.empty(size), np.empty((n, n + 7))
+    step, C, dA = np.empty(size), np.empty((6, 6)), np.empty(points)
+    resultant, tangent, work = np.empty(6), np.empty((6, 6)), np.empty((6, 6))
+    for c in range(len(radius)):
+        R = radius[c]
+        for g in range(2):
+            P = placement[c, g]
+            strain_operator(y, z, f, R, curvature[c, g], torsion[c, g], B)
+            for k in range(points):
+                dA[k] = math.pi * R * R * w[k] * (1.0 - curvature[c, g] * R * y[k])
+            to_section(P, de[c, g], step)
+            good = False
+            for follow in (1.0, 0.0):  # from where the slope leads, else from the last equilibrium
+                for i in range(n):
+                    a[c, g, i] = old_a[c, g, i]
+                    for j in range(6):
+                        a[c, g, i] += follow * old_slope[c, g, i, j] * step[j]
+                good = find_warping(p, B, dA, old[c, g], old_a[c, g], a[c, g], new[c, g], step, C, CB, K, r, X, count)
+                if good:
+                    break
+            if not good:
+                return -1
+            condense(K, r, X, resultant, tangent)
+            slope[c, g] = -X[:, n : n + 6]
+            if not math.isfinite(resultant.sum()):
+                return -1
+            to_chord(P, stretch[c, g], resultant, tangent, work, s[c, g], D[c, g])
+            count[0] += 1
+    return 0
+
+
+@njit(cache=True)
+def update_surface(
+    p: np.ndarray,
+    y: np.ndarray,
+    z: np.ndarray,
+    f: np.ndarray,
+    radius: np.ndarray,
+    curvature: np.ndarray,
+    torsion: np.ndarray,
+    de: np.ndarray,
+    placement: np.ndarray,
+    old: np.ndarray,
+    da: np.ndarray,
+    new: np.ndarray,
+) -> None:
+    """Bring points on the surface to the end of the increment `de`, `da` of strains and warping."""
+    n = da.shape[2]
+    B, C = np.zeros((len(y), 6, 6 + n)), np.empty((6, 6))
+    e, strain = np.empty(6), np.empty(6)
+    for c in range(len(radius)):
+        for g in range(2):
+            strain_operator(y, z, f, radius[c], curvature[c, g], torsion[c, g], B)
+            to_section(placement[c, g], de[c, g], e)
+            for k in range(len(y)):
+                for i in range(6):
+                    strain[i] = 0.0
+                    for j in range(6):
+                        strain[i] += B[k, i, j] * e[j]
+                    for j in range(n):
+                        strain[i] += B[k, i, 6 + j] * da[c, g, j]
+                if return_map(p, old[c, g, k], strain, new[c, g, k], C) < 0:
+                    new[c, g, k, :] = math.nan

@@ -1,0 +1,104 @@
+"""Sections that warp: straight wires exactly, curved ones against Göhner's equation, and what the state promises."""
+
+import numpy as np
+import pytest
+
+from coilset.meshes.placement import straight
+from coilset.model.material import library
+from coilset.model.section.condensation import TOLERANCE, strain_operator
+from coilset.model.section.kinds import make_sections
+from coilset.model.section.polynomials import orthonormal, values_and_slopes
+from coilset.model.section.rules import polar, rim
+from coilset.verification.sections.helix import HelixSection
+from coilset.verification.solid_vs_rod import references
+
+RADIUS = 2.5
+
+
+@pytest.fixture(scope="module")
+def elastic():
+    return library.load("elastic")
+
+
+def test_polynomials_are_orthonormal():
+    """With a rule of degree 15 for products of degree 10; 1, y and z are the first three."""
+    rule, (powers, coefficients) = polar(5, 16), orthonormal(5)
+    y, z = rule.points.T
+    p = coefficients @ np.array([y**a * z**b for a, b in powers])
+    np.testing.assert_allclose((p * rule.weights) @ p.T, np.eye(21), atol=1e-13)
+    assert [list(row) for row in powers[:3]] == [[0, 0], [1, 0], [0, 1]]
+
+
+def test_slopes_of_the_polynomials():
+    """Against central differences, also on the axis and on the rim."""
+    y, z = np.concatenate([polar().points, rim(8), [[0.0, 0.0]]]).T
+    h = 1e-5
+    _, fy, fz = values_and_slopes(5, y, z)
+    for slope, (dy, dz) in ((fy, (h, 0)), (fz, (0, h))):
+        ahead, behind = (values_and_slopes(5, y + k * dy, z + k * dz)[0] for k in (1, -1))
+        np.testing.assert_allclose(slope, (ahead - behind) / (2 * h), atol=1e-7)
+
+
+@pytest.mark.parametrize("degree", [1, 3])
+def test_straight_wire_in_tension_torsion_and_bending_is_exact(elastic, degree):
+    """EA with free contraction, G Ip; EI from degree 2 on, when the section can bend across (anticlastic)."""
+    sections = make_sections(
+        "warping", elastic, elastic.parameters(), polar(), np.array([RADIUS]), straight(1), None, degree
+    )
+    state = sections.initial_state()
+    s, D = np.empty((1, 2, 6)), np.empty((1, 2, 6, 6))
+    assert sections.update(np.zeros((1, 2, 6)), state | {"strain": np.zeros((1, 2, 6))}, sections.initial_state(), s, D)
+    A, I = np.pi * RADIUS**2, np.pi * RADIUS**4 / 4
+    found = np.diag(D[0, 0])
+    assert found[0] == pytest.approx(elastic.E * A, rel=1e-12)
+    assert found[3] == pytest.approx(elastic.G * 2 * I, rel=1e-12)
+    if degree == 3:
+        np.testing.assert_allclose(found[4:], elastic.E * I, rtol=1e-12)
+    else:  # held from bending across: E (1 − ν)/((1 + ν)(1 − 2ν)) I with ε22 = −ν … of the mean alone
+        assert (found[4:] > 1.2 * elastic.E * I).all()
+    np.testing.assert_allclose(D[0, 0] - np.diag(found), 0, atol=1e-9 * found.max())
+
+
+@pytest.mark.parametrize("index", [3.0, 4.0, 8.0, 12.0])
+def test_shear_factors_meet_goehners_equation(elastic, index):
+    """Without pitch, inside and outside of the coil; degree 5 to 2e-5, degree 3 to 1e-3, a plane section to 1.3 %."""
+    exact = references.goehner_exact(index)
+    for kind, degree, tolerance in (("warping", 5, 6e-5), ("warping", 3, 1e-3), ("curved", 3, 1.3e-2)):
+        wire = HelixSection(elastic, kind, index, 0.0, degree=degree)
+        np.testing.assert_allclose(wire.factors(), exact, rtol=tolerance)
+
+
+def test_stresses_are_a_function_of_the_last_equilibrium(ck15):
+    """Whatever was tried in between: the same bits."""
+    wire = HelixSection(ck15, "warping", 5.0, 5.0)
+    there = np.array([1e-4, 0, 1e-4, 2e-3, 0, 4e-4])
+    first = wire.update(there)[0].copy()
+    for other in (3.0 * there, -there, there[::-1]):
+        wire.update(other)
+    np.testing.assert_array_equal(wire.update(there)[0], first)
+
+
+def test_warping_does_no_work(ck15):
+    """Stresses of a plastic section on every unit warping, as far as the iteration's tolerance lets them."""
+    wire = HelixSection(ck15, "warping", 5.0, 5.0)
+    wire.update(np.array([1e-4, 0, 1e-4, 2e-3, 0, 4e-4]))
+    rule, place = wire.rule, wire.placement
+    y, z = np.ascontiguousarray(rule.points.T)
+    n = wire.sections.unknowns
+    B = np.zeros((len(rule), 6, 6 + n))
+    f = values_and_slopes(3, y, z)
+    strain_operator(y, z, f, RADIUS, place.curvature[0, 0], place.torsion[0, 0], B)
+    stress = wire.trial["point_state"][0, 0][:, :6]
+    volume = rule.weights * (1.0 - place.curvature[0, 0] * RADIUS * y)
+    rest = np.einsum("pi,pij,p->j", stress, B, volume)
+    assert np.abs(rest[6:]).max() < 5.0 * TOLERANCE * ck15.E
+    assert np.abs(rest[:6]).max() > 0.1 * np.abs(stress).max()
+
+
+def test_warping_is_found_far_beyond_yield(ck15):
+    """Strains of up to some per cent in one increment from the unstressed state, in all directions."""
+    rng = np.random.default_rng(0)
+    for _ in range(30):
+        wire = HelixSection(ck15, "warping", 4.0, 5.0)
+        wire.update(rng.normal(size=6) * np.repeat([2e-3, 1e-3], 3) * rng.choice([0.3, 1, 3, 10]))
+        assert wire.sections.iterations[1] <= 2 * 20
