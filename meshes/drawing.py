@@ -1,12 +1,17 @@
 """The drawing of a spring: side view with dimensions, pitch and diameters over the turn."""
 
+from collections.abc import Callable, Iterator
 from itertools import pairwise
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
+
+from coilset.meshes.geometry import Spring
 
 PIECES_PER_TURN = 96
 OUTLINE = 1.0  # width of an outline, points
@@ -14,7 +19,7 @@ INK, STEEL_FACE, DIMENSION = "0.15", "0.85", "tab:blue"
 STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False}
 
 
-def drawing(spring, title=""):
+def drawing(spring: Spring, title: str = "") -> Figure:
     """Draw a spring.
 
     Args:
@@ -39,7 +44,9 @@ def drawing(spring, title=""):
         return figure
 
 
-def _over_turn(axes, spring, function, label, color, ls="-"):
+def _over_turn(
+    axes: Axes, spring: Spring, function: Callable[[np.ndarray], np.ndarray], label: str, color: str, ls: str = "-"
+) -> None:
     t = spring.breaks
     values = function(t)
     axes.plot(t, values, color=color, lw=1.4, ls=ls)
@@ -52,7 +59,7 @@ def _over_turn(axes, spring, function, label, color, ls="-"):
             axes.axvline(end, color="0.6", lw=0.8, ls="--")
 
 
-def _side_view(axes, spring):
+def _side_view(axes: Axes, spring: Spring) -> None:
     """The spring seen against the y axis, its far half turns behind the near ones, cut where its ends are ground."""
     t = spring.breaks
     reach = np.max(spring.mean_radius(t) + 0.5 * spring.wire_diameter(t))
@@ -81,7 +88,7 @@ def _side_view(axes, spring):
     _dimensions(axes, spring, reach, size)
 
 
-def _half_turns(spring):
+def _half_turns(spring: Spring) -> Iterator[tuple[int, np.ndarray]]:
     """Order of drawing and turns of the pieces between which the wire changes from the far side to the near one."""
     half = np.pi * spring.hand
     first = spring.phase / half
@@ -93,7 +100,7 @@ def _half_turns(spring):
         yield (1 if far else 1000) + round(2 * start), turns
 
 
-def _dimensions(axes, spring, reach, size):
+def _dimensions(axes: Axes, spring: Spring, reach: float, size: float) -> None:
     length, last = spring.free_length, spring.turns
     for level in (0.0, length):
         axes.plot([-reach - 0.05 * size, reach + 0.2 * size], [level, level], color=DIMENSION, lw=0.7, zorder=0)
@@ -116,7 +123,7 @@ def _dimensions(axes, spring, reach, size):
         )
 
 
-def _dimension(axes, start, end, text):
+def _dimension(axes: Axes, start: tuple[Any, Any], end: tuple[Any, Any], text: str) -> None:
     axes.annotate(
         "", start, end, arrowprops={"arrowstyle": "<->", "color": DIMENSION, "lw": 0.9, "shrinkA": 0, "shrinkB": 0}
     )

@@ -18,7 +18,7 @@ class InputError(CoilsetError):
 
     exit_code = 2
 
-    def __init__(self, problem, place="", file=""):
+    def __init__(self, problem: object, place: str = "", file: object = "") -> None:
         self.problem, self.place, self.file = problem, place, file
         super().__init__(": ".join(str(part) for part in (file, place, problem) if part))
 

@@ -7,10 +7,11 @@ import meshio
 import numpy as np
 
 from coilset.meshes.errors import InputError
+from coilset.meshes.geometry import Spring
 from coilset.meshes.measured import WIRE_DIAMETER
 
 
-def write_mesh(spring, turns, path):
+def write_mesh(spring: Spring, turns: np.ndarray, path: str | Path) -> None:
     """Write the nodes on the centre line and the elements between them.
 
     The file holds the turn and the wire diameter of every node, where its format holds data, and the groups wire,
@@ -34,7 +35,7 @@ def write_mesh(spring, turns, path):
         _write_meshio(points, coil, data, path)
 
 
-def _write_meshio(points, coil, data, path):
+def _write_meshio(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarray], path: Path) -> None:
     nodes = np.arange(len(points))
     lines = np.stack([nodes[:-1], nodes[1:]], axis=1)
     mesh = meshio.Mesh(points, [("line", lines)], point_data=data, cell_data={"end_coil": [(coil != 1).astype(int)]})
@@ -57,7 +58,7 @@ def _write_meshio(points, coil, data, path):
         raise InputError(f"{path.suffix} files hold no line elements; take .vtu, .msh, .inp or .xdmf", "", path)
 
 
-def _write_gmsh(points, coil, data, path):
+def _write_gmsh(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarray], path: Path) -> None:
     """The model has one curve for the body and one for each closed end; the group wire is all of them."""
     started = gmsh.isInitialized()
     if not started:

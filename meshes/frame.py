@@ -4,12 +4,13 @@ import basix.ufl
 import numpy as np
 import ufl
 from dolfinx import mesh as dmesh
+from mpi4py import MPI
 
 from coilset.meshes.errors import InputError
 from coilset.meshes.line import LineMesh
 
 
-def frame_mesh(nodes, pairs, comm):
+def frame_mesh(nodes: np.ndarray, pairs: np.ndarray, comm: MPI.Comm) -> LineMesh:
     """A LineMesh whose stations are `nodes` and whose elements are `pairs`.
 
     Args:

@@ -8,7 +8,7 @@ from scipy.interpolate import PPoly
 
 from coilset.meshes import functions
 from coilset.meshes.ends import OPEN, EndCoils, touching_pitch
-from coilset.meshes.stations import stations
+from coilset.meshes.stations import ElementsPerTurn, stations
 
 INTERVALS_PER_TURN = 64
 STRAIGHT = 1e-9  # of |c′ × c″| over |c′|²: below it a wire has no normal
@@ -40,21 +40,21 @@ class Spring:
     phase: float = 0.0
 
     @property
-    def turns(self):
+    def turns(self) -> float:
         """Number of turns, end turns included."""
         return float(self.height.x[-1])
 
     @cached_property
-    def slope(self):
+    def slope(self) -> PPoly:
         """Change of the mean radius over the turn, mm per turn, a `scipy.interpolate.PPoly`."""
         return self.radius.derivative()
 
     @cached_property
-    def _pitch(self):
+    def _pitch(self) -> PPoly:
         return self.height.derivative()
 
     @cached_property
-    def _planes(self):
+    def _planes(self) -> tuple[float, float]:
         """Levels of the seats in the coordinate of `height`: against the outermost wire, or where the end is ground."""
         t = self.breaks
         z, d = self.height(t), self.wire(t)
@@ -65,72 +65,72 @@ class Spring:
         )
 
     @cached_property
-    def breaks(self):
+    def breaks(self) -> np.ndarray:
         """Turns between which every function is one polynomial, `INTERVALS_PER_TURN` or more in a turn."""
         even = np.linspace(0.0, self.turns, int(np.ceil(INTERVALS_PER_TURN * self.turns)) + 1)
         t = np.unique(np.concatenate([even, self.radius.x, self.height.x, self.wire.x]))
         return t[np.concatenate([[True], np.diff(t) > 1e-9])]
 
-    def mean_radius(self, turn):
+    def mean_radius(self, turn: np.ndarray | float) -> np.ndarray:
         """Mean coil radius at the turns, mm, in their shape."""
         return self.radius(turn)
 
-    def wire_diameter(self, turn):
+    def wire_diameter(self, turn: np.ndarray | float) -> np.ndarray:
         """Wire diameter at the turns, mm, in their shape."""
         return self.wire(turn)
 
-    def pitch(self, turn):
+    def pitch(self, turn: np.ndarray | float) -> np.ndarray:
         """Rise of the centre line at the turns, mm per turn, in their shape."""
         return self._pitch(turn)
 
-    def centre_line(self, turn):
+    def centre_line(self, turn: np.ndarray | float) -> np.ndarray:
         """Points of the wire's centre line, mm, shape (..., 3); the bottom seat is z = 0."""
         θ = self.angle(turn)
         r, z = self.radius(turn), self.height(turn) - self._planes[0]
         return np.stack([r * np.cos(θ), r * np.sin(θ), z], axis=-1)
 
-    def angle(self, turn):
+    def angle(self, turn: np.ndarray | float) -> np.ndarray:
         """Polar angle of the centre line at the turns, rad, in their shape."""
         return self.phase + self.hand * 2 * np.pi * np.asarray(turn, dtype=float)
 
-    def velocity(self, turn):
+    def velocity(self, turn: np.ndarray | float) -> np.ndarray:
         """First derivative of the centre line by the turn, mm, shape (..., 3)."""
         θ = self.angle(turn)
         r, dr, dθ = self.radius(turn), self.slope(turn), self.hand * 2 * np.pi
         return _in_plane(θ, dr, r * dθ, self._pitch(turn))
 
-    def acceleration(self, turn):
+    def acceleration(self, turn: np.ndarray | float) -> np.ndarray:
         """Second derivative of the centre line by the turn, mm, shape (..., 3)."""
         θ = self.angle(turn)
         r, dr, ddr, dθ = self.radius(turn), self.slope(turn), self.slope.derivative()(turn), self.hand * 2 * np.pi
         return _in_plane(θ, ddr - r * dθ**2, 2 * dr * dθ, self._pitch.derivative()(turn))
 
-    def jerk(self, turn):
+    def jerk(self, turn: np.ndarray | float) -> np.ndarray:
         """Third derivative of the centre line by the turn, mm, shape (..., 3); it jumps where two polynomials meet."""
         θ = self.angle(turn)
         r, dr, dθ = self.radius(turn), self.slope(turn), self.hand * 2 * np.pi
         ddr, dddr = self.slope.derivative()(turn), self.slope.derivative(2)(turn)
         return _in_plane(θ, dddr - 3 * dr * dθ**2, 3 * ddr * dθ - r * dθ**3, self._pitch.derivative(2)(turn))
 
-    def speed(self, turn):
+    def speed(self, turn: np.ndarray | float) -> np.ndarray:
         """Length of wire per turn at the turns, ds/dt, mm, in their shape."""
         return np.sqrt(self.slope(turn) ** 2 + (2 * np.pi * self.radius(turn)) ** 2 + self._pitch(turn) ** 2)
 
-    def tangent(self, turn):
+    def tangent(self, turn: np.ndarray | float) -> np.ndarray:
         """Unit tangents of the centre line, shape (..., 3)."""
         return self.velocity(turn) / self.speed(turn)[..., None]
 
-    def curvature(self, turn):
+    def curvature(self, turn: np.ndarray | float) -> np.ndarray:
         """Curvature of the centre line at the turns, κ = |c′ × c″| / |c′|³, 1/mm, in their shape."""
         return np.linalg.norm(np.cross(self.velocity(turn), self.acceleration(turn)), axis=-1) / self.speed(turn) ** 3
 
-    def curvature_vector(self, turn):
+    def curvature_vector(self, turn: np.ndarray | float) -> np.ndarray:
         """κ n at the turns, 1/mm, shape (..., 3): towards the centre of curvature; zero where the wire is straight."""
         t, speed = self.tangent(turn), self.speed(turn)[..., None]
         acceleration = self.acceleration(turn)
         return (acceleration - np.sum(acceleration * t, axis=-1, keepdims=True) * t) / speed**2
 
-    def torsion(self, turn):
+    def torsion(self, turn: np.ndarray | float) -> np.ndarray:
         """Torsion of the centre line, τ = (c′ × c″) · c‴ / |c′ × c″|², 1/mm; 0 where the wire is straight.
 
         A helix of radius R that rises by h per radian has τ = h/(R² + h²), negative if it is left-handed.
@@ -141,11 +141,11 @@ class Spring:
         return np.sum(binormal * self.jerk(turn), axis=-1) / np.where(straight, np.inf, square)
 
     @cached_property
-    def _lengths(self):
+    def _lengths(self) -> np.ndarray:
         """Arc length at the breaks, mm."""
         return np.concatenate([[0.0], np.cumsum(functions.integral(self.speed, self.breaks))])
 
-    def arc_length(self, turn):
+    def arc_length(self, turn: np.ndarray | float) -> np.ndarray:
         """Length of the centre line from the bottom end to the turns, mm, in their shape."""
         t = np.asarray(turn, dtype=float)
         i = np.clip(np.searchsorted(self.breaks, t, side="right") - 1, 0, len(self.breaks) - 2)
@@ -155,23 +155,23 @@ class Spring:
         return self._lengths[i] + half * inside
 
     @property
-    def wire_length(self):
+    def wire_length(self) -> float:
         """Length of the wire's centre line, mm."""
         return float(self._lengths[-1])
 
     @property
-    def volume(self):
+    def volume(self) -> float:
         """Volume of the wire before grinding, mm³."""
         parts = functions.integral(lambda t: 0.25 * np.pi * self.wire(t) ** 2 * self.speed(t), self.breaks)
         return float(parts.sum())
 
     @property
-    def free_length(self):
+    def free_length(self) -> float:
         """Distance of the seats that touch the unloaded spring, mm."""
         return float(self._planes[1] - self._planes[0])
 
     @property
-    def block_height(self):
+    def block_height(self) -> float:
         """Distance of the seats when every coil lies on the next, mm.
 
         Coils of one radius rise by a wire's diameter in a turn, coils of a cone by less: `touching_pitch`. At the ends
@@ -182,11 +182,11 @@ class Spring:
         return float(rise.sum() + ends)
 
     @property
-    def active_turns(self):
+    def active_turns(self) -> float:
         """Turns that bear load: all but the end turns of closed ends."""
         return self.turns - self.bottom.end_turns - self.top.end_turns
 
-    def seat_distance(self, turn, end):
+    def seat_distance(self, turn: np.ndarray | float, end: str) -> np.ndarray:
         """Distance from the centre line to the wire's surface that meets a seat, mm, in the shape of `turn`.
 
         Half of the wire's diameter, and less where the end is ground.
@@ -200,7 +200,7 @@ class Spring:
             return np.minimum(half, self.height(turn) - self._planes[0])
         return np.minimum(half, self._planes[1] - self.height(turn))
 
-    def flat_turns(self, end):
+    def flat_turns(self, end: str) -> float:
         """Number of turns from the `bottom` or `top` tip over which the wire is ground; 0 where it is not ground."""
         along = self.breaks if end == "bottom" else self.breaks[::-1]
         cut = 0.5 * self.wire(along) - self.seat_distance(along, end)
@@ -212,12 +212,12 @@ class Spring:
         last = along[i - 1] - rest[0] * (along[i] - along[i - 1]) / (rest[1] - rest[0])
         return float(abs(last - along[0]))
 
-    def stations(self, elements_per_turn=16, sagitta=None):
+    def stations(self, elements_per_turn: ElementsPerTurn = 16, sagitta: float | None = None) -> np.ndarray:
         """Increasing turns of the nodes of a line mesh, see `coilset.meshes.stations.stations`."""
         return stations(self, elements_per_turn, sagitta)
 
 
-def _in_plane(angle, radial, circumferential, axial):
+def _in_plane(angle: np.ndarray, radial: np.ndarray, circumferential: np.ndarray, axial: np.ndarray) -> np.ndarray:
     """A vector given in polar components, in Cartesian ones."""
     cos, sin = np.cos(angle), np.sin(angle)
     return np.stack([radial * cos - circumferential * sin, radial * sin + circumferential * cos, axial], axis=-1)

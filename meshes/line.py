@@ -1,10 +1,12 @@
 """The line mesh of a rod: a gmsh model of straight elements through given stations, distributed by DOLFINx."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import gmsh
 import numpy as np
 from dolfinx import mesh as dmesh
+from mpi4py import MPI
 
 from coilset.meshes.compat import geometry_dofs, mesh_from_gmsh
 
@@ -27,7 +29,7 @@ class LineMesh:
     element: np.ndarray
     owned_cells: int
 
-    def in_order(self, values):
+    def in_order(self, values: np.ndarray) -> np.ndarray | None:
         """A copy of the owned cells' values in the order of the elements, on rank 0; elsewhere None; collective.
 
         Args:
@@ -45,7 +47,7 @@ class LineMesh:
         return np.concatenate([part[1] for part in parts])[order]
 
 
-def gmsh_line(stations, groups=None, name="wire"):
+def gmsh_line(stations: np.ndarray, groups: Mapping[str, int] | None = None, name: str = "wire") -> None:
     """Put the polygon through the stations into the current gmsh model; the caller initialises and finalises gmsh.
 
     Args:
@@ -69,7 +71,7 @@ def gmsh_line(stations, groups=None, name="wire"):
         gmsh.model.addPhysicalGroup(0, [point], name=group)
 
 
-def line_mesh(stations, comm):
+def line_mesh(stations: np.ndarray, comm: MPI.Comm) -> LineMesh:
     """Mesh the polygon through the stations with gmsh and distribute it over the ranks of `comm`.
 
     Args:

@@ -103,7 +103,7 @@ def read_centre_line(path: str | Path) -> tuple[np.ndarray, np.ndarray | None]:
     return points, wire
 
 
-def _read_csv(path):
+def _read_csv(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
     """Columns x, y, z and perhaps wire_diameter, named in the first line, separated by commas."""
     try:
         lines = [line for line in path.read_text(encoding="utf-8-sig").splitlines() if line.strip()]
@@ -125,7 +125,7 @@ def _read_csv(path):
     return table[:, :3], table[:, 3] if len(names) > 3 else None
 
 
-def _read_mesh(path):
+def _read_mesh(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
     """The only chain of line elements in a mesh; points of other elements and loose points do not count."""
     try:
         mesh = meshio.read(path)
@@ -142,12 +142,12 @@ def _read_mesh(path):
     return points, None if wire is None else np.asarray(wire, dtype=float).reshape(-1)[order]
 
 
-def _straight(block):
+def _straight(block: meshio.CellBlock) -> np.ndarray:
     """Line elements of two nodes; those of three are halved at their middle node."""
     return block.data if block.type == "line" else np.concatenate([block.data[:, [0, 2]], block.data[:, [2, 1]]])
 
 
-def _chain(lines, path):
+def _chain(lines: np.ndarray, path: str | Path) -> np.ndarray:
     """Nodes in their order along a chain of line elements, from the end with the smaller number."""
     lines = np.unique(np.sort(np.asarray(lines, dtype=int), axis=1), axis=0)
     nodes, uses = np.unique(lines, return_counts=True)
@@ -169,7 +169,7 @@ def _chain(lines, path):
     return np.array(order)
 
 
-def _turns(points, path):
+def _turns(points: np.ndarray, path: str | Path) -> tuple[np.ndarray, int, float]:
     """Turns of the points from the first, hand, and polar angle of the first, rad."""
     angle = np.arctan2(points[:, 1], points[:, 0])
     step = (np.diff(angle) + np.pi) % (2 * np.pi) - np.pi

@@ -4,10 +4,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from coilset.meshes.geometry import Spring
+
 STRAIGHT = 1e-9  # curvature, 1/mm, below which a section has no normal
 
 
-def gauss_points(spring, start, end, abscissae):
+def gauss_points(
+    spring: Spring, start: np.ndarray, end: np.ndarray, abscissae: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Gauss points on the true centre line between pairs of nodes.
 
     The abscissa is the part of the turns from one node to the other, not of the chord: functions of the turn are
@@ -29,7 +33,7 @@ def gauss_points(spring, start, end, abscissae):
     return spring.centre_line(turn), spring.tangent(turn), spring.speed(turn) * (end - start)
 
 
-def polygon_nodes(spring, turns, keep="points", poisson=0.3):
+def polygon_nodes(spring: Spring, turns: np.ndarray, keep: str = "points", poisson: float = 0.3) -> np.ndarray:
     """Nodes of a polygon of straight rods that represents the wire.
 
     A chord over the angle φ is shorter than its arc and nearer to the axis. Under an axial force F it bears the torque
@@ -81,13 +85,15 @@ class Placement(NamedTuple):
     torsion: np.ndarray
 
 
-def straight(elements):
+def straight(elements: int) -> Placement:
     """The placement of sections that lie on their straight rods, two for each."""
     zero = np.zeros((elements, 2))
     return Placement(np.tile(np.eye(6), (elements, 2, 1, 1)), np.ones_like(zero), zero, zero.copy())
 
 
-def section_placement(spring, turns, triads, abscissae, curved=False):
+def section_placement(
+    spring: Spring, turns: np.ndarray, triads: np.ndarray, abscissae: np.ndarray, curved: bool = False
+) -> Placement:
     """How the sections of the curved wire hang on the chords between the nodes.
 
     A section of the true centre line is rigidly tied to the section of the chord at the same ξ, by the offset o. With
@@ -96,10 +102,10 @@ def section_placement(spring, turns, triads, abscissae, curved=False):
 
         Γ_true = Qᵀ (Γ + K × o) dx/ds,    K_true = Qᵀ K dx/ds,
 
-    so that a rigid motion strains nothing, whatever o and Q are. Q is the least turn that brings the chord's axis to
-    the true tangent t; of a curved wire it is followed by the turn about t that brings the section's y axis to the
-    normal n, the direction of the centre of curvature. Where the wire is straight there is no normal, and none is
-    needed.
+    so that a rigid motion strains nothing, whatever o and Q are. Q is the smallest rotation that brings the chord's
+    axis to the true tangent t; of a curved wire it is followed by the rotation about t that brings the section's
+    y axis to the normal n, the direction of the centre of curvature. Where the wire is straight there is no normal, and
+    none is needed.
 
     Args:
         spring: `Spring`.
@@ -134,7 +140,7 @@ def section_placement(spring, turns, triads, abscissae, curved=False):
     return Placement(P / stretch[..., None, None], stretch, curvature, torsion)
 
 
-def _least_turn(t):
+def _least_turn(t: np.ndarray) -> np.ndarray:
     """The least turn that brings the first axis to the unit vectors `t`, shape (..., 3) → (..., 3, 3)."""
     Q = np.zeros((*t.shape, 3))
     Q[..., :, 0] = t
@@ -143,7 +149,7 @@ def _least_turn(t):
     return Q
 
 
-def _to_normal(normal, curvature):
+def _to_normal(normal: np.ndarray, curvature: np.ndarray) -> np.ndarray:
     """The turn about the first axis that brings the second to κ n = `normal`, shape (..., 2) → (..., 3, 3)."""
     straight = curvature < STRAIGHT
     cos, sin = np.moveaxis(normal, -1, 0) / np.where(straight, np.inf, curvature)

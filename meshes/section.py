@@ -82,11 +82,11 @@ def section_mesh(outline: Outline, across: float = 5.0, degree: int = 3, surface
 
 def _extent(curves: list[int]) -> tuple[float, float, float, float]:
     """Least and greatest ξ, least and greatest η of curves in the current gmsh model, from points on them."""
-    points = []
+    along = []
     for tag in curves:
         (start,), (end,) = gmsh.model.getParametrizationBounds(1, tag)
-        points.append(gmsh.model.getValue(1, tag, np.linspace(start, end, SAMPLES)).reshape(-1, 3))
-    points = np.concatenate(points)
+        along.append(gmsh.model.getValue(1, tag, np.linspace(start, end, SAMPLES)).reshape(-1, 3))
+    points = np.concatenate(along)
     return (*np.sort(points[:, 0])[[0, -1]].tolist(), *np.sort(points[:, 1])[[0, -1]].tolist())
 
 

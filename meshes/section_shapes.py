@@ -36,7 +36,7 @@ class Oval:
     width: float
     height: float
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         _positive(width=self.width, height=self.height)
 
     def draw(self) -> list[int]:
@@ -67,7 +67,7 @@ class Trapezoid:
     outside: float
     corner: float = 0.0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         _positive(width=self.width, inside=self.inside, outside=self.outside)
         if not self.corner >= 0:
             raise InputError(f"{self.corner:g} mm cannot be; give a radius from 0", "section.corner")
@@ -100,7 +100,7 @@ class Curve:
     points: np.ndarray
     smooth: bool = False
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         points = np.asarray(self.points, float)
         if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3 or not np.isfinite(points).all():
             raise InputError("give three points (ξ, η) or more, in mm", "section.points")
@@ -159,7 +159,7 @@ def crosses_itself(points: np.ndarray) -> bool:
     """Whether two sides of a closed polygon that do not follow each other cross, shape (n, 2)."""
     a, b = points, np.roll(points, -1, axis=0)
 
-    def side(p, q, r):
+    def side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> np.ndarray:
         return np.sign((q[..., 0] - p[..., 0]) * (r[..., 1] - p[..., 1])
                        - (q[..., 1] - p[..., 1]) * (r[..., 0] - p[..., 0]))  # fmt: skip
 

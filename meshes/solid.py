@@ -6,10 +6,13 @@ from dataclasses import dataclass, replace
 import dolfinx.mesh
 import gmsh
 import numpy as np
+from mpi4py import MPI
 
 from coilset.meshes.compat import mesh_from_gmsh, unghosted
 from coilset.meshes.errors import InputError
 from coilset.meshes.solid_grid import SectionGrid, gmsh_cylinder
+
+GRID = SectionGrid()  # of a wire for which nothing else is asked
 
 
 @dataclass(frozen=True)
@@ -27,16 +30,16 @@ class Helix:
     degrees: float
 
     @property
-    def slope(self):
+    def slope(self) -> float:
         """Pitch angle α, rad: tan α = p / (π D)."""
         return np.arctan2(self.pitch, np.pi * self.mean_diameter)
 
     @property
-    def length(self):
+    def length(self) -> float:
         """Length of the centre line, mm."""
         return 0.5 * self.mean_diameter * np.radians(self.degrees) / np.cos(self.slope)
 
-    def frame(self, s):
+    def frame(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Centre and axes (outward radius, t × radius, tangent t) at the arc lengths, each of shape (..., 3).
 
         The axes are right-handed and the second one looks down the axis of a coil that rises.
@@ -50,7 +53,7 @@ class Helix:
         tangent = np.stack([-σ * np.cos(α), c * np.cos(α), o + np.sin(α)], axis=-1)
         return centre, outward, np.cross(tangent, outward), tangent
 
-    def place(self, straight):
+    def place(self, straight: np.ndarray) -> np.ndarray:
         """Where points (y, z, s) of the straight wire lie on the coil, shape (n, 3); sections stay plane and normal."""
         centre, outward, second, _ = self.frame(straight[:, 2])
         return centre + straight[:, :1] * outward + straight[:, 1:2] * second
@@ -78,12 +81,19 @@ class SolidMesh:
     straight: np.ndarray
     place: Callable[[np.ndarray], np.ndarray]
 
-    def facets(self, group):
+    def facets(self, group: str) -> np.ndarray:
         """Facets of a group on this rank."""
         return self.facet_tags.find(self.groups[group])
 
 
-def straight_wire(diameter, length, layers, comm, grid=SectionGrid(), cell="hexahedron"):  # noqa: B008, frozen
+def straight_wire(
+    diameter: float,
+    length: float,
+    layers: int,
+    comm: MPI.Comm,
+    grid: SectionGrid = GRID,
+    cell: str = "hexahedron",
+) -> SolidMesh:
     """Mesh a straight wire along z; its bottom head is centred at the origin.
 
     Args:
@@ -118,7 +128,16 @@ def straight_wire(diameter, length, layers, comm, grid=SectionGrid(), cell="hexa
     return SolidMesh(mesh, facet_tags, groups, diameter, length, mesh.geometry.x.copy(), lambda straight: straight)
 
 
-def coil_section(wire_diameter, mean_diameter, pitch, degrees, layers, comm, grid=SectionGrid(), cell="hexahedron"):  # noqa: B008, frozen
+def coil_section(
+    wire_diameter: float,
+    mean_diameter: float,
+    pitch: float,
+    degrees: float,
+    layers: int,
+    comm: MPI.Comm,
+    grid: SectionGrid = GRID,
+    cell: str = "hexahedron",
+) -> SolidMesh:
     """Mesh a section of a coil about the z axis: the straight mesh, every node mapped onto the helix.
 
     Args:

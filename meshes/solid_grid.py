@@ -24,7 +24,7 @@ class SectionGrid:
     core_size: float = 0.5
     grading: float = 1.0
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         """Refuse what is no grid."""
         if self.core < 1 or self.rings < 1:
             raise InputError(f"core {self.core} and rings {self.rings} must be at least 1", "grid")
@@ -32,7 +32,7 @@ class SectionGrid:
             raise InputError(f"{self.core_size} must lie between 0 and 1", "grid.core_size")
 
     @property
-    def cells(self):
+    def cells(self) -> int:
         """Quadrilaterals in the cross-section."""
         return self.core * self.core + 4 * self.core * self.rings
 
@@ -41,7 +41,7 @@ class SectionGrid:
 BULGE = 0.08
 
 
-def gmsh_disk(radius, grid, recombine):
+def gmsh_disk(radius: float, grid: SectionGrid, recombine: bool) -> list[int]:
     """Draw the O-grid of a disk in the plane z = 0 of the current gmsh model.
 
     Args:
@@ -85,7 +85,7 @@ def gmsh_disk(radius, grid, recombine):
     return surfaces
 
 
-def gmsh_cylinder(radius, length, layers, grid, cell):
+def gmsh_cylinder(radius: float, length: float, layers: int, grid: SectionGrid, cell: str) -> dict[str, int]:
     """Mesh a straight wire along z in the current gmsh model with elements of second order.
 
     Args:

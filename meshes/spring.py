@@ -1,5 +1,6 @@
 """The `spring:` section of the case file, and what is built from it."""
 
+from collections.abc import Callable
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -81,7 +82,7 @@ class SpringSpec(Strict):
                 "spring.turns",
             )
 
-        def spring(pitch):
+        def spring(pitch: functions.PPoly) -> Spring:
             height = self._pitch_with_ends(pitch, wire, radius).antiderivative()
             return Spring(radius, height, wire, 1 if self.hand == "right" else -1, *bottom_and_top(self.end_coils))
 
@@ -121,29 +122,34 @@ class SpringSpec(Strict):
         except ValueError as error:
             raise InputError(str(error), f"spring.{entry}") from error
 
-    def _pitch_with_ends(self, pitch, wire, radius):
+    def _pitch_with_ends(
+        self, pitch: functions.PPoly, wire: functions.PPoly, radius: functions.PPoly
+    ) -> functions.PPoly:
         slope = radius.derivative()
 
-        def touching(start, end):
+        def touching(start: float, end: float) -> float:
             t = np.linspace(start, end, 65)
             return touching_pitch(wire(t), slope(t)).max()
 
         return pitch_with_ends(pitch, *bottom_and_top(self.end_coils), touching)
 
-    def _with_free_length(self, spring, body_turns):
+    def _with_free_length(self, spring: Callable[[functions.PPoly], Spring], body_turns: float) -> Spring:
         """The spring whose body has the pitch that makes the free length; this grows with the pitch."""
 
-        def too_long(pitch):
-            return spring(functions.constant(pitch, self.turns)).free_length - self.free_length
+        free_length = self.free_length
+        assert free_length is not None
 
-        least = too_long(0.0) + self.free_length
-        if least >= self.free_length:
+        def too_long(pitch: float) -> float:
+            return spring(functions.constant(pitch, self.turns)).free_length - free_length
+
+        least = too_long(0.0) + free_length
+        if least >= free_length:
             raise InputError(
-                f"{self.free_length:g} mm leave no pitch: end coils and wire alone need {least:.4g} mm",
+                f"{free_length:g} mm leave no pitch: end coils and wire alone need {least:.4g} mm",
                 "spring.free_length",
             )
         # the body alone rises by the greatest pitch times its turns
-        pitch = brentq(too_long, 0.0, self.free_length / body_turns, xtol=1e-12, rtol=1e-14)
+        pitch = brentq(too_long, 0.0, free_length / body_turns, xtol=1e-12, rtol=1e-14)
         return spring(functions.constant(pitch, self.turns))
 
 

@@ -1,6 +1,6 @@
 """Where the nodes of a line mesh stand along the wire."""
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 from pydantic import Discriminator, Field, Tag
@@ -8,6 +8,9 @@ from pydantic import Discriminator, Field, Tag
 from coilset.meshes import functions
 from coilset.meshes.errors import InputError
 from coilset.meshes.shapes import Table, form_of_entry
+
+if TYPE_CHECKING:
+    from coilset.meshes.geometry import Spring
 
 LEAST, MOST = 3, 1_000_000
 
@@ -18,7 +21,7 @@ ElementsPerTurn = Annotated[
 """Number of elements in a turn, or a table of it over the turns where the mesh is graded."""
 
 
-def stations(spring, elements_per_turn=16, sagitta=None):
+def stations(spring: "Spring", elements_per_turn: ElementsPerTurn = 16, sagitta: float | None = None) -> np.ndarray:
     """Turns at which the nodes stand.
 
     The number of elements in a turn is a density over the turn; its integral, rounded up, is the number of elements,
@@ -44,7 +47,7 @@ def stations(spring, elements_per_turn=16, sagitta=None):
     except ValueError as error:
         raise InputError(str(error), "mesh.elements_per_turn") from None
 
-    def density(t):
+    def density(t: np.ndarray) -> np.ndarray:
         if sagitta is None:
             return given(t)
         # sagitta = κ h²/8, h the element's length

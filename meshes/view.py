@@ -1,12 +1,16 @@
 """The spring in 3D: its wire as a tube, cut where its ends are ground."""
 
+from pathlib import Path
+
 import numpy as np
 import pyvista as pv
+
+from coilset.meshes.geometry import Spring
 
 STATIONS_PER_TURN = 64
 
 
-def tube(spring, sides=32):
+def tube(spring: Spring, sides: int = 32) -> pv.PolyData:
     """The wire's surface as a `pyvista.PolyData`, with the turn as its data.
 
     Args:
@@ -23,7 +27,7 @@ def tube(spring, sides=32):
     return surface
 
 
-def picture(spring, path):
+def picture(spring: Spring, path: str | Path) -> None:
     """Draw the spring from the side and a little above as a PNG; needs a display."""
     plotter = pv.Plotter(off_screen=True, window_size=(900, 900))
     plotter.set_background("white")

@@ -1,4 +1,4 @@
-"""From a case to its history: geometry → mesh → rod, contacts and control → load program → records."""
+"""From a case to its result: geometry → mesh → rod, contacts and control → load program → records."""
 
 import logging
 import math
@@ -19,7 +19,7 @@ from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.layout import LineLayout
-from coilset.model.equilibrium.methods import rod_method
+from coilset.model.equilibrium.methods import Method, rod_method
 from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.program import LoadProgram, ProgramPosition, Stage, StepTaken
 from coilset.model.equilibrium.stability import Stability
@@ -104,7 +104,7 @@ class Analysis:
         return Newton(self.system, self._method(solver.method), solver.tolerance, control, limit,
                       contact.augmentation_tolerance or np.inf)  # fmt: skip
 
-    def _method(self, name: str):
+    def _method(self, name: str) -> Method:
         # an arc by which every node moves by about the wire's radius
         arc = self.rod.largest_radius * np.sqrt(len(self.layout.station_dofs))
         return rod_method(name, self.comm.size, self.case.solver.options, arc)

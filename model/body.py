@@ -15,12 +15,15 @@ class Body(Protocol):
     Attributes:
         increment: the increments, mm and rad, a function of the body's space; ghosts are up to date at `update`.
         state: State with the body's own fields.
-        row_entries: entries in the tangent's row of each owned unknown; None where `create_matrix` makes the room.
     """
 
     increment: fem.Function
     state: State
-    row_entries: np.ndarray | None
+
+    @property
+    def row_entries(self) -> np.ndarray | None:
+        """Entries in the tangent's row of each owned unknown; None where `create_matrix` makes the room."""
+        ...
 
     def update(self) -> bool:
         """Bring the trial state to `increment`.

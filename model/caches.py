@@ -8,7 +8,7 @@ from pathlib import Path
 SOURCES = Path(__file__).resolve().parent
 
 
-def keep_by_content():
+def keep_by_content() -> None:
     """Give each version of the compiled functions a folder of its own in numba's cache.
 
     Numba compiles a function anew when its own file changes, but not when one that it calls does, and would go on with

@@ -36,7 +36,7 @@ class UniformState:
     Attributes:
         coils: wire diameter, mean diameter, pitch (mm) and number of turns, shape (n, 4).
         q: R̄ (mm), ϑ (rad), h̄ (mm/rad), λ, shape (n, 4).
-        points: history rows of the section points, shape (n, points, n_state), MPa, as in `material.rod`.
+        points: point states of the section points, shape (n, points, n_state), MPa, as in `material.rod`.
         force: axial force, compression positive, shape (n,), N; torque: about the axis, shape (n,), N mm.
         sections: N, Q₃, Mt, M₃, shape (n, 4), N and N mm; tangents: their derivatives by E, shape (n, 4, 4).
     """
@@ -123,7 +123,24 @@ def press(
 
 
 @njit(cache=True)
-def _press(p, y, z, w, coils, targets, by_force, free, plain, q, points, force, torque, sections, tangents, found):
+def _press(
+    p: np.ndarray,
+    y: np.ndarray,
+    z: np.ndarray,
+    w: np.ndarray,
+    coils: np.ndarray,
+    targets: np.ndarray,
+    by_force: bool,
+    free: bool,
+    plain: np.ndarray,
+    q: np.ndarray,
+    points: np.ndarray,
+    force: np.ndarray,
+    torque: np.ndarray,
+    sections: np.ndarray,
+    tangents: np.ndarray,
+    found: np.ndarray,
+) -> int:
     """Take all coils through their targets; the number of the first one that finds no equilibrium, or -1."""
     new = np.empty_like(points[0])
     for i in range(len(coils)):

@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 from coilset.verification import registry
 
@@ -36,7 +37,7 @@ def page(folder: str | Path) -> str:
         if not checks or "verdict" not in checks[0]:  # a record of before there were verdicts is as good as none
             rows.append([f"`{name}`", "", "", "", "", "", "", "", "not run"])
             continue
-        groups = {}
+        groups: dict[tuple[str, bool], list[dict[str, Any]]] = {}
         for check in checks:
             groups.setdefault((check["source"], bool(check["reason"])), []).append(check)
         for (source, _), group in groups.items():

@@ -38,5 +38,5 @@ def load(name):
         hint = f"; is {near[0]} meant?" if near else ""
         raise InputError(f"'{name}' is no case; there are {', '.join(names())}{hint}", "verify")
     module = importlib.import_module(f"{cases.__name__}.{name.replace('-', '_')}")
-    title, _, text = inspect.getdoc(module).partition("\n")
+    title, _, text = (inspect.getdoc(module) or "").partition("\n")
     return Case(name, title, text.strip(), getattr(module, "FAST", False), module.run)

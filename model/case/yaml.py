@@ -13,7 +13,7 @@ import yaml
 from coilset.meshes.errors import InputError
 from coilset.model.case.entry import shortened
 
-DEEPEST = 40  # levels of nesting; a case has six
+MAX_NESTING = 40  # levels of nesting; a case has six
 LARGEST = 1_000_000  # values of a file, those that aliases repeat counted each time
 
 TAG = "tag:yaml.org,2002:"
@@ -28,15 +28,15 @@ UNFIT = re.compile("[\0\ud800-\udfff]")  # in no name of a file, and on no scree
 
 
 class _Loader(yaml.loader.BaseLoader):
-    """Nodes of a document, nested no deeper than `DEEPEST`."""
+    """Nodes of a document, nested no deeper than `MAX_NESTING`."""
 
     depth = 0
 
     def compose_node(self, parent: Any, index: Any) -> Any:
         """PyYAML's, counting levels: it calls itself, and Python's stack has an end."""
         self.depth += 1
-        if self.depth > DEEPEST:
-            problem = f"nested deeper than {DEEPEST} levels"
+        if self.depth > MAX_NESTING:
+            problem = f"nested deeper than {MAX_NESTING} levels"
             raise yaml.MarkedYAMLError(problem=problem, problem_mark=self.peek_event().start_mark)
         node = super().compose_node(parent, index)
         self.depth -= 1
@@ -58,8 +58,8 @@ class _Values:
         self.count += 1
         if self.count > LARGEST:
             raise _problem(node, f"more than {LARGEST:,} values; are aliases repeated by aliases?")
-        if depth > DEEPEST:  # deeper than its text: through aliases
-            raise _problem(node, f"nested deeper than {DEEPEST} levels; does an alias lie within what it repeats?")
+        if depth > MAX_NESTING:  # deeper than its text: through aliases
+            raise _problem(node, f"nested deeper than {MAX_NESTING} levels; does an alias lie within what it repeats?")
         kind = node.tag.removeprefix(TAG)
         if isinstance(node, yaml.MappingNode) and kind == "map":
             return self._mapping(node, depth)

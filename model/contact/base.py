@@ -20,9 +20,9 @@ from coilset.model.contact.memory import Memory
 ENDS = ("bottom", "top")
 SEAT_DOFS = 6  # x, y, z, θx, θy, θz; see plate.py
 LEVEL = 2  # the one along the spring's axis
-# A point counts as closed from this share of c w on, the force of its stiffness c over the way w of its onset: by the
-# law of the onset, c p²/(4 w), it has then sunk in by 4e-4 w, two millionths of a millimetre for a wire of 5 mm. What
-# presses by less does so by the tolerance of the iteration.
+# A point counts as closed from this part of c w on, the force of its stiffness c over the distance w of its onset: by
+# the law of the onset, c p²/(4 w), it has then sunk in by 4e-4 w, two millionths of a millimetre for a wire of 5 mm.
+# What presses by less does so by the tolerance of the iteration.
 CLOSED_OF_ONSET_FORCE = 4e-8
 
 
@@ -76,7 +76,7 @@ class Contribution:
 
 
 def one_sided(g: np.ndarray, c: np.ndarray, onset: float) -> tuple[np.ndarray, np.ndarray]:
-    """Compressive force and stiffness of one-sided springs whose contact sets in over a short way.
+    """Compressive force and stiffness of one-sided springs whose contact sets in over a short distance.
 
     Touching surfaces come to bear gradually: with the penetration p = −g the force is c p²/(4w) up to p = 2w and
     c (p − w) beyond. Without such an onset the tangent jumps, and a line search can be caught on the kink.
@@ -146,7 +146,7 @@ class Augmented(HasMemory, Protocol):
 
     @property
     def multiplier_offset(self) -> np.ndarray:
-        """The way by which each point is pressed although it has not sunk in by it, mm; part of its memory."""
+        """The distance by which each point is pressed although it has not sunk in by it, mm; part of its memory."""
         ...
 
     def augment(self, trial: TrialPositions) -> None:

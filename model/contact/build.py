@@ -16,7 +16,7 @@ from coilset.model.contact.seat import Seat
 
 MODULUS_OF_BEDDING = 40.0  # default bedding is E/40: steel wire sinks in by some thousandths of its diameter at block
 FREE_TILT_OF_BEDDING = 1e-7  # stiffness of a joint that is free to tilt, against that of the coil's bedding, b r³
-ONSET_OF_DIAMETER = 1e-3  # way over which contact sets in, in wire diameters
+ONSET_OF_DIAMETER = 1e-3  # distance over which contact sets in, in wire diameters
 
 
 def build_contacts(

@@ -16,7 +16,17 @@ LOCATIONS_PER_POINT = 4  # on other coils, in the mean over the points, for whic
 
 
 @njit(cache=True, error_model="numpy")
-def gap_derivatives(p, weights, y, first, cubic, pair, xi, grad, hessian):
+def gap_derivatives(
+    p: np.ndarray,
+    weights: np.ndarray,
+    y: np.ndarray,
+    first: np.ndarray,
+    cubic: np.ndarray,
+    pair: np.ndarray,
+    xi: np.ndarray,
+    grad: np.ndarray,
+    hessian: np.ndarray,
+) -> None:
     """Gradient and second derivative of the gaps by the eight stations of each pair.
 
     With q = Σ a_m x_m from the other coil to the point, d = |q|, n = q/d, P = (1 − n nᵀ)/d and a′ = ∂a/∂ξ the gap
@@ -76,7 +86,7 @@ class Coils:
         points: WirePoints.
         stations: stress-free positions, shape (n, 3), mm.
         bedding: force per length of wire and penetration, N/mm per mm.
-        onset: way over which contact sets in, mm.
+        onset: distance over which contact sets in, mm.
     """
 
     name, end, needs_rotations = "coils", None, False
@@ -91,7 +101,7 @@ class Coils:
 
     @property
     def multiplier_offset(self) -> np.ndarray:
-        """Way by which each point is pressed though it has not sunk in by it, for the coil before and after, mm."""
+        """Distance by which each point is pressed beyond its penetration, for the coil before and after, mm."""
         return self.memory["multiplier_offset"]
 
     def sides(self, pair: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

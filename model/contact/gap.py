@@ -13,7 +13,7 @@ class Gaps:
         pairs: station numbers, shape (m, 2).
         free_length: distance at which the wires touch, the sum of their radii, shape (m,), mm.
         stiffness: c, shape (m,), N/mm.
-        onset: way over which contact sets in, mm.
+        onset: distance over which contact sets in, mm.
     """
 
     # gap elements are few: they limit no step, but close and open by the iteration alone, as in the thesis
@@ -48,7 +48,7 @@ class Stops:
         normal: unit vectors out of the planes, shape (m, 3).
         level: the stations touch where normal · x = level, shape (m,), mm.
         stiffness: c, shape (m,), N/mm.
-        onset: way over which contact sets in, mm.
+        onset: distance over which contact sets in, mm.
     """
 
     name, end, points, needs_rotations = "stop", None, None, False

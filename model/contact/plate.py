@@ -1,4 +1,4 @@
-"""A seat is a rigid plate: wire points seen from it, and the way back from functions of them to the unknowns.
+"""A seat is a rigid plate: wire points in its frame, and derivatives of functions of them by the unknowns.
 
 A plate has six degrees of freedom: its centre c = (x, y, z) and the rotation vector θ. In its frame the point p is at
 

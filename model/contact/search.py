@@ -13,7 +13,7 @@ LEAST_POST_DISTANCE = 0.5  # distance of the stations that are sorted, in wire r
 
 
 @njit(cache=True)
-def grid(x, size):
+def grid(x: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, float, np.ndarray, np.ndarray]:
     """Sort stations into cubes: box corner, cubes per axis, cube size, first station of a cube, next of a station."""
     n = len(x)
     low, high = x[0].copy(), x[0].copy()
@@ -38,13 +38,15 @@ def grid(x, size):
 
 
 @njit(cache=True)
-def distance2(p, x, j):
+def distance2(p: np.ndarray, x: np.ndarray, j: int) -> float:
     """Square of the distance of the point `p` from station `j`."""
     return (p[0] - x[j, 0]) ** 2 + (p[1] - x[j, 1]) ** 2 + (p[2] - x[j, 2]) ** 2
 
 
 @njit(cache=True, error_model="numpy")
-def slope_and_curvature(p, y, first, cubic, e, xi, work):
+def slope_and_curvature(
+    p: np.ndarray, y: np.ndarray, first: np.ndarray, cubic: np.ndarray, e: int, xi: float, work: np.ndarray
+) -> tuple[float, float]:
     """First and second derivative by ξ of the gap |p − c(ξ)| − r(ξ) on element `e`."""
     c, dc, ddc = work[0], work[1], work[2]
     point_on_curve(y, first, cubic, e, xi, c, 0)
@@ -61,14 +63,18 @@ def slope_and_curvature(p, y, first, cubic, e, xi, work):
 
 
 @njit(cache=True, error_model="numpy")
-def station_slope(p, y, first, cubic, j, work):
+def station_slope(
+    p: np.ndarray, y: np.ndarray, first: np.ndarray, cubic: np.ndarray, j: int, work: np.ndarray
+) -> float:
     """First derivative by ξ of the gap at station `j`."""
     e = min(j, len(first) - 1)
     return slope_and_curvature(p, y, first, cubic, e, float(j - e), work)[0]
 
 
 @njit(cache=True, error_model="numpy")
-def closest(p, y, first, cubic, j, work):
+def closest(
+    p: np.ndarray, y: np.ndarray, first: np.ndarray, cubic: np.ndarray, j: int, work: np.ndarray
+) -> tuple[int, float, bool]:
     """Closest point to `p` along the wire, sought from station `j`: element, ξ, and whether it is inside the wire."""
     last = len(first)
     direction = -1 if station_slope(p, y, first, cubic, j, work) > 0.0 else 1

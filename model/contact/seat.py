@@ -10,7 +10,7 @@ from coilset.model.contact.curve import STENCIL, WirePoints
 from coilset.model.contact.memory import Memory
 from coilset.model.contact.plate import Plate, radial
 
-# Stiffness of the spring that holds a tip which lifts off, as a share of the bedding of a wire diameter. 1e-3 changed
+# Stiffness of the spring that holds a tip which lifts off, as a part of the bedding of a wire diameter. 1e-3 changed
 # the set of a spring whose tips lift off at the end of the release by 0.24 mm of 37.7 mm, 1e-5 by less than 0.01 mm.
 TIP_SPRING_OF_BEDDING = 1e-5
 
@@ -29,7 +29,7 @@ class Seat:
         stations: stress-free positions, shape (n, 3), mm.
         seats: of both seats in the stress-free state, shape (12,), mm and rad.
         bedding: force per length of wire and penetration, N/mm per mm.
-        onset: way over which contact sets in, mm.
+        onset: distance over which contact sets in, mm.
         slope: tan β of a conical seat that rises outwards, 0 for a flat one.
         stepped: turns from the tip over which the seat follows the wire's underside; beyond it goes on level.
         moves: has the seat degrees of freedom besides its level?
@@ -78,7 +78,7 @@ class Seat:
 
     @property
     def multiplier_offset(self) -> np.ndarray:
-        """Way by which each point is pressed although it has not sunk in by it, shape (m,), mm."""
+        """Distance by which each point is pressed although it has not sunk in by it, shape (m,), mm."""
         return self.memory["multiplier_offset"]
 
     def gaps(self, p: np.ndarray, seats: np.ndarray) -> np.ndarray:

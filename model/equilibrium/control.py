@@ -39,7 +39,7 @@ class NewtonControl:
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = STRICT
-    stagnation: Count = 25
+    stagnation: Count = 20
     part_tolerance: Share = 0.2
     smallest_part: Share = 0.1
     augmentations: Count = 40

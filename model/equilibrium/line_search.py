@@ -4,7 +4,7 @@ Contacts and yielding bend the residual: its norm often grows over a full correc
 search for a smaller norm (PETSc's `bt`) then stalls. Measured instead is the out-of-balance work along the correction,
 s(λ) = y · F(x − λ y), as with Matthies and Strang: s falls from s(0) > 0 through zero where the energy is least.
 
-A correction that presses coils far into each other goes only as far as the contacts allow, and the next one sees them
+A correction that presses coils far into each other goes only as far as the contacts allow, and the next one finds them
 closed. If it was the one that meets the prescribed increments, balance is sought there before it goes on: the step is
 solved in parts, see coilset.model.equilibrium.newton.
 """
@@ -25,9 +25,9 @@ class StepLength:
     """How far to go.
 
     Attributes:
-        contact_limit: share of the correction that contacts allow.
-        value: share of that.
-        ends_on_the_way: is it short of the prescribed increments, which the whole correction would meet?
+        contact_limit: factor of the correction that contacts allow.
+        value: factor of the correction that is left, from the search for the work's zero.
+        ends_on_the_way: is the step short of the prescribed increments, which the whole correction would meet?
     """
 
     contact_limit: float

@@ -46,7 +46,7 @@ METHODS: dict[str, dict[str, Any]] = {
         "snes_linesearch_type": "cp", "snes_max_it": 100, "snes_npc_side": "left",
         "snes_function_type": "unpreconditioned", **PRECONDITIONED, "npc_snes_lag_jacobian": 5,
     },
-    # the share of the load as one more unknown: goes past limit points within a step; the arc is one of displacements
+    # the load factor as one more unknown: goes past limit points within a step; the arc is one of displacements
     "arc-length": {"snes_type": "newtonal", "snes_newtonal_psisq": 0.0, "snes_max_it": 30, **DIRECT},
 }  # fmt: skip
 
@@ -114,7 +114,7 @@ class Method:
 
     @property
     def is_arc_length(self) -> bool:
-        """Is the share of the load one more unknown?"""
+        """Is the load factor one more unknown?"""
         return self.options.get("snes_type") == ARC_LENGTH
 
     @property

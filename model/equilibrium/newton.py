@@ -82,7 +82,7 @@ class Newton:
         self._factory = SnesFactory(
             system.comm, lambda *args: me._residual(*args), lambda *args: me._tangent(*args), self.F, self.matrix.mat
         )
-        self.snes: PETSc.SNES | None = None
+        self.snes: PETSc.SNES = None  # until `use` makes it
         self._first: PETSc.SNES | None = None
         self.use(method)
 
@@ -203,7 +203,7 @@ class Newton:
 
     def _residual(self, snes: PETSc.SNES, X: PETSc.Vec, F: PETSc.Vec) -> None:
         self.system.residual(X, self.load, self.load_factor, F)
-        if snes.getType() == ARC_LENGTH:  # SNES takes its share of the load off: F(x) − λ load
+        if snes.getType() == ARC_LENGTH:  # SNES subtracts its part of the load: F(x) − λ load
             F.axpy(1.0, self._arc_load)
 
     def _tangent(self, snes: PETSc.SNES, X: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
@@ -221,9 +221,9 @@ class Newton:
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Before a line search of type `basic`: scale the correction −y."""
         step = self.search(x, y, self.F, self.load, self.load_factor)
-        for share in (step.contact_limit, step.value):
-            if share != 1.0:
-                y.scale(share)
+        for factor in (step.contact_limit, step.value):
+            if factor != 1.0:
+                y.scale(factor)
         if step.ends_on_the_way:
             reached = x.copy()
             reached.axpy(-1.0, y)
@@ -238,7 +238,7 @@ class Newton:
             return NOT_A_NUMBER
         if self.method.is_arc_length:
             if iteration == 0:
-                return Reason.ITERATING  # at the load share 0 every step is in equilibrium
+                return Reason.ITERATING  # at the load factor 0 every step is in equilibrium
             balance = self.F
         else:  # some methods call a preconditioned step their function: judge the forces themselves
             balance = self._balance

@@ -4,9 +4,12 @@ import textwrap
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from coilset.model.material.programs import STRAINS, STRESSES
+from coilset.model.material.identification.result import Fit
+from coilset.model.material.law import Law
+from coilset.model.material.programs import STRAINS, STRESSES, History, Program
 
 STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False}
 SYMBOLS = {
@@ -15,11 +18,11 @@ SYMBOLS = {
 }  # fmt: skip
 
 
-def _figure(width, height):
+def _figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def material_functions(law):
+def material_functions(law: Law) -> Figure:
     """k², ζ and 2Gκ over the plastic work b*, one line a temperature; figures 6.3 to 6.5 of the thesis for Ck 15."""
     work = np.linspace(0.0, law.validity.plastic_work, 801)
     with mpl.rc_context(STYLE):
@@ -44,8 +47,8 @@ def material_functions(law):
     return figure
 
 
-def program(law, run, history):
-    """What a program did: stress over strain, and for the rod the way of the stress between its yield surfaces."""
+def program(law: Law, run: Program, history: History) -> Figure:
+    """What a program did: stress over strain, and for the rod the path of the stress between its yield surfaces."""
     strains, stresses = STRAINS[history.form], STRESSES[history.form]
     moved = [i for i in range(len(strains)) if np.ptp(history.stress[:, i]) > 1e-3]
     with mpl.rc_context(STYLE):
@@ -75,9 +78,9 @@ def program(law, run, history):
     return figure
 
 
-def _stress_plane(axes, law, history):
+def _stress_plane(axes: Axes, law: Law, history: History) -> None:
     shear = np.sqrt(3.0)
-    axes.plot(history.stress[:, 0], shear * history.stress[:, 1], lw=1.3, label="way of the stress")
+    axes.plot(history.stress[:, 0], shear * history.stress[:, 1], lw=1.3, label="path of the stress")
     angle = np.linspace(0, 2 * np.pi, 181)
     for row, name, style in ((0, "yield surface at the start", "0.6"), (-1, "at the end", "k")):
         k = np.sqrt(law.functions(history.work[row], history.temperature[row])[0])
@@ -94,7 +97,7 @@ def _stress_plane(axes, law, history):
     axes.legend(fontsize=7, loc="upper center")
 
 
-def fit(result, name):
+def fit(result: Fit, name: str) -> Figure:
     """Tests, the law fitted to them, and what is left; one column a test."""
     with mpl.rc_context(STYLE):
         figure = _figure(3.4 * len(result.tests), 5.6)

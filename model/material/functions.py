@@ -6,12 +6,16 @@ temperature of the material's table. Between two temperatures the values of the 
 
 import math
 
+import numpy as np
 from numba import njit
 
 # How the kernels are compiled: no checks of divisors, multiply-add contracted; the inner ones are put into their
 # caller.
 KERNEL = {"cache": True, "error_model": "numpy", "fastmath": {"contract"}}
 INLINE = KERNEL | {"forceinline": True}
+
+# k², ∂k²/∂b*, ζ, ∂ζ/∂b*, κ, ∂κ/∂b*.
+Functions = tuple[float, float, float, float, float, float]
 
 # Head of the parameter array.
 SPIN = 0  # 1: with the spin terms (5.2.33), 0: without
@@ -28,7 +32,7 @@ ROW_LENGTH = 16
 
 
 @njit(**INLINE)
-def row_functions(p, o, b):
+def row_functions(p: np.ndarray, o: int, b: float) -> Functions:
     """k², ∂k²/∂b*, ζ, ∂ζ/∂b*, κ, ∂κ/∂b* of the temperature whose row starts at `o` of `p`, (6.2.2)."""
     if b < p[o + B1]:
         e = math.exp(-p[o + A3] * b)
@@ -50,7 +54,7 @@ def row_functions(p, o, b):
 
 
 @njit(**INLINE)
-def table_place(p, temperature):
+def table_place(p: np.ndarray, temperature: float) -> tuple[int, float]:
     """Row below `temperature` (its offset in `p`) and the weight of the row above; see `inside_table`."""
     last = int(p[N_ROWS]) - 2
     row = 0
@@ -61,7 +65,7 @@ def table_place(p, temperature):
 
 
 @njit(**INLINE)
-def functions(p, b, temperature):
+def functions(p: np.ndarray, b: float, temperature: float) -> Functions:
     """k², ζ, κ and their slopes at plastic work `b` and `temperature`.
 
     With adiabatic heating the slopes are total ones along b*, d/db* = ∂/∂b* + HEATING ∂/∂T, because there the
@@ -89,14 +93,14 @@ def functions(p, b, temperature):
 
 
 @njit(**INLINE)
-def inside_table(p, temperature):
+def inside_table(p: np.ndarray, temperature: float) -> bool:
     """Whether the material's table reaches to `temperature`."""
     last = ROWS_START + (int(p[N_ROWS]) - 1) * ROW_LENGTH
     return p[ROWS_START] <= temperature <= p[last]
 
 
 @njit(**INLINE)
-def thermal_slope(p, b, temperature):
+def thermal_slope(p: np.ndarray, b: float, temperature: float) -> float:
     """∂k²/∂T at fixed b*, N²/(mm⁴ K)."""
     if p[N_ROWS] == 1.0:
         return 0.0
@@ -106,7 +110,7 @@ def thermal_slope(p, b, temperature):
 
 
 @njit(**KERNEL)
-def many(p, works, temperature, values):
+def many(p: np.ndarray, works: np.ndarray, temperature: float, values: np.ndarray) -> None:
     """`functions` at many plastic works; `values` has shape (6, works)."""
     for i in range(works.shape[0]):
         values[0, i], values[1, i], values[2, i], values[3, i], values[4, i], values[5, i] = functions(
@@ -115,7 +119,7 @@ def many(p, works, temperature, values):
 
 
 @njit(**INLINE)
-def elasticity(p, temperature):
+def elasticity(p: np.ndarray, temperature: float) -> tuple[float, float, float]:
     """E, G in N/mm² and the coefficient of thermal expansion in 1/K at `temperature`."""
     o = ROWS_START
     if p[N_ROWS] == 1.0:

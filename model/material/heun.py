@@ -38,7 +38,7 @@ ELASTIC, PLASTIC, BY_LOADING = 0, 1, 2
 
 
 @njit(**KERNEL)
-def _yield_excess(p, y, w):
+def _yield_excess(p: np.ndarray, y: np.ndarray, w: np.ndarray) -> float:
     """F/k² = n:n/k² − 1."""
     m = w.shape[0]
     nn = 0.0
@@ -49,7 +49,7 @@ def _yield_excess(p, y, w):
 
 
 @njit(**KERNEL)
-def _onto_surface(p, y, w):
+def _onto_surface(p: np.ndarray, y: np.ndarray, w: np.ndarray) -> None:
     """Take out the drift: n → n k/|n| at fixed B and b*."""
     m = w.shape[0]
     factor = 1.0 / math.sqrt(1.0 + _yield_excess(p, y, w))
@@ -58,7 +58,7 @@ def _onto_surface(p, y, w):
 
 
 @njit(**KERNEL)
-def _neutral_kappa(kappa, a, c, axial, rest, spin, half):
+def _neutral_kappa(kappa: float, a: float, c: float, axial: float, rest: float, spin: float, half: float) -> float:
     """The κ below the material's for which F = 0 stays with λ = 0: spin + (1 − κ half) (axial x_a + rest x_c) = 0.
 
     Here a = ζ + c_a, c = ζ + c_c, x = 1/(1 + κ a) or 1/(1 + κ c), half = ½k²′.
@@ -78,7 +78,16 @@ def _neutral_kappa(kappa, a, c, axial, rest, spin, half):
 
 
 @njit(**KERNEL)
-def _rates(p, y, w, d, volume, warming, mode, rate):
+def _rates(
+    p: np.ndarray,
+    y: np.ndarray,
+    w: np.ndarray,
+    d: np.ndarray,
+    volume: float,
+    warming: tuple[float, float],
+    mode: int,
+    rate: np.ndarray,
+) -> bool:
     """Rates of y for the strain rate `d` (tensor components, deviatoric in the solid) and the rate of volume strain.
 
     `warming` is the pair of the rise of temperature per plastic work and of its prescribed rate.
@@ -151,7 +160,17 @@ def _rates(p, y, w, d, volume, warming, mode, rate):
 
 
 @njit(**KERNEL)
-def _heun(p, y, w, d, volume, warming, h, mode, work):
+def _heun(
+    p: np.ndarray,
+    y: np.ndarray,
+    w: np.ndarray,
+    d: np.ndarray,
+    volume: float,
+    warming: tuple[float, float],
+    h: float,
+    mode: int,
+    work: np.ndarray,
+) -> bool:
     """One Heun step of size `h` from y to work[2]; work[0] becomes the rate at y, work[1] the Euler result.
 
     Returns:
@@ -176,7 +195,16 @@ def _heun(p, y, w, d, volume, warming, h, mode, work):
 
 
 @njit(**KERNEL)
-def _elastic_part(p, y, w, d, volume, warming, h, work):
+def _elastic_part(
+    p: np.ndarray,
+    y: np.ndarray,
+    w: np.ndarray,
+    d: np.ndarray,
+    volume: float,
+    warming: tuple[float, float],
+    h: float,
+    work: np.ndarray,
+) -> float:
     """Largest elastic step up to `h` that does not leave the yield surface; its end is left in work[2]."""
     m = w.shape[0]
     k2 = functions(p, y[2 * m], y[2 * m + 1])[0]
@@ -200,7 +228,9 @@ def _elastic_part(p, y, w, d, volume, warming, h, work):
 
 
 @njit(**KERNEL)
-def integrate(p, y, w, d, volume, warming):
+def integrate(
+    p: np.ndarray, y: np.ndarray, w: np.ndarray, d: np.ndarray, volume: float, warming: tuple[float, float]
+) -> tuple[int, bool]:
     """Advance y over the strain increment `d` in sub-steps.
 
     Returns:
@@ -239,7 +269,9 @@ def integrate(p, y, w, d, volume, warming):
 
 
 @njit(**KERNEL)
-def rod_heun(p, old, de11, dg12, dg13, new, C):
+def rod_heun(
+    p: np.ndarray, old: np.ndarray, de11: float, dg12: float, dg13: float, new: np.ndarray, C: np.ndarray
+) -> int:
     """The thesis's integrator for the rod: the same arguments as `rod.return_map`.
 
     The relative error of stress allowed in a sub-step is `heun_tolerance` of the law; if it is infinite, the plastic
@@ -273,7 +305,7 @@ def rod_heun(p, old, de11, dg12, dg13, new, C):
 
 
 @njit(**KERNEL)
-def solid_heun(p, old, dD, new, C):
+def solid_heun(p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
     """The thesis's integrator for the full stress state: arguments of `solid.return_map`, the rest as in `rod_heun`."""
     w = np.array(SOLID_METRIC)
     thermal = old.shape[0] > 13
@@ -306,7 +338,7 @@ def solid_heun(p, old, dD, new, C):
 
 
 @njit(**KERNEL)
-def _split(dD, d):
+def _split(dD: np.ndarray, d: np.ndarray) -> float:
     """Write the deviator of a strain increment to `d`, tensor components, and return its volume strain."""
     volume = dD[0] + dD[1] + dD[2]
     for i in range(3):

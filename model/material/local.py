@@ -34,9 +34,10 @@ with modulus `cc`, of which only the inner products enter.
 import math
 from collections import namedtuple
 
+import numpy as np
 from numba import njit
 
-from coilset.model.material.functions import CHANGE, INLINE, KERNEL, functions, inside_table
+from coilset.model.material.functions import CHANGE, INLINE, KERNEL, Functions, functions, inside_table
 
 MAX_ITERATIONS = 60
 FAILED, TOO_HOT = -1, -2  # in the place of a number of iterations; TOO_HOT: heated out of the material's table
@@ -54,7 +55,7 @@ Local = namedtuple("Local", "iterations neutral b multiplier mean zeta dzeta a c
 
 
 @njit(**INLINE)
-def surface(p, b, temperature, k2):
+def surface(p: np.ndarray, b: float, temperature: float, k2: float) -> tuple[float, float]:
     """k² at the start of the increment, and its change until the end, where it is `k2`, by the prescribed temperature.
 
     With it `yield_crossing` keeps the elastic fraction of an increment from the surface at zero, although the surface
@@ -67,7 +68,7 @@ def surface(p, b, temperature, k2):
 
 
 @njit(**INLINE)
-def yield_crossing(nn, ne, ee, k2):
+def yield_crossing(nn: float, ne: float, ee: float, k2: float) -> float:
     """Elastic fraction of an increment that starts inside or on the yield surface and ends outside: |n₀ + β e|² = k².
 
     The κ term of (3.1.6) belongs to plastic loading only, so it must not see the elastic part.
@@ -81,14 +82,16 @@ def yield_crossing(nn, ne, ee, k2):
 
 
 @njit(**INLINE)
-def _group(c, zeta, dzeta, kappa, dkappa):
+def _group(c: float, zeta: float, dzeta: float, kappa: float, dkappa: float) -> Group:
     x = 1.0 / (1.0 + kappa * (zeta + c))
     dx = -x * x * (dkappa * (zeta + c) + kappa * dzeta)
     return Group((c + zeta) * x, dzeta * x + (c + zeta) * dx, x, dx)
 
 
 @njit(**INLINE)
-def _multiplier(qa, sa, qc, sc, k2, start, precision):
+def _multiplier(
+    qa: float, sa: float, qc: float, sc: float, k2: float, start: float, precision: float
+) -> tuple[float, float, float]:
     """Root Λ of qa/(1 + sa Λ)² + qc/(1 + sc Λ)² = k², and both 1/(1 + s Λ); qa, qc: squared norms."""
     lowest = -1.0 / max(sa, sc)
     multiplier = max(start, 0.5 * lowest)
@@ -104,7 +107,18 @@ def _multiplier(qa, sa, qc, sc, k2, start, precision):
 
 
 @njit(**INLINE)
-def _group_terms(g, c, zeta, dzeta, multiplier, u, qq, dqq, qt, dqt):
+def _group_terms(
+    g: Group,
+    c: float,
+    zeta: float,
+    dzeta: float,
+    multiplier: float,
+    u: float,
+    qq: float,
+    dqq: float,
+    qt: float,
+    dqt: float,
+) -> Functions:
     """A group's n:n and n:p, each with its derivatives in b* and Λ; qq = q:q, qt = q:(n₀ + e), dqq, dqt = d/db*."""
     m = 1.0 / (c + zeta)
     du = -u * u * g.ds * multiplier
@@ -117,7 +131,15 @@ def _group_terms(g, c, zeta, dzeta, multiplier, u, qq, dqq, qt, dqt):
 
 
 @njit(**INLINE)
-def _equations(start, k_start, values, ga, gc, b, multiplier):
+def _equations(
+    start: Start,
+    k_start: float,
+    values: Functions,
+    ga: Group,
+    gc: Group,
+    b: float,
+    multiplier: float,
+) -> tuple[float, ...]:
     """Residuals n:n − k² and b* − b*₀ − f n:p, their Jacobian in (b*, Λ), Λ made coarsely right first, f n:p and f."""
     k2, dk2, zeta, dzeta, _, _ = values
     na, ea = start.na, start.ea + start.dea * (b - start.b)
@@ -144,7 +166,7 @@ def _equations(start, k_start, values, ga, gc, b, multiplier):
 
 
 @njit(**KERNEL)
-def _neutral(p, start, values):
+def _neutral(p: np.ndarray, start: Start, values: Functions) -> Local:
     """The smaller κ for which the increment ends on the yield surface with λ = 0."""
     k2_start, _, zeta, _, kappa, _ = values
     na, ea = start.na, start.ea
@@ -185,7 +207,7 @@ def _neutral(p, start, values):
 
 
 @njit(**KERNEL)
-def _frozen(start, values, a, c):
+def _frozen(start: Start, values: Functions, a: Group, c: Group) -> Local:
     """On the edge of the cone the rod's spin can make n:p negative by a trifle: b* is kept, only n:n = k² solved."""
     qa = start.na + a.x * start.ea
     qqa, qqc = 1.5 * qa * qa, start.nn + c.x * (2.0 * start.ne + c.x * start.ee)
@@ -196,13 +218,13 @@ def _frozen(start, values, a, c):
 
 
 @njit(**INLINE)
-def _failed(start, why=FAILED):
+def _failed(start: Start, why: int = FAILED) -> Local:
     nothing = Group(0.0, 0.0, 0.0, 0.0)
     return Local(why, False, start.b, 0.0, 1.0, 0.0, 0.0, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit(**INLINE)
-def solve(p, start, values):
+def solve(p: np.ndarray, start: Start, values: Functions) -> Local:
     """Solve the two local equations.
 
     Args:

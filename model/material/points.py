@@ -1,6 +1,8 @@
 """The law over arrays of points from Python, without a mesh: one interface to both forms and both integrators."""
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -8,6 +10,7 @@ from numba import njit
 from coilset.meshes.errors import InputError, SolveError
 from coilset.model.material.functions import CHANGE, KERNEL, TOLERANCE
 from coilset.model.material.heun import rod_heun, solid_heun
+from coilset.model.material.law import Law
 from coilset.model.material.local import FAILED, TOO_HOT
 from coilset.model.material.rod import return_map as rod_return_map
 from coilset.model.material.solid import return_map as solid_return_map
@@ -18,27 +21,35 @@ SMALLEST_SUBSTEP = 1e-9
 
 # One loop each, since numba keeps only functions on disk whose callees are known by name.
 @njit(**KERNEL)
-def _rod_return_map(p, state, increments, new, tangent, count):
+def _rod_return_map(
+    p: np.ndarray, state: np.ndarray, increments: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
+) -> None:
     for i in range(state.shape[0]):
         de = increments[i]
         count[i] = rod_return_map(p, state[i], de[0], de[1], de[2], new[i], tangent[i])
 
 
 @njit(**KERNEL)
-def _rod_heun(p, state, increments, new, tangent, count):
+def _rod_heun(
+    p: np.ndarray, state: np.ndarray, increments: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
+) -> None:
     for i in range(state.shape[0]):
         de = increments[i]
         count[i] = rod_heun(p, state[i], de[0], de[1], de[2], new[i], tangent[i])
 
 
 @njit(**KERNEL)
-def _solid_return_map(p, state, increments, new, tangent, count):
+def _solid_return_map(
+    p: np.ndarray, state: np.ndarray, increments: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
+) -> None:
     for i in range(state.shape[0]):
         count[i] = solid_return_map(p, state[i], increments[i], new[i], tangent[i])
 
 
 @njit(**KERNEL)
-def _solid_heun(p, state, increments, new, tangent, count):
+def _solid_heun(
+    p: np.ndarray, state: np.ndarray, increments: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
+) -> None:
     for i in range(state.shape[0]):
         count[i] = solid_heun(p, state[i], increments[i], new[i], tangent[i])
 
@@ -51,8 +62,8 @@ LOOPS = {
 }
 
 
-def initial_state(law, points, components=3, temperature=None):
-    """History rows of unstressed points.
+def initial_state(law: Law, points: int, components: int = 3, temperature: float | None = None) -> np.ndarray:
+    """Point states of unstressed points.
 
     Args:
         law: a `Law`.
@@ -69,7 +80,14 @@ def initial_state(law, points, components=3, temperature=None):
     return state
 
 
-def update(law, state, increments, integrator="return_mapping", temperature=None, tolerance=None):
+def update(
+    law: Law,
+    state: np.ndarray,
+    increments: np.ndarray,
+    integrator: str = "return_mapping",
+    temperature: float | tuple[float, float] | None = None,
+    tolerance: float | None = None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Advance points by strain increments; a pure function.
 
     Args:
@@ -102,9 +120,9 @@ def update(law, state, increments, integrator="return_mapping", temperature=None
         raise ValueError(f"state of shape {state.shape} does not fit strain increments of shape {increments.shape}")
     loop = LOOPS[components, integrator]
     divided = tolerance is not None and integrator == "return_mapping"
-    start, end = temperature if isinstance(temperature, tuple) else (temperature, temperature)
-    p = law.parameters(end)
-    if start != end:
+    p = law.parameters(temperature[1] if isinstance(temperature, tuple) else temperature)
+    if isinstance(temperature, tuple) and temperature[0] != temperature[1]:
+        start, end = temperature
         if law.is_adiabatic or divided:
             raise ValueError(
                 "temperature changes neither with adiabatic heating nor with the return mapping's tolerance"
@@ -120,11 +138,13 @@ def update(law, state, increments, integrator="return_mapping", temperature=None
     return new, tangent, count
 
 
-def _normals(components):
+def _normals(components: int) -> int:
     return 1 if components == 3 else 3
 
 
-def _advance(loop, p, state, increments):
+def _advance(
+    loop: Callable[..., Any], p: np.ndarray, state: np.ndarray, increments: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     points, components = increments.shape
     new, tangent = np.empty_like(state), np.empty((points, components, components))
     count = np.empty(points, dtype=np.int64)
@@ -132,7 +152,7 @@ def _advance(loop, p, state, increments):
     return new, tangent, count
 
 
-def _refuse(law, count):
+def _refuse(law: Law, count: np.ndarray) -> None:
     if (count == TOO_HOT).any():
         low, high = law.temperature_range
         many = f"{(count == TOO_HOT).sum()} of {count.size} points" if count.size > 1 else "the point"
@@ -142,7 +162,14 @@ def _refuse(law, count):
         raise SolveError(f"{(count < 0).sum()} of {count.size} points did not converge; use smaller increments")
 
 
-def _divided(loop, p, law, state, increments, tolerance):
+def _divided(
+    loop: Callable[..., Any],
+    p: np.ndarray,
+    law: Law,
+    state: np.ndarray,
+    increments: np.ndarray,
+    tolerance: float | None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Sub-steps by step doubling: one step against two half ones estimates the error of the first-order method."""
     points, components = increments.shape
     weight = np.where(np.arange(components) < _normals(components), 1.0, 2.0)

@@ -5,10 +5,10 @@ values at its end, reached in equal increments; what it does not name stays driv
 start every stress is driven, and zero: tension is `eps11` alone.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -155,7 +155,7 @@ def _check_temperatures(law: Law, program: Program) -> None:
 class _Point:
     """The point under the machine: state, total strain, and which components are driven by strain."""
 
-    def __init__(self, law, form, integrator, temperature):
+    def __init__(self, law: Law, form: str, integrator: str, temperature: float | None) -> None:
         self.law, self.form, self.integrator = law, form, integrator
         self.n = len(STRAINS[form])
         self.temperature = law.reference_temperature if temperature is None else temperature
@@ -165,23 +165,23 @@ class _Point:
         _, tangent, _ = update(law, self.state[None], np.zeros((1, self.n)), temperature=self._at(self.temperature))
         self.tangent = tangent[0]
 
-    def _at(self, end):
+    def _at(self, end: float) -> tuple[float, float] | None:
         """What `update` is told of the temperature."""
         return None if self.law.is_adiabatic else (self.temperature, end)
 
-    def drive(self, targets):
+    def drive(self, targets: Mapping[str, float]) -> np.ndarray:
         """Take over which components are driven by strain; returns the present values of what drives them."""
         for i, (strain, stress) in enumerate(zip(STRAINS[self.form], STRESSES[self.form], strict=True)):
             if strain in targets or stress in targets:
                 self.by_strain[i] = strain in targets
         return np.where(self.by_strain, self.strain, self.state[: self.n])
 
-    def row(self, index):
+    def row(self, index: int) -> tuple[Any, ...]:
         n, s = self.n, self.state
         temperature = s[2 * n + 1] if self.law.is_adiabatic else self.temperature
         return self.strain.copy(), s[:n].copy(), s[n : 2 * n].copy(), s[2 * n], temperature, index
 
-    def advance(self, target, temperature, halvings=0):
+    def advance(self, target: np.ndarray, temperature: float, halvings: int = 0) -> None:
         """One increment to `target` and `temperature`; where Newton does not find it, two of half the size."""
         now = np.where(self.by_strain, self.strain, self.state[: self.n])
         if self._newton(target, temperature):
@@ -191,7 +191,7 @@ class _Point:
         self.advance(0.5 * (now + target), 0.5 * (self.temperature + temperature), halvings + 1)
         self.advance(target, temperature, halvings + 1)
 
-    def _newton(self, target, temperature):
+    def _newton(self, target: np.ndarray, temperature: float) -> bool:
         held, free = self.by_strain, ~self.by_strain
         increment = np.where(held, target - self.strain, 0.0)
         tangent, stress = self.tangent, self.state[: self.n]

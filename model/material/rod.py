@@ -7,12 +7,23 @@ temperature (K). The active deviator is n11 = ⅔σ11 − B11, n1j = τ1j − B1
 
 from collections import namedtuple
 
+import numpy as np
 from numba import njit
 
-from coilset.model.material.functions import HEATING, INLINE, KERNEL, SPIN, TEMPERATURE, elasticity, functions
+from coilset.model.material.functions import (
+    HEATING,
+    INLINE,
+    KERNEL,
+    SPIN,
+    TEMPERATURE,
+    Functions,
+    elasticity,
+    functions,
+)
 from coilset.model.material.local import Start, solve, surface, yield_crossing
 
 # Tuples of three are the components 11, 12, 13.
+Vector = tuple[float, float, float]
 Point = namedtuple("Point", "stress back spin_stress spin_back")
 # The plastic part of an increment: elastic fraction before it, n₀:e − ½Δk² where it starts, e of the whole increment
 # and of the plastic part, n at its end, p, and by component u = 1/(1 + sΛ), m = 1/(c + ζ), x.
@@ -22,13 +33,13 @@ Gradients = namedtuple("Gradients", "bn be ln le db dl")
 
 
 @njit(**INLINE)
-def _inner(a, b):
+def _inner(a: Vector, b: Vector) -> float:
     """n:m of two deviators (5.2.28)."""
     return 1.5 * a[0] * b[0] + 2.0 * (a[1] * b[1] + a[2] * b[2])
 
 
 @njit(**INLINE)
-def spin_rates(s, b):
+def spin_rates(s: Vector, b: float) -> tuple[Vector, Vector]:
     """Changes of σ (or, for B, of B) per γ12 and per γ13 by the spin w1j = −½γ1j, (5.2.33).
 
     Args:
@@ -39,7 +50,7 @@ def spin_rates(s, b):
 
 
 @njit(**INLINE)
-def _turned(p, old, dg12, dg13):
+def _turned(p: np.ndarray, old: np.ndarray, dg12: float, dg13: float) -> Point:
     """Stress and back stress of `old` after the increment's spin, and what the spin adds per unit of γ12, γ13."""
     s = (old[0], old[1], old[2])
     b = (old[3], old[4], old[5])
@@ -57,12 +68,14 @@ def _turned(p, old, dg12, dg13):
 
 
 @njit(**INLINE)
-def _active(s, b):
+def _active(s: Vector, b: Vector) -> Vector:
     return (s[0] / 1.5 - b[0], s[1] - b[1], s[2] - b[2])
 
 
 @njit(**KERNEL)
-def return_map(p, old, de11, dg12, dg13, new, C):
+def return_map(
+    p: np.ndarray, old: np.ndarray, de11: float, dg12: float, dg13: float, new: np.ndarray, C: np.ndarray
+) -> int:
     """Backward Euler step of the rod's law with its consistent tangent.
 
     Args:
@@ -110,7 +123,7 @@ def return_map(p, old, de11, dg12, dg13, new, C):
 
 
 @njit(**INLINE)
-def _elastic(old, s, point, E, G, new, C):
+def _elastic(old: np.ndarray, s: Vector, point: Point, E: float, G: float, new: np.ndarray, C: np.ndarray) -> None:
     for i in range(3):
         new[i] = s[i]
         new[3 + i] = point.back[i]
@@ -126,7 +139,18 @@ def _elastic(old, s, point, E, G, new, C):
 
 
 @njit(**INLINE)
-def _plastic(p, b, temperature, heating, alpha, E, G, n0, e, values):
+def _plastic(
+    p: np.ndarray,
+    b: float,
+    temperature: float,
+    heating: float,
+    alpha: float,
+    E: float,
+    G: float,
+    n0: Vector,
+    e: Vector,
+    values: Functions,
+) -> Plastic:
     """Solve the plastic part: n and p at its end, from n₀ where it starts (n0 + β e) with e reduced to it."""
     k2, growth = surface(p, b, temperature, values[0])
     ne = _inner(n0, e) - 0.5 * growth
@@ -158,22 +182,22 @@ def _plastic(p, b, temperature, heating, alpha, E, G, n0, e, values):
 
 
 @njit(**INLINE)
-def _add(a, b):
+def _add(a: Vector, b: Vector) -> Vector:
     return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
 
 
 @njit(**INLINE)
-def _times(a, b):
+def _times(a: Vector, b: Vector) -> Vector:
     return (a[0] * b[0], a[1] * b[1], a[2] * b[2])
 
 
 @njit(**INLINE)
-def _scaled(a, f):
+def _scaled(a: Vector, f: float) -> Vector:
     return (f * a[0], f * a[1], f * a[2])
 
 
 @njit(**INLINE)
-def _tangent(plastic, point, E, G, expansion, C):
+def _tangent(plastic: Plastic, point: Point, E: float, G: float, expansion: float, C: np.ndarray) -> None:
     """Subtract from the elastic tangent in C what the plastic strain takes; `expansion` is thermal strain per b*."""
     gradients = _gradients(plastic)
     zero = (0.0, 0.0, 0.0)
@@ -185,7 +209,7 @@ def _tangent(plastic, point, E, G, expansion, C):
 
 
 @njit(**INLINE)
-def _gradients(plastic):
+def _gradients(plastic: Plastic) -> Gradients:
     """How b* and Λ follow n₀ and e, so that the two local equations stay true, and how n follows b* and Λ."""
     local, n, p, u, m, x, e = plastic.local, plastic.n, plastic.p, plastic.u, plastic.m, plastic.x, plastic.e
     a, c, multiplier = local.a, local.c, local.multiplier
@@ -212,7 +236,7 @@ def _gradients(plastic):
 
 
 @njit(**INLINE)
-def _sensitivity(plastic, g, dn, de):
+def _sensitivity(plastic: Plastic, g: Gradients, dn: Vector, de: Vector) -> tuple[Vector, float]:
     """Change of the plastic strain increment and of b* with the start n₀ (by `dn`) and with e (by `de`)."""
     trial = _add(dn, de)
     if plastic.beta > 0.0 and plastic.crossing > 0.0:
@@ -230,7 +254,7 @@ def _sensitivity(plastic, g, dn, de):
 
 
 @njit(**INLINE)
-def _subtract(change, j, E, G, expansion, C):
+def _subtract(change: tuple[Vector, float], j: int, E: float, G: float, expansion: float, C: np.ndarray) -> None:
     p, b = change
     C[0, j] -= E * (p[0] + expansion * b)
     C[1, j] -= 2.0 * G * p[1]

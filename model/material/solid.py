@@ -9,23 +9,26 @@ Either the caller works in such a frame, or it rotates the point's state by the 
 `rotate_state`.
 """
 
+import numpy as np
 from numba import njit
 
 from coilset.model.material.functions import HEATING, INLINE, KERNEL, TEMPERATURE, elasticity, functions
-from coilset.model.material.local import Start, solve, surface, yield_crossing
+from coilset.model.material.local import Local, Start, solve, surface, yield_crossing
 
+Six = tuple[float, float, float, float, float, float]  # components 11, 22, 33, 12, 13, 23
+Pair = tuple[float, float]
 COMPONENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 PLACES = ((0, 3, 4), (3, 1, 5), (4, 5, 2))  # where the component (i, j) is stored
 
 
 @njit(**INLINE)
-def _inner(a, b):
+def _inner(a: Six, b: Six) -> float:
     """a:b of two symmetric tensors."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
 
 
 @njit(**INLINE)
-def _deviator_increment(dD, G):
+def _deviator_increment(dD: np.ndarray, G: float) -> Six:
     """2G times the deviator of a strain increment."""
     g = 2.0 * G
     mean = (dD[0] + dD[1] + dD[2]) / 3.0
@@ -33,7 +36,7 @@ def _deviator_increment(dD, G):
 
 
 @njit(**INLINE)
-def _active(row):
+def _active(row: np.ndarray) -> Six:
     """n = T − B of a point's state."""
     mean = (row[0] + row[1] + row[2]) / 3.0
     return (
@@ -43,7 +46,7 @@ def _active(row):
 
 
 @njit(**INLINE)
-def _combined(f, a, g, b):
+def _combined(f: float, a: Six, g: float, b: Six) -> Six:
     """f a + g b."""
     return (
         f * a[0] + g * b[0], f * a[1] + g * b[1], f * a[2] + g * b[2],
@@ -52,7 +55,7 @@ def _combined(f, a, g, b):
 
 
 @njit(**INLINE)
-def _elastic(old, dD, E, G, new, C):
+def _elastic(old: np.ndarray, dD: np.ndarray, E: float, G: float, new: np.ndarray, C: np.ndarray) -> Six:
     bulk = E * G / (3.0 * (3.0 * G - E))
     volume = bulk * (dD[0] + dD[1] + dD[2])
     e = _deviator_increment(dD, G)
@@ -71,7 +74,7 @@ def _elastic(old, dD, E, G, new, C):
 
 
 @njit(**KERNEL)
-def return_map(p, old, dD, new, C):
+def return_map(p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
     """Backward Euler step of the law for the full stress state, with its consistent tangent.
 
     Args:
@@ -126,12 +129,23 @@ def return_map(p, old, dD, new, C):
 
 
 @njit(**INLINE)
-def _pair(f, a, g, b):
+def _pair(f: float, a: Pair, g: float, b: Pair) -> Pair:
     return (f * a[0] + g * b[0], f * a[1] + g * b[1])
 
 
 @njit(**INLINE)
-def _tangent(local, n0, e, beta, products, u, m, c, expansion, C):
+def _tangent(
+    local: Local,
+    n0: Six,
+    e: Six,
+    beta: float,
+    products: tuple[float, float, float],
+    u: float,
+    m: float,
+    c: float,
+    expansion: float,
+    C: np.ndarray,
+) -> None:
     """Subtract from the elastic tangent in C what the plastic strain takes.
 
     Every vector here is a combination of n₀ and of the increment's e and is written as the pair of its two factors.
@@ -181,7 +195,7 @@ def _tangent(local, n0, e, beta, products, u, m, c, expansion, C):
 
 
 @njit(**KERNEL)
-def rotate_state(old, R, new):
+def rotate_state(old: np.ndarray, R: np.ndarray, new: np.ndarray) -> None:
     """Rotate stress and back stress of a point's state, S → R S Rᵀ.
 
     With R = exp(W), W = ½(grad Δu − grad Δuᵀ), before the update with the strain increment in the rotated frame, this

@@ -1,1 +1,1 @@
-"""What a run leaves behind: summary, history, fields, point state and figures."""
+"""What a run leaves behind: summary, steps, fields, point state and figures."""

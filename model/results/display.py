@@ -8,7 +8,7 @@ import subprocess
 from coilset.model.processes import end_with_parent
 
 
-def ensure():
+def ensure() -> bool:
     """Start a virtual X server if there is no display; it ends with this process.
 
     Returns:

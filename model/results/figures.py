@@ -61,7 +61,7 @@ def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
     radius = setup.wire_radius[n // 2]
     y, z = radius * points.T
 
-    def stress(name):
+    def stress(name: str) -> np.ndarray:
         column = snapshot.components.index(name)
         states = snapshot.point_state, snapshot.surface_state
         at_points, rim = (state[n // 2, ..., column].mean(axis=0) for state in states)

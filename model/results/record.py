@@ -142,8 +142,8 @@ class SeatReactions:
     def from_row(cls, row: dict[str, Any], pressure: np.ndarray) -> "SeatReactions":
         """The reverse of `row`."""
         names = [item.name for item in fields(SeatReaction)]
-        ends = [SeatReaction(**{name: row[f"{end}_{name}"] for name in names}) for end in ENDS]
-        return cls(row["step"], row["active_turns"], row["free_turns"], *ends, pressure)
+        bottom, top = (SeatReaction(**{name: row[f"{end}_{name}"] for name in names}) for end in ENDS)
+        return cls(row["step"], row["active_turns"], row["free_turns"], bottom, top, pressure)
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,13 @@
 """The spring in 3D: its wire as a tube at several moments, coloured by the stress in it."""
 
+from collections.abc import Sequence
+from pathlib import Path
+
 import numpy as np
 import pyvista as pv
 
 from coilset.model.results.folder import whole
+from coilset.model.results.record import Snapshot
 
 POINTS_PER_ELEMENT = 6
 BAR = {
@@ -12,7 +16,7 @@ BAR = {
 }  # fmt: skip
 
 
-def tube(x, radius, values, name):
+def tube(x: np.ndarray, radius: np.ndarray, values: np.ndarray, name: str) -> pv.PolyData:
     """A smooth tube through the stations; `radius` and `values` per station, shape (n + 1,)."""
     line = pv.Spline(x, POINTS_PER_ELEMENT * (len(x) - 1) + 1)
     along = np.linspace(0.0, 1.0, line.n_points)
@@ -22,7 +26,7 @@ def tube(x, radius, values, name):
     return line.tube(scalars="radius", absolute=True, n_sides=24)
 
 
-def springs(path, snapshots, wire_radius):
+def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.ndarray) -> None:
     """Draw the snapshots side by side, coloured by the greatest shear stress in each cross-section.
 
     Args:

@@ -19,7 +19,7 @@ DRAWN = {  # what both seats of a symmetric spring share stays to be seen
     "top": {"color": "C3", "lw": 1.0, "ms": 2.5},
 }
 LINES = ("-", "--", ":", "-.")  # of the phases
-FAINT = 0.02  # share of the greatest force below which a force centre says little and is not drawn
+FAINT = 0.02  # part of the greatest force below which a force centre says little and is not drawn
 REACH = 1.3  # of the picture, in coil radii
 DECADES = 3  # of the pressure's colours
 LEAST_TURNS = 0.2  # that are shown from the tip on, though nothing bears there

@@ -13,8 +13,8 @@ from coilset.model.results.record import SeatReaction, SeatReactions
 from coilset.model.rod.rod import Rod
 from coilset.model.rotations.vectors import rotation_matrix
 
-ROUNDING = 2e-13  # axial forces below this share of E A are rounding, whatever came before
-FAINT = 1e-6  # axial forces below this share of the greatest one so far have no centre and load no turns
+ROUNDING = 2e-13  # axial forces below this part of E A are rounding, whatever came before
+FAINT = 1e-6  # axial forces below this part of the greatest one so far have no centre and load no turns
 
 
 Parts = Sequence[tuple[Contact, Contribution]]
@@ -92,8 +92,8 @@ def active_turns(rod: Rod, turns: np.ndarray, force: float) -> float:
     line = rod.line
     torque = rod.s.values[:, :, 3].mean(axis=1)
     r = np.hypot(*rod.x[rod.cells].mean(axis=1)[:, :2].T)
-    share = (torque / (force * r)) ** 2 @ np.diff(turns)[line.element[: line.owned_cells]]
-    return float(line.mesh.comm.allreduce(share))
+    active = (torque / (force * r)) ** 2 @ np.diff(turns)[line.element[: line.owned_cells]]
+    return float(line.mesh.comm.allreduce(active))
 
 
 def pressures(parts: Parts) -> np.ndarray:
@@ -115,5 +115,5 @@ def free_turns(parts: Parts, pressure: np.ndarray) -> float:
     if points is None:
         return float("nan")
     step = 0.5 * np.diff(points.turns)
-    share = np.append(step, 0.0) + np.append(0.0, step)
-    return float(share.sum() - share[np.unique(pressure[:, 1].astype(int))].sum())
+    bedding_length = np.append(step, 0.0) + np.append(0.0, step)
+    return float(bedding_length.sum() - bedding_length[np.unique(pressure[:, 1].astype(int))].sum())

@@ -2,13 +2,17 @@
 
 Every form is linear in the increments about the current mesh. Inside a cell the nodal values of a P1 function are
 f1 = f − ξ d and f2 = f1 + d with d = f,ξ; ξ is a quadrature coefficient. Rotations enter through their chart: the
-virtual turn of node a is ω = Ta ψ, so that the residual is the one of the chart (PETSc adds updates, turns do not add).
+virtual rotation of node a is ω = Ta ψ, so that the residual is that of the chart: PETSc adds updates, and finite
+rotations do not add.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import basix.ufl
 import ufl
+from dolfinx import fem
+from dolfinx import mesh as dmesh
 from ufl import as_matrix, as_vector, cross, dot, grad, inner, sqrt
 
 QUADRATURE = {"quadrature_degree": 3, "quadrature_rule": "default"}  # two Gauss sections (5.2.43)
@@ -16,37 +20,37 @@ QUADRATURE = {"quadrature_degree": 3, "quadrature_rule": "default"}  # two Gauss
 
 @dataclass
 class Increment:
-    """A linear increment of one element in the global frame: chord difference, nodal turns, excess shear angles."""
+    """A linear increment of one element in the global frame: chord difference, nodal rotations, excess shear angles."""
 
     d: ufl.core.expr.Expr
-    turn1: ufl.core.expr.Expr
-    turn2: ufl.core.expr.Expr
+    rotation1: ufl.core.expr.Expr
+    rotation2: ufl.core.expr.Expr
     shear: ufl.core.expr.Expr
 
 
-def rod_element():
+def rod_element() -> Any:
     """Two nodes with displacement and rotation vector (P1, 6 values) and two excess shear angles per element (DG0)."""
     nodal = basix.ufl.element("Lagrange", "interval", 1, shape=(6,))
     shear = basix.ufl.element("DG", "interval", 0, shape=(2,))
     return basix.ufl.mixed_element([nodal, shear])
 
 
-def section_element(shape):
+def section_element(shape: tuple[int, ...]) -> Any:
     """Values at the two Gauss sections of an element; `shape` of one value."""
     return basix.ufl.quadrature_element("interval", value_shape=shape, degree=3)
 
 
-def cell_element(shape):
+def cell_element(shape: tuple[int, ...]) -> Any:
     """One value per element."""
     return basix.ufl.element("DG", "interval", 0, shape=shape)
 
 
-def matrices(coefficient):
+def matrices(coefficient: Any) -> list[Any]:
     """The two 3×3 matrices of a coefficient of shape (2, 3, 3)."""
     return [as_matrix([[coefficient[a, i, j] for j in range(3)] for i in range(3)]) for a in range(2)]
 
 
-def increment(mesh, function, xi, T):
+def increment(mesh: dmesh.Mesh, function: Any, xi: Any, T: Any) -> Increment:
     """The increment of a test or trial function; `T` holds the charts' tangents of the two nodes, shape (2, 3, 3)."""
     f, shear = ufl.split(function)
     d = dot(grad(f), ufl.Jacobian(mesh)[:, 0])  # f,ξ
@@ -61,28 +65,31 @@ def increment(mesh, function, xi, T):
     )
 
 
-def section_strains(increment, E, l, xi, share, P=None, spin=0):
+def section_strains(
+    increment: Increment, E: Any, l: Any, xi: Any, timoshenko_factor: Any, P: Any = None, spin: Any = 0
+) -> Any:
     """ε, γ12, γ13, φ′, −w″, v″ of an increment in the triad E (columns), from (5.2.4).
 
-    Turns count against the triad, whose transverse spin is the chord's and whose spin about the chord is `spin`. `P`,
-    shape (2, 3, 3), makes of the relative spins the exact rates of the turns; without it the turns are small, as in the
-    thesis.
+    Rotations count against the triad, whose transverse spin is the chord's and whose spin about the chord is `spin`.
+    `P`, shape (2, 3, 3), makes of the relative spins the exact rates of the rotations; without it the rotations are
+    small, as in the thesis.
 
-    The element's own unknowns are the shear angles in excess of those that its turns ask of an elastic element,
-    u = shear − c ½ (t1 + t2), c = Φ/(1 + Φ), Φ = 12 E I/(G A l²); `share` is c. The chord's curve is H1 … H4 with the
-    same bow b = u + ½ (t1 + t2) at both ends and ±(t2 − t1)/2 besides. The solution does not depend on c, but a finite
-    turn within an iteration leaves an error of second order: with c = 0 in the curvature, 6/l times as large, which
-    asks for more iterations the shorter the elements are; with c = 1 in the shear angle, which does so the longer they
-    are. With Timoshenko's c it does least, and the matrix has no entries 12 E I/l³ that cancel.
+    The element's own unknowns are the shear angles in excess of those that its rotations ask of an elastic
+    element, u = shear − c ½ (t1 + t2), c = Φ/(1 + Φ), Φ = 12 E I/(G A l²); `timoshenko_factor` is c. The chord's curve
+    is H1 … H4 with the same bow b = u + ½ (t1 + t2) at both ends and ±(t2 − t1)/2 besides. The solution does not
+    depend on c, but a finite rotation within an iteration leaves an error of second order: with c = 0 in the
+    curvature, 6/l times as large, which asks for more iterations the shorter the elements are; with c = 1 in the shear
+    angle, which does so the longer they are. With Timoshenko's c it does least, and the matrix has no entries 12 E
+    I/l³ that cancel.
     """
     d = E.T * increment.d
     frame = as_vector([spin, -d[2] / l, d[1] / l])
-    t1, t2 = E.T * increment.turn1 - frame, E.T * increment.turn2 - frame
+    t1, t2 = E.T * increment.rotation1 - frame, E.T * increment.rotation2 - frame
     if P is not None:
         P1, P2 = matrices(P)
         t1, t2 = P1 * t1, P2 * t2
     m13, m14 = (t1[1] + t2[1]) / 2, (t1[2] + t2[2]) / 2
-    u13, u14 = increment.shear[0] - share * m13, increment.shear[1] - share * m14
+    u13, u14 = increment.shear[0] - timoshenko_factor * m13, increment.shear[1] - timoshenko_factor * m14
     b13, b14 = u13 + m13, u14 + m14
     H = (12 * xi - 6) / l  # H2″ + H4″, times l
     return as_vector(
@@ -90,14 +97,15 @@ def section_strains(increment, E, l, xi, share, P=None, spin=0):
     )
 
 
-def axial_spin(increment, W):
+def axial_spin(increment: Increment, W: Any) -> Any:
     """Spin of the element's triad about its chord; `W`, shape (3, 3), from coilset.model.rod.kinematics.mean_triad."""
-    return sum(dot(W[k, :], rate) for k, rate in enumerate((increment.d, increment.turn1, increment.turn2)))
+    return sum(dot(W[k, :], rate) for k, rate in enumerate((increment.d, increment.rotation1, increment.rotation2)))
 
 
-def spun(increment, spin):
-    """The virtual increment as seen when the triad turns under it: δu → −spin × δu in the fixed frame."""
-    return Increment(*(-cross(spin, v) for v in (increment.d, increment.turn1, increment.turn2)), 0 * increment.shear)
+def spun(increment: Increment, spin: Any) -> Increment:
+    """The virtual increment as it appears from a spinning triad: δu → −spin × δu in the fixed frame."""
+    d, rotation1, rotation2 = (-cross(spin, v) for v in (increment.d, increment.rotation1, increment.rotation2))
+    return Increment(d, rotation1, rotation2, 0 * increment.shear)
 
 
 class RodForms:
@@ -106,48 +114,71 @@ class RodForms:
     Args:
         mesh: the current configuration.
         V: space of rod_element.
-        xi, E, T, P, W, s, D: abscissa, triad, chart tangents, rates of the turns, axial spin of the triad, section
-            strains, section resultants, section tangent.
+        xi: abscissa ξ of the Gauss sections.
+        timoshenko_factor: c of section_strains, one value per element.
+        E: triad of the element, columns, shape (3, 3).
+        T: tangents of the rotation charts of both nodes, shape (2, 3, 3).
+        P: rates of the rotations for a relative spin, shape (2, 3, 3), see section_strains.
+        W: what makes the triad's spin about its chord, shape (3, 3), see coilset.model.rod.kinematics.mean_triad.
+        e: section strains ε, γ12, γ13, φ′, −w″, v″.
+        s: section resultants N, Q2, Q3 in N and Mt, M2, M3 in N mm.
+        D: section tangent ∂s/∂e, shape (6, 6).
+
+    All are coefficients in the mesh's quadrature or cell spaces.
     """
 
-    def __init__(self, mesh, V, xi, share, E, T, P, W, e, s, D):
+    def __init__(
+        self,
+        mesh: dmesh.Mesh,
+        V: fem.FunctionSpace,
+        xi: Any,
+        timoshenko_factor: Any,
+        E: Any,
+        T: Any,
+        P: Any,
+        W: Any,
+        e: Any,
+        s: Any,
+        D: Any,
+    ) -> None:
         self.test = increment(mesh, ufl.TestFunction(V), xi, T)
         self.trial = increment(mesh, ufl.TrialFunction(V), xi, T)
         J = ufl.Jacobian(mesh)[:, 0]
-        self.xi, self.share, self.E, self.P, self.e, self.s, self.D = xi, share, E, P, e, s, D
+        self.xi, self.timoshenko_factor, self.E, self.P = xi, timoshenko_factor, E, P
+        self.e, self.s, self.D = e, s, D
         self.l = sqrt(dot(J, J))
         self.stretch = dot(E[:, 0], self.trial.d) / self.l
         self.spin = axial_spin(self.trial, W)
         self.dx = ufl.dx(domain=mesh, metadata=QUADRATURE)
 
-    def strains(self, increment):
-        """Section strains of an increment in the current triad, for small turns against it."""
-        return section_strains(increment, self.E, self.l, self.xi, self.share)
+    def strains(self, increment: Increment) -> Any:
+        """Section strains of an increment in the current triad, for small rotations against it."""
+        return section_strains(increment, self.E, self.l, self.xi, self.timoshenko_factor)
 
     @property
-    def residual(self):
+    def residual(self) -> Any:
         """∫ ¹σ : δΔE_l, the internal nodal forces (4.4.1)."""
         return inner(self.s, self.strains(self.test)) * self.dx
 
     @property
-    def material_stiffness(self):
+    def material_stiffness(self) -> Any:
         """K_l = ∫ δe · D Δe."""
-        rates = section_strains(self.trial, self.E, self.l, self.xi, self.share, self.P, self.spin)
+        rates = section_strains(self.trial, self.E, self.l, self.xi, self.timoshenko_factor, self.P, self.spin)
         curvature = as_vector([0, 0, 0, self.e[3], self.e[4], self.e[5]])  # falls as the chord grows
         return inner(self.strains(self.test), self.D * (rates - self.stretch * curvature)) * self.dx
 
     @property
-    def frame_stiffness(self):
-        """Change of the internal forces as the element's triad turns and its chord changes length under the forces.
+    def frame_stiffness(self) -> Any:
+        """Change of the internal forces as the element's triad rotates and its chord changes length under the forces.
 
         With K_l it is the derivative of the residual, but for the charts' curvature, which goes with the out-of-balance
         moments.
         """
         e1 = self.E[:, 0]
-        turned = spun(self.test, cross(e1, self.trial.d) / self.l + self.spin * e1)
+        rotated = spun(self.test, cross(e1, self.trial.d) / self.l + self.spin * e1)
         # l δe by the length l: turns and excess shear angles enter it in γ with l, the chord in w″, v″ with 1/l
         test, nothing = self.test, 0 * self.test.d
-        still = self.strains(Increment(nothing, test.turn1, test.turn2, test.shear))
+        still = self.strains(Increment(nothing, test.rotation1, test.rotation2, test.shear))
         moved = self.strains(Increment(test.d, nothing, nothing, 0 * test.shear))
         lengthened = sum(self.s[k] * still[k] for k in (1, 2)) - sum(self.s[k] * moved[k] for k in (4, 5))
-        return (inner(self.s, self.strains(turned)) + self.stretch * lengthened) * self.dx
+        return (inner(self.s, self.strains(rotated)) + self.stretch * lengthened) * self.dx

@@ -1,4 +1,4 @@
-"""From nodes to section strains: the moving triad of each element, and the turns measured against it (5.2.5–5.2.14)."""
+"""From nodes to section strains: the moving triad of each element, and the rotations against it (5.2.5–5.2.14)."""
 
 import math
 
@@ -29,16 +29,27 @@ def chord_triads(chords: np.ndarray) -> np.ndarray:
 
 
 @njit(cache=True)
-def mean_triad(R1, R2, E0, chord, l, E, W, A, B, v):
-    """Write into `E` the element's triad: the mean of the two turned node triads, swung onto the chord (5.2.11).
+def mean_triad(
+    R1: np.ndarray,
+    R2: np.ndarray,
+    E0: np.ndarray,
+    chord: np.ndarray,
+    l: float,
+    E: np.ndarray,
+    W: np.ndarray,
+    A: np.ndarray,
+    B: np.ndarray,
+    v: np.ndarray,
+) -> None:
+    """Write into `E` the element's triad: the mean of the two rotated node triads, swung onto the chord (5.2.11).
 
-    With the relative turn φ = φ n of the nodes, the first axis t of their mean triad and the chord's direction c, the
-    triad spins about its chord by
+    With the relative rotation φ = φ n of the nodes, the first axis t of their mean triad and the chord's direction c,
+    the triad spins about its chord by
 
         W1 · d + W2 · ω1 + W3 · ω2,  W1 = c × t/(l (1 + t·c)),  W2, W3 = ½ (w ± tan(φ/4) w × n),  w = (t + c)/(1 + t·c),
 
-    where d is the rate of the chord and ω1, ω2 are the nodes' spins: the mean turn spins by ½ (ω1 + ω2) −
-    ½ tan(φ/4) n × (ω2 − ω1), and the swing from t to c is the half turn about t followed by that about t + c.
+    where d is the rate of the chord and ω1, ω2 are the nodes' spins: the mean rotation spins by ½ (ω1 + ω2) −
+    ½ tan(φ/4) n × (ω2 − ω1), and the swing from t to c is the rotation by π about t followed by that about t + c.
 
     A, B are 3×3 and v is a 3-vector of work space.
     """
@@ -71,22 +82,35 @@ def mean_triad(R1, R2, E0, chord, l, E, W, A, B, v):
 
 
 @njit(cache=True)
-def section_strains(cells, chords, R, E0, l0, shear, share, xi, E, P, W, e):
+def section_strains(
+    cells: np.ndarray,
+    chords: np.ndarray,
+    R: np.ndarray,
+    E0: np.ndarray,
+    l0: np.ndarray,
+    shear: np.ndarray,
+    timoshenko_factor: np.ndarray,
+    xi: np.ndarray,
+    E: np.ndarray,
+    P: np.ndarray,
+    W: np.ndarray,
+    e: np.ndarray,
+) -> None:
     """Section strains of all elements at their two Gauss sections, from (5.2.4) in the element's moving triad.
 
-    The nodes' turns θ are measured against the triad of the current configuration, so no restriction to small turns
-    within an increment is needed and the strains do not depend on the path.
+    The nodes' rotations θ are measured against the triad of the current configuration, so no restriction to small
+    rotations within an increment is needed and the strains do not depend on the path.
 
     Args:
         cells: node numbers, shape (cells, 2).
         chords: current chords from node 1 to node 2, shape (cells, 3), mm.
-        R: turns of the nodes since the stress-free state, shape (nodes, 3, 3).
+        R: rotations of the nodes since the stress-free state, shape (nodes, 3, 3).
         E0: triads of the stress-free state, shape (cells, 3, 3), l0: chord lengths there, shape (cells,).
-        shear: excess shear angles, shape (cells, 2), share: of the turns in the shear angles, shape (cells,), see
-            coilset.model.rod.forms.
+        shear: excess shear angles, shape (cells, 2), timoshenko_factor: c, part of the rotations in the
+            shear angles, shape (cells,), see coilset.model.rod.forms.
         xi: Gauss abscissae on the chord, shape (2,).
         E: written, current triads (columns), shape (cells, 3, 3).
-        P: written, rate of the turns θ against the triad for a relative spin, shape (cells, 2, 3, 3).
+        P: written, rate of the rotations θ against the triad for a relative spin, shape (cells, 2, 3, 3).
         W: written, what makes the triad's spin about its chord, see mean_triad, shape (cells, 3, 3).
         e: written, ε, γ12, γ13, φ′, −w″, v″ of the chord axis, shape (cells, 2, 6); ε is logarithmic.
     """
@@ -109,7 +133,7 @@ def section_strains(cells, chords, R, E0, l0, shear, share, xi, E, P, W, e):
             logarithm(B, t)
             inverse_chart_tangent(t, P[c, a])
         m13, m14 = 0.5 * (t1[1] + t2[1]), 0.5 * (t1[2] + t2[2])
-        u13, u14 = shear[c, 0] - share[c] * m13, shear[c, 1] - share[c] * m14
+        u13, u14 = shear[c, 0] - timoshenko_factor[c] * m13, shear[c, 1] - timoshenko_factor[c] * m14
         for g in range(2):
             H = 12.0 * xi[g] - 6.0  # H2″ + H4″, times l
             e[c, g, 0] = math.log(l / l0[c])

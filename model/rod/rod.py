@@ -1,7 +1,10 @@
 """A rod structure, a Body: state of its nodes and section points, and the forms assembled from them."""
 
+from typing import Any
+
 import numpy as np
 from dolfinx import fem
+from dolfinx import mesh as dmesh
 from dolfinx.fem.petsc import assemble_matrix
 from mpi4py import MPI
 from petsc4py import PETSc
@@ -29,7 +32,7 @@ def comm_max(comm: MPI.Comm, value: float) -> float:
 class CellField:
     """A coefficient of the forms, its values reached as an array in the order of the cells."""
 
-    def __init__(self, mesh, element, shape, cells):
+    def __init__(self, mesh: dmesh.Mesh, element: Any, shape: tuple[int, ...], cells: int) -> None:
         self.function = fem.Function(fem.functionspace(mesh, element))
         dofs = self.function.function_space.dofmap.list[:cells]
         if not np.array_equal(dofs.ravel(), np.arange(dofs.size)):

@@ -1,10 +1,11 @@
 """From the chord's strains to those of the true section, and back with its resultants and its tangent."""
 
+import numpy as np
 from numba import njit
 
 
 @njit(cache=True)
-def to_section(P, de, d):
+def to_section(P: np.ndarray, de: np.ndarray, d: np.ndarray) -> None:
     """Write into `d` the section's strains P de."""
     for i in range(6):
         d[i] = 0.0
@@ -13,7 +14,15 @@ def to_section(P, de, d):
 
 
 @njit(cache=True)
-def to_chord(P, stretch, resultant, tangent, work, s, D):
+def to_chord(
+    P: np.ndarray,
+    stretch: float,
+    resultant: np.ndarray,
+    tangent: np.ndarray,
+    work: np.ndarray,
+    s: np.ndarray,
+    D: np.ndarray,
+) -> None:
     """s = Pᵀ s_true ds/dx, D = Pᵀ D_true P ds/dx; `work` is 6 × 6."""
     for i in range(6):
         s[i] = 0.0

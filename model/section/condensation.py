@@ -16,7 +16,9 @@ SHORTEST = 1e-3  # part of a correction
 
 
 @njit(cache=True)
-def strain_operator(y, z, f, radius, curvature, torsion, B):
+def strain_operator(
+    y: float, z: float, f: np.ndarray, radius: float, curvature: float, torsion: float, B: np.ndarray
+) -> None:
     """Strains of a section's points for unit section strains and unit warping.
 
     Columns: ε, γ12, γ13, φ′, κ2, κ3; w2 = y, w3 = z, (w2, w3) = (z, y); then the polynomials as w1, w2, w3 in turn.
@@ -56,7 +58,22 @@ def strain_operator(y, z, f, radius, curvature, torsion, B):
 
 
 @njit(cache=True)
-def find_warping(p, B, dA, old, old_a, a, new, step, C, CB, K, r, X, count):
+def find_warping(
+    p: np.ndarray,
+    B: np.ndarray,
+    dA: np.ndarray,
+    old: np.ndarray,
+    old_a: np.ndarray,
+    a: np.ndarray,
+    new: np.ndarray,
+    step: np.ndarray,
+    C: np.ndarray,
+    CB: np.ndarray,
+    K: np.ndarray,
+    r: np.ndarray,
+    X: np.ndarray,
+    count: np.ndarray,
+) -> bool:
     """Newton's method for the warping `a` at the section strain increment in the first six places of `step`.
 
     Far from the solution a correction may lead beyond it, since flow makes the section soft. One that meets more work
@@ -104,7 +121,18 @@ def find_warping(p, B, dA, old, old_a, a, new, step, C, CB, K, r, X, count):
 
 
 @njit(**KERNEL)
-def integrate(p, B, dA, step, old, new, C, CB, K, r):
+def integrate(
+    p: np.ndarray,
+    B: np.ndarray,
+    dA: np.ndarray,
+    step: np.ndarray,
+    old: np.ndarray,
+    new: np.ndarray,
+    C: np.ndarray,
+    CB: np.ndarray,
+    K: np.ndarray,
+    r: np.ndarray,
+) -> bool:
     """Stresses of all points for the increment `step` of strains and warping, r = ∫ Bᵀ σ g dA, K = ∫ Bᵀ C B g dA."""
     size = len(step)
     n = (size - 9) // 3
@@ -145,7 +173,7 @@ def integrate(p, B, dA, step, old, new, C, CB, K, r):
 
 
 @njit(**KERNEL)
-def add_rows(b, CB, i, K):
+def add_rows(b: np.ndarray, CB: np.ndarray, i: int, K: np.ndarray) -> None:
     """Add row i of Bᵀ (C B)."""
     b0, b1, b2, b3, b4, b5 = b[0, i], b[1, i], b[2, i], b[3, i], b[4, i], b[5, i]
     for j in range(K.shape[0]):
@@ -153,7 +181,7 @@ def add_rows(b, CB, i, K):
 
 
 @njit(**KERNEL)
-def eliminate(X):
+def eliminate(X: np.ndarray) -> bool:
     """Solve in place: the first n columns of X, shape (n, n + m), are a matrix, the others right-hand sides.
 
     Gauss's elimination with the greatest pivot of each column; False if the matrix is singular.
@@ -185,7 +213,7 @@ def eliminate(X):
 
 
 @njit(cache=True)
-def condense(K, r, X, s, D):
+def condense(K: np.ndarray, r: np.ndarray, X: np.ndarray, s: np.ndarray, D: np.ndarray) -> None:
     """s = r_e − D_ea D_aa⁻¹ r_a, D = D_ee − D_ea D_aa⁻¹ D_ae, with X as `find_warping` leaves it."""
     n = len(X)
     for i in range(6):

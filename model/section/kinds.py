@@ -9,7 +9,10 @@ from typing import Protocol
 
 import numpy as np
 
+from coilset.meshes.placement import Placement
+from coilset.model.material.law import Law
 from coilset.model.section.plane import PlaneSections
+from coilset.model.section.rules import DiskRule
 from coilset.model.section.warping import WarpingSections
 
 KINDS = ("plane", "curved", "warping")
@@ -24,7 +27,16 @@ class Sections(Protocol):
     update_surface: object
 
 
-def make_sections(kind, law, parameters, rule, radius, placement, temperature=None, degree=3):
+def make_sections(
+    kind: str,
+    law: Law,
+    parameters: np.ndarray,
+    rule: DiskRule,
+    radius: np.ndarray,
+    placement: Placement,
+    temperature: float | None = None,
+    degree: int = 3,
+) -> Sections:
     """The sections of a kind; arguments as in `PlaneSections` and, for the degree, `WarpingSections`.
 
     Raises:

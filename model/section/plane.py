@@ -103,7 +103,21 @@ class PlaneSections:
 
 
 @njit(cache=True)
-def update_sections(p, y, z, w, radius, curvature, de, placement, stretch, old, new, s, D):
+def update_sections(
+    p: np.ndarray,
+    y: np.ndarray,
+    z: np.ndarray,
+    w: np.ndarray,
+    radius: np.ndarray,
+    curvature: np.ndarray,
+    de: np.ndarray,
+    placement: np.ndarray,
+    stretch: np.ndarray,
+    old: np.ndarray,
+    new: np.ndarray,
+    s: np.ndarray,
+    D: np.ndarray,
+) -> int:
     """Bring all sections to the end of the increment.
 
     The strains of the chord axis are carried to the true section by `placement` (identity for a straight rod), the
@@ -149,14 +163,28 @@ def update_sections(p, y, z, w, radius, curvature, de, placement, stretch, old, 
 
 
 @njit(**INLINE)
-def strain_point(p, y, z, inverse, d, old, new, C):
+def strain_point(
+    p: np.ndarray, y: float, z: float, inverse: float, d: np.ndarray, old: np.ndarray, new: np.ndarray, C: np.ndarray
+) -> int:
     """The law at one point: ε11 = (ε + κ2 z − κ3 y)/g, γ12 = (γ2 − φ′ z)/g, γ13 = (γ3 + φ′ y)/g (5.2.4)."""
     e11 = (d[0] + d[4] * z - d[5] * y) * inverse
     return return_map(p, old, e11, (d[1] - d[3] * z) * inverse, (d[2] + d[3] * y) * inverse, new, C)
 
 
 @njit(**INLINE)
-def integrate_point(p, y, z, dA, inverse, d, old, new, C, resultant, tangent):
+def integrate_point(
+    p: np.ndarray,
+    y: float,
+    z: float,
+    dA: float,
+    inverse: float,
+    d: np.ndarray,
+    old: np.ndarray,
+    new: np.ndarray,
+    C: np.ndarray,
+    resultant: np.ndarray,
+    tangent: np.ndarray,
+) -> bool:
     """Add one point's share to the section; `inverse` is 1/g."""
     if strain_point(p, y, z, inverse, d, old, new, C) < 0:
         return False
@@ -191,7 +219,17 @@ def integrate_point(p, y, z, dA, inverse, d, old, new, C, resultant, tangent):
 
 
 @njit(cache=True)
-def update_surface(p, y, z, radius, curvature, de, placement, old, new):
+def update_surface(
+    p: np.ndarray,
+    y: np.ndarray,
+    z: np.ndarray,
+    radius: np.ndarray,
+    curvature: np.ndarray,
+    de: np.ndarray,
+    placement: np.ndarray,
+    old: np.ndarray,
+    new: np.ndarray,
+) -> None:
     """Bring the points y, z of the unit circle to the end of the increment; arguments as in `update_sections`."""
     d = np.empty(6)
     C = np.empty((3, 3))

@@ -13,11 +13,11 @@ class DiskRule:
     weights: np.ndarray
     name: str
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.weights)
 
 
-def abramowitz9():
+def abramowitz9() -> DiskRule:
     """The thesis's rule (5.2.43): Abramowitz and Stegun 25.4.61, nine points, exact for I = πR⁴/4."""
     ring = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)]
     square = [(0.5, 0.5), (0.5, -0.5), (-0.5, 0.5), (-0.5, -0.5)]
@@ -25,7 +25,7 @@ def abramowitz9():
     return DiskRule(np.array([(0.0, 0.0), *ring, *square]), np.array(weights), "abramowitz9")
 
 
-def polar(radial=4, angular=12):
+def polar(radial: int = 4, angular: int = 12) -> DiskRule:
     """Gauss rule in r² times equal angles: no point on the axis, where the stress of torsion vanishes.
 
     Args:
@@ -42,7 +42,7 @@ def polar(radial=4, angular=12):
     return DiskRule(points, np.repeat(0.5 * w / angular, angular), f"polar {radial} × {angular}")
 
 
-def upper_half(rule):
+def upper_half(rule: DiskRule) -> DiskRule:
     """The points of a symmetric rule with z > 0, weights doubled: for what is the same, or opposite, at z and −z."""
     above = rule.points[:, 1] > 0.0
     return DiskRule(rule.points[above], 2.0 * rule.weights[above], f"upper half of {rule.name}")

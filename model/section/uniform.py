@@ -23,7 +23,7 @@ Rod = namedtuple("Rod", "p R h j y z area bend by_force free")
 
 
 @njit(**INLINE)
-def strains(rod, q, E):
+def strains(rod: Rod, q: np.ndarray, E: np.ndarray) -> None:
     """Write E = (Γ₁, Γ₃, K₁, K₃) at the coordinates q."""
     c, s, j = math.cos(q[INCLINATION]), math.sin(q[INCLINATION]), rod.j
     around, up = q[TURN] * q[RADIUS], q[RISE]
@@ -34,7 +34,7 @@ def strains(rod, q, E):
 
 
 @njit(**INLINE)
-def derivatives(rod, q, S, B, H):
+def derivatives(rod: Rod, q: np.ndarray, S: np.ndarray, B: np.ndarray, H: np.ndarray) -> None:
     """Write B = ∂E/∂q and H = Σ S_k ∂²E_k/∂q², both 4 × 4."""
     c, s, j = math.cos(q[INCLINATION]), math.sin(q[INCLINATION]), rod.j
     r, up, λ = q[RADIUS], q[RISE], q[TURN]
@@ -57,7 +57,16 @@ def derivatives(rod, q, S, B, H):
 
 
 @njit(**INLINE)
-def integrate(rod, E, old_E, old, new, C, S, T):
+def integrate(
+    rod: Rod,
+    E: np.ndarray,
+    old_E: np.ndarray,
+    old: np.ndarray,
+    new: np.ndarray,
+    C: np.ndarray,
+    S: np.ndarray,
+    T: np.ndarray,
+) -> bool:
     """Resultants S = (N, Q₃, Mt, M₃) and T = ∂S/∂E of the strains E, reached from `old_E` and the rows `old`.
 
     Returns:
@@ -110,7 +119,7 @@ def integrate(rod, E, old_E, old, new, C, S, T):
 
 
 @njit(cache=True)
-def residual_and_tangent(rod, q, S, T, f, K):
+def residual_and_tangent(rod: Rod, q: np.ndarray, S: np.ndarray, T: np.ndarray, f: np.ndarray, K: np.ndarray) -> None:
     """Write f = ∂W/∂q per radian (N, and N mm for ϑ and λ) and its derivative K; ∂W/∂h̄ is the force that pulls."""
     B, H = np.empty((4, 4)), np.empty((4, 4))
     derivatives(rod, q, S, B, H)
@@ -127,14 +136,23 @@ def residual_and_tangent(rod, q, S, T, f, K):
 
 
 @njit(cache=True)
-def step(rod, value, elastic, q, points, new, S, T):
+def step(
+    rod: Rod,
+    value: float,
+    elastic: bool,
+    q: np.ndarray,
+    points: np.ndarray,
+    new: np.ndarray,
+    S: np.ndarray,
+    T: np.ndarray,
+) -> tuple[bool, float, float]:
     """One step: to the rise `value` (mm/rad), or under the axial force `value` (compression positive, N).
 
     Args:
         rod: Rod.
         elastic: begin with the elastic tangent, not with that of the last step.
-        q, points: coordinates and history rows at the last equilibrium; replaced if there is a new one.
-        new: room for history rows.
+        q, points: coordinates and point states at the last equilibrium; replaced if there is a new one.
+        new: room for point states.
         S, T: resultants and their tangent at the last equilibrium; replaced.
 
     Returns:

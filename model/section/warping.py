@@ -102,7 +102,7 @@ class WarpingSections:
         )  # fmt: skip
 
 
-def _with_polynomials(points, degree):
+def _with_polynomials(points: np.ndarray, degree: int) -> tuple[np.ndarray, ...]:
     """y, z, and the polynomials and their slopes there."""
     y, z = np.ascontiguousarray(points.T)
     return y, z, values_and_slopes(degree, y, z)
@@ -110,8 +110,27 @@ def _with_polynomials(points, degree):
 
 @njit(cache=True)
 def update_sections(
-    p, y, z, f, w, radius, curvature, torsion, de, placement, stretch, old, old_a, old_slope, new, a, slope, s, D, count
-):
+    p: np.ndarray,
+    y: np.ndarray,
+    z: np.ndarray,
+    f: np.ndarray,
+    w: np.ndarray,
+    radius: np.ndarray,
+    curvature: np.ndarray,
+    torsion: np.ndarray,
+    de: np.ndarray,
+    placement: np.ndarray,
+    stretch: np.ndarray,
+    old: np.ndarray,
+    old_a: np.ndarray,
+    old_slope: np.ndarray,
+    new: np.ndarray,
+    a: np.ndarray,
+    slope: np.ndarray,
+    s: np.ndarray,
+    D: np.ndarray,
+    count: np.ndarray,
+) -> int:
     """Bring all sections to the end of the increment.
 
     Args:
@@ -164,7 +183,20 @@ def update_sections(
 
 
 @njit(cache=True)
-def update_surface(p, y, z, f, radius, curvature, torsion, de, placement, old, da, new):
+def update_surface(
+    p: np.ndarray,
+    y: np.ndarray,
+    z: np.ndarray,
+    f: np.ndarray,
+    radius: np.ndarray,
+    curvature: np.ndarray,
+    torsion: np.ndarray,
+    de: np.ndarray,
+    placement: np.ndarray,
+    old: np.ndarray,
+    da: np.ndarray,
+    new: np.ndarray,
+) -> None:
     """Bring points on the surface to the end of the increment `de`, `da` of strains and warping."""
     n = da.shape[2]
     B, C = np.zeros((len(y), 6, 6 + n)), np.empty((6, 6))

@@ -6,12 +6,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from coilset.meshes.errors import InputError, SolveError
+from coilset.meshes.geometry import Spring
 from coilset.meshes.section import section_mesh
 from coilset.meshes.section_shapes import Outline, round_wire
 from coilset.model.case import Case
+from coilset.model.case.phases import Phase
 from coilset.model.slice.contact import SelfContact
 from coilset.model.slice.lattice import Lattice
-from coilset.model.slice.problem import SliceProblem
+from coilset.model.slice.problem import Effort, SliceProblem
 from coilset.model.slice.slice import Coil, Slice
 from coilset.model.slice.watch import Watch
 from coilset.model.standards.wires.law import case_law
@@ -143,7 +145,7 @@ class SliceAnalysis:
         result.complete = True
         return result
 
-    def _phase(self, index, phase, report):
+    def _phase(self, index: int, phase: Phase, report: Callable[[SliceStep], object]) -> None:
         steps = AUTOMATIC if phase.steps == "auto" else phase.steps
         kind, end = self._target(phase)
         begin = self.problem.force if kind == "force" else self.height
@@ -164,10 +166,10 @@ class SliceAnalysis:
             self.result.steps.append(step)
             report(step)
 
-    def _rise(self, height):
+    def _rise(self, height: float) -> float:
         return self.coil.rise - (self.spring.free_length - height) / (2.0 * np.pi * self.turns)
 
-    def _target(self, phase):
+    def _target(self, phase: Phase) -> tuple[str, float]:
         """Kind (`force` or `height`) and value of a phase's end, N or mm."""
         to = phase.to
         if to == "block":
@@ -189,7 +191,7 @@ class SliceAnalysis:
                 raise InputError(f"a height of {value:.6g} mm is below block, {block:.6g} mm; give to: block",
                                  f"loading.{index}.to")  # fmt: skip
 
-    def _close(self, height):
+    def _close(self, height: float) -> Effort:
         """Go on to where the coils just touch, which by the wire's inclination is a little before block's height."""
         rise, limit = self._rise(height), TOUCHING * self.wire_diameter
         iterations = cuts = 0
@@ -202,7 +204,7 @@ class SliceAnalysis:
                 break
         return type(effort)(iterations, cuts)
 
-    def _probe(self):
+    def _probe(self) -> None:
         """Initial rate and the factor at the inside from the linear answer to a small travel."""
         travel = PROBE * self.spring.free_length
         force, stress = self.problem.probe(self.coil.rise - travel / (2.0 * np.pi * self.turns), self.line)
@@ -218,7 +220,7 @@ class SliceAnalysis:
                              self.points.state[:, 12].copy(), self.line.section_stress())  # fmt: skip
 
 
-def _same_in_all_turns(spring, name):
+def _same_in_all_turns(spring: Spring, name: str) -> float:
     function = {"wire_diameter": spring.wire_diameter, "mean_diameter": lambda t: 2.0 * spring.mean_radius(t),
                 "pitch": spring.pitch}[name]  # fmt: skip
     values = function(0.5 * (spring.breaks[1:] + spring.breaks[:-1]))
@@ -230,14 +232,14 @@ def _same_in_all_turns(spring, name):
     return float(values.mean())
 
 
-def _fits(extent, diameter):
+def _fits(extent: tuple[float, float, float, float], diameter: float) -> None:
     height = extent[3] - extent[2]
     if abs(height - diameter) > 1e-3 * diameter:
         raise InputError(f"{diameter:g} mm, but the section is {height:.5g} mm high along the spring; give its height",
                          "spring.wire_diameter")  # fmt: skip
 
 
-def _ends_turn(case):
+def _ends_turn(case: Case) -> bool:
     """Whether an end is free to turn about the spring's axis."""
     if case.ends == "clamped" or case.seats.hold == "tips":
         return False

@@ -11,7 +11,7 @@ from coilset.model.slice.gap import gaps
 from coilset.model.slice.slice import Slice
 
 STIFFNESS = 10.0  # default bedding over E/d: as stiff as the triangles at the surface
-ONSET = 1e-4  # way over which contact sets in, in equivalent wire diameters
+ONSET = 1e-4  # distance over which contact sets in, in equivalent wire diameters
 STEEP = 0.3  # component of the normal along the coil's axis from which an edge may touch
 GAUSS = 4  # points of contact on an edge
 
@@ -64,7 +64,7 @@ class SelfContact:
         self._gap, self._where = np.empty(self._areas.shape), np.empty((points, 3), np.int64)
         self._gradient, self._hessian = np.empty((points, size)), np.empty((points, size, size))
 
-    def _points_areas(self, weights):
+    def _points_areas(self, weights: np.ndarray) -> np.ndarray:
         """Surface of the unloaded wire that each point stands for, per radian, mm²."""
         t, powers = self._gauss[:, None], np.arange(len(self._edges.polynomials))
         values = t**powers @ self._edges.polynomials.T

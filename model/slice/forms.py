@@ -12,6 +12,8 @@ and a variation (v, μ, χ) of (x₀, λ, h̄) has the gradient L = Ĝ F̂⁻¹ 
 Virtual work per radian is ∫ σ : L |det F̂| dξ dη; the factor of χ is the axial force, that of μ the torque.
 """
 
+from typing import Any
+
 import basix.ufl
 import numpy as np
 import ufl
@@ -26,32 +28,32 @@ QUADRATURE_DEGREE = {2: 2, 3: 4}
 RISE, TURN = 0, 1  # the two numbers h̄ and λ
 
 
-def about_axis(v):
+def about_axis(v: Any) -> Any:
     """Ω v = e_z × v."""
     return ufl.as_vector([-v[1], v[0], 0.0])
 
 
-def along_axis(χ):
+def along_axis(χ: Any) -> Any:
     """χ e_z."""
     return ufl.as_vector([0.0, 0.0, χ])
 
 
-def tangents(v, third):
+def tangents(v: Any, third: Any) -> Any:
     """The matrix [ v,ξ | v,η | third ]."""
     return ufl.as_matrix([[v[i].dx(0), v[i].dx(1), third[i]] for i in range(3)])
 
 
-def last_column(third):
+def last_column(third: Any) -> Any:
     """The matrix [ 0 | 0 | third ]."""
     return ufl.as_matrix([[0.0, 0.0, third[i]] for i in range(3)])
 
 
-def strain_components(L):
+def strain_components(L: Any) -> Any:
     """Components of the symmetric part of L, shear doubled."""
     return ufl.as_vector([L[i, i] if i == j else L[i, j] + L[j, i] for i, j in PAIRS])
 
 
-def as_tensor(σ):
+def as_tensor(σ: Any) -> Any:
     """Symmetric tensor of six components."""
     index = {pair: k for k, pair in enumerate(PAIRS)}
     return ufl.as_tensor([[σ[index[min(i, j), max(i, j)]] for j in range(3)] for i in range(3)])
@@ -94,11 +96,11 @@ class SliceForms:
             TURN: last_column(about_axis(x)),
         }
 
-        def work(G):
+        def work(G: Any) -> Any:
             """Virtual work of a variation."""
             return ufl.inner(σ, G * inverse) * volume * dx
 
-        def change(G, dG, second=None):
+        def change(G: Any, dG: Any, second: Any = None) -> Any:
             """Change of the work of the variation G by the motion dG, and by what the motion does to G itself."""
             L, dL = G * inverse, dG * inverse
             material = ufl.dot(strain_components(L), ufl.dot(self.moduli, strain_components(dL)))
@@ -120,7 +122,7 @@ class SliceForms:
             ("corner", i, j): lambda i=i, j=j: change(variation[i], variation[j])
             for i in (RISE, TURN) for j in (RISE, TURN)
         }  # fmt: skip
-        self._compiled = {}
+        self._compiled: dict[str | tuple, fem.Form] = {}
         self._motion(F, inverse)
         self.cells = np.arange(mesh.topology.index_map(2).size_local, dtype=np.int32)
 
@@ -136,7 +138,7 @@ class SliceForms:
             self._compiled[name] = fem.form(self._expressions[name]())
         return self._compiled[name]
 
-    def _motion(self, F, inverse):
+    def _motion(self, F: Any, inverse: Any) -> None:
         """1 − F̂_old F̂⁻¹ = ΔF̂ F̂⁻¹, the increment's gradient in its end configuration, and F̂ itself."""
         x, u, old, new = self.x, self.u, self.old, self.increment
         third = new[TURN] * about_axis(x + u) + old[TURN] * about_axis(u) + along_axis(new[RISE])

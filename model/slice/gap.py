@@ -19,7 +19,7 @@ ITERATIONS = 12
 
 
 @njit(cache=True)
-def shape(polynomials, t, N):
+def shape(polynomials: np.ndarray, t: float, N: np.ndarray) -> None:
     """Write the shape functions of an edge at t and their first and second derivatives, shape (3, nodes)."""
     n = len(polynomials)
     for a in range(n):
@@ -32,7 +32,7 @@ def shape(polynomials, t, N):
 
 
 @njit(cache=True)
-def place(x, edge, N, X):
+def place(x: np.ndarray, edge: np.ndarray, N: np.ndarray, X: np.ndarray) -> None:
     """Write position and its derivatives along the edge, shape (3, 3)."""
     for k in range(3):
         for i in range(3):
@@ -42,7 +42,7 @@ def place(x, edge, N, X):
 
 
 @njit(cache=True)
-def meridian(X, κ, m, D, H, turned):
+def meridian(X: np.ndarray, κ: float, m: np.ndarray, D: np.ndarray, H: np.ndarray, turned: np.ndarray) -> None:
     """Write m(X), its first and second derivatives (2 × 3 and 2 × 3 × 3), and θ with its derivatives (4)."""
     x, y = X[0], X[1]
     r2 = x * x + y * y
@@ -58,7 +58,20 @@ def meridian(X, κ, m, D, H, turned):
 
 
 @njit(cache=True)
-def curve(x, edge, polynomials, κ, t, N, X, m, D, H, turned, C):
+def curve(
+    x: np.ndarray,
+    edge: np.ndarray,
+    polynomials: np.ndarray,
+    κ: float,
+    t: float,
+    N: np.ndarray,
+    X: np.ndarray,
+    m: np.ndarray,
+    D: np.ndarray,
+    H: np.ndarray,
+    turned: np.ndarray,
+    C: np.ndarray,
+) -> None:
     """Write C, C′ and C″ of an edge of the next coil, shape (3, 2), raised by its pitch."""
     shape(polynomials, t, N)
     place(x, edge, N, X)
@@ -74,7 +87,16 @@ def curve(x, edge, polynomials, κ, t, N, X, m, D, H, turned, C):
 
 
 @njit(cache=True)
-def closest(x, edges, below, polynomials, κ, p, room, start):
+def closest(
+    x: np.ndarray,
+    edges: np.ndarray,
+    below: np.ndarray,
+    polynomials: np.ndarray,
+    κ: float,
+    p: np.ndarray,
+    room: tuple[np.ndarray, ...],
+    start: np.ndarray,
+) -> tuple[int, float, bool]:
     """Edge (a number in `below`) and t of the closest place of the next coil's lower side to p in the half plane.
 
     Args:
@@ -121,7 +143,20 @@ def closest(x, edges, below, polynomials, κ, p, room, start):
 
 
 @njit(cache=True)
-def gaps(x, κ, edges, polynomials, above, below, gauss, limit, gap, where, gradient, hessian):
+def gaps(
+    x: np.ndarray,
+    κ: float,
+    edges: np.ndarray,
+    polynomials: np.ndarray,
+    above: np.ndarray,
+    below: np.ndarray,
+    gauss: np.ndarray,
+    limit: float,
+    gap: np.ndarray,
+    where: np.ndarray,
+    gradient: np.ndarray,
+    hessian: np.ndarray,
+) -> int:
     """Gaps of Gauss points on the upper side to the next coil, and derivatives of those below a limit.
 
     Args:

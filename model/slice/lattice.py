@@ -45,7 +45,7 @@ class Lattice:
         return np.einsum("qb,cbi->cqi", self._shape, x[self._dofs]).reshape(-1, 3)
 
 
-def _small_triangles():
+def _small_triangles() -> np.ndarray:
     """The triangles of one cell's lattice, whose points are ordered by rows."""
     n = DIVISIONS
     first = np.cumsum([0] + [n + 1 - j for j in range(n)])  # number of each row's first point
@@ -54,5 +54,5 @@ def _small_triangles():
     return np.array(up + down)
 
 
-def _all_cells(triangles, cells, points):
+def _all_cells(triangles: np.ndarray, cells: int, points: int) -> np.ndarray:
     return (triangles[None] + points * np.arange(cells)[:, None, None]).reshape(-1, 3)

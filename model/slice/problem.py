@@ -1,7 +1,9 @@
 """Equilibrium of the slice as a SNES problem of its displacements and of the two numbers h̄ and λ."""
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from dolfinx import fem
@@ -62,10 +64,10 @@ class SliceProblem:
         self._n = body.u.size
         self.force, self.torque, self._direction = 0.0, 0.0, 0.0
         self.pressure = contact.evaluate() if contact else None
-        self._solvers = {}
+        self._solvers: dict[bool, tuple[BorderedMatrix, PETSc.SNES]] = {}
         self._let_touch(False)
 
-    def _let_touch(self, touching):
+    def _let_touch(self, touching: bool) -> None:
         """Take contact, and the room it needs in the matrix, in or out."""
         self.touching = touching
         if touching not in self._solvers:
@@ -75,7 +77,7 @@ class SliceProblem:
         self._matrix, self.snes = self._solvers[touching]
         self._X, self._b = self._matrix.petsc.createVecRight(), self._matrix.petsc.createVecLeft()
 
-    def _create_snes(self, matrix):
+    def _create_snes(self, matrix: PETSc.Mat) -> PETSc.SNES:
         snes = PETSc.SNES().create(PETSc.COMM_SELF)
         prefix = f"slice{next(_numbers)}_"
         snes.setOptionsPrefix(prefix)
@@ -92,7 +94,7 @@ class SliceProblem:
 
     # ---- callbacks of SNES -----------------------------------------------------------------------------------------
 
-    def _set(self, X):
+    def _set(self, X: PETSc.Vec) -> bool:
         values = X.getArray(readonly=True)
         if not np.array_equal(values, self._at):
             self.body.u[:] = values[:-2].reshape(-1, 3)
@@ -107,7 +109,7 @@ class SliceProblem:
         """Axial force, tension positive, N, and torque, N mm, at the increment, what contact bears included."""
         return self.body.resultants() + (self._pressure.numbers if self.touching else 0.0)
 
-    def _rest(self):
+    def _rest(self) -> np.ndarray:
         """Out-of-balance forces at the increment, shape (n + 2,), N."""
         rest = np.zeros(self._n + 2)
         rest[:-2] = (self.body.forces + (self._pressure.forces if self.touching else 0.0)).ravel()
@@ -117,17 +119,17 @@ class SliceProblem:
             rest[-2:] = np.where([self._force is not None, self.free_ends], driven, 0.0)
         return rest
 
-    def _residual(self, snes, X, F):
+    def _residual(self, snes: PETSc.SNES, X: PETSc.Vec, F: PETSc.Vec) -> None:
         if self._set(X):
             F.setArray(self._rest())
         else:
             F.set(np.inf)
 
-    def _tangent(self, snes, X, J, P):
+    def _tangent(self, snes: PETSc.SNES, X: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
         self._set(X)  # a line search may have looked elsewhere last
         self._assemble()
 
-    def _assemble(self):
+    def _assemble(self) -> None:
         forms, scale = self.body.forms, self._scale
         free, moves = [self._force is not None, self.free_ends], [True, self._turns]
         self._columns = columns = [assemble(forms["column", k]) / scale[k] if moves[k] else None for k in (RISE, TURN)]
@@ -138,7 +140,7 @@ class SliceProblem:
                 corner[i, j] = fem.assemble_scalar(forms["corner", i, j]) / (scale[i] * scale[j]) if moves[j] else 0.0
         self._matrix.assemble(columns, rows, corner, self._of_contact(free, moves))
 
-    def _of_contact(self, free, moves):
+    def _of_contact(self, free: list[bool], moves: list[bool]) -> Any:
         """Places and values in the matrix of the contact's stiffness, without equations of prescribed numbers."""
         if not self.touching:
             return None
@@ -149,7 +151,7 @@ class SliceProblem:
         i, j = i[used], j[used]
         return self._matrix.places(i, j), pressure.values[used] / (scales[i] * scales[j])
 
-    def _converged(self, snes, iteration, norms):
+    def _converged(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> Any:
         norm, reason = norms[2], PETSc.SNES.ConvergedReason
         if not np.isfinite(norm):
             return reason.DIVERGED_FNORM_NAN
@@ -185,7 +187,7 @@ class SliceProblem:
         self.body.restore()
         return force, stress
 
-    def _go(self, where, target, by_force, turn=None):
+    def _go(self, where: Callable[[], float], target: float, by_force: bool, turn: float | None = None) -> Effort:
         begin, done, part, iterations, cuts = where(), 0.0, 1.0, 0, 0
         turned = 0.0 if turn is None else turn - self.body.turn
         while done < 1.0:
@@ -212,11 +214,11 @@ class SliceProblem:
                                  f"{2 * np.pi * self.body.rise:.6g} mm on the way to {kind}")  # fmt: skip
         return Effort(iterations, cuts)
 
-    def _sinks_in(self):
+    def _sinks_in(self) -> bool:
         """Whether coils lie in each other at an equilibrium that was found without contact."""
         return self.contact is not None and not self.touching and self.contact.evaluate().gap < 0.0
 
-    def _accept(self):
+    def _accept(self) -> None:
         axial, self.torque = self.resultants()
         self.force = -axial
         if self.contact is not None:
@@ -225,7 +227,7 @@ class SliceProblem:
         if self.touching and not self.pressure.bearing:
             self._let_touch(False)
 
-    def _attempt(self, value, by_force, turning):
+    def _attempt(self, value: float, by_force: bool, turning: float) -> bool:
         """Newton's method from the linear answer at the last moduli, K Δu = −R − ∂R/∂h̄ Δh̄; whether it converged."""
         self._linear_answer(value, by_force, turning)
         if by_force and self.contact is not None and not self.touching:
@@ -233,7 +235,7 @@ class SliceProblem:
         self.snes.solve(None, self._X)
         return self.snes.getConvergedReason() > 0 and self._set(self._X)
 
-    def _hold_back(self, value):
+    def _hold_back(self, value: float) -> None:
         """Begin where coils have just come to bear, if a force without their contact would press them in deeper."""
         falls = -2.0 * np.pi * self._X.getArray(readonly=True)[-2] / self.body.turn
         reach = self.pressure.gap + 2.0 * self.contact.onset
@@ -242,7 +244,7 @@ class SliceProblem:
             self._linear_answer(value, by_force=True)
             self._X.scale(reach / falls)
 
-    def _linear_answer(self, value, by_force, turning=0.0):
+    def _linear_answer(self, value: float, by_force: bool, turning: float = 0.0) -> None:
         self._force, self._turns = value if by_force else None, self.free_ends or turning != 0.0
         self._at, self._good = np.zeros(self._n + 2), True
         if self.touching:

@@ -85,7 +85,7 @@ class Slice:
         self.update()
         self._committed = self._stress.copy(), self._moduli.copy()
 
-    def _places(self):
+    def _places(self) -> tuple[np.ndarray, np.ndarray]:
         """Where the points lie in the unloaded section, shape (points, 2), mm, and their areas, mm²."""
         mesh, element = self.section.mesh, self.section.mesh.ufl_domain().ufl_coordinate_element().basix_element
         nodes = mesh.geometry.x[geometry_dofs(mesh)][:, :, :2]

@@ -3,6 +3,7 @@
 import csv
 from dataclasses import asdict, fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -54,7 +55,7 @@ def summarise(analysis: SliceAnalysis) -> dict:
     }
 
 
-def _greatest_shear(shot):
+def _greatest_shear(shot: Any) -> float:
     return float(shear(np.concatenate([shot.stress, shot.line])).max())
 
 

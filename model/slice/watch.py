@@ -27,7 +27,7 @@ class Watch:
 
     Attributes:
         places: as given.
-        state: history rows at the last equilibrium, shape (n, n_state), in space.
+        state: point states at the last equilibrium, shape (n, n_state), in space.
     """
 
     def __init__(self, body: Slice, places: np.ndarray):
@@ -38,7 +38,7 @@ class Watch:
         body.watches.append(self)
 
     def evaluate(self) -> np.ndarray:
-        """History rows at the body's increment, shape (n, n_state); a view that the next call overwrites.
+        """Point states at the body's increment, shape (n, n_state); a view that the next call overwrites.
 
         Raises:
             SolveError: if the law finds no solution at a place.
@@ -61,7 +61,7 @@ class Watch:
         """Stress in the axes of the section as it lies now: 1 along the wire, 2 outward, 3 upward.
 
         Args:
-            state: history rows; default are those at the last equilibrium.
+            state: point states; default are those at the last equilibrium.
 
         Returns:
             σ11, σ22, σ33, τ12, τ13, τ23, shape (n, 6), MPa.

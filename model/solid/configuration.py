@@ -4,6 +4,7 @@ import basix.ufl
 import numpy as np
 import scipy.sparse
 from dolfinx import fem
+from dolfinx import mesh as dmesh
 
 from coilset.meshes.compat import geometry_dofs
 
@@ -27,7 +28,7 @@ class Configuration:
         quadrature_degree: of the points that carry the state.
     """
 
-    def __init__(self, mesh):
+    def __init__(self, mesh: dmesh.Mesh) -> None:
         self.mesh = mesh
         cell = mesh.basix_cell().name
         self.quadrature_degree = QUADRATURE_DEGREE[cell]
@@ -41,15 +42,15 @@ class Configuration:
         self.start = mesh.geometry.x.copy()
 
     @property
-    def owned(self):
+    def owned(self) -> int:
         """Number of blocks of three degrees of freedom that this rank owns; they come first."""
         return self.V.dofmap.index_map.size_local
 
-    def move(self, x):
+    def move(self, x: np.ndarray) -> None:
         """Put the mesh where the position coefficients say, shape (blocks with ghosts, 3), mm."""
         self.mesh.geometry.x[:] = self._nodes @ x
 
-    def rigid_modes(self, x):
+    def rigid_modes(self, x: np.ndarray) -> np.ndarray:
         """Coefficients of the unit translations along, and the rotations about, the axes through the origin.
 
         Degrees of freedom are linear in the function, so those of e × x are e × those of x.
@@ -67,7 +68,7 @@ class Configuration:
         return modes
 
 
-def _node_matrix(mesh, V):
+def _node_matrix(mesh: dmesh.Mesh, V: fem.FunctionSpace) -> scipy.sparse.csr_matrix:
     """Matrix from position coefficients to geometry nodes, shape (nodes, blocks): row i evaluates node i."""
     nodes, dofs = geometry_dofs(mesh), V.dofmap.list
     points = mesh.ufl_domain().ufl_coordinate_element().basix_element.points

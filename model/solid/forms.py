@@ -1,21 +1,27 @@
 """UFL forms of the solid on the current configuration: virtual work, its linearisation, the gradient."""
 
+from collections.abc import Sequence
+from typing import Any
+
 import basix.ufl
 import numpy as np
 import ufl
 from dolfinx import fem
+from ufl.core.expr import Expr
+
+from coilset.model.solid.configuration import Configuration
 
 # Order of the six components: 11, 22, 33, 12, 13, 23; strains carry twice the shear.
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
-def strain_components(v):
+def strain_components(v: Expr) -> Expr:
     """Components of the symmetric gradient of v, shear doubled."""
     g = ufl.grad(v)
     return ufl.as_vector([g[i, i] if i == j else g[i, j] + g[j, i] for i, j in PAIRS])
 
 
-def as_tensor(σ):
+def as_tensor(σ: Sequence[Any] | Expr) -> Expr:
     """Symmetric tensor of six components."""
     index = {pair: k for k, pair in enumerate(PAIRS)}
     return ufl.as_tensor([[σ[index[min(i, j), max(i, j)]] for j in range(3)] for i in range(3)])
@@ -32,7 +38,7 @@ class SolidForms:
         residual, tangent: compiled forms on the current configuration.
     """
 
-    def __init__(self, configuration):
+    def __init__(self, configuration: Configuration) -> None:
         V, mesh, degree = configuration.V, configuration.mesh, configuration.quadrature_degree
         cell = mesh.basix_cell()
         points = lambda shape: fem.functionspace(  # noqa: E731
@@ -54,6 +60,6 @@ class SolidForms:
         # ∂Δu/∂x in the current configuration, from which the increment F = (1 − ∂Δu/∂x)⁻¹ follows
         self.gradient = fem.Expression(ufl.grad(self.u), self.points)
 
-    def evaluate_gradient(self, cells):
+    def evaluate_gradient(self, cells: np.ndarray) -> np.ndarray:
         """∂Δu/∂x at the points of the cells on the mesh as it stands, shape (cells × points, 3, 3)."""
         return self.gradient.eval(self.u.function_space.mesh, np.asarray(cells, np.int32)).reshape(-1, 3, 3)

@@ -1,16 +1,21 @@
 """The wire's end faces as rigid heads: prescribed motion, and reactions by virtual work."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from dolfinx import fem
+from numpy.typing import ArrayLike
 
 from coilset.model.rotations.vectors import rotation_matrix
+
+if TYPE_CHECKING:
+    from coilset.model.solid.solid import Solid
 
 
 @dataclass(frozen=True)
 class Motion:
-    """Where a head is, measured from its start: turned about its start centre, then moved.
+    """Where a head is, measured from its start: rotated about its start centre, then moved.
 
     Attributes:
         translation: mm, shape (3,).
@@ -20,8 +25,8 @@ class Motion:
     translation: tuple = (0.0, 0.0, 0.0)
     rotation: tuple = (0.0, 0.0, 0.0)
 
-    def between(self, other, part):
-        """The motion a `part` of the way from this one to the other; both turn about one axis."""
+    def between(self, other: "Motion", part: float) -> "Motion":
+        """The motion a `part` of the way from this one to the other; both rotate about one axis."""
         mix = lambda a, b: tuple((1 - part) * np.asarray(a, float) + part * np.asarray(b, float))  # noqa: E731
         return Motion(mix(self.translation, other.translation), mix(self.rotation, other.rotation))
 
@@ -43,7 +48,7 @@ class Head:
     """A rigid end face.
 
     Args:
-        solid: Solid.
+        solid: "Solid".
         group: ``bottom`` or ``top``.
 
     Attributes:
@@ -52,7 +57,7 @@ class Head:
         motion: Motion now prescribed.
     """
 
-    def __init__(self, solid, group):
+    def __init__(self, solid: "Solid", group: str) -> None:
         self.solid, self.group = solid, group
         mesh = solid.wire.mesh
         mesh.topology.create_connectivity(2, 3)
@@ -62,12 +67,12 @@ class Head:
         self.centre = solid.wire.place(np.array([[0.0, 0.0, end]]))[0]
         self.motion = Motion()
 
-    def positions(self, motion):
+    def positions(self, motion: Motion) -> np.ndarray:
         """Position coefficients of the face's blocks after a motion, shape (blocks, 3), mm; they are linear in it."""
         R = rotation_matrix(motion.rotation)
         return (self._start - self.centre) @ R.T + self.centre + np.asarray(motion.translation)
 
-    def reaction(self, forces, point):
+    def reaction(self, forces: np.ndarray, point: ArrayLike) -> Reaction:
         """Force and moment of the head on the wire: the virtual work of the rigid modes, exact for the discrete body.
 
         Args:

@@ -1,7 +1,7 @@
 """Finite increments at the points: logarithmic stretch and polar rotation, and their exact linearisation.
 
 The increment is `F = R U` from the last equilibrium. The law is integrated in the unrotated frame with the strain
-increment `ln U`, and stress and back stress are turned by R. On the path `R(t) exp(t ln U)` the spin of R is the
+increment `ln U`, and stress and back stress are rotated by R. On the path `R(t) exp(t ln U)` the spin of R is the
 material's spin W, so this integrates the Zaremba-Jaumann rate of chapter 3 without error of its own; a rigid motion
 superposed on the increment turns the result and changes nothing else, and `tr ln U` is the logarithm of the change of
 volume.
@@ -21,7 +21,7 @@ SECOND = (0, 1, 2, 1, 2, 2)
 
 
 @njit(cache=True)
-def eigen_symmetric(A, Q):
+def eigen_symmetric(A: np.ndarray, Q: np.ndarray) -> None:
     """Diagonalise the symmetric 3 × 3 matrix A by Jacobi's rotations: A becomes diagonal, Q holds its eigenvectors."""
     for i in range(3):
         for j in range(3):
@@ -50,7 +50,7 @@ def eigen_symmetric(A, Q):
 
 
 @njit(cache=True)
-def invert(A, B):
+def invert(A: np.ndarray, B: np.ndarray) -> float:
     """Write A⁻¹ into B, 3 × 3, and return det A."""
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
@@ -66,7 +66,7 @@ def invert(A, B):
 
 
 @njit(cache=True)
-def mandel_rotation(Q, M):
+def mandel_rotation(Q: np.ndarray, M: np.ndarray) -> None:
     """Write into M, 6 × 6, the matrix that takes Mandel components of T to those of Q T Qᵀ."""
     for a in range(6):
         i, j = FIRST[a], SECOND[a]
@@ -79,7 +79,9 @@ def mandel_rotation(Q, M):
 
 
 @njit(cache=True)
-def stretches(gradient, strain, axes, rotation, log_stretch):
+def stretches(
+    gradient: np.ndarray, strain: np.ndarray, axes: np.ndarray, rotation: np.ndarray, log_stretch: np.ndarray
+) -> int:
     """Split increments into stretch and rotation.
 
     Args:
@@ -120,7 +122,7 @@ def stretches(gradient, strain, axes, rotation, log_stretch):
 
 
 @njit(cache=True)
-def turn(M, t, out):
+def turn(M: np.ndarray, t: np.ndarray, out: np.ndarray) -> None:
     """Write into `out` the six components of the tensor `t` after the Mandel rotation M; `out` may be `t`."""
     x = (t[0], t[1], t[2], ROOT2 * t[3], ROOT2 * t[4], ROOT2 * t[5])
     for a in range(6):
@@ -131,7 +133,7 @@ def turn(M, t, out):
 
 
 @njit(cache=True)
-def _sandwich(M, C, transpose, work, out):
+def _sandwich(M: np.ndarray, C: np.ndarray, transpose: bool, work: np.ndarray, out: np.ndarray) -> None:
     """out = M C Mᵀ, or Mᵀ C M if `transpose`."""
     for i in range(6):
         for j in range(6):
@@ -148,10 +150,10 @@ def _sandwich(M, C, transpose, work, out):
 
 
 @njit(cache=True)
-def principal_moduli(s, ln, C, A):
+def principal_moduli(s: np.ndarray, ln: np.ndarray, C: np.ndarray, A: np.ndarray) -> None:
     """Moduli of the increment in the axes of U, from those of the law.
 
-    With d = sym(δx-gradient) turned back by R, x = ln λi − ln λj, in these axes (δR Rᵀ and δ ln U of F = R U):
+    With d = sym(δx-gradient) rotated back by R, x = ln λi − ln λj, in these axes (δR Rᵀ and δ ln U of F = R U):
 
         δ(ln U)ij = x / sinh x · dij        (δR Rᵀ)ij = wij − tanh(x/2) dij
 
@@ -184,14 +186,23 @@ def principal_moduli(s, ln, C, A):
 
 
 @njit(cache=True)
-def push_forward(state, C, axes, rotation, log_stretch, stress, moduli, symmetric):
-    """Turn the state into the current configuration and form the moduli of the virtual work's linearisation.
+def push_forward(
+    state: np.ndarray,
+    C: np.ndarray,
+    axes: np.ndarray,
+    rotation: np.ndarray,
+    log_stretch: np.ndarray,
+    stress: np.ndarray,
+    moduli: np.ndarray,
+    symmetric: bool,
+) -> None:
+    """Rotate the state into the current configuration and form the moduli of the virtual work's linearisation.
 
     The linearised virtual work is ∫ δd : A : d + ∇δu : (∇u σ) over the current volume.
 
     Args:
-        state: history rows after the increment in the unrotated frame; their first twelve entries are stress and back
-            stress and are turned in place. Shape (points, n).
+        state: point states after the increment in the unrotated frame; their first twelve entries are stress and back
+            stress and are rotated in place. Shape (points, n).
         C: ∂σ/∂D of the law (columns for strain components with doubled shear), shape (points, 6, 6), MPa.
         axes, rotation, log_stretch: of `stretches`.
         stress: written, Cauchy stress, shape (points, 6), MPa.

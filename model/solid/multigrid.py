@@ -7,8 +7,10 @@ modes. The vertices' space is nested in the quadratic one: a function linear alo
 
 import basix
 import numpy as np
-from dolfinx import la
+from dolfinx import fem, la
 from petsc4py import PETSc
+
+from coilset.model.solid.configuration import Configuration
 
 
 class VertexMultigrid:
@@ -20,16 +22,16 @@ class VertexMultigrid:
         pc: PETSc PC to set up; its further options come from the options database.
     """
 
-    def __init__(self, configuration, held, pc):
+    def __init__(self, configuration: Configuration, held: np.ndarray, pc: PETSc.PC) -> None:
         self.configuration, self.pc = configuration, pc
         number, self._mine = _number_vertices(configuration.V, held)
         self.P = _prolongation(configuration.V, held, number, len(self._mine))
-        self.coarse = None
+        self.coarse: PETSc.Mat = None
         pc.setType("mg")
         pc.setMGLevels(2)
         pc.setMGInterpolation(1, self.P)
 
-    def update(self, A, x):
+    def update(self, A: PETSc.Mat, x: np.ndarray) -> None:
         """Form the coarse operator of the tangent A at the position coefficients x.
 
         The rigid modes are those at the vertices, whose coefficients are values.
@@ -42,7 +44,7 @@ class VertexMultigrid:
             self.pc.getMGSmoother(1).setOperators(A)
         self.coarse.setNearNullSpace(self._near_nullspace(x[self._mine]))
 
-    def _near_nullspace(self, x):
+    def _near_nullspace(self, x: np.ndarray) -> PETSc.NullSpace:
         """Orthonormal basis of the six rigid modes at the coarse vertices."""
         comm = self.configuration.mesh.comm
         centre = comm.allreduce(x.sum(axis=0)) / comm.allreduce(len(x))
@@ -52,7 +54,7 @@ class VertexMultigrid:
         return PETSc.NullSpace().create(vectors=vectors, comm=comm)
 
 
-def _number_vertices(V, held):
+def _number_vertices(V: fem.FunctionSpace, held: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Global numbers of the vertices that are not held, -1 for other blocks, and this rank's own ones."""
     index_map, comm = V.dofmap.index_map, V.mesh.comm
     n = index_map.size_local
@@ -72,7 +74,7 @@ def _number_vertices(V, held):
     return numbers.array, mine
 
 
-def _prolongation(V, held, number, n_mine):
+def _prolongation(V: fem.FunctionSpace, held: np.ndarray, number: np.ndarray, n_mine: int) -> PETSc.Mat:
     """Matrix from vertex displacements to all degrees of freedom."""
     index_map, cells = V.dofmap.index_map, V.dofmap.list
     topology = basix.topology(V.mesh.basix_cell())

@@ -1,5 +1,6 @@
 """The solid's fields for ParaView, and pictures of them."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import basix
@@ -9,6 +10,7 @@ import pyvista
 
 from coilset.meshes.compat import geometry_dofs
 from coilset.model.results.folder import whole
+from coilset.model.solid.solid import Solid
 
 BAR = {
     "color": "black", "n_labels": 5, "fmt": "%.3g", "title_font_size": 22, "label_font_size": 18,
@@ -16,14 +18,14 @@ BAR = {
 }  # fmt: skip
 
 
-def mises(stress):
+def mises(stress: np.ndarray) -> np.ndarray:
     """von Mises stress of six components, shape (..., 6) → (...)."""
     n, t = stress[..., :3], stress[..., 3:]
     spread = (n[..., 0] - n[..., 1]) ** 2 + (n[..., 1] - n[..., 2]) ** 2 + (n[..., 2] - n[..., 0]) ** 2
     return np.sqrt(0.5 * spread + 3 * np.sum(t * t, axis=-1))
 
 
-def at_nodes(solid, values):
+def at_nodes(solid: Solid, values: np.ndarray) -> np.ndarray:
     """Carry values of the integration points to the geometry's nodes of this rank, averaged over its cells.
 
     A cell's values stay within those of its points: beyond, no yield condition holds.
@@ -48,7 +50,7 @@ def at_nodes(solid, values):
     return total / np.maximum(count, 1).reshape(-1, *[1] * (values.ndim - 2))
 
 
-def grid(solid):
+def grid(solid: Solid) -> pyvista.UnstructuredGrid | None:
     """The deformed body with its fields, as a pyvista grid on the first rank and None on the others.
 
     Fields at the nodes: `displacement` (mm), `stress` (11, 22, 33, 12, 13, 23, MPa, axes of space), `von Mises stress`
@@ -74,7 +76,7 @@ def grid(solid):
     return pieces[0] if len(pieces) == 1 else pyvista.merge(pieces)
 
 
-def write_fields(path, solid):
+def write_fields(path: str | Path, solid: Solid) -> None:
     """Write the fields of `grid` to a .vtu file for ParaView; collective."""
     body = grid(solid)
     if body is not None:
@@ -82,7 +84,7 @@ def write_fields(path, solid):
             body.save(part)
 
 
-def picture(path, bodies, field, unit):
+def picture(path: str | Path, bodies: Mapping[str, pyvista.DataSet], field: str, unit: str) -> None:
     """Draw the far halves (y > 0) of bodies beside each other, coloured by a field; the cut shows their sections.
 
     Needs a display, see `coilset.model.results.display`.

@@ -1,18 +1,20 @@
 """The material law at the integration points of the solid."""
 
+import numpy as np
 from numba import njit
 
+from coilset.model.material.law import Law
 from coilset.model.material.points import initial_state
 from coilset.model.material.solid import return_map
 
 
 @njit(cache=True)
-def update_points(p, old, strain, new, C):
+def update_points(p: np.ndarray, old: np.ndarray, strain: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
     """Integrate the law over the increment at every point.
 
     Args:
         p: parameters of the law.
-        old, new: history rows, shape (points, n_state); `new` is written.
+        old, new: point states, shape (points, n_state); `new` is written.
         strain: increment ln U, components 11, 22, 33, 12, 13, 23 with doubled shear, shape (points, 6).
         C: written, dσ/dε for strain components with doubled shear, shape (points, 6, 6), MPa.
 
@@ -33,14 +35,14 @@ class MaterialPoints:
         temperature: K; default is the law's reference temperature.
     """
 
-    def __init__(self, law, temperature=None):
+    def __init__(self, law: Law, temperature: float | None = None) -> None:
         self.law = law
         self._parameters = law.parameters(temperature)
 
-    def initial_state(self, points):
-        """History rows of unstressed points, shape (points, n_state); first stress and back stress, 6 entries each."""
+    def initial_state(self, points: int) -> np.ndarray:
+        """Point states of unstressed points, shape (points, n_state); first stress and back stress, 6 entries each."""
         return initial_state(self.law, points, 6)
 
-    def update(self, old, strain, new, C):
-        """Write new history rows and moduli, see `update_points`; False if the law found no solution."""
+    def update(self, old: np.ndarray, strain: np.ndarray, new: np.ndarray, C: np.ndarray) -> bool:
+        """Write new point states and moduli, see `update_points`; False if the law found no solution."""
         return update_points(self._parameters, old, strain, new, C) == 0

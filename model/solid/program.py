@@ -30,7 +30,7 @@ class Station:
 
 
 class AxialProgram:
-    """Moves the top head of a SolidProblem along z, without turning it, and records what it meets.
+    """Moves the top head of a SolidProblem along z, without rotating it, and records what it meets.
 
     Args:
         problem: SolidProblem of a coil about the z axis; the bottom head stays.

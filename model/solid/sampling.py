@@ -6,10 +6,14 @@ recovery, Zienkiewicz and Zhu, IJNME 33 (1992) 1331, with patches of points).
 """
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
 from coilset.meshes.compat import geometry_dofs
+from coilset.meshes.solid import SolidMesh
+from coilset.model.solid.solid import Solid
 
+Patches = tuple[np.ndarray, np.ndarray]  # points of each patch, and their weights
 NEIGHBOURS = 16  # integration points of a patch in each of the four planes of points about the section
 
 
@@ -25,7 +29,7 @@ class SectionSample:
         y, z: as given.
     """
 
-    def __init__(self, solid, section, y, z):
+    def __init__(self, solid: Solid, section: float, y: ArrayLike, z: ArrayLike) -> None:
         self.solid, self.y, self.z = solid, np.asarray(y, float), np.asarray(z, float)
         mesh, n = solid.wire.mesh, solid.n_cells
         straight = solid.wire.straight[geometry_dofs(mesh)[:n]]
@@ -42,27 +46,27 @@ class SectionSample:
         self._ring = _patches(places, ring, planes * NEIGHBOURS)
         self._start, self._axes = self._positions(self._ring), _axes(solid.wire, section)
 
-    def _gather(self, values):
+    def _gather(self, values: np.ndarray) -> np.ndarray:
         """Values at the integration points of the cells about the section, from all ranks, shape (points, …)."""
         return np.concatenate(self.solid.comm.allgather(values.reshape(-1, *values.shape[2:])))
 
-    def _recover(self, values, patches):
+    def _recover(self, values: np.ndarray, patches: Patches) -> np.ndarray:
         """Recover values at this rank's integration points in patches, shape (cells, points, …) → (n, …)."""
         points, weights = patches
         return np.einsum("nk,nk...->n...", weights, self._gather(values)[points])
 
-    def _positions(self, patches):
+    def _positions(self, patches: Patches) -> np.ndarray:
         blocks = self.solid.V.dofmap.list[self._cells]
         return self._recover(np.einsum("qb,cbi->cqi", self._shape, self.solid.x[blocks]), patches)
 
-    def positions(self):
+    def positions(self) -> np.ndarray:
         """Where the sample points are now, shape (n, 3), mm."""
         return self._positions(self._patches)
 
-    def frame(self):
+    def frame(self) -> tuple[np.ndarray, np.ndarray]:
         """Centre of the section, mm, and its axes t, outward, t × outward as columns, as the section lies now.
 
-        The section's turning since the start is the rotation that carries rings of its points best.
+        The section's rotation since the start is the one that carries rings of its points best.
         """
         now = self._positions(self._ring)
         a, b = self._start - self._start.mean(axis=0), now - now.mean(axis=0)
@@ -70,19 +74,19 @@ class SectionSample:
         R = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
         return now.mean(axis=0), R @ self._axes
 
-    def stress(self):
+    def stress(self) -> np.ndarray:
         """σ11, τ12, τ13 at the last equilibrium with 1 = t, 2 = outward, 3 = t × outward, shape (n, 3), MPa."""
         six = self._recover(self.solid.point_state[self._cells, :, :6], self._patches)
         σ = six[:, [0, 3, 4, 3, 1, 5, 4, 5, 2]].reshape(-1, 3, 3)
         axes = self.frame()[1]
         return np.einsum("nij,i,jk->nk", σ, axes[:, 0], axes)
 
-    def history(self, entry):
-        """An entry of the history rows at the points, for instance 12 for the plastic work b*, shape (n,)."""
+    def point_state(self, entry: int) -> np.ndarray:
+        """An entry of the point state, for instance 12 for the plastic work b*, shape (n,)."""
         return self._recover(self.solid.point_state[self._cells, :, entry], self._patches)
 
 
-def disk_grid(radius, rings=8, spokes=24):
+def disk_grid(radius: float, rings: int = 8, spokes: int = 24) -> tuple[np.ndarray, np.ndarray]:
     """Places y, z of a polar grid on the wire's disk, centre first and surface included, each of shape (n,), mm."""
     r = radius * np.arange(1, rings + 1) / rings
     φ = 2 * np.pi * np.arange(spokes) / spokes
@@ -90,7 +94,7 @@ def disk_grid(radius, rings=8, spokes=24):
     return np.concatenate([[0.0], y]), np.concatenate([[0.0], z])
 
 
-def _axes(wire, section):
+def _axes(wire: SolidMesh, section: float) -> np.ndarray:
     """Axes t, outward, t × outward of a section at the start as columns, from differences of the wire's map."""
     step = 1e-3 * wire.wire_diameter
     places = np.array([[0.0, 0, section], [step, 0, section], [0, step, section]])
@@ -99,7 +103,7 @@ def _axes(wire, section):
     return np.stack([np.cross(outward, second), outward, second], axis=1)
 
 
-def _patches(places, samples, size):
+def _patches(places: np.ndarray, samples: np.ndarray, size: int) -> Patches:
     """Nearest points of each sample in the section's plane, and their weights in the sample's least-squares value.
 
     Args:

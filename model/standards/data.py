@@ -39,7 +39,7 @@ class SpringData:
     def rows(self) -> list[tuple[str, str, str]]:
         """Label, text and unit of every entry, for a table."""
 
-        def span(pair):
+        def span(pair: tuple[float, float]) -> str:
             low, high = pair
             return f"{low:.4g}" if high - low < 5e-4 * high else f"{low:.4g} to {high:.4g}"
 
@@ -79,7 +79,7 @@ def spring_data(spring: Spring, material: Elastic = STEEL) -> SpringData:
     t = spring.breaks
     d, D = spring.wire_diameter(t), 2 * spring.mean_radius(t)
 
-    def span(values):
+    def span(values: np.ndarray) -> tuple[float, float]:
         return float(values.min()), float(values.max())
 
     return SpringData(

@@ -2,16 +2,17 @@
 
 import csv
 import json
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO, TypeVar
 
 import numpy as np
 import xarray as xr
 
 from coilset.meshes.errors import InputError
 
-MIDDLE = (0.25, 0.75)  # share of the turns that is the body, away from the ends
+MIDDLE = (0.25, 0.75)  # part of the turns that is the body, away from the ends
 
 
 @dataclass(frozen=True)
@@ -44,8 +45,8 @@ class Found:
         if len(passed) == 0:
             return None
         i = passed[-1]
-        share = (length - self.heights[i]) / (self.heights[i + 1] - self.heights[i])
-        return float(self.forces[i] + share * (self.forces[i + 1] - self.forces[i]))
+        fraction = (length - self.heights[i]) / (self.heights[i + 1] - self.heights[i])
+        return float(self.forces[i] + fraction * (self.forces[i + 1] - self.forces[i]))
 
     def work_to(self, length: float) -> float | None:
         """Work of the first compression to a length, ∫ F ds, N mm; None if it was not reached so."""
@@ -76,7 +77,10 @@ def read(folder: str | Path) -> Found:
     return Found(summary, np.array(heights), np.array(forces), residual, ring)
 
 
-def _read(path, parse):
+Parsed = TypeVar("Parsed")
+
+
+def _read(path: Path, parse: Callable[[TextIO], Parsed]) -> Parsed:
     try:
         with open(path, encoding="utf-8", newline="") as file:
             return parse(file)
@@ -84,7 +88,7 @@ def _read(path, parse):
         raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", "--results", path) from None
 
 
-def _residual(path):
+def _residual(path: Path) -> tuple[float | None, float | None]:
     """Residual shear about the wire's axis, signed by the load's, and the radius of its ring over the wire's."""
     if not path.exists():
         return None, None

@@ -3,9 +3,11 @@
 from dataclasses import dataclass
 from math import log10
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from coilset.model.results.figures import STYLE, save
@@ -54,7 +56,7 @@ class Cycle:
 def line(endurance: Endurance, diameter: float) -> Line:
     """The line of a wire at a diameter, mm: each value is a − b lg d."""
 
-    def at(pair):
+    def at(pair: tuple[float, float]) -> float:
         return pair[0] - pair[1] * log10(diameter)
 
     return Line(at(endurance.at_zero), at(endurance.knee), at(endurance.limit), endurance.cycles, endurance.surface)
@@ -79,6 +81,6 @@ def draw(path: Path, title: str, endured: Line, cycle: Cycle, residual: float | 
         save(figure, path)
 
 
-def _mark(axes, cycle, colour, label):
+def _mark(axes: Axes, cycle: Any, colour: str, label: str) -> None:
     axes.plot([cycle.lower] * 2, [cycle.lower, cycle.upper], "-", color=colour, lw=1.2)
     axes.plot(cycle.lower, cycle.upper, "o", color=colour, ms=5, label=label)

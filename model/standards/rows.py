@@ -90,11 +90,11 @@ def _spring(sheet: Sheet) -> Iterator[Row]:
     yield Row("travel to buckling", travel if isfinite(travel) else None, "mm", formula, DERIVED, why="never buckles")
 
 
-def _was_at_block(sheet):
+def _was_at_block(sheet: Sheet) -> bool:
     return sheet.found is not None and sheet.found.heights.min() < sheet.spring.solid + AT_BLOCK * sheet.spring.d
 
 
-def _why_block(sheet):
+def _why_block(sheet: Sheet) -> str:
     if not _was_at_block(sheet) or not sheet.yield_stress:
         return ""
     first = sheet.yield_stress / sqrt(3)
@@ -134,7 +134,7 @@ def _working(sheet: Sheet) -> Iterator[Row]:
         yield Row("  sum of gaps", length - s.solid, "mm", f"L − {s.solid:.4g} mm", DERIVED)
 
 
-def _why_force(sheet, length):
+def _why_force(sheet: Sheet, length: float) -> str:
     after = sheet.at_run("free_length_after_mm")
     if after is None:
         return ""

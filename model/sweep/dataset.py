@@ -1,16 +1,20 @@
 """A sweep as one labelled data set: inputs, responses, characteristic and fate of each case."""
 
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
 from coilset.model.results.folder import whole
 from coilset.model.sweep.journal import read_records
+from coilset.model.sweep.plan import Plan
 
 UNITS = {"_N_per_mm": "N/mm", "_MPa": "MPa", "_mm": "mm", "_N": "N"}
 CURVE = {"travel_mm": "mm", "seat_height_mm": "mm", "force_N": "N", "phase": "1"}
 
 
-def quantity(name):
+def quantity(name: str) -> tuple[str, str]:
     """Words and unit of a response by its name, as in `set_mm`."""
     for ending, unit in UNITS.items():
         if name.endswith(ending):
@@ -18,7 +22,7 @@ def quantity(name):
     return name.replace("_", " "), ""
 
 
-def collect(plan, journal):
+def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
     """All cases of a plan that a journal holds.
 
     Args:
@@ -30,14 +34,14 @@ def collect(plan, journal):
         case that failed has no responses, but its reason and its characteristic up to there. Characteristics shorter
         than the longest end in NaN. A response with the name of an input gets the ending `_found`.
     """
-    places = {}
+    places: dict[str, list[int]] = {}
     for place, key in enumerate(plan.keys):
         places.setdefault(key, []).append(place)
     records = {record["key"]: record for record in read_records(journal) if record["key"] in places}
     n = len(plan)
     status, reason = np.full(n, "missing", dtype=object), np.full(n, "", dtype=object)
     seconds = np.full(n, np.nan)
-    responses = {}
+    responses: dict[str, np.ndarray] = {}
     longest = max((len(record["steps"].get("force_N", ())) for record in records.values()), default=0)
     curves = {name: np.full((n, longest), np.nan) for name in CURVE}
     for key, record in records.items():
@@ -52,22 +56,22 @@ def collect(plan, journal):
                     name = f"{name}_found" if name in plan.names else name
                     column = responses.setdefault(name, np.full(n, np.nan))
                     column[at] = np.nan if value is None else value
-    data = {name: ("case", column, _attributes(*quantity(name))) for name, column in responses.items()}
+    data: dict[str, Any] = {name: ("case", column, _attributes(*quantity(name))) for name, column in responses.items()}
     data |= {f"curve_{name}": (("case", "step"), curve, _attributes(*quantity(name)) | {"units": CURVE[name]})
              for name, curve in curves.items()}  # fmt: skip
     data |= {"status": ("case", status), "reason": ("case", reason), "seconds": ("case", seconds, {"units": "s"})}
-    coordinates = {name: ("case", *_input(plan, k)) for k, name in enumerate(plan.names)}
-    attributes = {"title": f"sweep {plan.path.stem}", "design": plan.spec.design, "inputs": plan.names}
+    coordinates: dict[str, Any] = {name: ("case", *_input(plan, k)) for k, name in enumerate(plan.names)}
+    attributes: dict[str, Any] = {"title": f"sweep {plan.path.stem}", "design": plan.spec.design, "inputs": plan.names}
     if plan.spec.samples is not None:
         attributes |= {"samples": plan.spec.samples, "seed": plan.spec.seed}
     return xr.Dataset(data, coordinates | {"key": ("case", plan.keys)}, attributes)
 
 
-def _attributes(words, unit):
+def _attributes(words: str, unit: str) -> dict[str, str]:
     return {"long_name": words, "units": unit}
 
 
-def _input(plan, k):
+def _input(plan: Plan, k: int) -> tuple[Any, dict[str, str]]:
     """Values of an input for all cases, words where they are not all numbers, and its attributes."""
     vary, values = plan.spec.vary[plan.names[k]], [row[k] for row in plan.rows]
     numbers = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values)
@@ -75,7 +79,7 @@ def _input(plan, k):
     return column, _attributes(vary.label or plan.names[k], vary.unit)
 
 
-def write(path, data):
+def write(path: str | Path, data: xr.Dataset) -> None:
     """Write the data set as NetCDF 4, compressed."""
     packed = {name: {"zlib": True, "complevel": 1} for name in data.data_vars if data[name].dtype.kind == "f"}
     with whole(path) as partial:

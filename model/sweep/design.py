@@ -1,14 +1,19 @@
 """How inputs are combined: grids of their values, or samples of the unit cube carried to their distributions."""
 
 import itertools
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.stats import qmc
 
 from coilset.meshes.errors import InputError
+from coilset.model.sweep.spec import SweepSpec
+
+if TYPE_CHECKING:
+    from coilset.model.sweep.plan import Row
 
 
-def rows(spec, base):
+def rows(spec: SweepSpec, base: Any) -> list["Row"]:
     """The inputs of all cases.
 
     Args:
@@ -28,14 +33,14 @@ def rows(spec, base):
     return list(zip(*(vary.at(cube[:, k]) for k, vary in enumerate(spec.vary.values())), strict=True))
 
 
-def _grid(name, vary):
+def _grid(name: str, vary: Any) -> list[Any]:
     try:
         return vary.grid()
     except ValueError as error:
         raise InputError(str(error), f"vary.{name}") from None
 
 
-def _combine(spec, columns, base):
+def _combine(spec: SweepSpec, columns: Any, base: Any) -> list["Row"]:
     names = list(spec.vary)
     if spec.design == "grid":
         return list(itertools.product(*columns))
@@ -50,7 +55,7 @@ def _combine(spec, columns, base):
     return [tuple(middle)] + [(*middle[:k], value, *middle[k + 1 :]) for k, value in varied]
 
 
-def unit_cube(spec):
+def unit_cube(spec: SweepSpec) -> np.ndarray:
     """Points of the unit cube, shape (cases, inputs), strictly inside it.
 
     For `sobol_indices` they are the blocks A, B, AB₁ … AB_d of Saltelli et al., Comput. Phys. Commun. 181 (2010) 259:

@@ -5,7 +5,11 @@ import math
 import sys
 import time
 import traceback
+from collections.abc import Callable
 from dataclasses import asdict, fields
+from typing import Any
+
+from mpi4py import MPI
 
 from coilset.meshes.errors import CoilsetError, SolveError
 from coilset.model.analysis import Analysis
@@ -14,7 +18,7 @@ from coilset.model.results.record import Step
 from coilset.model.results.summary import summarise
 
 
-def evaluate(data, comm, file="", time_limit=None):
+def evaluate(data: dict[str, Any], comm: MPI.Comm, file: str = "", time_limit: float | None = None) -> dict[str, Any]:
     """Run a case; nothing that goes wrong in it gets out, but is recorded.
 
     Args:
@@ -40,8 +44,8 @@ def evaluate(data, comm, file="", time_limit=None):
             comm.Abort(1)
         reason = f"{type(error).__name__}: {error}"
     result = getattr(analysis, "result", None)
-    record = {"status": "failed" if reason else "done", "reason": reason, "summary": {}, "steps": {}}
-    if result is not None and result.snapshots and comm.rank == 0:
+    record: dict[str, Any] = {"status": "failed" if reason else "done", "reason": reason, "summary": {}, "steps": {}}
+    if analysis is not None and result is not None and result.snapshots and comm.rank == 0:
         record["summary"] = {key: plain(value) for key, value in summarise(analysis.setup, result).items()}
         rows = [asdict(step) for step in result.steps]
         record["steps"] = {column.name: [plain(row[column.name]) for row in rows] for column in fields(Step)}
@@ -50,17 +54,17 @@ def evaluate(data, comm, file="", time_limit=None):
     return {**record, "seconds": time.perf_counter() - began}
 
 
-def plain(value):
+def plain(value: Any) -> Any:
     """A value that JSON can hold: what is not a number becomes None."""
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
 
 
-def watch(comm, began, time_limit):
+def watch(comm: MPI.Comm, began: float, time_limit: float | None) -> Callable[[Step], None]:
     """A report for each step that gives the case up when its time is over; rank 0's clock counts."""
 
-    def report(step):
+    def report(step: Step) -> None:
         if time_limit is not None and comm.bcast(time.perf_counter() - began > time_limit):
             raise SolveError(f"given up after the time limit of {time_limit:g} s")
 

@@ -1,7 +1,12 @@
 """Figures of a sweep: responses over inputs, a family of characteristics, scatter, sensitivity, convergence."""
 
+from pathlib import Path
+from typing import Any
+
 import matplotlib as mpl
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
@@ -9,13 +14,14 @@ from matplotlib.ticker import NullLocator
 from coilset.meshes.errors import InputError
 from coilset.model.results.figures import STYLE, save
 from coilset.model.sweep import spec as sp
+from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.sensitivity import rank_correlation, sobol_indices
 
 LINE_LIMIT = 5000  # curves drawn in a family; more are thinned out evenly
 COLOURS = "viridis"
 
 
-def chosen(plan):
+def chosen(plan: Plan) -> list[Any]:
     """The figures that the sweep file asks for, or those that suit its design."""
     spec, names = plan.spec, plan.names
     if spec.figures is not None:
@@ -29,7 +35,7 @@ def chosen(plan):
     return [sp.Family(kind="characteristics"), sp.Scatter(kind="scatter"), sp.Sensitivity(kind="sensitivity")]
 
 
-def draw(folder, plan, data):
+def draw(folder: Path, plan: Plan, data: xr.Dataset) -> tuple[list[str], list[InputError]]:
     """Draw the figures of a sweep.
 
     Args:
@@ -56,13 +62,13 @@ def draw(folder, plan, data):
     return files, problems
 
 
-def _axis(data, name):
+def _axis(data: xr.Dataset, name: str) -> str:
     """Text of an axis: the words of a variable and its unit."""
     attributes = data[name].attrs
     return attributes["long_name"] + (f" in {attributes['units']}" if attributes["units"] else "")
 
 
-def _response(data, name, place):
+def _response(data: xr.Dataset, name: str, place: Any) -> np.ndarray:
     """Values of a response, shape (cases,)."""
     known = [key for key in data.data_vars if data[key].dims == ("case",) and data[key].dtype.kind == "f"]
     if name not in known:
@@ -70,7 +76,7 @@ def _response(data, name, place):
     return data[name].to_numpy()
 
 
-def _levels(data, name):
+def _levels(data: xr.Dataset, name: str) -> list[tuple[Any, np.ndarray]]:
     """Distinct values of an input in their order, and for each the cases that have it; one level if `name` is None."""
     if name is None:
         return [(None, np.ones(data.sizes["case"], dtype=bool))]
@@ -78,13 +84,13 @@ def _levels(data, name):
     return [(value, column == value) for value in np.unique(column)]
 
 
-def _text(data, name, value):
+def _text(data: xr.Dataset, name: str, value: Any) -> str:
     unit = data[name].attrs["units"]
     shown = value if isinstance(value, str) else f"{value:.5g}"
     return f"{data[name].attrs['long_name']} {shown}" + (f" {unit}" if unit else "")
 
 
-def lines(figure, plan, data, place):
+def lines(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
     """A response over one input; lines for a second, panels for a third."""
     values, panels = _response(data, figure.of, place), _levels(data, figure.panels)
     colours = _levels(data, figure.colour)
@@ -109,7 +115,7 @@ def lines(figure, plan, data, place):
     return drawn
 
 
-def contours(figure, plan, data, place):
+def contours(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
     """A response over two inputs; dots where cases have been run."""
     values = _response(data, figure.of, place)
     good = np.isfinite(values)
@@ -130,7 +136,7 @@ def contours(figure, plan, data, place):
     return drawn
 
 
-def characteristics(figure, plan, data, place):
+def characteristics(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
     """Force over travel of all cases, in the colours of an input or a response."""
     travel, force = data["curve_travel_mm"].to_numpy(), data["curve_force_N"].to_numpy()
     words = None
@@ -161,7 +167,7 @@ def characteristics(figure, plan, data, place):
     return drawn
 
 
-def scatter(figure, plan, data, place):
+def scatter(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
     """A response over each input in turn, and its distribution."""
     values = _response(data, figure.of, place)
     good = np.isfinite(values)
@@ -188,7 +194,7 @@ def scatter(figure, plan, data, place):
     return drawn
 
 
-def sensitivity(figure, plan, data, place):
+def sensitivity(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
     """Bars of the Sobol indices (design sobol_indices) or of the rank correlations, with their 95 % intervals."""
     numeric = [name for name in plan.names if data[name].dtype.kind == "f"]
     sobol = plan.spec.design == "sobol_indices"
@@ -199,6 +205,7 @@ def sensitivity(figure, plan, data, place):
         values = _response(data, of, place)
         place_y = np.arange(len(names))
         if sobol:
+            assert plan.spec.samples is not None
             found = sobol_indices(values, len(names), plan.spec.samples, plan.spec.seed)
             if found is None:
                 return None
@@ -208,8 +215,8 @@ def sensitivity(figure, plan, data, place):
             panel.set_xlim(left=min(0.0, panel.get_xlim()[0]))
         else:
             x = np.stack([data[name].to_numpy() for name in names], axis=1)
-            found, interval = rank_correlation(x, values)
-            _bars(panel, place_y, 0.6, found, interval, "C0", "Spearman, 95 % interval")
+            correlation, interval = rank_correlation(x, values)
+            _bars(panel, place_y, 0.6, correlation, interval, "C0", "Spearman, 95 % interval")
             panel.set(xlabel=f"rank correlation with {data[of].attrs['long_name']}", xlim=(-1.05, 1.05))
         panel.axvline(0.0, color="k", lw=0.6)
         panel.set_yticks(place_y, [data[name].attrs["long_name"] for name in names])
@@ -218,13 +225,15 @@ def sensitivity(figure, plan, data, place):
     return drawn
 
 
-def _bars(axes, y, height, values, interval, colour, label):
+def _bars(
+    axes: Axes, y: np.ndarray, height: float, values: np.ndarray, interval: np.ndarray, colour: str, label: str
+) -> None:
     reach = np.abs(interval.T - values)
     thin = {"lw": 0.8, "capsize": 2}
     axes.barh(y, values, height, xerr=np.nan_to_num(reach), color=colour, label=label, error_kw=thin)
 
 
-def convergence(figure, plan, data, place):
+def convergence(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
     """Relative distance of each response from its value at the greatest value of the input, over that input."""
     names = [name for name in plan.names if data[name].dtype.kind == "f"]
     drawn = Figure(figsize=(1.2 + 2.9 * len(names), 3.6), layout="constrained")

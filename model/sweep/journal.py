@@ -4,7 +4,9 @@ import fcntl
 import json
 import os
 import time
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from coilset.meshes.errors import InputError
 
@@ -21,7 +23,7 @@ class Journal:
         InputError: if it cannot be opened, or another process writes to it.
     """
 
-    def __init__(self, path):
+    def __init__(self, path: str | Path) -> None:
         self.path, self._synced = Path(path), time.monotonic()
         try:
             self._file = open(path, "ab")  # noqa: SIM115 (held open, and locked, until close)
@@ -34,24 +36,24 @@ class Journal:
             raise InputError("another sweep is writing to this folder", "", path) from None
         self._file.truncate(whole_length(self.path))
 
-    def append(self, record):
+    def append(self, record: dict[str, Any]) -> None:
         """Write a record; it outlives the process at once, and the machine after a second."""
         self._file.write(json.dumps(record, allow_nan=False).encode() + b"\n")
         self._file.flush()
         if time.monotonic() - self._synced > SYNC_SECONDS:
             self._sync()
 
-    def _sync(self):
+    def _sync(self) -> None:
         os.fsync(self._file.fileno())
         self._synced = time.monotonic()
 
-    def close(self):
+    def close(self) -> None:
         """Bring all to disk and let go of the lock."""
         self._sync()
         self._file.close()
 
 
-def whole_length(path):
+def whole_length(path: str | Path) -> int:
     """Length of the file up to the end of its last whole line, in bytes."""
     with open(path, "rb") as file:
         end = file.seek(0, os.SEEK_END)
@@ -65,7 +67,7 @@ def whole_length(path):
     return 0
 
 
-def read_records(path):
+def read_records(path: str | Path) -> Iterator[dict[str, Any]]:
     """The records of a journal, one after the other; none if there is no file.
 
     Raises:

@@ -2,25 +2,28 @@
 
 import gc
 import signal
+from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import Any
 
+from mpi4py import MPI
 from mpi4py.futures import MPICommExecutor
 
 from coilset.meshes.errors import InputError
 from coilset.model.sweep.evaluate import evaluate
 from coilset.model.sweep.pools import Pool
 
-_group = None  # communicator of the ranks that share a case with this one
+_group: MPI.Comm = None  # communicator of the ranks that share a case with this one
 
 
-def solve_in_group(task):
+def solve_in_group(task: dict[str, Any]) -> dict[str, Any]:
     """On the first rank of a group: hand the task to the group's other ranks, and solve it with them."""
     _group.bcast(task)
     return evaluate(comm=_group, **task)
 
 
 @contextmanager
-def mpi_pool(comm, ranks_per_case):
+def mpi_pool(comm: MPI.Comm, ranks_per_case: int) -> Iterator[Pool | None]:
     """A pool over the ranks of `comm`.
 
     Args:

@@ -8,8 +8,10 @@ import os
 import subprocess
 import sys
 import threading
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
+from typing import IO, Any
 
 WORKER = [sys.executable, "-m", "coilset.model.sweep.worker"]
 
@@ -23,10 +25,11 @@ class Process:
         log: file for what it prints.
     """
 
-    def __init__(self, environment, log):
-        self.environment, self.log, self.process = environment, log, None
+    def __init__(self, environment: Mapping[str, str], log: IO[str]) -> None:
+        self.environment, self.log = environment, log
+        self.process: subprocess.Popen[str] | None = None
 
-    def run(self, task):
+    def run(self, task: dict[str, Any]) -> dict[str, Any]:
         """The record of a task; a process that dies is the reason of a failed case."""
         if self.process is None:
             self.process = subprocess.Popen(
@@ -34,6 +37,8 @@ class Process:
                 encoding="utf-8", start_new_session=True,
             )  # fmt: skip
         process, answer = self.process, ""
+        assert process.stdin is not None
+        assert process.stdout is not None
         try:
             process.stdin.write(json.dumps(task) + "\n")
             process.stdin.flush()
@@ -48,30 +53,31 @@ class Process:
         return {"status": "failed", "reason": f"the process of this case ended with {how}", "summary": {}, "steps": {},
                 "seconds": None}  # fmt: skip
 
-    def close(self):
+    def close(self) -> None:
         """End the process, whatever it is doing."""
         process, self.process = self.process, None
         if process is not None:
             process.kill()
             process.wait()
-            process.stdin.close()
-            process.stdout.close()
+            for pipe in (process.stdin, process.stdout):
+                if pipe is not None:
+                    pipe.close()
 
 
 @contextmanager
-def local_pool(jobs, environment, log):
+def local_pool(jobs: int, environment: Mapping[str, str], log: IO[str]) -> Iterator["Pool"]:
     """A pool of `jobs` processes on this machine; leaving it ends them."""
     own = threading.local()
     started, lock = [], threading.Lock()
 
-    def begin():
+    def begin() -> None:
         own.process = Process(environment, log)
         with lock:
             started.append(own.process)
 
     executor = ThreadPoolExecutor(jobs, initializer=begin)
 
-    def submit(task):
+    def submit(task: dict[str, Any]) -> Future[dict[str, Any]]:
         return executor.submit(lambda: own.process.run(task))
 
     try:
@@ -83,12 +89,12 @@ def local_pool(jobs, environment, log):
 
 
 class Pool:
-    """What leads a sweep sees of its workers."""
+    """The workers of a sweep, for the one that leads it."""
 
-    def __init__(self, submit, workers):
+    def __init__(self, submit: Callable[[dict[str, Any]], Future[dict[str, Any]]], workers: int) -> None:
         self.submit, self.workers = submit, workers
 
 
-def usable_cores():
+def usable_cores() -> int:
     """Cores that this process may use."""
     return len(os.sched_getaffinity(0))

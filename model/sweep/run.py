@@ -1,18 +1,23 @@
 """Run what is missing of a plan, and record each case as it ends."""
 
-from concurrent.futures import FIRST_COMPLETED, wait
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from pathlib import Path
+from typing import Any
 
-from coilset.model.sweep.journal import read_records
+from coilset.model.sweep.journal import Journal, read_records
+from coilset.model.sweep.plan import Plan, Row
+from coilset.model.sweep.pools import Pool
 
 AHEAD = 2  # tasks handed out for each worker, so that none waits
 
 
-def finished(path, retry=False):
+def finished(path: str | Path, retry: bool = False) -> set[str]:
     """Keys of the cases that a journal holds; without the failed ones if they are to be tried again."""
     return {record["key"] for record in read_records(path) if not (retry and record["status"] == "failed")}
 
 
-def missing(plan, done):
+def missing(plan: Plan, done: Iterable[str]) -> Iterator[tuple[Row, str]]:
     """Rows and keys of the cases that are not in `done`, each once."""
     seen = set(done)
     for row, key in zip(plan.rows, plan.keys, strict=True):
@@ -21,7 +26,13 @@ def missing(plan, done):
             yield row, key
 
 
-def run(plan, todo, pool, journal, report=lambda record: None):
+def run(
+    plan: Plan,
+    todo: Iterable[tuple[Row, str]],
+    pool: Pool,
+    journal: Journal,
+    report: Callable[[dict[str, Any]], object] = lambda record: None,
+) -> None:
     """Run the cases of `todo`.
 
     Args:
@@ -31,15 +42,22 @@ def run(plan, todo, pool, journal, report=lambda record: None):
         journal: Journal.
         report: called with each record, after it has been written.
     """
-    waiting, todo = {}, iter(todo)
+    waiting: dict[Future[dict[str, Any]], str] = {}
     try:
-        _keep_busy(plan, todo, pool, journal, report, waiting)
+        _keep_busy(plan, iter(todo), pool, journal, report, waiting)
     finally:
         for future in waiting:
             future.cancel()
 
 
-def _keep_busy(plan, todo, pool, journal, report, waiting):
+def _keep_busy(
+    plan: Plan,
+    todo: Iterator[tuple[Row, str]],
+    pool: Pool,
+    journal: Journal,
+    report: Callable[[dict[str, Any]], object],
+    waiting: dict[Future[dict[str, Any]], str],
+) -> None:
     while True:
         while len(waiting) < AHEAD * pool.workers and (case := next(todo, None)) is not None:
             row, key = case

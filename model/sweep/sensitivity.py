@@ -26,7 +26,7 @@ class Indices:
     samples: int
 
 
-def sobol_indices(values, inputs, samples, seed=0):
+def sobol_indices(values: np.ndarray, inputs: int, samples: int, seed: int = 0) -> Indices | None:
     """First-order and total Sobol indices from the cases of the design `sobol_indices`.
 
     Args:
@@ -48,12 +48,12 @@ def sobol_indices(values, inputs, samples, seed=0):
     parts = {"f_A": blocks[:1], "f_B": blocks[1:2], "f_AB": blocks[2:, None, :]}
     found = stats.sobol_indices(func=parts, n=n, rng=np.random.default_rng(seed))
     spread = found.bootstrap(confidence_level=CONFIDENCE, n_resamples=RESAMPLES)
-    intervals = [np.stack([np.ravel(part.confidence_interval.low), np.ravel(part.confidence_interval.high)], axis=1)
-                 for part in (spread.first_order, spread.total_order)]  # fmt: skip
-    return Indices(np.ravel(found.first_order), np.ravel(found.total_order), *intervals, n)
+    first, total = (np.stack([np.ravel(part.confidence_interval.low), np.ravel(part.confidence_interval.high)], axis=1)
+                 for part in (spread.first_order, spread.total_order))  # fmt: skip
+    return Indices(np.ravel(found.first_order), np.ravel(found.total_order), first, total, n)
 
 
-def rank_correlation(x, values):
+def rank_correlation(x: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Spearman's rank correlation of a response with each input, and its 95 % interval by Fisher's transformation.
 
     Args:

@@ -201,7 +201,7 @@ class SweepSpec(Strict):
             raise ValueError(f"the design {self.design} needs 'samples'")
         if self.design in GRIDS and self.samples is not None:
             raise ValueError(f"the design {self.design} has no 'samples': its number of cases follows from the values")
-        if self.design in ("sobol", "sobol_indices") and self.samples & (self.samples - 1):
+        if self.design in ("sobol", "sobol_indices") and self.samples is not None and self.samples & (self.samples - 1):
             raise ValueError(f"the design {self.design} needs a power of 2 as 'samples', not {self.samples}")
         return self
 

@@ -13,7 +13,7 @@ import sys
 from coilset.model.processes import end_with_parent
 
 
-def main():
+def main() -> None:
     """`python -m coilset.model.sweep.worker`."""
     end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that leads

@@ -69,7 +69,7 @@ def rate(spring, turns, representation, law):
         if not outcome.converged:
             raise RuntimeError(f"no equilibrium at a travel of {travel:g} mm")
         forces.append(force)
-    # the central difference leaves no share of the characteristic's curvature
+    # the central difference leaves no part of the characteristic's curvature
     return (forces[0] - forces[1]) / (2 * TRAVEL * spring.free_length)
 
 

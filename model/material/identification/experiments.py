@@ -44,7 +44,7 @@ def read_test(path: str | Path) -> Test:
     path = Path(path)
     try:
         with open(path, newline="", encoding="utf-8") as file:
-            remarks, lines = 0, file
+            remarks, lines = 0, iter(file)
             for line in file:
                 if not line.startswith("#"):
                     lines = itertools.chain([line], file)

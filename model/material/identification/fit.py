@@ -65,10 +65,10 @@ def _adjust(model: FittedLaw, values: dict[str, float], names: Sequence[str], te
     """Least squares over the logarithms of the constants `names`, started at `values`."""
     start = {name: values[name] for name in names}
 
-    def residual(x):
+    def residual(x: np.ndarray) -> np.ndarray:
         return model.residual(values | moved_by(start, x), tests)
 
-    def slopes(x):
+    def slopes(x: np.ndarray) -> np.ndarray:
         here = residual(x)
         return np.array([residual(x + step) - here for step in STEP * np.eye(x.size)]).T / STEP
 
@@ -79,7 +79,7 @@ def _adjust(model: FittedLaw, values: dict[str, float], names: Sequence[str], te
 def _minima(
     model: FittedLaw, starts: Iterable[dict[str, float]], names: Sequence[str], tests: Sequence[Test]
 ) -> list[Minimum]:
-    """Minima that `_adjust` finds from the starts, the deepest first, each once."""
+    """Minima that `_adjust` finds from the starts, the lowest first, each once."""
     found = sorted((_adjust(model, start, names, tests) for start in starts), key=lambda pair: pair[1].cost)
     new = [i == 0 or pair[1].cost > found[i - 1][1].cost * (1 + 1e-4) for i, pair in enumerate(found)]
     return list(itertools.compress(found, new))

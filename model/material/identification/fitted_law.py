@@ -24,7 +24,7 @@ Variables = Mapping[str, float]
 
 
 @njit(**fn.KERNEL)
-def _simulate(p, strain, stress):
+def _simulate(p: np.ndarray, strain: np.ndarray, stress: np.ndarray) -> float:
     """Stress along a strain path, by Heun's method with sub-steps of fixed size, smooth in the constants.
 
     Returns:

@@ -18,7 +18,9 @@ Starts = Callable[[float, float], Iterable[dict[str, float]]]  # variables from 
 
 
 @njit(**fn.KERNEL)
-def _follow(start, rest, a7, plastic, stress, work, k2):
+def _follow(
+    start: float, rest: float, a7: float, plastic: np.ndarray, stress: np.ndarray, work: np.ndarray, k2: np.ndarray
+) -> None:
     """Plastic work and n:n along a measured path, with the back stress of (3.1.7) and (3.1.8).
 
     `plastic` are the plastic strains ε11 and γ12; ζ is (rest + start exp(−a7 b*)) sqrt(6 n:n), with the measured n.
@@ -54,10 +56,10 @@ def hardening(
         raise InputError(f"the tests {', '.join(test.name for test in tests)} show no yielding; is G right?")
     values = np.empty((6, work.size))
 
-    def moved(start, x):
+    def moved(start: dict[str, float], x: np.ndarray) -> dict[str, float]:
         return start | moved_by({name: value for name, value in start.items() if name not in held}, x)
 
-    def residual(x, start):
+    def residual(x: np.ndarray, start: dict[str, float]) -> np.ndarray:
         fn.many(model.parameters(moved(start, x)), work, 0.0, values)
         return (values[0] - k2) / k2.max()
 
@@ -72,10 +74,10 @@ def hardening(
 def first_starts(model: FittedLaw) -> Starts:
     """Shapes of k² from which step 1 starts."""
 
-    def starts(reach, top):
-        for a3, share in itertools.product((3, 10, 30), (0.3, 0.5, 0.7) if "b1" in model.hardening else (1.0,)):
+    def starts(reach: float, top: float) -> Iterator[dict[str, float]]:
+        for a3, fraction in itertools.product((3, 10, 30), (0.3, 0.5, 0.7) if "b1" in model.hardening else (1.0,)):
             start = {"k0": 0.5 * top, "a1": 0.5 * top, "a2": 1 / reach, "a3": a3 / reach}
-            yield start | ({"b1": share * reach, "gain": 0.2 * top} if "b1" in model.hardening else {})
+            yield start | ({"b1": fraction * reach, "gain": 0.2 * top} if "b1" in model.hardening else {})
 
     return starts
 
@@ -97,6 +99,6 @@ def bend_starts(
     """The bend b1* of k² elsewhere: least squares does not find it from afar."""
     yield values
     others = {name: values[name] for name in (*KINEMATIC, *NORMALITY)}
-    for share in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8) if "b1" in values else ():
-        base = {name: values[name] for name in model.hardening} | {"b1": share * reach}
+    for fraction in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8) if "b1" in values else ():
+        base = {name: values[name] for name in model.hardening} | {"b1": fraction * reach}
         yield hardening(model, tests, others, lambda *_, base=base: [base], ["b1"])[0]

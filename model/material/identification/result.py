@@ -46,7 +46,7 @@ class Fit:
     def material(self, name: str) -> dict[str, Any]:
         """Content of a material file."""
         c = self.constants
-        isotropic = {key: c[key] for key in ("k0_squared", "a1", "a2", "a3")}
+        isotropic: dict[str, Any] = {key: c[key] for key in ("k0_squared", "a1", "a2", "a3")}
         if "b1" in c:
             isotropic["saturation"] = {key: c[key] for key in ("b1", "k1_squared", "k_inf_squared", "a4")}
         at = {
@@ -67,7 +67,7 @@ class Fit:
 
 
 def result(model: FittedLaw, minima: Sequence[Minimum], tests: tuple[Test, ...], temperature: float) -> Fit:
-    """The deepest minimum; others that the scatter of the tests does not exclude widen the uncertainties."""
+    """The lowest minimum; others that the scatter of the tests does not exclude widen the uncertainties."""
     best, found = minima[0]
     if not found.cost < LARGE:
         raise SolveError("no constants were found with which the law can follow these tests; are their units right?")

@@ -2,7 +2,8 @@
 
 import math
 from bisect import bisect_left
-from typing import Annotated, Any, Literal
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -24,7 +25,7 @@ class Sourced(Strict):
     remark: Text = ""
 
     @model_validator(mode="after")
-    def _has_sources(self):
+    def _has_sources(self) -> Self:
         needed = {"checked against a second source": 2, "one source": 1, "estimate": 0}[self.sure]
         if len(self.sources) < needed:
             raise ValueError(f"'{self.sure}' needs {needed} source(s), {len(self.sources)} given")
@@ -39,7 +40,7 @@ class Number(Sourced):
     values: Numbers | None = None
 
     @model_validator(mode="after")
-    def _one_of_both(self):
+    def _one_of_both(self) -> Self:
         table = self.up_to is not None and self.values is not None
         if (self.value is None) != table or (self.up_to is None) != (self.values is None):
             raise ValueError("give value, or up_to and values")
@@ -60,7 +61,7 @@ class Tolerance(Sourced):
     plus_minus: Numbers
 
     @model_validator(mode="after")
-    def _fits(self):
+    def _fits(self) -> Self:
         _same_length(self.up_to, self.plus_minus)
         return self
 
@@ -110,7 +111,7 @@ class Table(_Piece):
     values: Numbers
 
     @model_validator(mode="after")
-    def _fits(self):
+    def _fits(self) -> Self:
         _same_length(self.at_, self.values)
         return self
 
@@ -127,7 +128,7 @@ class Steps(_Piece):
     values: Numbers
 
     @model_validator(mode="after")
-    def _fits(self):
+    def _fits(self) -> Self:
         _same_length(self.up_to, self.values)
         if self.up_to[-1] != self.diameters[1]:
             raise ValueError("the last of up_to must be the last of diameters")
@@ -199,7 +200,7 @@ class WireFile(Strict):
     missing: Annotated[tuple[Text, ...], Field(strict=False)] = ()
 
     @model_validator(mode="after")
-    def _known_sources(self):
+    def _known_sources(self) -> Self:
         for wire in self.wires:
             for name, entry in wire.sourced():
                 for key in entry.sources:
@@ -215,6 +216,6 @@ def with_common(data: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in data.items() if name != "common"} | {"wires": wires}
 
 
-def _same_length(first, second):
+def _same_length(first: Sequence[object] | None, second: Sequence[object] | None) -> None:
     if first is not None and len(first) != len(second):
         raise ValueError(f"{len(first)} diameters but {len(second)} values")

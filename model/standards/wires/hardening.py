@@ -61,7 +61,7 @@ class Curve:
     def stress_at_greatest_force(self) -> float:
         """True stress at which ds = 0 (Considère): ½ a4 (σ∞² − σ²)(1 − 2ν σ/E) = σ, N/mm²."""
 
-        def excess(σ):
+        def excess(σ: float) -> float:
             return 0.5 * self.rate * (self.saturation**2 - σ**2) * (1 - self.contraction * σ) - σ
 
         return self.start if excess(self.start) <= 0 else brentq(excess, self.start, self.saturation, xtol=1e-9)
@@ -90,7 +90,7 @@ def curve(elastic_limit: float, proof_stress: float, strength: float, young_modu
     start = _true(elastic_limit, 0.0, contraction)
     proof = _true(proof_stress, PROOF_STRAIN, contraction)
 
-    def through_both(saturation):
+    def through_both(saturation: float) -> Curve:
         reach = atanh(proof / saturation) - atanh(start / saturation)
         return Curve(start, saturation, 2 * reach / (saturation * PROOF_STRAIN), contraction)
 
@@ -99,7 +99,7 @@ def curve(elastic_limit: float, proof_stress: float, strength: float, young_modu
     return through_both(saturation)
 
 
-def _true(stress, plastic_strain, contraction):
+def _true(stress: float, plastic_strain: float, contraction: float) -> float:
     """True stress of a stress s of the test: σ = s exp(εp + 2ν σ/E), iterated; 2ν σ/E is some thousandths."""
     σ = stress
     for _ in range(20):

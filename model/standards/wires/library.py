@@ -3,6 +3,7 @@
 from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from coilset.meshes.errors import InputError
 from coilset.model.case.entry import check_entries
@@ -24,7 +25,7 @@ def files() -> dict[str, WireFile]:
 
 
 @cache
-def _wires():
+def _wires() -> dict[str, tuple[Any, Any]]:
     return {f"{standard} {entry.grade}": (file, entry) for standard, file in files().items() for entry in file.wires}
 
 
@@ -49,5 +50,5 @@ def wire(name: str) -> Wire:
     return Wire(name, entry, file.sources)
 
 
-def _key(name):
+def _key(name: object) -> str:
     return "".join(str(name).split()).casefold()

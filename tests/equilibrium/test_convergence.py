@@ -1,0 +1,42 @@
+"""When an iteration is given up: stagnation can be found before the iterations end, and growth without bound."""
+
+import pytest
+
+from coilset.model.equilibrium.control import NewtonControl
+from coilset.model.equilibrium.convergence import EquilibriumTest, Reason, reason_in_words
+from coilset.model.equilibrium.methods import METHODS
+
+DIVERGENCE = 1e4
+
+
+def lost(norms, stagnation):
+    """Iteration and reason of giving up, for the norms of the residual from the start on; None if it goes on."""
+    test = EquilibriumTest(1e-9, stagnation)
+    test.begin(norms[0])
+    for iteration, norm in enumerate(norms[1:], start=1):
+        reason = test.is_lost(iteration, norm, DIVERGENCE)
+        if reason is not None:
+            return iteration, reason
+    return None
+
+
+@pytest.mark.parametrize("falling", [0, 5])
+def test_stagnation_is_found_before_newtons_iterations_end(falling):
+    """The default: after five falling residuals, too, one that then swings ends before PETSc's count of iterations."""
+    norms = [0.5**k for k in range(falling + 1)]
+    norms += [norms[-1] * (2.0 if k % 2 else 1.5) for k in range(METHODS["newton"]["snes_max_it"] - falling)]
+    iteration, reason = lost(norms, NewtonControl().stagnation)
+    assert iteration == falling + NewtonControl().stagnation < METHODS["newton"]["snes_max_it"]
+    assert reason == Reason.DIVERGED_LOCAL_MIN
+    assert "stagnates" in reason_in_words(reason)
+
+
+def test_a_new_least_residual_is_waited_for_anew():
+    assert lost([1.0, 2.0, 2.0, 0.9, 2.0, 2.0, 0.8, 2.0, 2.0], 3) is None
+    assert lost([1.0, 2.0, 2.0, 0.9, 2.0, 2.0, 2.0], 3) == (6, Reason.DIVERGED_LOCAL_MIN)
+    assert lost([1.0, 1.0, 1.0, 1.0], 3) == (3, Reason.DIVERGED_LOCAL_MIN)  # the same once more is not less
+
+
+def test_growth_without_bound_ends_at_once():
+    assert lost([1.0, 0.99 * DIVERGENCE, 0.5], 20) is None
+    assert lost([1.0, 1.01 * DIVERGENCE], 20) == (1, Reason.DIVERGED_DTOL)

@@ -1,0 +1,156 @@
+"""How much each number of `solver.control` matters: halved and doubled, and counted over shipped springs.
+
+    scripts/coilset python verification/control_sensitivity.py [--springs NAME …] [--steps N] [--fields NAME …]
+
+Each spring goes to block and back to zero force, once a variant. A number with an upper bound of 1 is doubled as far as
+halfway to 1; of a growth, which is at least 1, the excess over 1 is halved and doubled; the travel of the probe and the
+numbers of automatic steps are tried like all others. Counted are iterations, states that were evaluated (the body's
+updates, those of line searches included), failed solves and cuts. Each row is written as soon as it is known.
+"""
+
+import argparse
+import csv
+import sys
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TextIO
+
+from mpi4py import MPI
+
+from coilset.meshes.errors import SolveError
+from coilset.model.analysis import Analysis
+from coilset.model.case import read_case
+from coilset.model.equilibrium.control import NewtonControl, StepControl
+from coilset.model.equilibrium.convergence import Outcome
+from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.newton import Start
+from coilset.model.examples import EXAMPLES
+
+CONTROLS = {"newton": NewtonControl, "steps": StepControl}
+GROWTHS = ("penetration_growth", "growth", "largest", "regrowth")  # at least 1
+COUNTS = (
+    "stagnation", "augmentations", "search_trials", "contact_bisections", "attempts", "spare_attempts", "automatic",
+    "easy", "hard",
+)  # fmt: skip
+FREE_PENETRATION = 0.02  # wire diameters: the contacts' limit, which stands where no number is given
+AUTOMATIC = ("automatic", "easy", "hard", "growth", "shrinkage", "largest")  # of automatic steps only
+COLUMNS = ("spring", "variant", "iterations", "evaluations", "failures", "cuts", "steps", "ended")
+PETSC_SEARCH = "cp"
+
+
+@dataclass
+class Counts:
+    """What a run took.
+
+    Attributes:
+        iterations: of all solves, failed ones included.
+        evaluations: states that the body was brought to.
+        failures: solves without an equilibrium.
+        cuts: of steps.
+        steps: converged ones.
+        ended: did the run come to its end?
+    """
+
+    iterations: int = 0
+    evaluations: int = 0
+    failures: int = 0
+    cuts: int = 0
+    steps: int = 0
+    ended: bool = False
+
+
+def example(name: str) -> Path:
+    """File of a shipped spring, by its name."""
+    return EXAMPLES / (f"{name}.yaml" if name == "ck15_presetting" else f"springs/{name}.yaml")
+
+
+def count(name: str, settings: Iterable[str]) -> Counts:
+    """Run a shipped spring with settings as of `--set`."""
+    analysis, found = Analysis(read_case(example(name), list(settings)), MPI.COMM_SELF), Counts()
+    solve, update = analysis.newton.solve, analysis.rod.update
+
+    def counted_solve(load: Load, start: Start | None = None) -> Outcome:
+        outcome = solve(load, start)
+        found.iterations += outcome.iterations
+        found.failures += not outcome.converged
+        return outcome
+
+    def counted_update() -> bool:
+        found.evaluations += 1
+        return update()
+
+    analysis.newton.solve, analysis.rod.update = counted_solve, counted_update  # type: ignore[method-assign]
+    try:
+        analysis.run()
+        found.ended = True
+    except SolveError:
+        pass
+    found.steps, found.cuts = len(analysis.result.steps), sum(step.cuts for step in analysis.result.steps)
+    return found
+
+
+def halved_and_doubled(name: str, value: float | None) -> tuple[float, float]:
+    """The two values at which a field is tried."""
+    if value is None:
+        value = FREE_PENETRATION
+    if name in COUNTS:
+        return max(1, int(value) // 2), int(value) * 2
+    if name in GROWTHS:
+        return 1.0 + 0.5 * (value - 1.0), 1.0 + 2.0 * (value - 1.0)
+    return 0.5 * value, 2.0 * value if 2.0 * value < 1.0 else 0.5 * (1.0 + value)
+
+
+def variants(names: Iterable[str], steps: str | int) -> Iterator[tuple[str, list[str]]]:
+    """Name and settings of each variant; fields of automatic steps are tried with those, the others with `steps`."""
+    chosen = set(names)
+
+    def in_steps(kind: str | int) -> list[str]:
+        return [f"loading.{phase}.steps={kind}" for phase in (0, 1)]
+
+    yield "as shipped", in_steps(steps)
+    yield f"{PETSC_SEARCH} of PETSc", [*in_steps(steps), f"solver.options.snes_linesearch_type={PETSC_SEARCH}"]
+    if not chosen or chosen & set(AUTOMATIC):
+        yield "automatic steps", in_steps("auto")
+        yield f"{PETSC_SEARCH} of PETSc, automatic", [
+            *in_steps("auto"), f"solver.options.snes_linesearch_type={PETSC_SEARCH}"
+        ]  # fmt: skip
+    for group, control in CONTROLS.items():
+        for field in fields(control):
+            if chosen and field.name not in chosen:
+                continue
+            kind = "auto" if group == "steps" and field.name in AUTOMATIC else steps
+            for value in halved_and_doubled(field.name, field.default):  # type: ignore[arg-type]
+                yield f"{field.name} = {value:g}", [
+                    *in_steps(kind), f"solver.control.{group}.{field.name}={value!r}"
+                ]  # fmt: skip
+
+
+def table(springs: Iterable[str], names: Iterable[str], steps: str | int, out: TextIO) -> None:
+    """Write a row for each spring and variant."""
+    rows = csv.writer(out)
+    rows.writerow(COLUMNS)
+    for spring in springs:
+        for variant, settings in variants(names, steps):
+            found = count(spring, settings)
+            rows.writerow([spring, variant, *(getattr(found, column) for column in COLUMNS[2:])])
+            out.flush()
+
+
+def main() -> None:
+    """Read the command line and write the table."""
+    parser = argparse.ArgumentParser(description=str(__doc__).splitlines()[0])
+    parser.add_argument("--springs", nargs="+", default=["ck15_presetting", "barrel", "funnel", "measured"])
+    parser.add_argument("--fields", nargs="+", default=[], help="only these (default: all)")
+    parser.add_argument("--steps", default="12", help="equal steps of each phase, or auto")
+    parser.add_argument("--out", type=Path, help="CSV file (default: the screen)")
+    given = parser.parse_args()
+    if given.out is None:
+        table(given.springs, given.fields, given.steps, sys.stdout)
+    else:
+        with given.out.open("w", encoding="utf-8") as out:
+            table(given.springs, given.fields, given.steps, out)
+
+
+if __name__ == "__main__":
+    main()
