@@ -79,6 +79,7 @@ class Stability:
             factors.setFactorSolverType("mumps")
             factors.setFactorSetUpSolverType()
             factors.getFactorMatrix().setMumpsIcntl(13, 1)  # the root's pivots are counted, too
+            factors.getFactorMatrix().setMumpsIcntl(24, 1)  # PETSc asks for it before it tells the inertia
         else:
             factors.setFactorOrdering("natural")
         factors.setUp()
