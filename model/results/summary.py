@@ -29,7 +29,7 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         "free_length_before_mm": before,
         "free_length_after_mm": after,
         "set_mm": None if after is None else before - after,
-        "rate_N_per_mm": result.rate,
+        "rate_N_per_mm": result.rate if isfinite(result.rate) else None,
         "force_max_N": greatest,
         "block_height_mm": setup.spring.block_height,
         "residual_shear_max_MPa": float(last.shear.max()) if released else None,
