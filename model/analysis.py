@@ -9,11 +9,12 @@ from typing import Protocol
 import numpy as np
 from mpi4py import MPI
 
-from coilset.meshes.errors import SolveError
+from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.line import line_mesh
 from coilset.meshes.placement import section_placement, straight
 from coilset.model.case import Case
 from coilset.model.case.phases import Phase
+from coilset.model.case.targets import check_targets
 from coilset.model.contact.build import build_contacts, seats_at
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
@@ -65,6 +66,7 @@ class Analysis:
     def __init__(self, case: Case, comm: MPI.Comm = MPI.COMM_WORLD) -> None:
         self.case, self.comm = case, comm
         self.spring = spring = case.spring.build()
+        check_targets(case, spring)
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
         self.law = case_law(case, spring)
         line = line_mesh(spring.centre_line(turns), comm)
@@ -132,12 +134,12 @@ class Analysis:
         Raises:
             SolveError: no equilibrium was found; the state is that of the last converged step.
         """
-        if not self.result.snapshots:
-            self.result = replace(self.result, rate=self.initial_rate(), snapshots=(self.snapshot("start"),))
-            if math.isnan(self.result.rate):
-                self.result = replace(self.result, warnings=("the initial rate is not known: no equilibrium was found "
-                                                             "at the first touch",))  # fmt: skip
         try:
+            if not self.result.snapshots:
+                self.result = replace(self.result, rate=self.initial_rate(), snapshots=(self.snapshot("start"),))
+                if math.isnan(self.result.rate):
+                    self.result = replace(self.result, warnings=("the initial rate is not known: no equilibrium was "
+                                                                 "found at the first touch",))  # fmt: skip
             for number in range(self.program.number, len(self.case.loading)):
                 phase = self.case.loading[number]
                 for taken in self.program.run(self.stage(phase)):
@@ -155,12 +157,32 @@ class Analysis:
         return self.result
 
     def resume(self, saved: Saved) -> None:
-        """Go back to where a checkpoint was; collective."""
+        """Go back to where a checkpoint was; collective.
+
+        Raises:
+            InputError: if its arrays are not those of this analysis; nothing is changed then.
+        """
+        self._check(saved)
         for name, field in self.system.state.items():
             self.layout.take(field, saved.arrays[name])
         self.system.restore()
         self.program.position, self.continuation.number = saved.position, len(saved.result.steps)
         self.result = saved.result
+
+    def _check(self, saved: Saved) -> None:
+        """Refuse arrays that are missing or have other shapes or numbers that are none; collective."""
+        expected = {name: self.layout.natural(field) for name, field in self.system.state.items()}
+        problem, like = None, self.snapshot("like")
+        if self.comm.rank == 0:
+            pairs = [(name, saved.arrays.get(name), values) for name, values in expected.items()]
+            pairs += [(f"{shot.name}: {name}", getattr(shot, name), values) for shot in saved.result.snapshots
+                      for name, values in vars(like).items() if isinstance(values, np.ndarray)]  # fmt: skip
+            problem = next((name for name, found, values in pairs
+                            if np.shape(found) != np.shape(values) or not np.isfinite(found).all()), None)  # fmt: skip
+        problem = self.comm.bcast(problem)
+        if problem:
+            raise InputError("the checkpoint's array is missing or not of this spring; give --force instead of "
+                             "--resume to begin anew", problem)  # fmt: skip
 
     def stage(self, phase: Phase) -> Stage:
         """A phase of the case as the load program takes it."""

@@ -17,6 +17,7 @@ HELP = """How far does a coil spring set, and what stress stays in it?
 
 It needs DOLFINx >= 0.9: from conda (environment.yml; Miniforge needs no root), from the packages of Debian 13 or
 Ubuntu 25.04, or in a private Debian 13 on older ones (scripts/coilset, as root, does both). See docs/install.md."""
+TOGETHER = 10.0  # seconds in which all ranks meet an error that is all ranks' error
 INTERRUPTED = 128 + signal.SIGINT
 ONE_SIGNAL = 0.5  # seconds in which several count as one: `timeout` sends to a process and to its group
 
@@ -218,6 +219,7 @@ def run() -> None:
         status = app(prog_name="coilset", standalone_mode=False) or 0
     except CoilsetError as error:
         status = error.exit_code
+        _leave_together(error)
         _complain(str(error))
     except typer.Exit as error:
         status = error.exit_code
@@ -258,13 +260,33 @@ def _listen() -> None:
 
 def _crash() -> None:
     """What nobody foresaw, on one of several ranks: the others would wait for it without end."""
-    if "COILSET_RANKS" in os.environ:
+    if world := _several_ranks():
         import traceback
 
-        from mpi4py import MPI
-
         traceback.print_exc()
-        MPI.COMM_WORLD.Abort(1)
+        world.Abort(1)
+
+
+def _leave_together(error: CoilsetError) -> None:
+    """An error that all ranks have met is said by the first; one that came to some of them only ends them all."""
+    if (world := _several_ranks()) is None:
+        return
+    arrived, until = world.Ibarrier(), time.monotonic() + TOGETHER
+    while not arrived.Test():
+        if time.monotonic() > until:
+            print(f"coilset: {error}", file=sys.stderr, flush=True)
+            world.Abort(error.exit_code)
+        time.sleep(0.01)
+
+
+def _several_ranks():
+    """The communicator of all ranks, if MPI runs on several."""
+    if "mpi4py.MPI" not in sys.modules:
+        return None
+    from mpi4py import MPI
+
+    alive = MPI.Is_initialized() and not MPI.Is_finalized()
+    return MPI.COMM_WORLD if alive and MPI.COMM_WORLD.size > 1 else None
 
 
 def _complain(line: str) -> None:

@@ -1,6 +1,6 @@
 """`coilset solve`: read, run, write, draw, and say what was found."""
 
-import logging
+import contextlib
 import os
 import time
 from pathlib import Path
@@ -9,15 +9,17 @@ from mpi4py import MPI
 from rich.console import Console
 from rich.table import Table
 
-from coilset.meshes.errors import CoilsetError, InputError, SolveError
+from coilset.meshes.errors import InputError, SolveError
+from coilset.model.agreement import on_first_rank
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.results.checkpoint import Checkpoint
-from coilset.model.results.folder import prepare, write_history, write_seats, write_summary
+from coilset.model.results.folder import clear, prepare, write_history, write_seats, write_summary
 from coilset.model.results.summary import summarise
 from coilset.model.standards.warnings import spring_warnings
 from coilset.scripts.interactive import Prompt
 from coilset.scripts.interrupt import Interrupt
+from coilset.scripts.log import run_log
 
 STARTED = float(os.environ.get("COILSET_STARTED", time.time()))
 
@@ -37,33 +39,40 @@ def solve(case_file, out, force, settings, pictures, resume=False, interactive=F
         analysis = Analysis(case, comm)
     except InputError as error:
         raise InputError(error.problem, error.place, error.file or case_file) from None
-    _prepare(out, force or resume, comm)
-    checkpoint = _begin(analysis, out, resume)
+    on_first_rank(comm, lambda: prepare(out, force or resume))
+    with contextlib.ExitStack() as stack:
+        on_first_rank(comm, lambda: _begin(stack.enter_context(run_log(out)), out, resume))
+        _solve(console, analysis, case_file, out, pictures, resume, interactive)
+
+
+def _begin(log, out, resume):
+    """Nothing of an earlier run is left in the folder that is now ours, but what is to be gone on from."""
+    if not resume:
+        log.stream.truncate(0)
+        clear(out)
+
+
+def _solve(console, analysis, case_file, out, pictures, resume, interactive):
+    comm, checkpoint = analysis.comm, Checkpoint(out, analysis.case)
+    if resume:
+        analysis.resume(checkpoint.load(comm))
     _announce(console, analysis, case_file, resume)
     began = time.perf_counter()
     failure = _run(console, analysis, checkpoint, interactive)
     analysed = time.perf_counter() - began
     summary = comm.bcast(summarise(analysis.setup, analysis.result) if comm.rank == 0 else None)
-    if comm.rank == 0:
+
+    def write():
         _write(out, analysis.setup, analysis.result, summary)
         if pictures:
             _draw(out, analysis.setup, analysis.result, summary, console)
+
+    on_first_rank(comm, write)
     _conclude(console, summary, out, analysed)
     if failure is not None:
-        console.print("go on from the last step with --resume")
+        if analysis.result.steps:
+            console.print("go on from the last step with --resume")
         raise failure
-
-
-def _begin(analysis, out, resume):
-    """The checkpoint, resumed from or cleared, and the log."""
-    checkpoint = Checkpoint(out, analysis.case)
-    if resume:
-        analysis.resume(checkpoint.load(analysis.comm))
-    if analysis.comm.rank == 0:
-        if not resume:
-            checkpoint.clear()
-        _log_to(out / "log.txt", resume)
-    return checkpoint
 
 
 def _announce(console, analysis, case_file, resume):
@@ -94,30 +103,6 @@ def _run(console, analysis, checkpoint, interactive):
     except (SolveError, KeyboardInterrupt) as error:
         return error
     return None
-
-
-def _prepare(out, force, comm):
-    problem = None
-    if comm.rank == 0:
-        try:
-            prepare(out, force)
-        except InputError as error:
-            problem = error
-    problem = comm.bcast(problem and (problem.problem, problem.place, str(problem.file)))
-    if problem:
-        raise InputError(*problem)
-
-
-def _log_to(path, append):
-    """Every decision of the step control goes to a file in the results folder."""
-    try:
-        handler = logging.FileHandler(path, mode="a" if append else "w", encoding="utf-8")
-    except OSError as error:
-        raise CoilsetError(f"{path}: cannot be written: {error.strerror}") from None
-    handler.setFormatter(logging.Formatter("%(asctime)s %(message)s"))
-    logger = logging.getLogger("coilset")
-    logger.setLevel(logging.INFO)
-    logger.addHandler(handler)
 
 
 def _row(step):

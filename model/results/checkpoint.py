@@ -17,13 +17,15 @@ from coilset.model.case import Case
 from coilset.model.equilibrium.continuation import Position
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.program import ProgramPosition
-from coilset.model.results.folder import whole
+from coilset.model.results.folder import make, whole
+from coilset.model.results.provenance import changed, provenance
 from coilset.model.results.record import Result, SeatReactions, Snapshot, Step
 from coilset.model.state import State
 
 # what must be the same to go on
 SPRING_ENTRIES = ("spring", "material", "temperature", "ends", "seats", "mesh", "contact")
 PREFIX = "state_"  # of the state's arrays
+ANEW = "give --force instead of --resume to begin anew"
 
 
 @dataclass(frozen=True)
@@ -51,7 +53,7 @@ class Checkpoint:
 
     def __init__(self, folder: str | Path, case: Case) -> None:
         self.folder = Path(folder) / "checkpoint"
-        self.case = case.model_dump(mode="json")
+        self.case, self.provenance = case.model_dump(mode="json"), provenance(case)
 
     # ---- saving ----------------------------------------------------------------------------------------------------
 
@@ -64,6 +66,7 @@ class Checkpoint:
         arrays["bearing_points"] = np.array([len(one.pressure) for one in result.seats], dtype=int)
         about = {
             "case": self.case,
+            "provenance": self.provenance,
             "position": asdict(position),
             "rate": result.rate,
             "warnings": result.warnings,
@@ -71,7 +74,7 @@ class Checkpoint:
             "seats": [one.row() for one in result.seats],
             "snapshots": len(result.snapshots),
         }
-        self.folder.mkdir(exist_ok=True)
+        make(self.folder)
         for number, snapshot in enumerate(result.snapshots):
             self._save_snapshot(number, snapshot)
         with whole(self.folder / "state.npz") as path, open(path, "wb") as file:
@@ -96,51 +99,51 @@ class Checkpoint:
         Raises:
             InputError: if there is no checkpoint, it is broken, or it belongs to another spring or load program.
         """
-        loaded = problem = None
+        saved = problem = None
         if comm.rank == 0:
             try:
-                loaded = self._read()
-                self._compare(loaded["about"])
+                saved = self._read()
             except InputError as error:
                 problem = error
         problem = comm.bcast(problem and (problem.problem, problem.place, str(problem.file)))
         if problem:
             raise InputError(*problem)
-        loaded = comm.bcast(loaded)
-        about = loaded["about"]
-        arrays = {name.removeprefix(PREFIX): values for name, values in loaded.items() if name.startswith(PREFIX)}
-        return Saved(arrays, self._position(about), self._result(loaded, comm.rank))
+        shared = comm.bcast(saved and replace(saved, result=_without_cells(saved.result)))
+        return saved or shared
 
-    def _read(self) -> dict[str, Any]:
+    def _read(self) -> Saved:
+        """On rank 0; a file that is damaged can fail in any way: as zip, as array, as JSON, as record."""
         path = self.folder / "state.npz"
         if not path.exists():
             raise InputError("there is no checkpoint to go on from; run it without --resume", "", self.folder)
         try:
-            with np.load(path, allow_pickle=False) as file:
-                loaded = {name: file[name] for name in file.files}
-            return loaded | {"about": json.loads(str(loaded["about"]))}
-        except (OSError, ValueError, KeyError) as error:
-            raise InputError(f"the checkpoint is not readable: {error}", "", path) from None
+            loaded = _arrays(path)
+            about = json.loads(str(loaded["about"]))
+            self._compare(about)
+            arrays = {name.removeprefix(PREFIX): values for name, values in loaded.items() if name.startswith(PREFIX)}
+            return Saved(arrays, self._position(about), self._result(loaded, about))
+        except InputError:
+            raise
+        except Exception as error:
+            reason = str(error).partition("\n")[0] or type(error).__name__
+            raise InputError(f"the checkpoint is not readable: {reason}; {ANEW}", "", path) from None
 
-    def _result(self, loaded: Mapping[str, Any], rank: int) -> Result:
-        about = loaded["about"]
+    def _result(self, loaded: Mapping[str, Any], about: Mapping[str, Any]) -> Result:
         parts = np.split(loaded["pressure"], np.cumsum(loaded["bearing_points"])[:-1])
+        seats = zip(about["seats"], parts[: len(about["seats"])], strict=True)
         return Result(
             tuple(Step(**step) for step in about["steps"]),
-            tuple(SeatReactions.from_row(*pair) for pair in zip(about["seats"], parts, strict=False)),
-            tuple(self._snapshot(number, rank) for number in range(about["snapshots"])),
+            tuple(SeatReactions.from_row(*pair) for pair in seats),
+            tuple(self._snapshot(number) for number in range(about["snapshots"])),
             about["rate"],
             warnings=tuple(about["warnings"]),
         )
 
-    def _snapshot(self, number: int, rank: int) -> Snapshot:
-        with np.load(self.folder / f"snapshot-{number:02d}.npz", allow_pickle=False) as file:
-            found: dict[str, Any] = {name: file[name] for name in file.files}
+    def _snapshot(self, number: int) -> Snapshot:
+        found: dict[str, Any] = _arrays(self.folder / f"snapshot-{number:02d}.npz")
         for name, kind in (("name", str), ("height", float), ("force", float)):
             found[name] = kind(found[name])
         found["components"] = tuple(str(name) for name in found["components"])
-        if rank:
-            found |= {name: np.empty(0) for name in ("triads", "resultants", "point_state", "surface_state")}
         return Snapshot(**found)
 
     def _position(self, about: Mapping[str, Any]) -> ProgramPosition:
@@ -155,11 +158,33 @@ class Checkpoint:
         return replace(position, height=height, force=force, walk=Position())
 
     def _compare(self, about: Mapping[str, Any]) -> None:
-        """The spring must be the same; the phases that are behind too, and the rest may have changed."""
+        """Spring, files and program must be the same; the phases behind too, and the rest may have changed."""
         old, new = about["case"], self.case
         for entry in SPRING_ENTRIES:
             if old.get(entry) != new[entry]:
-                raise InputError("differs from that of the checkpoint; run it without --resume", entry, self.folder)
+                raise InputError(
+                    "differs from that of the checkpoint; {ANEW}",
+                    entry,
+                    self.folder,
+                )
+        entry = changed(about.get("provenance"), self.provenance)
+        if entry == "version":
+            raise InputError(f"the checkpoint is of another version of coilset; {ANEW}", "",
+                             self.folder)  # fmt: skip
+        if entry:
+            raise InputError(f"its content is not what the checkpoint was made with; {ANEW}", entry,
+                             self.folder)  # fmt: skip
         behind = about["position"]["stage"]
         if old["loading"][:behind] != new["loading"][:behind]:
             raise InputError(f"its first {behind} phases are behind and must stay as they were", "loading", self.folder)
+
+
+def _arrays(path: Path) -> dict[str, np.ndarray]:
+    with open(path, "rb") as content, np.load(content, allow_pickle=False) as file:
+        return {name: file[name] for name in file.files}
+
+
+def _without_cells(result: Result) -> Result:
+    """For the other ranks: arrays of elements are gathered on rank 0 only."""
+    empty = {name: np.empty(0) for name in ("triads", "resultants", "point_state", "surface_state")}
+    return replace(result, snapshots=tuple(replace(shot, **empty) for shot in result.snapshots))

@@ -7,7 +7,7 @@ import meshio
 import numpy as np
 import xarray as xr
 
-from coilset.model.results.folder import whole
+from coilset.model.results.folder import make, reserve, whole
 from coilset.model.results.record import Result, Setup, Snapshot
 from coilset.model.section.rules import SURFACE_POINTS
 from coilset.model.section.surface import component, shear
@@ -84,13 +84,14 @@ def pressure_along_wire(setup: Setup, result: Result) -> xr.Dataset:
 def write_points(folder: str | Path, data: xr.Dataset) -> None:
     """points.nc (NetCDF 4)."""
     with whole(Path(folder) / "points.nc") as path:
+        reserve(path, data.nbytes)
         data.to_netcdf(path, engine="h5netcdf")
 
 
 def write_fields(folder: str | Path, setup: Setup, snapshots: Sequence[Snapshot]) -> None:
     """fields/NN.vtu: the line mesh at each snapshot with resultants and the greatest stresses, for ParaView."""
     folder = Path(folder) / "fields"
-    folder.mkdir(exist_ok=True)
+    make(folder)
     n = len(setup.turns) - 1
     cells = [("line", np.stack([np.arange(n), np.arange(1, n + 1)], axis=1))]
     for number, shot in enumerate(snapshots):

@@ -31,20 +31,68 @@ def whole(path: str | Path) -> Iterator[Path]:
         partial.unlink(missing_ok=True)
 
 
+def make(folder: str | Path) -> None:
+    """Make a folder, unless it is there.
+
+    Raises:
+        CoilsetError: if it cannot be made.
+    """
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise CoilsetError(f"{folder}: cannot be made: {error.strerror}") from None
+
+
+def reserve(path: Path, size: int) -> None:
+    """Make sure that the disk has room for a file; the library of NetCDF crashes where there is none.
+
+    Raises:
+        OSError: if it has not.
+    """
+    if hasattr(os, "posix_fallocate"):
+        with open(path, "wb") as file:
+            os.posix_fallocate(file.fileno(), 0, size + HEADER)
+
+
+HEADER = 1 << 20  # bytes in a NetCDF file beside its numbers, at most
+RESULTS = ("summary.json", "history.csv", "seats.csv", "points.nc", "fields/*.vtu", "checkpoint/*.npz",
+           "characteristic.png", "springs.png", "cross_section.png", "force_centre.png",
+           "seat_pressure.png")  # fmt: skip
+
+
 def prepare(folder: str | Path, force: bool) -> Path:
     """Make the results folder.
 
     Raises:
-        InputError: if it holds results already and `force` is not given, or cannot be made.
+        InputError: if it holds results or an interrupted run already and `force` is not given, or cannot be made.
     """
     folder = Path(folder)
-    if (folder / "summary.json").exists() and not force:
-        raise InputError("holds results already; give --force to replace them, or another --out", "--out", folder)
     try:
+        if (folder / "summary.json").exists() and not force:
+            raise InputError("holds results already; give --force to replace them, or another --out", "--out", folder)
+        if (folder / "checkpoint" / "state.npz").exists() and not force:
+            raise InputError("holds an interrupted run; give --resume to go on with it, --force to begin anew, or "
+                             "another --out", "--out", folder)  # fmt: skip
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot be made: {error.strerror}", "--out", folder) from None
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise InputError("cannot be written to; give another --out", "--out", folder)
     return folder
+
+
+def clear(folder: str | Path) -> None:
+    """Remove the results of an earlier run, the summary first: what is there is never of two runs.
+
+    Raises:
+        CoilsetError: if a file cannot be removed.
+    """
+    for pattern in RESULTS:
+        for path in Path(folder).glob(pattern):
+            try:
+                path.unlink()
+            except OSError as error:
+                raise CoilsetError(f"{path}: cannot be removed: {error.strerror}") from None
 
 
 def write_summary(folder: str | Path, summary: Mapping[str, Any]) -> None:

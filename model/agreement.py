@@ -1,0 +1,31 @@
+"""What one rank finds out, all ranks know: an error on one of them alone would leave the others waiting."""
+
+from collections.abc import Callable
+from typing import TypeVar
+
+from mpi4py import MPI
+
+from coilset.meshes.errors import CoilsetError
+
+Found = TypeVar("Found")
+
+
+def on_first_rank(comm: MPI.Comm, action: Callable[[], Found]) -> Found | None:
+    """What `action` gives on rank 0, None elsewhere; collective.
+
+    Raises:
+        CoilsetError: that of the action, on every rank.
+    """
+    found, error = None, None
+    if comm.rank == 0:
+        try:
+            found = action()
+        except CoilsetError as problem:
+            error = problem
+    shared = comm.bcast(error and (type(error), str(error)))
+    if error is not None:
+        raise error
+    if shared is not None:
+        kind, text = shared
+        raise kind(text)
+    return found

@@ -1,0 +1,48 @@
+"""What a run was made with: the content of the files that its case names, and the program's version."""
+
+import hashlib
+from pathlib import Path
+
+from coilset.meshes.errors import InputError
+from coilset.model.case import Case
+from coilset.model.standards.wires.law import case_law
+from coilset.model.version import __version__
+
+DIGEST_BYTES = 16
+
+
+def contents(case: Case) -> dict[str, str]:
+    """Digest of what the case names but does not hold, by entry: constants of the material, file of the spring.
+
+    Raises:
+        InputError: if a file cannot be read or is wrong.
+    """
+    law = case_law(case, case.spring.build())
+    found = {"material": _digest(law.parameters().tobytes())}
+    file = getattr(case.spring, "file", None)
+    if file is not None:
+        try:
+            found["spring.file"] = _digest(Path(file).read_bytes())
+        except OSError as error:
+            raise InputError(f"cannot be read: {error.strerror}", "spring.file", file) from None
+    return found
+
+
+def provenance(case: Case) -> dict[str, object]:
+    """Version and contents, for a checkpoint; raises as `contents`."""
+    return {"version": __version__, "contents": contents(case)}
+
+
+def changed(then: object, now: dict[str, object]) -> str | None:
+    """The first entry whose content is another one now, `version` for another program, or None; see `provenance`."""
+    then = then if isinstance(then, dict) else {}
+    if then.get("version") != now["version"]:
+        return "version"
+    before, contents_now = then.get("contents"), now["contents"]
+    if not isinstance(before, dict) or not isinstance(contents_now, dict):
+        return "version"
+    return next((entry for entry in {**before, **contents_now} if before.get(entry) != contents_now.get(entry)), None)
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.blake2b(content, digest_size=DIGEST_BYTES).hexdigest()

@@ -1,0 +1,53 @@
+"""log.txt of a run: every decision of the step control; while it is open no other run can work in its folder."""
+
+import contextlib
+import fcntl
+import logging
+from collections.abc import Iterator
+from pathlib import Path
+
+from coilset.meshes.errors import CoilsetError, InputError
+
+
+class _Handler(logging.FileHandler):
+    def handleError(self, record: logging.LogRecord) -> None:
+        """A full disk is said where the results are written; the log only loses lines."""
+
+    def close(self) -> None:
+        with contextlib.suppress(OSError):
+            super().close()
+
+
+@contextlib.contextmanager
+def run_log(folder: Path) -> Iterator[logging.FileHandler]:
+    """Log to the folder's log.txt, and hold the folder by a lock on it; the kernel frees it however the run ends.
+
+    Raises:
+        InputError: if another run works in the folder.
+        CoilsetError: if the log cannot be written.
+    """
+    path = folder / "log.txt"
+    try:
+        handler = _Handler(path, mode="a", encoding="utf-8")
+    except OSError as error:
+        raise CoilsetError(f"{path}: cannot be written: {error.strerror}") from None
+    logger = logging.getLogger("coilset")
+    try:
+        _lock(handler, folder)
+        handler.setFormatter(logging.Formatter("%(asctime)s %(message)s"))
+        logger.setLevel(logging.INFO)
+        logger.addHandler(handler)
+        yield handler
+    finally:
+        logger.removeHandler(handler)
+        handler.close()
+
+
+def _lock(handler: logging.FileHandler, folder: Path) -> None:
+    try:
+        fcntl.flock(handler.stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise InputError("another run works in this folder; wait for it, or give another --out", "--out",
+                         folder) from None  # fmt: skip
+    except OSError:
+        pass  # a file system without locks

@@ -1,0 +1,179 @@
+"""What a run finds in its folder, and what it leaves there: damaged checkpoints, earlier runs, changed files."""
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from coilset.meshes.errors import CoilsetError, InputError, SolveError
+from coilset.model.analysis import Analysis
+from coilset.model.case import read_case
+from coilset.model.results import folder as folders
+from coilset.model.results import provenance
+from coilset.model.results.checkpoint import Checkpoint
+from coilset.scripts.log import run_log
+from coilset.scripts.solve import solve
+
+COMM = MPI.COMM_SELF
+SMALL = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "loading=[{to: {travel: 2}, steps: 2}]"]
+
+
+class Stop(Exception):
+    """Stands for the end of the process."""
+
+
+@pytest.fixture(scope="module")
+def interrupted(example, tmp_path_factory):
+    """Folder of a run that was killed after its first step."""
+    folder = tmp_path_factory.mktemp("interrupted")
+    case = read_case(example, SMALL)
+
+    def stop(step):
+        raise Stop
+
+    with pytest.raises(Stop):
+        Analysis(case, COMM).run(stop, Checkpoint(folder, case).save)
+    return folder
+
+
+@pytest.fixture
+def folder(interrupted, tmp_path):
+    return Path(shutil.copytree(interrupted, tmp_path / "out"))
+
+
+def resume(example, folder, *more):
+    solve(example, folder, False, [*SMALL, *more], False, resume=True, comm=COMM)
+
+
+def test_an_undamaged_one_goes_on(example, folder):
+    resume(example, folder)
+    assert json.loads((folder / "summary.json").read_text())["steps"] == 2
+
+
+def rewrite(path, change):
+    with np.load(path) as file:
+        arrays = {name: file[name] for name in file.files}
+    change(arrays)
+    np.savez(path, **arrays)
+
+
+def flip(path):
+    content = bytearray(path.read_bytes())
+    for place in range(len(content) // 5, len(content), len(content) // 5):
+        content[place] ^= 0xFF
+    path.write_bytes(bytes(content))
+
+
+def older(arrays):
+    about = json.loads(str(arrays["about"]))
+    del about["provenance"]
+    arrays["about"] = np.array(json.dumps(about))
+
+
+STATE, SNAPSHOT = "state.npz", "snapshot-00.npz"
+DAMAGES = {
+    "truncated": (STATE, lambda path: path.write_bytes(path.read_bytes()[:-300])),
+    "flipped": (STATE, flip),
+    "empty": (STATE, lambda path: path.write_bytes(b"")),
+    "array missing": (STATE, lambda path: rewrite(path, lambda arrays: arrays.pop("state_x"))),
+    "wrong shape": (STATE, lambda path: rewrite(path, lambda arrays: arrays.update(state_x=np.zeros((3, 3))))),
+    "not a number": (STATE, lambda path: rewrite(path, lambda arrays: arrays["state_x"].fill(np.nan))),
+    "older version": (STATE, lambda path: rewrite(path, older)),
+    "snapshot missing": (SNAPSHOT, lambda path: path.unlink()),
+    "snapshot truncated": (SNAPSHOT, lambda path: path.write_bytes(path.read_bytes()[:-300])),
+    "snapshot empty": (SNAPSHOT, lambda path: path.write_bytes(b"")),
+    "snapshot of another": (SNAPSHOT, lambda path: rewrite(path, lambda arrays: arrays.update(x=np.zeros((3, 3))))),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_damaged_checkpoint_gets_one_line(example, folder, damage):
+    name, spoil = DAMAGES[damage]
+    spoil(folder / "checkpoint" / name)
+    with pytest.raises(InputError) as caught:
+        resume(example, folder)
+    assert "\n" not in str(caught.value)
+    assert "--force" in str(caught.value)
+    assert not (folder / "summary.json").exists()
+
+
+def test_an_interrupted_run_is_not_thrown_away(example, folder):
+    with pytest.raises(InputError, match=r"--resume.*--force"):
+        solve(example, folder, False, SMALL, False, comm=COMM)
+    assert (folder / "checkpoint" / STATE).exists()
+
+
+def test_a_forced_run_leaves_nothing_of_the_old_one(example, folder, monkeypatch):
+    for name in ("summary.json", "springs.png", "history.csv"):
+        (folder / name).write_text("old")
+    (folder / "log.txt").write_text("old\n")
+
+    def killed(*_):
+        raise Stop
+
+    monkeypatch.setattr(Analysis, "run", killed)
+    with pytest.raises(Stop):
+        solve(example, folder, True, SMALL, False, comm=COMM)
+    assert [path.name for path in folder.rglob("*") if path.is_file()] == ["log.txt"]
+    assert (folder / "log.txt").read_text() == ""
+
+
+def test_one_run_at_a_time_works_in_a_folder(example, folder):
+    (folder / "log.txt").write_text("of the other\n")
+    with run_log(folder), pytest.raises(InputError, match="another run"):
+        solve(example, folder, True, SMALL, False, comm=COMM)
+    assert (folder / "log.txt").read_text() == "of the other\n"
+    resume(example, folder)
+
+
+def test_changed_constants_of_a_material_file_are_seen(example, tmp_path):
+    source = (Path(provenance.__file__).parents[1] / "material" / "library" / "ck15.yaml").read_text(encoding="utf-8")
+    material = tmp_path / "mine.yaml"
+    material.write_text(source, encoding="utf-8")
+    case = read_case(example, [*SMALL, f"material={material}"])
+    before = provenance.provenance(case)
+    material.write_text(source + "\n# a remark changes nothing\n", encoding="utf-8")
+    assert provenance.changed(before, provenance.provenance(case)) is None
+    material.write_text(source.replace("G: 84000", "G: 60000"), encoding="utf-8")
+    assert provenance.changed(before, provenance.provenance(case)) == "material"
+    assert provenance.changed({**before, "version": "0.0.1"}, before) == "version"
+
+
+def test_a_changed_material_does_not_go_on(example, folder, monkeypatch):
+    monkeypatch.setattr(provenance, "contents", lambda case: {"material": "another"})
+    with pytest.raises(InputError, match="material"):
+        resume(example, folder)
+
+
+def test_changed_points_of_a_measured_spring_are_seen(example, tmp_path):
+    shutil.copytree(example.parent / "springs", tmp_path / "springs")
+    case = read_case(tmp_path / "springs" / "measured.yaml")
+    before = provenance.contents(case)
+    csv = tmp_path / "springs" / "measured.csv"
+    csv.write_text(csv.read_text().replace("5.0", "4.5"))
+    assert provenance.contents(case)["spring.file"] != before["spring.file"]
+
+
+FIRST_TOUCH = ["contact.bedding=1e9", "solver.options={pc_type: none}", "spring.mean_diameter=1e5"]
+
+
+@pytest.mark.parametrize("setting", FIRST_TOUCH)
+def test_a_failure_at_the_first_touch_ends_as_any_other(example, tmp_path, setting):
+    with pytest.raises(SolveError) as caught:
+        solve(example, tmp_path / "out", False, [*SMALL, setting], True, comm=COMM)
+    assert "\n" not in str(caught.value)
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert not summary["complete"]
+    assert summary["rate_N_per_mm"] is None
+
+
+def test_a_full_disk_at_the_points_gets_one_line(example, tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(folders.os, "posix_fallocate", full)
+    with pytest.raises(CoilsetError, match=r"points\.nc: cannot be written: No space"):
+        solve(example, tmp_path / "out", False, SMALL, False, comm=COMM)
