@@ -115,6 +115,7 @@ class Rod:
         self.axial_force = law.E * np.pi * self.largest_radius**2  # E A
         self.extent = float(np.ptp(line.stations, axis=0).max())
         self._constraint_weight = comm_max(mesh.comm, (law.E * np.pi * self.radius**2 / self.l0).max(initial=0.0))
+        self._bending_stiffness = comm_max(mesh.comm, (law.E * np.pi * self.radius**4 / 4.0 / self.l0).max(initial=0.0))
         self._start(x)
 
     def _number_dofs(self) -> None:
@@ -212,11 +213,15 @@ class Rod:
         matrix.zeroRows(rows.astype(PETSc.IntType), diag=self.constraint_weight)
 
     def rounding(self, increments: np.ndarray) -> float:
-        """That of the increments, times the axial stiffness of the shortest element, and that of the wire; see Body.
+        """The greatest of three errors of rounding, N; see Body.
 
-        The second strains the wire by 1e-14, so that a step without any change of load is at rest too.
+        That of the increments, times the axial stiffness of the shortest element. That of the rotation matrices,
+        ε = 2.2e-16 whatever the increments are, times the bending stiffness E I/l of an element: a floor of moments,
+        which short elements lift. And a strain of the wire by 1e-14, so that a step without any change of load is at
+        rest too.
         """
         greatest = comm_max(self.mesh.comm, np.abs(increments).max(initial=0.0))
         greatest = min(greatest, self.extent)  # what flies away is not at rest
         size = self.mesh.comm.allreduce(len(increments)) if self.mesh.comm.size > 1 else len(increments)
-        return max(np.finfo(float).eps * greatest * self.constraint_weight * np.sqrt(size), 1e-14 * self.axial_force)
+        stiffest = max(greatest * self.constraint_weight, self._bending_stiffness)
+        return max(np.finfo(float).eps * np.sqrt(size) * stiffest, 1e-14 * self.axial_force)
