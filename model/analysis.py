@@ -1,5 +1,7 @@
 """From a case to its history: geometry → mesh → rod, contacts and control → load program → records."""
 
+import logging
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Protocol
@@ -32,6 +34,8 @@ from coilset.model.rod.rod import Rod
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.wires.law import case_law
 from coilset.model.state import State
+
+log = logging.getLogger("coilset.steps")
 
 
 class Save(Protocol):
@@ -130,6 +134,9 @@ class Analysis:
         """
         if not self.result.snapshots:
             self.result = replace(self.result, rate=self.initial_rate(), snapshots=(self.snapshot("start"),))
+            if math.isnan(self.result.rate):
+                self.result = replace(self.result, warnings=("the initial rate is not known: no equilibrium was found "
+                                                             "at the first touch",))  # fmt: skip
         try:
             for number in range(self.program.number, len(self.case.loading)):
                 phase = self.case.loading[number]
@@ -173,7 +180,8 @@ class Analysis:
         height, force, last = self.control.height, self.control.force, self.system.last
         contacts = sum(part.closed for part in last.contributions)
         step = Step(taken.number, phase, taken.progress, height, self.spring.free_length - height, force,
-                    taken.outcome.iterations, taken.cuts, contacts, self.system.max_penetration,
+                    taken.outcome.iterations, taken.outcome.evaluations, taken.outcome.failed_solves, taken.cuts,
+                    contacts, self.system.max_penetration,
                     taken.outcome.negative_pivots, int(taken.outcome.left_branch),
                     axis_offset(self.layout.gather(self.rod.x), self.rod.line.stations, self.setup.turns),
                     self._least_eigenvalue())  # fmt: skip
@@ -192,8 +200,7 @@ class Analysis:
     def initial_rate(self) -> float:
         """Force over the shortening of the wire from tip to tip, at a thousandth of the free length, N/mm; collective.
 
-        Raises:
-            SolveError: if there is no equilibrium there.
+        NaN if no equilibrium is found there: the load program takes other steps, and need not fail for it.
         """
         x = self.system.state["x"]
         travel = self.continuation.control.probe * self.spring.free_length
@@ -203,7 +210,8 @@ class Analysis:
             lambda: (self.control.trial_force, np.ptp(self.layout.gather(x.trial)[[0, -1], 2])),
         )
         if not outcome.converged:
-            raise SolveError(f"no equilibrium at the first touch: {outcome.reason}")
+            log.warning("the initial rate is not known: no equilibrium at the first touch (%s)", outcome.reason)
+            return math.nan
         return float(force / (before - after))
 
     def imbalance(self) -> tuple[float, float]:

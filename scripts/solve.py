@@ -167,6 +167,8 @@ def _conclude(console, summary, out, analysed):
     table.add_row("residual shear stress, coil's inside", number(summary["residual_shear_inside_MPa"], "MPa", 2))
     table.add_row("results in", f"{out}{os.sep}")
     console.print(table)
+    for warning in summary["warnings"]:
+        console.print(f"[yellow]warning:[/] {warning}")
     if summary["buckled"]:
         standard = summary["buckling_travel_EN_13906_1_mm"]
         beside = "never" if standard is None else f"at {standard:.4g} mm"

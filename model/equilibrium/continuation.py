@@ -87,13 +87,32 @@ class Continuation:
         self.penetration_limit, self.starts = penetration_limit, starts or self.from_last_step
         self.stability, self.negative_pivots = stability, 0
         self.position, self.number, self._attempts = Position(), 0, 0
+        self._spent: list[Outcome] = []  # all solves of the step in progress
         self._unstable = 0.0  # size of the step in progress at which it ended unstable
 
     # ---- one solve -------------------------------------------------------------------------------------------------
 
     def attempt(self, load: Load, starts: Iterable[Start] = (Start(),)) -> Outcome:
         """Solve a step; its state is the last equilibrium, or all is as it was before; collective."""
+        self._spent.clear()
+        return self._charged(self._attempt(load, starts))
+
+    def _attempt(self, load: Load, starts: Iterable[Start]) -> Outcome:
         return self._conclude(self._stable(self._solve(load, starts), load))
+
+    def _newton(self, load: Load, start: Start) -> Outcome:
+        self._spent.append(self.newton.solve(load, start))
+        return self._spent[-1]
+
+    def _charged(self, outcome: Outcome) -> Outcome:
+        """The outcome of a step, with the cost of all solves since it was begun."""
+        spent = self._spent
+        return replace(
+            outcome,
+            factorisations=sum(solve.factorisations for solve in spent),
+            evaluations=sum(solve.evaluations for solve in spent),
+            failed_solves=len(spent) - 1 + sum(solve.failed_solves for solve in spent),
+        )
 
     def _conclude(self, outcome: Outcome) -> Outcome:
         if outcome.converged:
@@ -115,8 +134,8 @@ class Continuation:
         for start in starts:
             if outcome is not None:
                 log.info("step %d: no equilibrium from the last step's direction (%s)", self.number + 1, outcome.reason)
-            outcome = self.newton.solve(load, start)
-            if outcome.converged:
+            outcome = self._newton(load, start)
+            if outcome.converged or outcome.stagnated:  # what stagnates does so from elsewhere too: shorten the step
                 break
         assert outcome is not None
         return self._judged(outcome)
@@ -161,7 +180,7 @@ class Continuation:
             for sign in (1.0, -1.0):
                 start = there.copy()
                 start.axpy(sign * amplitude, mode)
-                outcome = self._stable(self._judged(self.newton.solve(load, Start(start))), load)
+                outcome = self._stable(self._judged(self._newton(load, Start(start))), load)
                 if outcome.converged:
                     log.info("step %d: the unstable path is left by %.3g mm", self.number + 1, sign * amplitude)
                     return self._conclude(replace(outcome, left_branch=True))
@@ -196,12 +215,13 @@ class Continuation:
         """Take one step along a path, cut as often as need be; collective.
 
         Returns:
-            The step's Outcome, and how often it was cut.
+            The step's Outcome, with the cost of what failed before, and how often it was cut.
 
         Raises:
             SolveError: if it failed down to the smallest size, or the walk stalls; the state is that of the last
                 converged step.
         """
+        self._spent.clear()
         while True:
             self._attempts += 1
             if self._attempts > self.control.attempts * path.regular + self.control.spare_attempts:
@@ -212,7 +232,7 @@ class Continuation:
             if not path.automatic:
                 size = min(size, int(position.done + 1e-9) + 1 - position.done)
             load = path.load(position.done + size)
-            outcome = self.attempt(load, self.starts(load, size))
+            outcome = self._attempt(load, self.starts(load, size))
             if outcome.negative_pivots > self.negative_pivots:
                 self._unstable = size
             if not outcome.converged and self._unstable and self._is_cut_enough(size):
@@ -221,7 +241,7 @@ class Continuation:
             if outcome.converged:
                 self.number, self._unstable = self.number + 1, 0.0
                 self.position = Position(position.done + size, self._following(path, outcome, size), 0, size)
-                return outcome, position.cuts
+                return self._charged(outcome), position.cuts
             self._cut(path, outcome, size)
 
     def _cut(self, path: Path, outcome: Outcome, size: float) -> None:

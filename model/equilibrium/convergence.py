@@ -26,7 +26,7 @@ WORDS = {
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a step ended.
+    """How a step ended, and what it cost.
 
     Attributes:
         converged: is it in equilibrium?
@@ -34,10 +34,13 @@ class Outcome:
         ratio: left side of (6.3.1).
         iterations: new states; a first one that only meets the prescribed increments counts too.
         factorisations: tangents set up and factorised.
-        evaluations: residuals evaluated.
+        evaluations: states evaluated, each with the law at every point; those of line searches among them.
         linear_iterations: inside of iterative linear solvers.
         negative_pivots: negative eigenvalues of the tangent where they were counted; the state is unstable if there
         are. left_branch: was an unstable path left for a stable one on the way to this state?
+        failed_solves: solves that did not lead to it, before this one: other starts, parts of the step, and the whole
+            steps that were cut. Their factorisations and evaluations are counted above, their iterations are not.
+        stagnated: did it end because the out-of-balance forces no longer fell?
     """
 
     converged: bool
@@ -49,10 +52,12 @@ class Outcome:
     linear_iterations: int = 0
     negative_pivots: int = 0
     left_branch: bool = False
+    failed_solves: int = 0
+    stagnated: bool = False
 
     def __add__(self, following: "Outcome") -> "Outcome":
         """The outcome of two solves, one after the other."""
-        counts = ("iterations", "factorisations", "evaluations", "linear_iterations")
+        counts = ("iterations", "factorisations", "evaluations", "linear_iterations", "failed_solves")
         return replace(following, **{name: getattr(self, name) + getattr(following, name) for name in counts})
 
 

@@ -1,8 +1,8 @@
 """One step to equilibrium: SNES, with the thesis's test (6.3.1), augmentation of contacts, and parts of a step.
 
-This is the one place that knows the load factor. A step that contacts or a failure stop on its way is balanced roughly
-at the part of its load that it has reached, and goes on from there. The law is integrated over the whole step in any
-case: parts change how a state is found, not the state.
+This is the one place that knows the load factor. A step that contacts stop on its way is balanced roughly at the part
+of its load that it has reached, and goes on from there. The law is integrated over the whole step in any case: parts
+change how a state is found, not the state.
 """
 
 import logging
@@ -76,7 +76,8 @@ class Newton:
         self.F, self._balance, self._arc_load = (system.layout.vector() for _ in range(3))
         self.matrix = TangentMatrix(system.body, system.layout)
         self.load, self.load_factor = Load.of(system.layout, {}, {}), 1.0
-        self.ratio, self._evaluations, self._factorisations, self._at_step_start = np.inf, 0, 0, True
+        self.ratio, self._factorisations, self._at_step_start = np.inf, 0, True
+        self._failed = 0
         me = weakref.proxy(self)
         self._factory = SnesFactory(
             system.comm, lambda *args: me._residual(*args), lambda *args: me._tangent(*args), self.F, self.matrix.mat
@@ -131,7 +132,7 @@ class Newton:
 
     def _solve(self, guess: PETSc.Vec | None) -> Outcome:
         system, method, X, first = self.system, self.method, self.system.increments, 0
-        self.ratio, self._evaluations, self._factorisations = np.inf, 0, 0
+        self.ratio, self._factorisations, self._failed, evaluations = np.inf, 0, 0, system.evaluations
         self.load_factor, self._at_step_start = 1.0, True
         if guess is None or method.is_arc_length:
             X.set(0.0)
@@ -153,8 +154,10 @@ class Newton:
         iterations, linear = self._in_parts() if method.searches else self._once()
         reason = self.snes.getConvergedReason()
         system.evaluate(X)
-        return Outcome(reason > 0, reason_in_words(reason), self.ratio, first + iterations, self._factorisations,
-                       self._evaluations, linear)  # fmt: skip
+        return Outcome(
+            reason > 0, reason_in_words(reason), self.ratio, first + iterations, self._factorisations,
+            system.evaluations - evaluations, linear, self._failed, reason == Reason.DIVERGED_LOCAL_MIN,
+        )  # fmt: skip
 
     def _once(self) -> tuple[int, int]:
         """Numbers of iterations, and of linear ones in them."""
@@ -162,7 +165,10 @@ class Newton:
         return self.snes.getIterationNumber(), self.snes.getLinearSolveIterations()
 
     def _in_parts(self) -> tuple[int, int]:
-        """Solve the step whole, or balance it roughly on the way where contacts or a failure stop it; as `_once`."""
+        """Solve the step whole, or balance it roughly on the way where contacts stop it; as `_once`.
+
+        Where nothing touches, a part would fail just as the whole: the step is to be cut.
+        """
         X, good, reached, counts = self.system.increments, self.system.increments.duplicate(), 0.0, np.zeros(2, int)
         good.set(0.0)
         while True:
@@ -174,8 +180,9 @@ class Newton:
                 reached, self.load_factor = self.load_factor, 1.0
             else:
                 part = 0.5 * (self.load_factor - reached)
-                if part < self.control.smallest_part:
+                if part < self.control.smallest_part or not self.system.touches:
                     return int(counts[0]), int(counts[1])
+                self._failed += 1
                 good.copy(X)
                 self.load_factor = reached + part
                 log.info("no equilibrium of the whole step yet: first %.3g of it", self.load_factor)
@@ -195,7 +202,6 @@ class Newton:
     # ---- callbacks of SNES -----------------------------------------------------------------------------------------
 
     def _residual(self, snes: PETSc.SNES, X: PETSc.Vec, F: PETSc.Vec) -> None:
-        self._evaluations += 1
         self.system.residual(X, self.load, self.load_factor, F)
         if snes.getType() == ARC_LENGTH:  # SNES takes its share of the load off: F(x) − λ load
             F.axpy(1.0, self._arc_load)

@@ -46,6 +46,7 @@ class System:
         increments: PETSc's vector of the increments on trial, that of the state.
         internal: internal forces at the last evaluation, without constraints and loads, that of the state.
         last: Evaluation.
+        evaluations: number of states that were evaluated so far.
     """
 
     def __init__(
@@ -62,7 +63,7 @@ class System:
         self._reactions = self.state.add("reactions", np.zeros(layout.size_local), Where.UNKNOWN)
         self.internal = layout.vector(self._reactions.trial)
         self._local = la.vector(layout.index_map, layout.block_size)
-        self.last = Evaluation(np.full(layout.size_local, np.nan), True, [])
+        self.last, self.evaluations = Evaluation(np.full(layout.size_local, np.nan), True, []), 0
 
     # ---- evaluation ------------------------------------------------------------------------------------------------
 
@@ -87,6 +88,7 @@ class System:
         return self.last.has_stress
 
     def _evaluate_trial(self, values: np.ndarray) -> None:
+        self.evaluations += 1
         has_stress = self.body.update()
         if self.comm.size > 1:
             has_stress = self.comm.allreduce(int(has_stress)) == self.comm.size
@@ -130,6 +132,11 @@ class System:
         parts = zip(self.contacts, self.last.contributions, strict=False)
         found = (part.penetration.max(initial=0.0) for contact, part in parts if isinstance(contact, LimitsStep))
         return max(found, default=0.0)
+
+    @property
+    def touches(self) -> bool:
+        """Does any contact bear at the last evaluation? Every rank knows all of them."""
+        return any(part.closed > 0 for part in self.last.contributions)
 
     # ---- transactions ----------------------------------------------------------------------------------------------
 

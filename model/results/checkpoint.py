@@ -66,6 +66,7 @@ class Checkpoint:
             "case": self.case,
             "position": asdict(position),
             "rate": result.rate,
+            "warnings": result.warnings,
             "steps": [asdict(step) for step in result.steps],
             "seats": [one.row() for one in result.seats],
             "snapshots": len(result.snapshots),
@@ -129,6 +130,7 @@ class Checkpoint:
             tuple(SeatReactions.from_row(*pair) for pair in zip(about["seats"], parts, strict=False)),
             tuple(self._snapshot(number, rank) for number in range(about["snapshots"])),
             about["rate"],
+            warnings=tuple(about["warnings"]),
         )
 
     def _snapshot(self, number: int, rank: int) -> Snapshot:

@@ -35,8 +35,8 @@ def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapp
             force = [force[-1]] + [step.force_N for step in steps]
             axes.plot(travel, force, "o-", ms=3, lw=1.3, label=f"to {phase}")
         greatest = max(abs(summary["force_max_N"]), 1e-300)
-        reach = greatest / summary["rate_N_per_mm"]
-        axes.plot([0, reach], [0, greatest], "k:", lw=0.9, label=f"initial rate {summary['rate_N_per_mm']:.4g} N/mm")
+        if (rate := summary["rate_N_per_mm"]) is not None:
+            axes.plot([0, greatest / rate], [0, greatest], "k:", lw=0.9, label=f"initial rate {rate:.4g} N/mm")
         block = summary["free_length_before_mm"] - summary["block_height_mm"]
         axes.axvline(block, color="0.6", lw=0.8, ls="--", label=f"block, {summary['block_height_mm']:.4g} mm high")
         if summary["set_mm"] is not None:

@@ -17,6 +17,9 @@ from coilset.model.section.rules import DiskRule
 class Step:
     """One converged step.
 
+    Its `iterations` are those of the solve that found it; its `evaluations` of states, and `failed_solves`, count what
+    failed before it too, see coilset.model.equilibrium.convergence.Outcome.
+
     Attributes:
         negative_pivots: negative eigenvalues of the tangent; the state is unstable if there are any.
         left_branch: 1 if an unstable path was left for a stable one on the way to it, else 0.
@@ -31,6 +34,8 @@ class Step:
     travel_mm: float
     force_N: float
     iterations: int
+    evaluations: int
+    failed_solves: int
     cuts: int
     contacts: int
     penetration_mm: float
@@ -217,7 +222,8 @@ class Result:
     Attributes:
         steps: converged Steps, seats: SeatReactions after each of them.
         snapshots: Snapshots at the start and after each phase.
-        rate: initial rate, N/mm.
+        rate: initial rate, N/mm; NaN where no equilibrium was found for it.
+        warnings: what the run has to say about itself, in words.
     """
 
     steps: tuple[Step, ...] = ()
@@ -225,6 +231,7 @@ class Result:
     snapshots: tuple[Snapshot, ...] = field(default=(), repr=False)
     rate: float = float("nan")
     complete: bool = False
+    warnings: tuple[str, ...] = ()
 
     @property
     def greatest_force(self) -> float:

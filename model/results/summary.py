@@ -29,7 +29,7 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         "free_length_before_mm": before,
         "free_length_after_mm": after,
         "set_mm": None if after is None else before - after,
-        "rate_N_per_mm": result.rate,
+        "rate_N_per_mm": result.rate if isfinite(result.rate) else None,
         "force_max_N": greatest,
         "block_height_mm": setup.spring.block_height,
         "residual_shear_max_MPa": float(last.shear.max()) if released else None,
@@ -40,6 +40,8 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         **peaks(setup, "", result.snapshots),
         "steps": len(result.steps),
         "iterations": sum(step.iterations for step in result.steps),
+        "evaluations": sum(step.evaluations for step in result.steps),
+        "failed_solves": sum(step.failed_solves for step in result.steps),
         "material": setup.material,
         "ends": setup.ends,
         "unstable_steps": sum(step.negative_pivots > 0 for step in result.steps),
@@ -50,6 +52,7 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         "elements": len(setup.turns) - 1,
         "section_kind": setup.section_kind,
         "section_rule": setup.rule.name,
+        "warnings": list(result.warnings),
     }
 
 

@@ -17,7 +17,8 @@ RESPONSES = (
     "shear_surface_max_MPa", "shear_surface_max_turn", "shear_surface_max_angle_deg", "equivalent_surface_max_MPa",
     "equivalent_surface_max_turn", "equivalent_surface_max_angle_deg", "residual_shear_surface_max_MPa",
     "residual_shear_surface_max_turn", "residual_shear_surface_max_angle_deg", "residual_equivalent_surface_max_MPa",
-    "residual_equivalent_surface_max_turn", "residual_equivalent_surface_max_angle_deg", "steps", "iterations", "unstable_steps", "buckled",
+    "residual_equivalent_surface_max_turn", "residual_equivalent_surface_max_angle_deg", "steps", "iterations",
+    "evaluations", "failed_solves", "unstable_steps", "buckled",
     "buckling_travel_mm", "buckling_force_N", "buckling_travel_EN_13906_1_mm", "elements", "seconds",
 )  # fmt: skip
 

@@ -9,6 +9,9 @@ from mpi4py import MPI
 from coilset.meshes.errors import SolveError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
+from coilset.model.equilibrium.convergence import Outcome
+from coilset.model.equilibrium.newton import Start
+from coilset.model.results.summary import summarise
 
 COARSE = ["mesh.elements_per_turn=10", "mesh.section.rule=abramowitz9"]
 
@@ -66,3 +69,74 @@ def test_an_impossible_target_is_given_up_with_all_that_was_reached(make, progra
     assert not result.complete
     assert result.snapshots[-1].height == result.steps[-1].seat_height_mm > 5.0
     assert analysis.system.max_penetration <= 0.1  # 0.02 wire diameters
+
+
+def listened(analysis):
+    """The list that the outcomes of all solves of an analysis go to, in their order."""
+    outcomes, solve = [], analysis.newton.solve
+
+    def keep(load, start=None):
+        outcomes.append(solve(load, start))
+        return outcomes[-1]
+
+    analysis.newton.solve = keep
+    return outcomes
+
+
+def test_steps_count_what_failed_before_them(make):
+    """All evaluations of all solves but the initial rate's are in the steps, and each failure is counted once."""
+    analysis = make("[{to: block, steps: 2}]", "solver.options.snes_max_it=5")
+    analysis.initial_rate()
+    solved = listened(analysis)
+    before = analysis.system.evaluations
+    result = analysis.run()
+    of_steps = solved[1:]  # after the run's own initial rate
+    failed = [outcome for outcome in of_steps if not outcome.converged]
+    assert len(failed) >= sum(step.cuts for step in result.steps) > 0
+    parts = sum(outcome.failed_solves for outcome in of_steps)
+    assert sum(step.failed_solves for step in result.steps) == len(failed) + parts
+    evaluations = sum(step.evaluations for step in result.steps)
+    assert evaluations == sum(outcome.evaluations for outcome in of_steps)
+    assert evaluations < analysis.system.evaluations - before  # going back to an equilibrium is one too
+    converged = [outcome for outcome in of_steps if outcome.converged]
+    assert [step.iterations for step in result.steps] == [outcome.iterations for outcome in converged]
+    assert summarise(analysis.setup, result)["evaluations"] == evaluations
+
+
+def test_a_step_is_solved_in_parts_only_where_contact_stops_it(make):
+    """Two iterations are too few to block; no part is tried without contacts, some are where coils close."""
+    few = "solver.options.snes_max_it=2"
+    for ends, travel, parts in (("clamped", 12.0, False), ("seats", 17.5, True)):
+        analysis = make("[{to: block, steps: 1}]", few, f"ends={ends}")
+        if not parts:
+            analysis.system.contacts.clear()
+            analysis.newton.limit.limiting.clear()
+        outcome = analysis.continuation.attempt(analysis.control.to_height(analysis.control.height - travel))
+        assert not outcome.converged
+        assert (outcome.failed_solves > 0) == parts, ends
+
+
+@pytest.mark.parametrize(("stagnated", "solves"), [(True, 1), (False, 2)])
+def test_a_stagnated_solve_is_not_repeated_from_elsewhere(make, stagnated, solves):
+    """A residual that no longer falls asks for a shorter step; other failures may be owed to the start."""
+    analysis, asked = make("[{to: block, steps: 1}]"), []
+
+    def fail(load, start):
+        asked.append(start)
+        return Outcome(False, "of the test", 1.0, evaluations=7, stagnated=stagnated)
+
+    analysis.newton.solve = fail
+    outcome = analysis.continuation.attempt(analysis.control.to_height(20.0), [Start(), Start()])
+    assert len(asked) == solves
+    assert (outcome.failed_solves, outcome.evaluations) == (solves - 1, 7 * solves)
+
+
+def test_an_initial_rate_without_equilibrium_is_no_end(make):
+    """Measured at nine tenths of the free length, where the wires lie in each other: a warning, and the run goes on."""
+    analysis = make("[{to: {travel: 2}, steps: 1}]", "solver.control.steps.probe=0.9")
+    result = analysis.run()
+    assert result.complete
+    assert np.isnan(result.rate)
+    assert len(result.warnings) == 1
+    assert "initial rate" in result.warnings[0]
+    assert summarise(analysis.setup, result)["rate_N_per_mm"] is None
