@@ -108,13 +108,15 @@ class RodForms:
         V: space of rod_element.
         xi, E, T, P, W, s, D: abscissa, triad, chart tangents, rates of the turns, axial spin of the triad, section
             strains, section resultants, section tangent.
+        foreseen: section resultants that the frame stiffness is built with, see coilset.model.rod.prediction.
     """
 
-    def __init__(self, mesh, V, xi, share, E, T, P, W, e, s, D):
+    def __init__(self, mesh, V, xi, share, E, T, P, W, e, s, foreseen, D):
         self.test = increment(mesh, ufl.TestFunction(V), xi, T)
         self.trial = increment(mesh, ufl.TrialFunction(V), xi, T)
         J = ufl.Jacobian(mesh)[:, 0]
         self.xi, self.share, self.E, self.P, self.e, self.s, self.D = xi, share, E, P, e, s, D
+        self.foreseen = foreseen
         self.l = sqrt(dot(J, J))
         self.stretch = dot(E[:, 0], self.trial.d) / self.l
         self.spin = axial_spin(self.trial, W)
@@ -140,8 +142,8 @@ class RodForms:
     def frame_stiffness(self):
         """Change of the internal forces as the element's triad turns and its chord changes length under the forces.
 
-        With K_l it is the derivative of the residual, but for the charts' curvature, which goes with the out-of-balance
-        moments.
+        With K_l it is the derivative of the residual where the foreseen resultants are the true ones, but for the
+        charts' curvature, which goes with the out-of-balance moments.
         """
         e1 = self.E[:, 0]
         turned = spun(self.test, cross(e1, self.trial.d) / self.l + self.spin * e1)
@@ -149,5 +151,6 @@ class RodForms:
         test, nothing = self.test, 0 * self.test.d
         still = self.strains(Increment(nothing, test.turn1, test.turn2, test.shear))
         moved = self.strains(Increment(test.d, nothing, nothing, 0 * test.shear))
-        lengthened = sum(self.s[k] * still[k] for k in (1, 2)) - sum(self.s[k] * moved[k] for k in (4, 5))
-        return (inner(self.s, self.strains(turned)) + self.stretch * lengthened) * self.dx
+        s = self.foreseen
+        lengthened = sum(s[k] * still[k] for k in (1, 2)) - sum(s[k] * moved[k] for k in (4, 5))
+        return (inner(s, self.strains(turned)) + self.stretch * lengthened) * self.dx
