@@ -94,3 +94,18 @@ class Foresees(Protocol):
         They are as in Body, but without what strains of second order in the correction add.
         """
         ...
+
+
+@runtime_checkable
+class HasRotations(Protocol):
+    """A body with rotations among its unknowns.
+
+    Attributes:
+        rotation_dofs: local numbers of the nodes' rotations, shape (nodes, 3); ghosts come after all owned unknowns.
+    """
+
+    rotation_dofs: np.ndarray
+
+    def to_charts(self, values: np.ndarray) -> None:
+        """Make of moments of the fixed frame, at the owned rotations of `values`, those of the trial state's charts."""
+        ...

@@ -7,7 +7,7 @@ import numpy as np
 from dolfinx import la
 from petsc4py import PETSc
 
-from coilset.model.body import Body, Foresees
+from coilset.model.body import Body, Foresees, HasRotations
 from coilset.model.contact.base import Augmented, Contact, Contribution, HasMemory, LimitsStep, TrialPositions
 from coilset.model.equilibrium.layout import Layout, LineLayout
 from coilset.model.equilibrium.load import Load
@@ -63,6 +63,9 @@ class System:
         self._reactions = self.state.add("reactions", np.zeros(layout.size_local), Where.UNKNOWN)
         self.internal = layout.vector(self._reactions.trial)
         self._local = la.vector(layout.index_map, layout.block_size)
+        self._is_rotation = np.zeros(layout.size_local, dtype=bool)
+        if isinstance(body, HasRotations):
+            self._is_rotation[body.rotation_dofs[body.rotation_dofs < layout.owned]] = True
         self.last, self.evaluations = Evaluation(np.full(layout.size_local, np.nan), True, []), 0
 
     # ---- evaluation ------------------------------------------------------------------------------------------------
@@ -173,6 +176,7 @@ class System:
     def residual(self, increments: PETSc.Vec, load: Load, load_factor: float, F: PETSc.Vec) -> None:
         """Internal minus external forces into F; increment minus prescribed increment where it is held; collective.
 
+        Moments on nodes are those of the fixed frame, m: their charts ψ get Tᵀ m, as δω = T δψ does the work m · δω.
         Where there is no stress F is infinite: PETSc's line searches go back, and the step is cut.
         """
         if not self.evaluate(increments):
@@ -184,7 +188,13 @@ class System:
         self.internal.copy(F)
         target, force = load.at(load_factor, self._reactions.equilibrium)
         values, x = F.getArray(), self.last.increments
-        values[load.loaded] -= force
+        if self._is_rotation[load.loaded].any():
+            outer = np.zeros(len(values))
+            outer[load.loaded] = force
+            self.body.to_charts(outer)
+            values -= outer
+        else:
+            values[load.loaded] -= force
         values[load.held] = self.body.constraint_weight * (x[load.held] - target)
 
     def predict(self, correction: PETSc.Vec) -> None:

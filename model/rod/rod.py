@@ -221,6 +221,12 @@ class Rod:
         """Add ∫ ¹σ : δΔE_l of the owned cells; see Body."""
         fem.assemble_vector(vector, self._residual)
 
+    def to_charts(self, values: np.ndarray) -> None:
+        """Tᵀ m for the moments at the owned nodes; see HasRotations."""
+        mine = (self.rotation_dofs < self.V.dofmap.index_map.size_local).all(axis=1)
+        dofs = self.rotation_dofs[mine]
+        values[dofs] = np.einsum("nji,nj->ni", self.chart[mine], values[dofs])
+
     def create_matrix(self, rows: int) -> PETSc.Mat:
         """A matrix of the rod's unknowns and the seats'; see Body."""
         index_map, comm = self.V.dofmap.index_map, self.mesh.comm
