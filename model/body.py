@@ -1,6 +1,6 @@
 """What equilibrium asks of a body: stresses for an increment, internal forces, a tangent."""
 
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from dolfinx import fem
@@ -64,4 +64,51 @@ class Body(Protocol):
         Args:
             increments: this rank's part of the system's increments.
         """
+        ...
+
+
+@runtime_checkable
+class Foresees(Protocol):
+    """A body of which a Newton correction foresees inner forces better than the state tells in which it ends.
+
+    Attributes:
+        correction: the correction, mm and rad, a function of the body's space; ghosts are up to date at `predict`.
+        axial_force: size of the forces that finite turns feign after a correction, N.
+    """
+
+    correction: fem.Function
+    axial_force: float
+
+    def predict(self) -> None:
+        """Foresee the forces after `correction`, from the trial state."""
+        ...
+
+    def foresee(self, length: float) -> None:
+        """Build the tangents with the forces foreseen after `length` of the correction, until `forget` or `update`."""
+        ...
+
+    def forget(self) -> None:
+        """Build the tangents with the forces of the trial state."""
+        ...
+
+    def forces_without_turning(self, vector: np.ndarray, length: float) -> None:
+        """Add the internal forces at the trial state, which lies `length` of the correction away.
+
+        They are as in Body, but without what strains of second order in the correction add.
+        """
+        ...
+
+
+@runtime_checkable
+class HasRotations(Protocol):
+    """A body with rotations among its unknowns.
+
+    Attributes:
+        rotation_dofs: local numbers of the nodes' rotations, shape (nodes, 3); ghosts come after all owned unknowns.
+    """
+
+    rotation_dofs: np.ndarray
+
+    def to_charts(self, values: np.ndarray) -> None:
+        """Make of moments of the fixed frame, at the owned rotations of `values`, those of the trial state's charts."""
         ...

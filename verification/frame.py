@@ -16,6 +16,7 @@ from coilset.model.equilibrium.system import System
 from coilset.model.rod.rod import Rod
 
 FREE_PENETRATION = 0.02  # wire diameters that a correction may press, as for springs
+FAR = 0.5  # rad
 KEEP = {"snes_lag_jacobian": 1_000_000}  # the matrix is kept over the whole step, as in the thesis (4.4.5)
 
 
@@ -61,16 +62,25 @@ class Frame:
         Args:
             moves: dof → displacement added in this step, mm or rad.
             forces: dof → force at the end of the step, N or N mm.
-            share: this step's size over the last one's, to start from the last step's increments; None: from rest.
+            share: this step's size over the last one's, to start from the last step's increments; None: from rest, as
+                after steps that have turned a node far.
 
         Returns:
             Outcome; where it has not converged, the frame is back at the last equilibrium.
         """
         self.load = load = Load.of(self.layout, self.held | (moves or {}), forces or {})
-        start = Start() if share is None or not self._stepped else self.continuation.scaled_last(share)
+        from_rest = share is None or not self._stepped or self._has_turned_far()
+        start = Start() if from_rest else self.continuation.scaled_last(share)
         outcome = self.continuation.attempt(load, [start])
         self._stepped = self._stepped or outcome.converged
         return outcome
+
+    def _has_turned_far(self) -> bool:
+        """Did a node turn by more than FAR in the last step? Its increments then point elsewhere than the next ones."""
+        increments = self.layout.to_order(self.system.state["increments"].equilibrium)
+        nodes = len(self.layout.station_dofs)
+        turns = increments[: 6 * nodes].reshape(nodes, 6)[:, 3:]
+        return bool(np.linalg.norm(turns, axis=1).max() > FAR)
 
     def moved(self, node):
         """Displacement of a node since the start, mm."""

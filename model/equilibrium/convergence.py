@@ -115,9 +115,9 @@ class EquilibriumTest:
         self._first = self._least = np.inf
         self._least_at = 0
 
-    def begin(self, norm: float) -> None:
-        """Begin a solve with the residual's norm at its start."""
-        self._first, self._least, self._least_at = norm, norm, 0
+    def begin(self, norm: float, feigned: float = 0.0) -> None:
+        """Begin a solve with the residual's norm at its start, and the size of forces that corrections may feign."""
+        self._first, self._least, self._least_at = max(norm, feigned), norm, 0
 
     def is_met(self, found: Imbalance, tolerance: float, rounding: float) -> bool:
         """Is it an equilibrium to ε = `tolerance`, or to `rounding`, N?"""

@@ -42,10 +42,11 @@ class WorkSearch:
         system: System; it is evaluated at the places that are tried.
         limit: ContactLimit.
         control: NewtonControl.
+        foresees: has the body predicted its forces for the correction (Foresees)?
     """
 
-    def __init__(self, system: System, limit: ContactLimit, control: NewtonControl) -> None:
-        self.system, self.limit, self.control = system, limit, control
+    def __init__(self, system: System, limit: ContactLimit, control: NewtonControl, foresees: bool = False) -> None:
+        self.system, self.limit, self.control, self.foresees = system, limit, control, foresees
         self._direction, self._free, self._trial, self._force = (system.layout.vector() for _ in range(4))
 
     def __call__(self, x: PETSc.Vec, y: PETSc.Vec, F: PETSc.Vec, load: Load, load_factor: float) -> StepLength:
@@ -66,10 +67,27 @@ class WorkSearch:
             work, norm = self._at(length)
         if work is not None and not pending:
             start_work, start_norm = F.dot(self._free), self._free_norm(F)
-            if not (norm < start_norm or abs(work) <= control.accepted_work * abs(start_work)):
+            start = start_work, start_norm
+            if not self._is_right(start, work, norm) and not self._is_right(
+                start, *self._without_turning(limit, length)
+            ):
                 crosses_zero = start_work > 0.0 > work
                 length = self._zero(start_work, length, work) if crosses_zero else self._back(start_norm, length, norm)
         return StepLength(limit, length, pending and limit * length < 1.0)
+
+    def _is_right(self, start: tuple[float, float], work: float, norm: float) -> bool:
+        """Have norm or work of the forces fallen?"""
+        return norm < start[1] or abs(work) <= self.control.accepted_work * abs(start[0])
+
+    def _without_turning(self, limit: float, length: float) -> tuple[float, float]:
+        """Work and norm at the last evaluation, `length` along, without the forces that finite turns feign.
+
+        In a slender rod these grow over a correction that is right nevertheless; the next one takes them off.
+        """
+        if not self.foresees:
+            return np.inf, np.inf
+        self.system.residual_without_turning(self._load, self._load_factor, limit * length, self._force)
+        return self._force.dot(self._free), self._free_norm(self._force)
 
     def _at(self, length: float) -> tuple[float | None, float]:
         """Work and norm of the forces on the free unknowns after `length`; None where the law finds no stress."""

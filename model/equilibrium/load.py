@@ -18,7 +18,7 @@ class Load:
         held: places in this rank's part of a vector whose increments are prescribed, shape (h,).
         increments: shape (h,), mm and rad.
         loaded: places that bear an external force, shape (f,).
-        forces: at the end of the step, shape (f,), N and N mm.
+        forces: at the end of the step, shape (f,), N and N mm; moments are of the fixed frame.
     """
 
     layout: Layout

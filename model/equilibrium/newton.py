@@ -15,6 +15,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from coilset.meshes.compat import NOT_A_NUMBER
+from coilset.model.body import Foresees
 from coilset.model.equilibrium.contact_limit import ContactLimit
 from coilset.model.equilibrium.control import NewtonControl
 from coilset.model.equilibrium.convergence import EquilibriumTest, Outcome, Reason, imbalance, reason_in_words
@@ -54,6 +55,7 @@ class Newton:
         InputError: if PETSc refuses an option.
 
     Attributes:
+        foresees: are tangents built with the forces that the last correction foresees?
         snes: PETSc's solver.
         matrix: TangentMatrix.
     """
@@ -71,13 +73,16 @@ class Newton:
         self.system, self.control = system, control or NewtonControl()
         self.augmentation_tolerance, self.prepare = augmentation_tolerance, prepare
         self.limit = limit or ContactLimit(system, self.control, np.inf)
+        wanted = self.control.foreseen_forces
+        self.foresees = isinstance(system.body, Foresees) and (not system.contacts if wanted is None else wanted)
         self.test = EquilibriumTest(tolerance, self.control.stagnation)
-        self.search = WorkSearch(system, self.limit, self.control)
+        self.search = WorkSearch(system, self.limit, self.control, self.foresees)
         self.F, self._balance, self._arc_load = (system.layout.vector() for _ in range(3))
         self.matrix = TangentMatrix(system.body, system.layout)
         self.load, self.load_factor = Load.of(system.layout, {}, {}), 1.0
         self.ratio, self._factorisations, self._at_step_start = np.inf, 0, True
         self._failed = 0
+        self._corrected: float | None = None  # share of the last correction, where it led to the present state
         me = weakref.proxy(self)
         self._factory = SnesFactory(
             system.comm, lambda *args: me._residual(*args), lambda *args: me._tangent(*args), self.F, self.matrix.mat
@@ -161,6 +166,7 @@ class Newton:
 
     def _once(self) -> tuple[int, int]:
         """Numbers of iterations, and of linear ones in them."""
+        self._corrected = None
         self.snes.solve(self._arc_load if self.method.is_arc_length else None, self.system.increments)
         return self.snes.getIterationNumber(), self.snes.getLinearSolveIterations()
 
@@ -209,8 +215,8 @@ class Newton:
     def _tangent(self, snes: PETSc.SNES, X: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
         self._factorisations += 1
         version = self.matrix.version
-        self.system.tangent(X, self.load, self.matrix, self._at_step_start)
-        self._at_step_start = False
+        self.system.tangent(X, self.load, self.matrix, self._at_step_start, self._corrected)
+        self._at_step_start, self._corrected = False, None
         if self.prepare is not None:
             self.prepare(P)
         if self.matrix.version != version:  # PETSc may take the new matrix for one with the old pattern
@@ -220,7 +226,11 @@ class Newton:
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Before a line search of type `basic`: scale the correction −y."""
+        if self.foresees:
+            self.system.evaluate(x)
+            self.system.predict(y)
         step = self.search(x, y, self.F, self.load, self.load_factor)
+        self._corrected = step.contact_limit * step.value if self.foresees else None
         for factor in (step.contact_limit, step.value):
             if factor != 1.0:
                 y.scale(factor)
@@ -233,7 +243,7 @@ class Newton:
         """SNES's convergence test."""
         norm, X = norms[2], self.system.increments
         if iteration == 0:
-            self.test.begin(norm)
+            self.test.begin(norm, self.system.body.axial_force if self.foresees else 0.0)
         if not np.isfinite(norm):
             return NOT_A_NUMBER
         if self.method.is_arc_length:

@@ -1,13 +1,13 @@
 """Residual and tangent of a body and what touches it, as functions of one vector of increments."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from dolfinx import la
 from petsc4py import PETSc
 
-from coilset.model.body import Body
+from coilset.model.body import Body, Foresees, HasRotations
 from coilset.model.contact.base import Augmented, Contact, Contribution, HasMemory, LimitsStep, TrialPositions
 from coilset.model.equilibrium.layout import Layout, LineLayout
 from coilset.model.equilibrium.load import Load
@@ -63,6 +63,9 @@ class System:
         self._reactions = self.state.add("reactions", np.zeros(layout.size_local), Where.UNKNOWN)
         self.internal = layout.vector(self._reactions.trial)
         self._local = la.vector(layout.index_map, layout.block_size)
+        self._is_rotation = np.zeros(layout.size_local, dtype=bool)
+        if isinstance(body, HasRotations):
+            self._is_rotation[body.rotation_dofs[body.rotation_dofs < layout.owned]] = True
         self.last, self.evaluations = Evaluation(np.full(layout.size_local, np.nan), True, []), 0
 
     # ---- evaluation ------------------------------------------------------------------------------------------------
@@ -104,10 +107,11 @@ class System:
         trial = TrialPositions(layout.gather(self.state["x"].trial), self.seats, rotations)
         return [contact.evaluate(trial) for contact in self.contacts]
 
-    def _assemble_internal(self) -> None:
+    def _assemble_internal(self, add_forces: Callable[[np.ndarray], None] | None = None) -> None:
+        """Into `internal`; `add_forces` in place of the body's own `internal_forces`."""
         local, owned = self._local, self.layout.owned
         local.array[:] = 0.0
-        self.body.internal_forces(local.array)
+        (add_forces or self.body.internal_forces)(local.array)
         local.scatter_reverse(la.InsertMode.add)
         with self.internal as values:
             values[:owned] = local.array[:owned]
@@ -172,25 +176,68 @@ class System:
     def residual(self, increments: PETSc.Vec, load: Load, load_factor: float, F: PETSc.Vec) -> None:
         """Internal minus external forces into F; increment minus prescribed increment where it is held; collective.
 
+        Moments on nodes are those of the fixed frame, m: their charts ψ get Tᵀ m, as δω = T δψ does the work m · δω.
         Where there is no stress F is infinite: PETSc's line searches go back, and the step is cut.
         """
         if not self.evaluate(increments):
             F.set(np.inf)
             return
+        self._out_of_balance(load, load_factor, F)
+
+    def _out_of_balance(self, load: Load, load_factor: float, F: PETSc.Vec) -> None:
         self.internal.copy(F)
         target, force = load.at(load_factor, self._reactions.equilibrium)
-        values, x = F.getArray(), increments.getArray(readonly=True)
-        values[load.loaded] -= force
+        values, x = F.getArray(), self.last.increments
+        if self._is_rotation[load.loaded].any():
+            outer = np.zeros(len(values))
+            outer[load.loaded] = force
+            self.body.to_charts(outer)
+            values -= outer
+        else:
+            values[load.loaded] -= force
         values[load.held] = self.body.constraint_weight * (x[load.held] - target)
 
-    def tangent(self, increments: PETSc.Vec, load: Load, matrix: TangentMatrix, at_step_start: bool = False) -> None:
+    def predict(self, correction: PETSc.Vec) -> None:
+        """Let a body that Foresees predict its forces after the increments change by −correction; collective.
+
+        The last evaluation is that of the increments before it.
+        """
+        assert isinstance(self.body, Foresees)
+        function, owned = self.body.correction, self.layout.owned
+        function.x.array[:owned] = -correction.getArray(readonly=True)[:owned]
+        function.x.scatter_forward()
+        self.body.predict()
+
+    def residual_without_turning(self, load: Load, load_factor: float, length: float, F: PETSc.Vec) -> None:
+        """As `residual` at the last evaluation, `length` of the predicted correction away, for a body that Foresees."""
+        assert isinstance(self.body, Foresees)
+        internal, body = self.internal.copy(), self.body
+        self._assemble_internal(lambda vector: body.forces_without_turning(vector, length))
+        self._out_of_balance(load, load_factor, F)
+        internal.copy(self.internal)
+
+    def tangent(
+        self,
+        increments: PETSc.Vec,
+        load: Load,
+        matrix: TangentMatrix,
+        at_step_start: bool = False,
+        length: float | None = None,
+    ) -> None:
         """Derivative of the residual into `matrix`; collective.
 
         Args:
             at_step_start: begin with a matrix that has places for the contacts as they are now only.
+            length: share of the predicted correction that led here, where its forces are to be taken; else None.
         """
         self.evaluate(increments)
+        if length is None:
+            self.last_tangent(load, matrix, at_step_start)
+            return
+        assert isinstance(self.body, Foresees)
+        self.body.foresee(length)
         self.last_tangent(load, matrix, at_step_start)
+        self.body.forget()
 
     def last_tangent(self, load: Load, matrix: TangentMatrix, at_step_start: bool = False) -> None:
         """As `tangent`, with the moduli of the last evaluation, at the state as it is now; collective."""

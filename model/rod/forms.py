@@ -122,6 +122,7 @@ class RodForms:
         W: what makes the triad's spin about its chord, shape (3, 3), see coilset.model.rod.kinematics.mean_triad.
         e: section strains ε, γ12, γ13, φ′, −w″, v″.
         s: section resultants N, Q2, Q3 in N and Mt, M2, M3 in N mm.
+        foreseen: section resultants that the frame stiffness is built with, see coilset.model.rod.prediction.
         D: section tangent ∂s/∂e, shape (6, 6).
 
     All are coefficients in the mesh's quadrature or cell spaces.
@@ -139,13 +140,14 @@ class RodForms:
         W: Any,
         e: Any,
         s: Any,
+        foreseen: Any,
         D: Any,
     ) -> None:
         self.test = increment(mesh, ufl.TestFunction(V), xi, T)
         self.trial = increment(mesh, ufl.TrialFunction(V), xi, T)
         J = ufl.Jacobian(mesh)[:, 0]
         self.xi, self.timoshenko_factor, self.E, self.P = xi, timoshenko_factor, E, P
-        self.e, self.s, self.D = e, s, D
+        self.e, self.s, self.foreseen, self.D = e, s, foreseen, D
         self.l = sqrt(dot(J, J))
         self.stretch = dot(E[:, 0], self.trial.d) / self.l
         self.spin = axial_spin(self.trial, W)
@@ -171,8 +173,8 @@ class RodForms:
     def frame_stiffness(self) -> Any:
         """Change of the internal forces as the element's triad rotates and its chord changes length under the forces.
 
-        With K_l it is the derivative of the residual, but for the charts' curvature, which goes with the out-of-balance
-        moments.
+        With K_l it is the derivative of the residual where the foreseen resultants are the true ones, but for the
+        charts' curvature, which goes with the out-of-balance moments.
         """
         e1 = self.E[:, 0]
         rotated = spun(self.test, cross(e1, self.trial.d) / self.l + self.spin * e1)

@@ -15,6 +15,7 @@ from coilset.meshes.placement import Placement, straight
 from coilset.model.material.law import Law
 from coilset.model.rod import forms
 from coilset.model.rod.kinematics import GAUSS, chord_triads, section_strains
+from coilset.model.rod.prediction import Frames, Prediction, linear_strains
 from coilset.model.rotations.kernels import rotate_nodes
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule
@@ -59,6 +60,7 @@ class Rod:
 
     Attributes:
         increment: function of the increments since the last equilibrium.
+        correction: function of the last correction to them, which `predict` takes.
         state: State with `x`, mm, and `R`, rotations since the stress-free state, of the local nodes; `chord`, mm,
             `shear`, `strain`, shape (cells, 2, 6), and the arrays of the sections, of the owned cells; of these
             `point_state`, shape (cells, 2, points, n_state), and `surface_state` are always there.
@@ -108,7 +110,11 @@ class Rod:
         self.e = CellField(mesh, forms.section_element((6,)), (2, 6), n)
         self.s = CellField(mesh, forms.section_element((6,)), (2, 6), n)
         self.D = CellField(mesh, forms.section_element((6, 6)), (2, 6, 6), n)
-        fields = (self.xi, self.timoshenko_factor, self.triads, self.T, self.P, self.W, self.e, self.s, self.D)
+        self.foreseen = CellField(mesh, forms.section_element((6,)), (2, 6), n)
+        fields = (
+            self.xi, self.timoshenko_factor, self.triads, self.T, self.P, self.W, self.e, self.s, self.foreseen, self.D,
+        )  # fmt: skip
+        self.correction, self._prediction = fem.Function(self.V), None
         self.forms = forms.RodForms(mesh, self.V, *(field.function for field in fields))
         self._residual = fem.form(self.forms.residual)
         self._tangent = fem.form(self.forms.material_stiffness + self.forms.frame_stiffness)
@@ -181,15 +187,48 @@ class Rod:
         )  # fmt: skip
         self.T.values[:] = self.chart[self.cells]
         start, trial = self._section_start, self._section_trial
-        return self.sections.update(self._strain.trial, start, trial, self.s.values, self.D.values)
+        has_stress = self.sections.update(self._strain.trial, start, trial, self.s.values, self.D.values)
+        self.forget()
+        return has_stress
 
     def follow(self) -> None:
         """Bring the points on the wire's surface to the end of the increment; see Body."""
         self.sections.update_surface(self._strain.trial, self._section_start, self._section_trial)
 
+    def predict(self) -> None:
+        """Foresee the section forces after `correction`, from the trial state; see Foresees."""
+        values = self.correction.x.array
+        frames = Frames(
+            self.cells, np.linalg.norm(self._chord.trial, axis=1), self.triads.values, self.T.values, self.P.values,
+            self.W.values, self.timoshenko_factor.values[:, 0], self._strain.trial,
+        )  # fmt: skip
+        change = linear_strains(frames, values[self.u_dofs], values[self.rotation_dofs], values[self.shear_dofs])
+        self._prediction = Prediction(self.s.values.copy(), self._strain.trial.copy(), self.D.values.copy(), change)
+
+    def foresee(self, length: float) -> None:
+        """Build the next tangents' frame stiffness with the foreseen section forces; see Foresees."""
+        self.foreseen.values[:] = self._prediction.forces_after(length)
+
+    def forget(self) -> None:
+        """Build the tangents with the section forces as they are; see Foresees."""
+        self.foreseen.values[:] = self.s.values
+
+    def forces_without_turning(self, vector: np.ndarray, length: float) -> None:
+        """As `internal_forces`, without what strains of second order in the correction add; see Foresees."""
+        actual = self.s.values.copy()
+        self.s.values[:] = self._prediction.without_turning(length, actual, self._strain.trial)
+        self.internal_forces(vector)
+        self.s.values[:] = actual
+
     def internal_forces(self, vector: np.ndarray) -> None:
         """Add ∫ ¹σ : δΔE_l of the owned cells; see Body."""
         fem.assemble_vector(vector, self._residual)
+
+    def to_charts(self, values: np.ndarray) -> None:
+        """Tᵀ m for the moments at the owned nodes; see HasRotations."""
+        mine = (self.rotation_dofs < self.V.dofmap.index_map.size_local).all(axis=1)
+        dofs = self.rotation_dofs[mine]
+        values[dofs] = np.einsum("nji,nj->ni", self.chart[mine], values[dofs])
 
     def create_matrix(self, rows: int) -> PETSc.Mat:
         """A matrix of the rod's unknowns and the seats'; see Body."""

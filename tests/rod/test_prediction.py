@@ -1,0 +1,68 @@
+"""Section forces foreseen by a correction, and Newton's iterations where they matter."""
+
+import numpy as np
+import pytest
+
+from coilset.model.material import library
+from coilset.verification.cases.slender_rods import circles, elastica
+
+LENGTH, WANTED = 80.0, 8
+
+
+@pytest.fixture
+def turned(make_rod):
+    """An elastic rod of two elements, turned by 0.1 rad at its nodes, and a direction."""
+    rng = np.random.default_rng(5)
+    rod = make_rod([[0, 0, 0], [LENGTH, 0, 0], [LENGTH, 60, 20]], law=library.load("elastic"))
+    values, direction = (0.1 * rng.normal(size=len(rod.increment.x.array)) for _ in range(2))
+    return rod, values, direction
+
+
+def at(rod, values):
+    """Bring the rod there; its section forces."""
+    rod.increment.x.array[:] = values
+    assert rod.update()
+    return rod.s.values.copy()
+
+
+def test_foreseen_forces_are_the_derivative_of_the_forces(turned):
+    """D B δ against central differences at a turned state, where the charts' tangents are not 1; good to 1e-8."""
+    rod, base, direction = turned
+    h = 1e-6
+    exact = (at(rod, base + h * direction) - at(rod, base - h * direction)) / (2 * h)
+    forces = at(rod, base)
+    rod.correction.x.array[:] = direction
+    rod.predict()
+    rod.foresee(1.0)
+    scale = np.abs(exact).max(axis=(0, 1))
+    np.testing.assert_allclose((rod.foreseen.values - forces - exact) / scale, 0.0, atol=1e-7)
+    rod.forget()
+    np.testing.assert_array_equal(rod.foreseen.values, forces)
+
+
+def test_without_turning_an_elastic_rod_has_its_foreseen_forces(turned):
+    """After 0.7 of a correction of 0.1 rad and 10 mm; the forces themselves differ from the foreseen ones by far."""
+    rod, base, direction = turned
+    direction[rod.u_dofs] *= 100.0
+    direction[rod.shear_dofs] = 0.0
+    at(rod, base)
+    rod.correction.x.array[:] = direction
+    rod.predict()
+    there = at(rod, base + 0.7 * direction)
+    rod.foresee(0.7)
+    found, expected = (np.zeros(len(base)) for _ in range(2))
+    rod.forces_without_turning(found, 0.7)
+    np.testing.assert_array_equal(rod.s.values, there)
+    assert np.abs(there - rod.foreseen.values).max() > 0.02 * np.abs(rod.foreseen.values).max()
+    rod.s.values[:] = rod.foreseen.values
+    rod.internal_forces(expected)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("slenderness", [1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("problem", [elastica, circles])
+def test_newton_does_not_mind_slenderness(problem, slenderness):
+    """Ten steps of 8 rods, at most 8 iterations each; without foreseen forces r/L = 1e-3 fails in its first step."""
+    counts, done, _value = problem(slenderness, 8)
+    assert done
+    assert max(counts) <= WANTED, counts
