@@ -16,7 +16,7 @@ FORCE = typer.Option(False, "--force", help="replace files that are there")
 
 
 @app.command()
-def show(material: str = MATERIAL, out: str = OUT, force: bool = FORCE):
+def show(material: str = MATERIAL, out: str = OUT, force: bool = FORCE) -> None:
     """Print a material's constants and draw k², ζ and 2Gκ over the plastic work."""
     from rich.console import Console
 
@@ -38,7 +38,7 @@ def run_program(
     spin: bool = typer.Option(True, help="whether the rod's form has its spin terms (5.2.33)"),
     out: str = OUT,
     force: bool = FORCE,
-):
+) -> None:
     """Drive one point through a program of strain, stress or both, and draw it."""
     from rich.console import Console
 
@@ -72,7 +72,7 @@ def fit(
     name: str = typer.Option("fitted", help="name of the material"),
     out: str = OUT,
     force: bool = FORCE,
-):
+) -> None:
     """Identify the constants of k², ζ and κ from tension, reversed torsion and tension-torsion tests."""
     import yaml
     from rich.console import Console
