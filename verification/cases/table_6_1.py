@@ -19,6 +19,8 @@ above the thesis's, with 1 to 16 elements (0.90 to 1.01 at w/l = 0.5), both sect
 60 steps a row; linear strain increments in the frame of the last equilibrium, as (4.2.8) has them, give 0.91 to 0.95.
 """
 
+from typing import Any
+
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
@@ -66,7 +68,8 @@ def drive(table, by_load, method, options, steps):
     clamp, law = [(0, range(6))], library.load("ck15")
     frame = Frame(nodes, pairs, SLENDERNESS * LENGTH, law, abramowitz9(), clamp, method, options)
     tip = frame.dof(ELEMENTS, 1)
-    path, counts, begin, last = [(0.0, 0.0)], [], 0.0, None
+    path, begin, last = [(0.0, 0.0)], 0.0, None
+    counts: list[Any] = []
     for row in table:
         size = (row[1 if by_load else 0] - begin) / steps
         most = 0

@@ -18,6 +18,8 @@ are elastic there, E u/(2 l) = 0.597, and the row's own F = 1.863 needs 0.597. T
 σ2 passes through zero there; u on release by one unit of the last digit printed.
 """
 
+from typing import Any
+
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
@@ -66,7 +68,8 @@ def drive(method, options, steps):
     """
     frame = tripod(method, options)
     down = frame.dof(0, 1)
-    values, counts, last = np.full((len(PULL) + len(RELEASE), 4), np.nan), [], 1.0
+    values, last = np.full((len(PULL) + len(RELEASE), 4), np.nan), 1.0
+    counts: list[Any] = []
     for row, (end, force, *_) in enumerate(PULL + RELEASE):
         released, outcomes, share = row >= len(PULL), [], None
         begin = -frame.force(down) if released else -frame.moved(0)[1]
