@@ -45,7 +45,7 @@ def press():
     heights = np.sin(SLOPE) * LENGTH * np.linspace(1.0, LOWEST, STEPS + 1)
     rows: list[Any] = []
     for step in np.diff(heights):
-        if not frame.step(moves={frame.dof(ELEMENTS, 2): step}, share=1.0 if rows else None).converged:
+        if not frame.step(moves={frame.dof(ELEMENTS, 2): step}, predictor_scale=1.0 if rows else None).converged:
             raise RuntimeError(f"no equilibrium at step {len(rows) + 1}")
         part = frame.system.last.contributions[0]
         x = points.at(frame.layout.gather(frame.rod.x))[part.point, 0]

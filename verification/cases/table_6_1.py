@@ -74,11 +74,11 @@ def drive(table, by_load, method, options, steps):
         size = (row[1 if by_load else 0] - begin) / steps
         most = 0
         for k in range(1, steps + 1):
-            share = None if last is None else size / last
+            predictor_scale = None if last is None else size / last
             if by_load:
-                outcome = frame.step(forces={tip: (begin + k * size) * UNIT}, share=share)
+                outcome = frame.step(forces={tip: (begin + k * size) * UNIT}, predictor_scale=predictor_scale)
             else:
-                outcome = frame.step(moves={tip: size * LENGTH}, share=share)
+                outcome = frame.step(moves={tip: size * LENGTH}, predictor_scale=predictor_scale)
             if not outcome.converged:
                 return np.array(path), counts + [None] * (len(table) - len(counts))
             most, last = max(most, outcome.iterations), size
