@@ -70,7 +70,7 @@ class MeasuredSpec(Strict):
                 f"{closed:g} end turns, but the centre line has only {turn[-1]:.4g} turns", "spring.end_coils"
             )
         spring = Spring(radius, height, functions.tabulated(turn, wire, "monotone"), hand, bottom, top, phase)
-        return refuse(spring, "", path)
+        return refuse(spring, "", str(path))
 
 
 def read_centre_line(path: str | Path) -> tuple[np.ndarray, np.ndarray | None]:
@@ -155,7 +155,7 @@ def _chain(lines: np.ndarray, path: str | Path) -> np.ndarray:
         raise InputError(
             f"its line elements are not one open chain: {np.sum(uses == 1)} ends, {np.sum(uses > 2)} branches", "", path
         )
-    neighbours = {int(node): [] for node in nodes}
+    neighbours: dict[int, list[int]] = {int(node): [] for node in nodes}
     for a, b in lines.tolist():
         neighbours[a].append(b)
         neighbours[b].append(a)

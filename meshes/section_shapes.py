@@ -5,6 +5,7 @@ line, whose radius is half of the mean diameter; shapes are drawn about it by th
 """
 
 import csv
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -194,7 +195,7 @@ def _rounded(corners: np.ndarray, radius: float) -> list[int]:
 
 
 # what makes them, and the least and the greatest number of lengths
-WORDS = {
+WORDS: dict[str, tuple[Callable[..., Outline], int, int]] = {
     "round": (round_wire, 1, 1), "oval": (Oval, 2, 2), "rectangle": (rectangle, 2, 3), "trapezoid": (Trapezoid, 3, 4),
 }  # fmt: skip
 FORMS = "round:d, oval:width:height, rectangle:width:height[:corner], trapezoid:width:inside:outside[:corner] in mm"

@@ -191,8 +191,10 @@ class Analysis:
             return Stage("height", self.spring.block_height, phase.steps, phase.label)
         if to.force is not None:
             return Stage("force", to.force, phase.steps, phase.label)
-        height = to.height if to.height is not None else free_length - to.travel
-        return Stage("height", height, phase.steps, phase.label)
+        if to.height is not None:
+            return Stage("height", to.height, phase.steps, phase.label)
+        assert to.travel is not None
+        return Stage("height", free_length - to.travel, phase.steps, phase.label)
 
     def _keep(self, save: Save | None) -> None:
         if save is not None:
@@ -251,4 +253,7 @@ class Analysis:
         if self.comm.rank:
             cells = [np.empty(0)] * len(parts)
         x, components = self.layout.gather(rod.x), rod.sections.components
-        return Snapshot(name, self.control.height, self.control.force, x, *cells, components)
+        triads, resultants, state, surface = cells
+        return Snapshot(
+            name, self.control.height, self.control.force, x, triads, resultants, state, surface, components
+        )

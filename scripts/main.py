@@ -45,7 +45,7 @@ def options(
     context: typer.Context,
     ranks: int = typer.Option(1, "-n", min=1, metavar="RANKS", help="run solve, sweep or python on several MPI ranks"),
     version: bool = typer.Option(False, "--version", is_eager=True, callback=_show_version, help="print versions"),
-):
+) -> None:
     """Options before the command."""
     if context.get_parameter_source("ranks").name == "COMMANDLINE":
         from coilset.scripts.ranks import check, launch
@@ -66,7 +66,7 @@ def solve(
     resume: bool = typer.Option(False, "--resume", help="go on from the last converged step in the results folder"),
     interactive: bool = typer.Option(False, "--interactive", help="ask after each step; Enter goes on, ? helps"),
     method: str = typer.Option(None, help="iteration method; newton, modified-newton, bfgs, broyden, arc-length, ..."),
-):
+) -> None:
     """Run a spring through its load program and write what it found."""
     announce_compiling()
     from coilset.scripts.solve import solve as run_case
@@ -84,7 +84,7 @@ def slice_(
     section: str = typer.Option(None, help="oval:4:5, rectangle:4:5:0.5, trapezoid:4:5:6:0.4, FILE.csv"),
     across: float = typer.Option(None, help="triangles across the section; default 6.5"),
     pictures: bool = typer.Option(True, help="draw the figure"),
-):
+) -> None:
     """Press and release a cylindrical spring as a 3D body, by one section of its wire, and write what it found."""
     from coilset.scripts.slice import slice_case
 
@@ -99,7 +99,7 @@ def mesh(
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
     write: list[str] = typer.Option([], metavar="FILE", help="write the mesh: .msh, .vtu, .vtk, .inp, .xdmf, ..."),
     pictures: bool = typer.Option(True, help="draw the spring"),
-):
+) -> None:
     """Print the data of a spring, draw it, and write its mesh."""
     from coilset.scripts.mesh import mesh as mesh_case
 
@@ -120,7 +120,7 @@ def sheet(
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
     wires: bool = typer.Option(False, "--wires", help="list the wires that are known"),
     pictures: bool = typer.Option(True, help="draw the Goodman diagram"),
-):
+) -> None:
     """Print rate, stresses, lengths and tolerances of the standards, beside what a run found."""
     from coilset.scripts import sheet as sheets
 
@@ -140,7 +140,7 @@ def sweep(
     jobs: int = typer.Option(None, min=1, help="processes on this machine; default: one a core"),
     ranks_per_case: int = typer.Option(1, min=1, help="under mpirun: ranks that share a case"),
     pictures: bool = typer.Option(True, help="draw the figures"),
-):
+) -> None:
     """Run a case many times with some of its entries varied."""
     announce_if_cold()
     from coilset.scripts.sweep import sweep as run_sweep
@@ -155,7 +155,7 @@ def verify(
     fast: bool = typer.Option(False, "--fast", help="only cases that take seconds"),
     show: bool = typer.Option(False, "--list", help="list the cases"),
     page: str = typer.Option(None, "--page", help="also write the page of all records here, as docs/verification.md"),
-):
+) -> None:
     """Compare with tables, closed solutions and finer models; exits 1 if a value is off."""
     from coilset.scripts import verify as verification
 
@@ -171,7 +171,7 @@ def bench(
     out: str = typer.Option("results/bench", help="folder of the record and the figure; what is there is replaced"),
     full: bool = typer.Option(False, "--full", help="up to 400,000 elements: 10 GiB, a quarter of an hour"),
     cold: bool = typer.Option(False, "--cold", help="also time the compilers, from nothing"),
-):
+) -> None:
     """Measure time by stage, over elements and ranks, and cases per hour."""
     announce_if_cold()
     from coilset.scripts.bench import bench as run_benchmarks
@@ -184,7 +184,7 @@ def examples(
     name: str = typer.Argument(None, help="example to copy; all are listed if none is named"),
     out: str = typer.Option(".", help="folder to copy it to"),
     force: bool = typer.Option(False, "--force", help="replace files that are there"),
-):
+) -> None:
     """List the examples, or copy one to start from."""
     from coilset.scripts import examples as shipped
 
@@ -195,7 +195,7 @@ def examples(
 
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
-def test(context: typer.Context):
+def test(context: typer.Context) -> None:
     """Run the tests, in serial and under MPI; further arguments go to pytest."""
     from coilset.scripts.test import test as run_tests
 
@@ -203,7 +203,7 @@ def test(context: typer.Context):
 
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
-def python(context: typer.Context):
+def python(context: typer.Context) -> None:
     """Run a Python script, or Python itself, in the environment that the commands use."""
     os.execv(sys.executable, [sys.executable, *context.args])
 

@@ -16,18 +16,18 @@ FORCE = typer.Option(False, "--force", help="replace files that are there")
 
 
 @app.command()
-def show(material: str = MATERIAL, out: str = OUT, force: bool = FORCE):
+def show(material: str = MATERIAL, out: str = OUT, force: bool = FORCE) -> None:
     """Print a material's constants and draw k², ζ and 2Gκ over the plastic work."""
     from rich.console import Console
 
     from coilset.model.material import figures, library
 
     law = library.load(material)
-    out = _folder(out, law.name)
+    folder = _folder(out, law.name)
     console = Console(highlight=False)
     console.print(f"[bold]{law.name}[/]: {law.description}\nsource: {law.source}\nvalid: {law.validity.remark}")
     console.print(_constants(law))
-    _save(figures.material_functions(law), out / "functions.png", force, console)
+    _save(figures.material_functions(law), folder / "functions.png", force, console)
 
 
 @app.command("test")
@@ -38,7 +38,7 @@ def run_program(
     spin: bool = typer.Option(True, help="whether the rod's form has its spin terms (5.2.33)"),
     out: str = OUT,
     force: bool = FORCE,
-):
+) -> None:
     """Drive one point through a program of strain, stress or both, and draw it."""
     from rich.console import Console
 
@@ -48,7 +48,7 @@ def run_program(
     if integrator not in points.INTEGRATORS:
         raise InputError(f"'{integrator}' is none of {', '.join(points.INTEGRATORS)}", "--integrator")
     law, steps = library.load(material, spin=spin), programs.read(program)
-    out = _folder(out, law.name)
+    folder = _folder(out, law.name)
     name = Path(program).stem
     console = Console(highlight=False)
     try:
@@ -56,10 +56,10 @@ def run_program(
     except InputError as error:
         raise InputError(error.problem, error.place, error.file or program) from None
     console.print(_ends(steps, history))
-    _refuse([out / f"{name}.csv"], force)
-    out.mkdir(parents=True, exist_ok=True)
-    _write_csv(out / f"{name}.csv", history)
-    _save(figures.program(law, steps, history), out / f"{name}.png", force, console)
+    _refuse([folder / f"{name}.csv"], force)
+    folder.mkdir(parents=True, exist_ok=True)
+    _write_csv(folder / f"{name}.csv", history)
+    _save(figures.program(law, steps, history), folder / f"{name}.png", force, console)
 
 
 @app.command()
@@ -72,7 +72,7 @@ def fit(
     name: str = typer.Option("fitted", help="name of the material"),
     out: str = OUT,
     force: bool = FORCE,
-):
+) -> None:
     """Identify the constants of k², ζ and κ from tension, reversed torsion and tension-torsion tests."""
     import yaml
     from rich.console import Console
@@ -85,8 +85,8 @@ def fit(
     from coilset.model.results.folder import whole
 
     announce_compiling()
-    out = _folder(out, name)
-    _refuse([out / f"{name}.yaml"], force)
+    folder = _folder(out, name)
+    _refuse([folder / f"{name}.yaml"], force)
     tests = [experiments.read_test(path) for path in data]
     result = fitting.fit(tests, shear_modulus, poisson, saturation, temperature)
     console = Console(highlight=False)
@@ -96,11 +96,11 @@ def fit(
     console.print(table)
     for test, scatter in zip(result.tests, result.scatter, strict=True):
         console.print(f"{test.name} ({test.kind}): rms residual {scatter:.3g} N/mm²")
-    out.mkdir(parents=True, exist_ok=True)
-    with whole(out / f"{name}.yaml") as path:
+    folder.mkdir(parents=True, exist_ok=True)
+    with whole(folder / f"{name}.yaml") as path:
         path.write_text(yaml.safe_dump(result.material(name), sort_keys=False, allow_unicode=True), encoding="utf-8")
-    console.print(f"material file in {out / name}.yaml")
-    _save(figures.fit(result, name), out / "fit.png", force, console)
+    console.print(f"material file in {folder / name}.yaml")
+    _save(figures.fit(result, name), folder / "fit.png", force, console)
 
 
 def _folder(out, name):

@@ -76,7 +76,7 @@ def drive(
     for k in range(1, steps + 1):
         part = {dof: value / steps for dof, value in (moves or {}).items()}
         loads = {dof: value * k / steps for dof, value in (forces or {}).items()}
-        outcome = frame.step(moves=part, forces=loads, share=None if k == 1 else 1.0)
+        outcome = frame.step(moves=part, forces=loads, predictor_scale=None if k == 1 else 1.0)
         if not outcome.converged:
             raise SolveError(f"step {k} of {steps}: {outcome.reason}")
         counts.append(outcome.iterations)

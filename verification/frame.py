@@ -56,21 +56,21 @@ class Frame:
         """Number of a node's dof in the system."""
         return int(self.layout.station_dofs[node, component])
 
-    def step(self, moves=None, forces=None, share=None):
+    def step(self, moves=None, forces=None, predictor_scale=None):
         """One load step.
 
         Args:
             moves: dof → displacement added in this step, mm or rad.
             forces: dof → force at the end of the step, N or N mm.
-            share: this step's size over the last one's, to start from the last step's increments; None: from rest, as
+            predictor_scale: this step's size over the last one's, to start from the last step's increments; None: from rest, as
                 after steps that have turned a node far.
 
         Returns:
             Outcome; where it has not converged, the frame is back at the last equilibrium.
         """
         self.load = load = Load.of(self.layout, self.held | (moves or {}), forces or {})
-        from_rest = share is None or not self._stepped or self._has_turned_far()
-        start = Start() if from_rest else self.continuation.scaled_last(share)
+        from_rest = predictor_scale is None or not self._stepped or self._has_turned_far()
+        start = Start() if from_rest else self.continuation.scaled_last(predictor_scale)
         outcome = self.continuation.attempt(load, [start])
         self._stepped = self._stepped or outcome.converged
         return outcome

@@ -81,7 +81,7 @@ class Study:
         """Judge a number; see Check."""
         self.checks.append(Check(quantity, float(ours), float(reference), source, float(tolerance), kind))
 
-    def shown(self, quantity: str, ours: float, reference: float, source: str, reason: str):
+    def shown(self, quantity: str, ours: float, reference: float, source: str, reason: str) -> None:
         """Keep a number beside its reference that is not judged, with the reason; see Check."""
         kind = "relative" if reference else "absolute"
         self.checks.append(Check(quantity, float(ours), float(reference), source, float("nan"), kind, reason))

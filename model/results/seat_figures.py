@@ -131,8 +131,8 @@ def draw_pressure(axes: Axes, result: Result, kind: int, contact: ContactRecord,
     points = np.flatnonzero(away <= reach + 1e-9)
     points = points[np.argsort(away[points])]
     values = np.zeros((len(rows), len(away)))
-    for number, one in enumerate(rows):
-        values[number, one[:, 1].astype(int)] = one[:, 2]
+    for i, one in enumerate(rows):
+        values[i, one[:, 1].astype(int)] = one[:, 2]
     values = np.ma.masked_equal(values[:, points], 0.0)
     norm = LogNorm(10.0**-DECADES * greatest, greatest)
     number = [step.number for step in result.steps]

@@ -38,9 +38,9 @@ def seat_reactions(
     observer, force = _Observer(system, control), control.force
     faint = max(FAINT * greatest_force, ROUNDING * system.body.axial_force)
     pressure = pressures(observer.parts)
-    ends = [observer.reaction(end, faint) for end in ENDS]
+    bottom, top = (observer.reaction(end, faint) for end in ENDS)
     active = active_turns(system.body, turns, force) if abs(force) > faint else np.nan
-    return SeatReactions(step, active, free_turns(observer.parts, pressure), *ends, pressure)
+    return SeatReactions(step, active, free_turns(observer.parts, pressure), bottom, top, pressure)
 
 
 class _Observer:

@@ -182,5 +182,6 @@ class RodForms:
         test, nothing = self.test, 0 * self.test.d
         still = self.strains(Increment(nothing, test.rotation1, test.rotation2, test.shear))
         moved = self.strains(Increment(test.d, nothing, nothing, 0 * test.shear))
-        lengthened = sum(self.s[k] * still[k] for k in (1, 2)) - sum(self.s[k] * moved[k] for k in (4, 5))
-        return (inner(self.s, self.strains(rotated)) + self.stretch * lengthened) * self.dx
+        s = self.foreseen
+        lengthened = sum(s[k] * still[k] for k in (1, 2)) - sum(s[k] * moved[k] for k in (4, 5))
+        return (inner(s, self.strains(rotated)) + self.stretch * lengthened) * self.dx

@@ -17,7 +17,7 @@ SHORTEST = 1e-3  # part of a correction
 
 @njit(cache=True)
 def strain_operator(
-    y: float, z: float, f: np.ndarray, radius: float, curvature: float, torsion: float, B: np.ndarray
+    y: np.ndarray, z: np.ndarray, f: np.ndarray, radius: float, curvature: float, torsion: float, B: np.ndarray
 ) -> None:
     """Strains of a section's points for unit section strains and unit warping.
 

@@ -5,7 +5,8 @@
 - warping: it warps as the curved and twisted wire asks, and bears all six stresses.
 """
 
-from typing import Protocol
+from collections.abc import Callable
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -21,10 +22,25 @@ KINDS = ("plane", "curved", "warping")
 class Sections(Protocol):
     """What the rod asks of its sections; `PlaneSections` says what the methods do."""
 
-    components: tuple[str, ...]
-    initial_state: object
-    update: object
-    update_surface: object
+    @property
+    def components(self) -> tuple[str, ...]:
+        """Names of the columns of a point's state."""
+        ...
+
+    @property
+    def initial_state(self) -> Callable[[], dict[str, np.ndarray]]:
+        """The arrays of unstressed sections."""
+        ...
+
+    @property
+    def update(self) -> Callable[..., Any]:
+        """Bring all sections to the end of an increment."""
+        ...
+
+    @property
+    def update_surface(self) -> Callable[..., None]:
+        """Bring the points on the surface to the end of an increment."""
+        ...
 
 
 def make_sections(

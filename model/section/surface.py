@@ -28,7 +28,7 @@ def shear(state: np.ndarray, components: tuple[str, ...]) -> np.ndarray:
 def equivalent(state: np.ndarray, components: tuple[str, ...]) -> np.ndarray:
     """Von Mises stress √(3/2 T:T) of all the stresses that the state has, MPa."""
 
-    def stress(name: str) -> np.ndarray:
+    def stress(name: str) -> np.ndarray | float:
         return component(state, components, name) if name in components else 0.0
 
     s1, s2, s3 = (stress(name) for name in ("s11", "s22", "s33"))

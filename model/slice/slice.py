@@ -1,6 +1,7 @@
 """The slice as a body: where it is, the state of its points, its forces and their derivatives."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from dolfinx import fem
@@ -13,6 +14,9 @@ from coilset.model.material.points import initial_state
 from coilset.model.slice.forms import RISE, TURN, SliceForms, assemble
 from coilset.model.solid.kinematics import push_forward, stretches
 from coilset.model.solid.points import update_points
+
+if TYPE_CHECKING:
+    from coilset.model.slice.watch import Watch
 
 
 @dataclass(frozen=True)
@@ -73,7 +77,8 @@ class Slice:
         self.start = self.forms.x.x.array.reshape(-1, 3).copy()
         self.forms.old.value[:] = coil.rise, 1.0
         self.increment = self.forms.increment.value
-        self.temperature, self.parameters, self.watches = temperature, law.parameters(temperature), []
+        self.temperature, self.parameters = temperature, law.parameters(temperature)
+        self.watches: list[Watch] = []
         n = len(self.forms.cells) * len(self.forms.points)
         self.state = initial_state(law, n, 6, temperature)
         self.trial = self.state.copy()

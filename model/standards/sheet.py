@@ -102,8 +102,11 @@ def working_lengths(phases: Sequence[Phase], free_length: float, rate: float, bl
         target = phase.to
         if target.height is not None:
             length = target.height
+        elif target.travel is not None:
+            length = free_length - target.travel
         else:
-            length = free_length - (target.travel if target.travel is not None else target.force / rate)
+            assert target.force is not None
+            length = free_length - target.force / rate
         if block < length < free_length and all(abs(length - other) > 1e-9 for other in found):
             found.append(length)
     return found

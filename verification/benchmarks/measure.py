@@ -142,8 +142,8 @@ def write(watch, analysis):
     from coilset.model.results.summary import summarise
 
     result = analysis.result
-    with tempfile.TemporaryDirectory() as folder:
-        folder = Path(folder)
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
         summary = summarise(analysis.setup, result)
         with watch.stage("output"):
             write_history(folder, result.steps)

@@ -42,7 +42,7 @@ def bend(elements):
     nodes, found, counts = arc(elements), {}, []
     frame = chain(nodes, RADIUS, elastic(YOUNG, 0.0))
     for force in FORCES:
-        outcome = frame.step(forces={frame.dof(elements, Z): force}, share=1.0 if counts else None)
+        outcome = frame.step(forces={frame.dof(elements, Z): force}, predictor_scale=1.0 if counts else None)
         if not outcome.converged:
             raise SolveError(f"P = {force:g}, {elements} elements: {outcome.reason}")
         counts.append(outcome.iterations)

@@ -11,6 +11,8 @@ The contact's place is where the seat's force acts. Tolerances: the linear beam 
 found between points 1.25 mm apart, and the bedding lets the beam sink in by less than 1e-3 of h.
 """
 
+from typing import Any
+
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
@@ -41,9 +43,9 @@ def press():
     pairs = [(k, k + 1) for k in range(ELEMENTS)]
     frame = Frame(nodes, pairs, RADIUS, law, polar(), held, contacts=[seat])
     heights = np.sin(SLOPE) * LENGTH * np.linspace(1.0, LOWEST, STEPS + 1)
-    rows = []
+    rows: list[Any] = []
     for step in np.diff(heights):
-        if not frame.step(moves={frame.dof(ELEMENTS, 2): step}, share=1.0 if rows else None).converged:
+        if not frame.step(moves={frame.dof(ELEMENTS, 2): step}, predictor_scale=1.0 if rows else None).converged:
             raise RuntimeError(f"no equilibrium at step {len(rows) + 1}")
         part = frame.system.last.contributions[0]
         x = points.at(frame.layout.gather(frame.rod.x))[part.point, 0]

@@ -12,6 +12,8 @@ stiffness c is the bedding of both points together: F is c p²/(4w) up to p = 2w
 tilt of the connection.
 """
 
+from typing import Any
+
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
@@ -53,7 +55,8 @@ def press():
     held = [(node, range(6)) for node in ends]
     pairs = [(first + k, first + k + 1) for first in (0, count) for k in range(ELEMENTS)]
     frame = Frame(np.vstack(wires), pairs, np.repeat(RADII, ELEMENTS), law, polar(), held, contacts=[coils])
-    driven, rows = [frame.dof(node, 2) for node in ends[:2]], []
+    driven = [frame.dof(node, 2) for node in ends[:2]]
+    rows: list[Any] = []
     for step in np.diff(np.append(0.0, TRAVEL)):
         if not frame.step(moves=dict.fromkeys(driven, -step)).converged:
             raise RuntimeError(f"no equilibrium at step {len(rows) + 1}")

@@ -35,7 +35,7 @@ def bend(elements):
     unit = Stiffness.of_round_wire(RADIUS, law.E, law.G).EI / LENGTH**2
     frame, rows = chain(straight(LENGTH, elements), RADIUS, law), []
     for load in LOADS:
-        outcome = frame.step(forces={frame.dof(elements, Y): load * unit}, share=1.0 if rows else None)
+        outcome = frame.step(forces={frame.dof(elements, Y): load * unit}, predictor_scale=1.0 if rows else None)
         if not outcome.converged:
             raise SolveError(f"PL²/EI = {load:g}: {outcome.reason}")
         rows.append(np.array([-1.0, 1.0]) * frame.moved(elements)[:2] / LENGTH)

@@ -31,8 +31,8 @@ PROGRAMS = {  # targets and increments
 def clean_tests():
     """The tests without noise, after the unloaded start."""
     law = library.load("ck15", heun_tolerance=1e-6)
-    for name, steps in PROGRAMS.items():
-        steps = [{"to": to, "increments": increments} for to, increments in steps]
+    for name, pieces in PROGRAMS.items():
+        steps = [{"to": to, "increments": increments} for to, increments in pieces]
         history = programs.run(law, programs.Program.model_validate({"name": name, "steps": steps}), "heun")
         yield Test(name, history.strain[1:, :2], history.stress[1:, :2])
 

@@ -17,6 +17,8 @@ a polygon of N rods errs by some (π/N)² = 3e-4, the strain along the axis coun
 half of the distance of the bedding's points, 0.016 R.
 """
 
+from typing import Any
+
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
@@ -66,7 +68,8 @@ def press():
     held = [*sides, (ELEMENTS // 2, (0, 1, 3, 5)), *((node, (1, 3, 5)) for node in range(1, ELEMENTS))]
     pairs = [(k, k + 1) for k in range(ELEMENTS)]
     frame = Frame(nodes, pairs, RADIUS, law, polar(), held, contacts=[seat])
-    level, rows = int(frame.layout.seat_dofs[SEAT_DOFS + LEVEL]), []
+    level = int(frame.layout.seat_dofs[SEAT_DOFS + LEVEL])
+    rows: list[Any] = []
     for step in np.diff(np.append(1.0, HEIGHTS)) * RING:
         if not frame.step(moves={level: step}).converged:
             raise RuntimeError(f"no equilibrium at step {len(rows) + 1}")

@@ -29,7 +29,7 @@ def walk(frame, forces=None, moves=None):
     for k in range(1, STEPS + 1):
         loads = {dof: value * k / STEPS for dof, value in (forces or {}).items()}
         parts = {dof: value / STEPS for dof, value in (moves or {}).items()}
-        outcome = frame.step(moves=parts, forces=loads, share=None if k == 1 else 1.0)
+        outcome = frame.step(moves=parts, forces=loads, predictor_scale=None if k == 1 else 1.0)
         counts.append(outcome.iterations)
         if not outcome.converged:
             return counts, False

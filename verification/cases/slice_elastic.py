@@ -53,9 +53,9 @@ def run(study):
         ("rectangle 3 × 6", rectangle(3.0, 6.0), torsion_constant_rectangle(3.0, 6.0)),
     ):
         D = SLENDER * 5.0
-        ours = elastic(outline, D, law, 10.0, 2, np.zeros((1, 2)))
-        J_ours = ours.rate * 2 * np.pi * (0.5 * D) ** 3 / law.G
-        study.check(f"torsion constant, {name} ({ours.unknowns} unknowns), mm⁴", J_ours, J, "Saint-Venant", 1e-3)
+        found_here = elastic(outline, D, law, 10.0, 2, np.zeros((1, 2)))
+        J_ours = found_here.rate * 2 * np.pi * (0.5 * D) ** 3 / law.G
+        study.check(f"torsion constant, {name} ({found_here.unknowns} unknowns), mm⁴", J_ours, J, "Saint-Venant", 1e-3)
     study.figure("slice_elastic", _figure(found))
 
 

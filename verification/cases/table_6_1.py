@@ -19,6 +19,8 @@ above the thesis's, with 1 to 16 elements (0.90 to 1.01 at w/l = 0.5), both sect
 60 steps a row; linear strain increments in the frame of the last equilibrium, as (4.2.8) has them, give 0.91 to 0.95.
 """
 
+from typing import Any
+
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
@@ -66,16 +68,17 @@ def drive(table, by_load, method, options, steps):
     clamp, law = [(0, range(6))], library.load("ck15")
     frame = Frame(nodes, pairs, SLENDERNESS * LENGTH, law, abramowitz9(), clamp, method, options)
     tip = frame.dof(ELEMENTS, 1)
-    path, counts, begin, last = [(0.0, 0.0)], [], 0.0, None
+    path, begin, last = [(0.0, 0.0)], 0.0, None
+    counts: list[Any] = []
     for row in table:
         size = (row[1 if by_load else 0] - begin) / steps
         most = 0
         for k in range(1, steps + 1):
-            share = None if last is None else size / last
+            predictor_scale = None if last is None else size / last
             if by_load:
-                outcome = frame.step(forces={tip: (begin + k * size) * UNIT}, share=share)
+                outcome = frame.step(forces={tip: (begin + k * size) * UNIT}, predictor_scale=predictor_scale)
             else:
-                outcome = frame.step(moves={tip: size * LENGTH}, share=share)
+                outcome = frame.step(moves={tip: size * LENGTH}, predictor_scale=predictor_scale)
             if not outcome.converged:
                 return np.array(path), counts + [None] * (len(table) - len(counts))
             most, last = max(most, outcome.iterations), size

@@ -18,6 +18,8 @@ are elastic there, E u/(2 l) = 0.597, and the row's own F = 1.863 needs 0.597. T
 σ2 passes through zero there; u on release by one unit of the last digit printed.
 """
 
+from typing import Any
+
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
@@ -66,19 +68,20 @@ def drive(method, options, steps):
     """
     frame = tripod(method, options)
     down = frame.dof(0, 1)
-    values, counts, last = np.full((len(PULL) + len(RELEASE), 4), np.nan), [], 1.0
+    values, last = np.full((len(PULL) + len(RELEASE), 4), np.nan), 1.0
+    counts: list[Any] = []
     for row, (end, force, *_) in enumerate(PULL + RELEASE):
-        released, outcomes, share = row >= len(PULL), [], None
+        released, outcomes, predictor_scale = row >= len(PULL), [], None
         begin = -frame.force(down) if released else -frame.moved(0)[1]
         size = ((force * YIELD * AREA if released else end / 100 * LENGTH) - begin) / steps
         if row not in (0, len(PULL)):
-            share = size / last
+            predictor_scale = size / last
         for k in range(1, steps + 1):
             if released:
-                outcomes.append(frame.step(forces={down: -(begin + k * size)}, share=share))
+                outcomes.append(frame.step(forces={down: -(begin + k * size)}, predictor_scale=predictor_scale))
             else:
-                outcomes.append(frame.step(moves={down: -size}, share=share))
-            share = 1.0
+                outcomes.append(frame.step(moves={down: -size}, predictor_scale=predictor_scale))
+            predictor_scale = 1.0
         last = size
         if not all(outcome.converged for outcome in outcomes):
             return values, counts + [None] * (len(values) - len(counts))

@@ -72,8 +72,8 @@ def linear_beam(moment, shear):
     x = np.array([1.0, 2.0])
     low, high = np.minimum(x[:, None], x), np.maximum(x[:, None], x)
     f, w0 = low**2 * (3.0 * high - low) / 6.0 + shear * low, 0.5 * moment * x**2
-    for closed in product((False, True), repeat=2):
-        closed, S = np.array(closed), np.zeros(2)
+    for choice in product((False, True), repeat=2):
+        closed, S = np.array(choice), np.zeros(2)
         if closed.any():
             A = f[np.ix_(closed, closed)] + np.eye(closed.sum()) / C
             S[closed] = np.linalg.solve(A, (w0 - GAPS)[closed])

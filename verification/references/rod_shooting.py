@@ -13,6 +13,7 @@ The moment at the clamp is sought so that it ends in the given one. Integrated w
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.integrate import solve_ivp
 from scipy.optimize import root
 
@@ -38,9 +39,9 @@ class Stiffness:
 def clamped_rod(
     stiffness: Stiffness,
     length: float,
-    force: np.ndarray,
-    moment: np.ndarray = (0.0, 0.0, 0.0),
-    curvature: np.ndarray = (0.0, 0.0, 0.0),
+    force: ArrayLike,
+    moment: ArrayLike = (0.0, 0.0, 0.0),
+    curvature: ArrayLike = (0.0, 0.0, 0.0),
     loads: int = 3,
 ) -> np.ndarray:
     """Position of the free end, the clamp at the origin with its triad along x, y, z, shape (3,), mm.

@@ -57,7 +57,7 @@ def shear_curve(law: Law, shears: np.ndarray) -> np.ndarray:
     stress = law.G * shears
     beyond = shears > limit
     if beyond.any():
-        start = [0.0, law.G * limit, 0.0, 0.0, 0.0]
+        start = np.array([0.0, law.G * limit, 0.0, 0.0, 0.0])
         times = np.append(0.0, shears[beyond] - limit)
         stress[beyond] = plastic_path(law, start, np.array([0.0, 1.0]), times)[1:, 1]
     return stress
@@ -68,7 +68,7 @@ def torque(law: Law, radius: float, twist: float) -> float:
 
     By Gauss's rule with 40 points over the plastic ring, where τ is smooth; the elastic core has a closed form.
     """
-    limit = min(radius, np.sqrt(0.5 * law.k_squared(0.0)) / law.G / twist)
+    limit = min(radius, float(np.sqrt(0.5 * law.k_squared(0.0))) / law.G / twist)
     elastic = 0.5 * np.pi * law.G * twist * limit**4
     ξ, w = np.polynomial.legendre.leggauss(40)
     r = limit + 0.5 * (radius - limit) * (1.0 + ξ)

@@ -57,7 +57,7 @@ def pressed(index: float, pitch: float, travel: float, across: float = 6.5, degr
     """Press a turn in equal steps and release it in one."""
     coil = Coil(0.5 * index * WIRE, pitch)
     body = Slice(section_mesh(round_wire(WIRE), across, degree), coil, library.load(material))
-    watch = Watch(body, [[-0.45 * WIRE, 0.0], [0.45 * WIRE, 0.0]])
+    watch = Watch(body, np.array([[-0.45 * WIRE, 0.0], [0.45 * WIRE, 0.0]]))
     problem = SliceProblem(body)
     problem.probe(coil.rise * (1 - 1e-9), watch)  # compiles what is not
     began, travels, forces = time.process_time(), [0.0], [0.0]

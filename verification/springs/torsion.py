@@ -8,12 +8,13 @@ import numpy as np
 
 from coilset.meshes.ends import touching_pitch
 from coilset.model.material import programs
+from coilset.model.material.law import Law
 from coilset.verification.springs.curved_rod import _points
 
 REACH, INCREMENTS = 0.05, 500  # shear strain of the flow curve
 
 
-def shear_curve(law) -> tuple[np.ndarray, np.ndarray]:
+def shear_curve(law: Law) -> tuple[np.ndarray, np.ndarray]:
     """Shear strain and stress, MPa, of a point in simple shear up to REACH."""
     step = {"to": {"gamma12": REACH}, "increments": INCREMENTS}
     history = programs.run(law, programs.Program.model_validate({"name": "simple shear", "steps": [step]}))

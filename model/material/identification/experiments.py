@@ -65,7 +65,7 @@ def read_test(path: str | Path) -> Test:
 
 def _number(text: str | None, name: str, line: int, path: Path) -> float:
     try:
-        value = float(text)
+        value = float(text or "")
     except (TypeError, ValueError):
         value = math.nan
     if not math.isfinite(value):

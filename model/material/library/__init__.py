@@ -9,7 +9,7 @@ from coilset.model.case.entry import shortened
 from coilset.model.material.file import read
 from coilset.model.material.law import Law
 
-FOLDER = resources.files(__package__)
+FOLDER = Path(str(resources.files(__package__)))
 
 
 def names() -> list[str]:

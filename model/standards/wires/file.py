@@ -217,5 +217,5 @@ def with_common(data: dict[str, Any]) -> dict[str, Any]:
 
 
 def _same_length(first: Sequence[object] | None, second: Sequence[object] | None) -> None:
-    if first is not None and len(first) != len(second):
+    if first is not None and second is not None and len(first) != len(second):
         raise ValueError(f"{len(first)} diameters but {len(second)} values")
