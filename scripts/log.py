@@ -44,6 +44,7 @@ def run_log(folder: Path) -> Iterator[logging.FileHandler]:
 
 
 def _lock(handler: logging.FileHandler, folder: Path) -> None:
+    assert handler.stream is not None  # it is open from the start
     try:
         fcntl.flock(handler.stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

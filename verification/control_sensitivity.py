@@ -27,7 +27,7 @@ from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.newton import Start
 from coilset.model.examples import EXAMPLES
 
-CONTROLS = {"newton": NewtonControl, "steps": StepControl}
+CONTROLS: dict[str, type[NewtonControl] | type[StepControl]] = {"newton": NewtonControl, "steps": StepControl}
 GROWTHS = ("penetration_growth", "growth", "largest", "regrowth")  # at least 1
 COUNTS = (
     "stagnation", "augmentations", "search_trials", "contact_bisections", "attempts", "spare_attempts", "automatic",

@@ -62,8 +62,8 @@ class Frame:
         Args:
             moves: dof → displacement added in this step, mm or rad.
             forces: dof → force at the end of the step, N or N mm.
-            predictor_scale: this step's size over the last one's, to start from the last step's increments; None: from rest, as
-                after steps that have turned a node far.
+            predictor_scale: this step's size over the last one's, to start from the last step's increments; None: from
+                rest, as after steps that have turned a node far.
 
         Returns:
             Outcome; where it has not converged, the frame is back at the last equilibrium.

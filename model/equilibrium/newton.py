@@ -243,7 +243,8 @@ class Newton:
         """SNES's convergence test."""
         norm, X = norms[2], self.system.increments
         if iteration == 0:
-            self.test.begin(norm, self.system.body.axial_force if self.foresees else 0.0)
+            body = self.system.body
+            self.test.begin(norm, body.axial_force if self.foresees and isinstance(body, Foresees) else 0.0)
         if not np.isfinite(norm):
             return NOT_A_NUMBER
         if self.method.is_arc_length:

@@ -162,17 +162,13 @@ class Checkpoint:
         old, new = about["case"], self.case
         for entry in SPRING_ENTRIES:
             if old.get(entry) != new[entry]:
-                raise InputError(
-                    "differs from that of the checkpoint; {ANEW}",
-                    entry,
-                    self.folder,
-                )
-        entry = changed(about.get("provenance"), self.provenance)
-        if entry == "version":
+                raise InputError(f"differs from that of the checkpoint; {ANEW}", entry, self.folder)
+        changed_content = changed(about.get("provenance"), self.provenance)
+        if changed_content == "version":
             raise InputError(f"the checkpoint is of another version of coilset; {ANEW}", "",
                              self.folder)  # fmt: skip
-        if entry:
-            raise InputError(f"its content is not what the checkpoint was made with; {ANEW}", entry,
+        if changed_content:
+            raise InputError(f"its content is not what the checkpoint was made with; {ANEW}", changed_content,
                              self.folder)  # fmt: skip
         behind = about["position"]["stage"]
         if old["loading"][:behind] != new["loading"][:behind]:
@@ -186,5 +182,7 @@ def _arrays(path: Path) -> dict[str, np.ndarray]:
 
 def _without_cells(result: Result) -> Result:
     """For the other ranks: arrays of elements are gathered on rank 0 only."""
-    empty = {name: np.empty(0) for name in ("triads", "resultants", "point_state", "surface_state")}
-    return replace(result, snapshots=tuple(replace(shot, **empty) for shot in result.snapshots))
+    none = np.empty(0)
+    return replace(result, snapshots=tuple(
+        replace(shot, triads=none, resultants=none, point_state=none, surface_state=none) for shot in result.snapshots
+    ))  # fmt: skip

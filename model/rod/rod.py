@@ -114,7 +114,8 @@ class Rod:
         fields = (
             self.xi, self.timoshenko_factor, self.triads, self.T, self.P, self.W, self.e, self.s, self.foreseen, self.D,
         )  # fmt: skip
-        self.correction, self._prediction = fem.Function(self.V), None
+        self.correction = fem.Function(self.V)
+        self._prediction: Prediction | None = None
         self.forms = forms.RodForms(mesh, self.V, *(field.function for field in fields))
         self._residual = fem.form(self.forms.residual)
         self._tangent = fem.form(self.forms.material_stiffness + self.forms.frame_stiffness)
@@ -207,6 +208,7 @@ class Rod:
 
     def foresee(self, length: float) -> None:
         """Build the next tangents' frame stiffness with the foreseen section forces; see Foresees."""
+        assert self._prediction is not None  # `predict` comes before
         self.foreseen.values[:] = self._prediction.forces_after(length)
 
     def forget(self) -> None:
@@ -216,6 +218,7 @@ class Rod:
     def forces_without_turning(self, vector: np.ndarray, length: float) -> None:
         """As `internal_forces`, without what strains of second order in the correction add; see Foresees."""
         actual = self.s.values.copy()
+        assert self._prediction is not None  # `predict` comes before
         self.s.values[:] = self._prediction.without_turning(length, actual, self._strain.trial)
         self.internal_forces(vector)
         self.s.values[:] = actual

