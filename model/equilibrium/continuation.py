@@ -175,7 +175,7 @@ class Continuation:
             return self._conclude(unstable)
         unstable = replace(unstable, negative_pivots=self.stability.negative_pivots(load))
         there, (_value, mode) = self.system.increments.copy(), self.stability.weakest_mode(load)
-        amplitude = self.control.branch_amplitude * self.system.body.largest_radius
+        amplitude = self.control.branch_amplitude * self.system.line.rod.largest_radius
         for _trial in range(self.control.branch_trials):
             for sign in (1.0, -1.0):
                 start = there.copy()

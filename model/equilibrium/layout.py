@@ -64,11 +64,13 @@ class LineLayout(Layout):
         station_dofs: of the stations' displacements and rotations, shape (stations, 6).
         element_dofs: of the elements' own shear angles, shape (elements, 2).
         seat_dofs: of the seats, shape (12,).
+        rod: the Rod whose unknowns they are.
         contact_dofs: unknown of each degree of freedom as contacts number them, see coilset.model.contact.base.
     """
 
     def __init__(self, rod: "Rod") -> None:
         super().__init__(rod.V, SEATS)
+        self.rod = rod
         comm, line, index_map = self.comm, rod.line, self.index_map
         self.line = line
         self._nodes = line.mesh.geometry.index_map().size_local

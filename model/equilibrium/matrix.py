@@ -55,9 +55,12 @@ class TangentMatrix:
 
     def _make_room(self, contributions: Sequence[Contribution]) -> None:
         """Allocate the rows anew: a node couples with neighbours, shear angles, and what it touches."""
-        layout, entries = self.layout, np.full(self.layout.size_local, self._entries.max(), dtype=PETSc.IntType)
+        layout = self.layout
+        assert self._entries is not None
+        entries = np.full(layout.size_local, self._entries.max(), dtype=PETSc.IntType)
         entries[: layout.owned] = self._entries
         for part in contributions:
+            assert isinstance(layout, LineLayout)
             dofs = layout.contact_dofs[part.dofs]
             rows, columns = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
             places = rows.ravel(), columns.ravel()
@@ -74,6 +77,7 @@ class TangentMatrix:
         """A number for each contact element by its first and last dof, which tell between what it acts."""
         if not contributions:
             return np.empty(0, dtype=np.int64)
+        assert isinstance(self.layout, LineLayout)
         count = len(self.layout.contact_dofs)
         return np.concatenate([part.dofs[:, 0] * count + part.dofs[:, -1] for part in contributions])
 

@@ -88,7 +88,7 @@ class Stability:
     def _scale(self, load: Load) -> PETSc.Vec:
         """Weights of unknowns in a mode's norm: 1 for displacements, a tenth of the extent squared for rotations."""
         assert isinstance(self.layout, LineLayout)
-        n, extent = len(self.layout.station_dofs), self.system.body.extent
+        n, extent = len(self.layout.station_dofs), self.layout.rod.extent
         natural = np.ones(self.layout.size)
         natural[: 6 * n].reshape(n, 6)[:, 3:] = (0.1 * extent) ** 2
         scale = self.layout.from_order(natural)

@@ -73,7 +73,14 @@ class System:
     @property
     def seats(self) -> np.ndarray:
         """x, y, z and rotations of both seats on trial, shape (12,), mm and rad."""
+        assert self._seats is not None, "this body stands on no seats"
         return self._seats.trial
+
+    @property
+    def line(self) -> LineLayout:
+        """The layout of a body with stations, which contacts need."""
+        assert isinstance(self.layout, LineLayout)
+        return self.layout
 
     def evaluate(self, increments: PETSc.Vec) -> bool:
         """Bring the trial state to increments, unless it is there; False if some point has no stress; collective."""
@@ -101,10 +108,10 @@ class System:
             self._assemble_internal()
 
     def _touch(self) -> list[Contribution]:
-        layout, body, rotations = self.layout, self.body, None
+        line, rotations = self.line, None
         if any(contact.needs_rotations for contact in self.contacts):
-            rotations = layout.gather(body.increment.x.array[body.rotation_dofs])
-        trial = TrialPositions(layout.gather(self.state["x"].trial), self.seats, rotations)
+            rotations = line.gather(self.body.increment.x.array[line.rod.rotation_dofs])
+        trial = TrialPositions(line.gather(self.state["x"].trial), self.seats, rotations)
         return [contact.evaluate(trial) for contact in self.contacts]
 
     def _assemble_internal(self, add_forces: Callable[[np.ndarray], None] | None = None) -> None:
@@ -118,7 +125,7 @@ class System:
             values[owned:] = 0.0
         if self.last.contributions:
             parts, start, stop = self.last.contributions, self.layout.start, self.layout.stop
-            rows = np.concatenate([self.layout.contact_dofs[part.dofs].ravel() for part in parts])
+            rows = np.concatenate([self.line.contact_dofs[part.dofs].ravel() for part in parts])
             forces = np.concatenate([part.forces.ravel() for part in parts])
             mine = (rows >= start) & (rows < stop)
             with self.internal as values:
@@ -165,7 +172,7 @@ class System:
 
     def augment(self) -> None:
         """Press contacts harder where they have sunk in (augmented Lagrange), from now on; collective."""
-        trial = TrialPositions(self.layout.gather(self.state["x"].trial), self.seats)
+        trial = TrialPositions(self.line.gather(self.state["x"].trial), self.seats)
         for contact in self.contacts:
             if isinstance(contact, Augmented):
                 contact.augment(trial)

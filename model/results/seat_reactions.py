@@ -36,10 +36,10 @@ def seat_reactions(
         SeatReactions, the same on every rank.
     """
     observer, force = _Observer(system, control), control.force
-    faint = max(FAINT * greatest_force, ROUNDING * system.body.axial_force)
+    faint = max(FAINT * greatest_force, ROUNDING * observer.layout.rod.axial_force)
     pressure = pressures(observer.parts)
     bottom, top = (observer.reaction(end, faint) for end in ENDS)
-    active = active_turns(system.body, turns, force) if abs(force) > faint else np.nan
+    active = active_turns(observer.layout.rod, turns, force) if abs(force) > faint else np.nan
     return SeatReactions(step, active, free_turns(observer.parts, pressure), bottom, top, pressure)
 
 
@@ -50,7 +50,7 @@ class _Observer:
         assert isinstance(system.layout, LineLayout)
         self.layout, self.system, self.control = system.layout, system, control
         self.x = self.layout.gather(system.state["x"].trial)
-        self.chart = self.layout.gather(system.body.chart)
+        self.chart = self.layout.gather(self.layout.rod.chart)
         self.parts: Parts = list(zip(system.contacts, system.last.contributions, strict=True))
 
     def wrench(self, end: str) -> Wrench:
