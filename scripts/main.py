@@ -12,6 +12,7 @@ from coilset.scripts.compiling import announce_compiling, announce_if_cold
 from coilset.scripts.material import app as material
 from coilset.scripts.output import Output, output_closed
 from coilset.scripts.plain import typer
+from coilset.scripts.target import file_targets, folder_target
 
 HELP = """How far does a coil spring set, and what stress stays in it?
 
@@ -59,7 +60,7 @@ def options(
 @app.command()
 def solve(
     case: str = typer.Argument(help="case file (YAML)"),
-    out: str = typer.Option(None, help="results folder; default results/NAME-OF-CASE"),
+    out: str = typer.Option(None, callback=folder_target, help="results folder; default results/NAME-OF-CASE"),
     force: bool = typer.Option(False, "--force", help="replace results that are there"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
     pictures: bool = typer.Option(True, help="draw the figures"),
@@ -78,7 +79,7 @@ def solve(
 @app.command(name="slice")
 def slice_(
     case: str = typer.Argument(help="case file (YAML) of a cylindrical spring"),
-    out: str = typer.Option(None, help="results folder; default results/NAME-OF-CASE-slice"),
+    out: str = typer.Option(None, callback=folder_target, help="results folder; default results/NAME-OF-CASE-slice"),
     force: bool = typer.Option(False, "--force", help="replace results that are there"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
     section: str = typer.Option(None, help="oval:4:5, rectangle:4:5:0.5, trapezoid:4:5:6:0.4, FILE.csv"),
@@ -94,10 +95,12 @@ def slice_(
 @app.command()
 def mesh(
     case: str = typer.Argument(help="case file (YAML)"),
-    out: str = typer.Option(None, help="folder of the pictures; default results/NAME-OF-CASE"),
+    out: str = typer.Option(None, callback=folder_target, help="folder of the pictures; default results/NAME-OF-CASE"),
     force: bool = typer.Option(False, "--force", help="replace files that are there"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
-    write: list[str] = typer.Option([], metavar="FILE", help="write the mesh: .msh, .vtu, .vtk, .inp, .xdmf, ..."),
+    write: list[str] = typer.Option(
+        [], callback=file_targets, metavar="FILE", help="write the mesh: .msh, .vtu, .vtk, .inp, .xdmf, ..."
+    ),
     pictures: bool = typer.Option(True, help="draw the spring"),
 ) -> None:
     """Print the data of a spring, draw it, and write its mesh."""
@@ -115,7 +118,9 @@ def sheet(
     grade: int = typer.Option(2, min=1, max=3, help="of EN 15800"),
     surface: str = typer.Option("as coiled", help='"as coiled" or "shot peened", for the endurance'),
     dynamic: bool = typer.Option(False, "--dynamic", help="the load alternates: larger gaps between the coils"),
-    out: str = typer.Option(None, help="folder of the Goodman diagram; default results/NAME-OF-CASE"),
+    out: str = typer.Option(
+        None, callback=folder_target, help="folder of the Goodman diagram; default results/NAME-OF-CASE"
+    ),
     force: bool = typer.Option(False, "--force", help="replace a figure that is there"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
     wires: bool = typer.Option(False, "--wires", help="list the wires that are known"),
@@ -133,7 +138,7 @@ def sheet(
 @app.command()
 def sweep(
     sweep_file: str = typer.Argument(metavar="SWEEP", help="sweep file (YAML)"),
-    out: str = typer.Option(None, help="results folder; default results/NAME-OF-SWEEP"),
+    out: str = typer.Option(None, callback=folder_target, help="results folder; default results/NAME-OF-SWEEP"),
     force: bool = typer.Option(False, "--force", help="throw away the cases that are there"),
     resume: bool = typer.Option(False, "--resume", help="run only the cases that are missing"),
     retry: bool = typer.Option(False, "--retry", help="like --resume, and run the cases that failed again"),
@@ -151,7 +156,9 @@ def sweep(
 @app.command()
 def verify(
     names: list[str] = typer.Argument(None, metavar="[NAME]...", help="cases; all if none is named"),
-    out: str = typer.Option("results/verify", help="folder of the records and figures; what is there is replaced"),
+    out: str = typer.Option(
+        "results/verify", callback=folder_target, help="folder of the records and figures; what is there is replaced"
+    ),
     fast: bool = typer.Option(False, "--fast", help="only cases that take seconds"),
     show: bool = typer.Option(False, "--list", help="list the cases"),
     page: str = typer.Option(None, "--page", help="also write the page of all records here, as docs/verification.md"),
@@ -168,7 +175,9 @@ def verify(
 
 @app.command()
 def bench(
-    out: str = typer.Option("results/bench", help="folder of the record and the figure; what is there is replaced"),
+    out: str = typer.Option(
+        "results/bench", callback=folder_target, help="folder of the record and the figure; what is there is replaced"
+    ),
     full: bool = typer.Option(False, "--full", help="up to 400,000 elements: 10 GiB, a quarter of an hour"),
     cold: bool = typer.Option(False, "--cold", help="also time the compilers, from nothing"),
 ) -> None:
@@ -182,7 +191,7 @@ def bench(
 @app.command()
 def examples(
     name: str = typer.Argument(None, help="example to copy; all are listed if none is named"),
-    out: str = typer.Option(".", help="folder to copy it to"),
+    out: str = typer.Option(".", callback=folder_target, help="folder to copy it to"),
     force: bool = typer.Option(False, "--force", help="replace files that are there"),
 ) -> None:
     """List the examples, or copy one to start from."""

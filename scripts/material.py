@@ -7,11 +7,12 @@ from pathlib import Path
 from coilset.meshes.errors import InputError
 from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.plain import typer
+from coilset.scripts.target import folder_target
 
 app = typer.Typer(help="Draw a material, test it at one point, or fit it to tests.", no_args_is_help=True)
 MATERIAL = typer.Argument(help="name in the library, or the path of a material file")
 DATA = typer.Argument(help="tests (CSV): columns eps11, gamma12, sigma11, tau12")
-OUT = typer.Option(None, help="results folder; default results/material/NAME")
+OUT = typer.Option(None, callback=folder_target, help="results folder; default results/material/NAME")
 FORCE = typer.Option(False, "--force", help="replace files that are there")
 
 

@@ -1,0 +1,45 @@
+"""Where a command will write, looked at before it works: a folder or file that cannot be is said at once."""
+
+import os
+from pathlib import Path
+
+from coilset.meshes.errors import InputError
+
+
+def folder_target(out: str | None) -> str | None:
+    """Callback of an option that names a folder; gives it back.
+
+    Raises:
+        InputError: if the folder cannot be made or written to.
+    """
+    if out is not None:
+        _check(Path(out), "--out")
+    return out
+
+
+def file_targets(paths: list[str] | None) -> list[str]:
+    """Callback of `--write`, which names files; gives them back.
+
+    Raises:
+        InputError: if one is a folder, or its folder cannot be made or written to.
+    """
+    for path in map(Path, paths or []):
+        if os.path.isdir(path):  # of a path, as Path.is_dir fails on a name that is too long
+            raise InputError("is a folder; give a file", "--write", path)
+        _check(path.parent, "--write", path)
+    return list(paths or [])
+
+
+def _check(folder: Path, option: str, target: Path | None = None) -> None:
+    target = target or folder
+    try:
+        there = next(one for one in (folder, *folder.absolute().parents) if one.exists())
+        target.exists()  # a name that is too long fails here
+    except OSError as error:
+        shown = str(target) if len(str(target)) <= 80 else f"{str(target)[:77]}..."
+        raise InputError(f"cannot be made: {error.strerror}", option, shown) from None
+    if not there.is_dir():
+        raise InputError(f"{there} is a file; give a folder" if there != folder else "is a file; give a folder", option,
+                         target)  # fmt: skip
+    if not os.access(there, os.W_OK | os.X_OK):
+        raise InputError(f"{there} cannot be written to; give another", option, target)

@@ -1,0 +1,29 @@
+"""Every command refuses a target that cannot be written to, before it works; nothing is made."""
+
+import pytest
+
+from coilset.meshes.errors import InputError
+from coilset.scripts.main import app
+
+COMMANDS = ["solve CASE", "slice CASE", "mesh CASE", "sheet CASE", "sweep CASE", "verify", "bench",
+            "material show ck15", "examples ck15_presetting"]  # fmt: skip
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("target", ["taken", "taken/below", "n" * 300])
+def test_a_target_that_cannot_be_gets_one_line(example, tmp_path, monkeypatch, command, target):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "taken").write_text("mine")
+    words = [str(example) if word == "CASE" else word for word in command.split()]
+    with pytest.raises(InputError, match="--out") as caught:
+        app([*words, "--out", target], prog_name="coilset", standalone_mode=False)
+    assert "\n" not in str(caught.value)
+    assert [path.name for path in tmp_path.iterdir()] == ["taken"]
+
+
+@pytest.mark.parametrize("target", ["taken/x.msh", ".", "n" * 300 + ".msh"])
+def test_a_mesh_that_cannot_be_written_gets_one_line(example, tmp_path, monkeypatch, target):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "taken").write_text("mine")
+    with pytest.raises(InputError, match="--write"):
+        app(["mesh", str(example), "--no-pictures", "--write", target], prog_name="coilset", standalone_mode=False)
