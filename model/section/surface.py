@@ -101,7 +101,8 @@ def peak(values: np.ndarray, turns: np.ndarray, inside: Inside) -> Peak:
     bend = before - 2.0 * here + after
     off = 0.5 * (before - after) / bend if bend < 0.0 else 0.0
     angle = math.degrees(2.0 * math.pi * (at[-1] + off) / points - inside.angle)
-    return Peak(here - 0.25 * (before - after) * off, float(turns[at[:-1]]), (angle + 180.0) % 360.0 - 180.0)
+    angle = round((angle + 180.0) % 360.0 - 180.0, 6)  # where a peak is flat its place takes up rounding first
+    return Peak(here - 0.25 * (before - after) * off, float(turns[at[:-1]]), angle)
 
 
 def is_middle(turns: np.ndarray, first: float, last: float) -> np.ndarray:
