@@ -36,6 +36,9 @@ def equivalent(state: np.ndarray, components: tuple[str, ...]) -> np.ndarray:
     return np.sqrt(0.5 * ((s1 - s2) ** 2 + (s2 - s3) ** 2 + (s3 - s1) ** 2) + 3.0 * shears)
 
 
+TIE = 1e-8  # of the greatest value: symmetric springs have it twice, but for rounding; the first place is told
+
+
 @dataclass(frozen=True)
 class Inside:
     """Where the inside of the coil is on the surface, and how τ13 is counted there.
@@ -92,12 +95,14 @@ def peak(values: np.ndarray, turns: np.ndarray, inside: Inside) -> Peak:
         Peak; between the points a parabola through three of them.
     """
     points = values.shape[-1]
-    at = np.unravel_index(np.argmax(values), values.shape)
+    top = values.max()
+    at = np.unravel_index(np.argmax(values >= top - TIE * abs(top)), values.shape)
     before, here, after = (float(values[(*at[:-1], (at[-1] + k) % points)]) for k in (-1, 0, 1))
     bend = before - 2.0 * here + after
     off = 0.5 * (before - after) / bend if bend < 0.0 else 0.0
     angle = math.degrees(2.0 * math.pi * (at[-1] + off) / points - inside.angle)
-    return Peak(here - 0.25 * (before - after) * off, float(turns[at[:-1]]), (angle + 180.0) % 360.0 - 180.0)
+    angle = round((angle + 180.0) % 360.0 - 180.0, 6)  # where a peak is flat its place takes up rounding first
+    return Peak(here - 0.25 * (before - after) * off, float(turns[at[:-1]]), angle)
 
 
 def is_middle(turns: np.ndarray, first: float, last: float) -> np.ndarray:

@@ -43,6 +43,16 @@ def test_peak_lies_between_the_points():
     assert peak(values, TURNS, Inside(np.pi, 1.0)).angle == pytest.approx(-80.0, abs=0.2)
 
 
+@pytest.mark.parametrize("rounding", [-1e-12, 0.0, 1e-12])
+def test_of_two_peaks_that_differ_by_rounding_the_first_is_told(rounding):
+    values = np.zeros((2, 2, 24))
+    values[1, 0] = np.arange(24.0)
+    values[0, 1] = values[1, 0] * (1.0 + rounding)
+    assert peak(values, TURNS, Inside(0.0, 1.0)).turn == 0.3
+    values[0, 1] *= 0.999
+    assert peak(values, TURNS, Inside(0.0, 1.0)).turn == 0.6
+
+
 def test_middle_turns():
     np.testing.assert_array_equal(is_middle(np.array([0.4, 0.6, 1.9, 2.1]), 0.0, 2.5), [False, True, True, False])
     np.testing.assert_array_equal(is_middle(np.array([1.4, 1.6, 2.9, 3.1]), 1.0, 3.5), [False, True, True, False])
