@@ -195,7 +195,7 @@ class System:
         self.internal.copy(F)
         target, force = load.at(load_factor, self._reactions.equilibrium)
         values, x = F.getArray(), self.last.increments
-        if self._is_rotation[load.loaded].any():
+        if isinstance(self.body, HasRotations) and self._is_rotation[load.loaded].any():
             outer = np.zeros(len(values))
             outer[load.loaded] = force
             self.body.to_charts(outer)
