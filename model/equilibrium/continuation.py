@@ -236,8 +236,10 @@ class Continuation:
             if outcome.negative_pivots > self.negative_pivots:
                 self._unstable = size
             if not outcome.converged and self._unstable and self._is_cut_enough(size):
-                size = self._unstable
-                outcome = self._leave_branch(path.load(position.done + size), size)
+                beside = self._leave_branch(path.load(position.done + self._unstable), self._unstable)
+                if beside.converged:
+                    outcome, size = beside, self._unstable
+                self._unstable = 0.0  # once a step
             if outcome.converged:
                 self.number, self._unstable = self.number + 1, 0.0
                 self.position = Position(position.done + size, self._following(path, outcome, size), 0, size)
