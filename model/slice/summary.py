@@ -11,9 +11,16 @@ from coilset.model.results.folder import whole
 from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot, SliceStep
 from coilset.model.slice.watch import equivalent, shear
 
-# Entries of a spring's summary that one section cannot know: it has no axis that could bend.
+# Entries of a spring's summary that one section cannot know, for it has no axis that could bend, or tells otherwise: its
+# stresses at the surface are in `loaded` and `released`.
 UNSEEN = (
     "unstable_steps", "buckled", "buckling_travel_mm", "buckling_force_N", "buckling_travel_EN_13906_1_mm",
+    "residual_shear_inside_MPa", "shear_inside_max_MPa", "residual_shear_surface_max_MPa",
+    "residual_shear_surface_max_turn", "residual_shear_surface_max_angle_deg",
+    "residual_equivalent_surface_max_MPa", "residual_equivalent_surface_max_turn",
+    "residual_equivalent_surface_max_angle_deg", "shear_surface_max_MPa", "shear_surface_max_turn",
+    "shear_surface_max_angle_deg", "equivalent_surface_max_MPa", "equivalent_surface_max_turn",
+    "equivalent_surface_max_angle_deg", "evaluations", "failed_solves", "section_kind", "warnings",
 )  # fmt: skip
 
 
