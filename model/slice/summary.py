@@ -11,8 +11,8 @@ from coilset.model.results.folder import whole
 from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot, SliceStep
 from coilset.model.slice.watch import equivalent, shear
 
-# Entries of a spring's summary that one section cannot know, for it has no axis that could bend, or tells otherwise: its
-# stresses at the surface are in `loaded` and `released`.
+# Entries of a spring's summary that one section cannot know, for it has no axis that could bend, or tells otherwise:
+# its stresses at the surface are in `loaded` and `released`.
 UNSEEN = (
     "unstable_steps", "buckled", "buckling_travel_mm", "buckling_force_N", "buckling_travel_EN_13906_1_mm",
     "residual_shear_inside_MPa", "shear_inside_max_MPa", "residual_shear_surface_max_MPa",
