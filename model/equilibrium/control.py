@@ -41,7 +41,7 @@ class NewtonControl:
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = STRICT
-    stagnation: Count = 20
+    stagnation: Count = 24
     part_tolerance: Share = 0.2
     smallest_part: Share = 0.1
     augmentations: Count = 40

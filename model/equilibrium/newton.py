@@ -110,6 +110,17 @@ class Newton:
     # ---- solve -----------------------------------------------------------------------------------------------------
 
     def solve(self, load: Load, start: Start | None = None) -> Outcome:
+        """As `_attempt`; where tangents with foreseen forces fail, once more with the true ones; collective."""
+        outcome = self._attempt(load, start)
+        if outcome.converged or not self.foresees:
+            return outcome
+        self.foresees = self.search.foresees = False
+        try:
+            return outcome + self._attempt(load, start)
+        finally:
+            self.foresees = self.search.foresees = True
+
+    def _attempt(self, load: Load, start: Start | None = None) -> Outcome:
         """Solve one step; the system is left at the last iterate; collective.
 
         Args:

@@ -32,6 +32,11 @@ in_private_root = pytest.mark.skipif(
 )  # fmt: skip
 
 
+def hear_interrupts():
+    """What a shell starts in the background ignores SIGINT, and hands that on to all that it starts."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 class Running:
     """A command under way in a folder; what it says goes to files there."""
 
@@ -42,7 +47,7 @@ class Running:
         with open(self.said, "wb") as out, open(self.complaints, "wb") as err:
             self.process = subprocess.Popen(
                 command, cwd=folder, stdout=out, stderr=err, stdin=stdin, start_new_session=True,
-                env=os.environ | {name: value} | environment,
+                env=os.environ | {name: value} | environment, preexec_fn=hear_interrupts,
             )  # fmt: skip
 
     def wait_for(self, words):

@@ -101,5 +101,5 @@ def tube_shear(yield_stress: float, E: float, G: float, angle: float) -> float:
 
         γ = σ0/(√3 G) [sin θ + 3G/E (ln(sec θ + tan θ) − sin θ)].
     """
-    sine = np.sin(angle)
+    sine = min(np.sin(angle), 1.0 - np.finfo(float).epsneg)  # finite at the end of the way, too
     return yield_stress / (np.sqrt(3.0) * G) * (sine + 3.0 * G / E * (np.arctanh(sine) - sine))
