@@ -29,8 +29,8 @@ class LineMesh:
     element: np.ndarray
     owned_cells: int
 
-    def in_order(self, values: np.ndarray) -> np.ndarray | None:
-        """A copy of the owned cells' values in the order of the elements, on rank 0; elsewhere None; collective.
+    def in_order(self, values: np.ndarray) -> np.ndarray:
+        """A copy of the owned cells' values in the order of the elements, on rank 0; elsewhere none; collective.
 
         Args:
             values: shape (owned cells, ...).
@@ -41,8 +41,8 @@ class LineMesh:
             ordered[element] = values
             return ordered
         parts = comm.gather((element, values))
-        if comm.rank:
-            return None
+        if comm.rank or parts is None:
+            return values[:0].copy()
         order = np.argsort(np.concatenate([part[0] for part in parts]))
         return np.concatenate([part[1] for part in parts])[order]
 

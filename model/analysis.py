@@ -15,6 +15,7 @@ from coilset.meshes.placement import section_placement, straight
 from coilset.model.case import Case
 from coilset.model.case.phases import Phase
 from coilset.model.case.targets import check_targets
+from coilset.model.contact.base import BearsOnWire
 from coilset.model.contact.build import build_contacts, seats_at
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
@@ -91,7 +92,7 @@ class Analysis:
         self.continuation = Continuation(self.newton, case.solver.control.steps, limit, stability=self.stability)
         self.program = LoadProgram(self.control, self.continuation)
         records = tuple(
-            ContactRecord(one.name, one.end, one.points and one.points.turns, getattr(one, "tip", 0))
+            ContactRecord(one.name, one.end, one.points.turns if isinstance(one, BearsOnWire) else np.empty(0))
             for one in contacts
         )
         self.setup = Setup(spring, self.law.name, case.ends, tuple(p.label for p in case.loading), turns, radius,
@@ -177,8 +178,8 @@ class Analysis:
             pairs = [(name, saved.arrays.get(name), values) for name, values in expected.items()]
             pairs += [(f"{shot.name}: {name}", getattr(shot, name), values) for shot in saved.result.snapshots
                       for name, values in vars(like).items() if isinstance(values, np.ndarray)]  # fmt: skip
-            problem = next((name for name, found, values in pairs
-                            if np.shape(found) != np.shape(values) or not np.isfinite(found).all()), None)  # fmt: skip
+            problem = next((name for name, found, values in pairs if found is None
+                            or found.shape != values.shape or not np.isfinite(found).all()), None)  # fmt: skip
         problem = self.comm.bcast(problem)
         if problem:
             raise InputError("the checkpoint's array is missing or not of this spring; give --force instead of "
@@ -250,8 +251,6 @@ class Analysis:
         rod = self.rod
         parts = (rod.triads.values, rod.s.values, rod.point_state, rod.surface_state)
         cells = [rod.line.in_order(values) for values in parts]
-        if self.comm.rank:
-            cells = [np.empty(0)] * len(parts)
         x, components = self.layout.gather(rod.x), rod.sections.components
         triads, resultants, state, surface = cells
         return Snapshot(

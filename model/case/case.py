@@ -15,7 +15,7 @@ from coilset.model.case.seats import SeatsSpec
 from coilset.model.case.settings import assign, located
 from coilset.model.case.yaml import read_data
 from coilset.model.equilibrium.control import NewtonControl, StepControl
-from coilset.model.equilibrium.methods import METHODS
+from coilset.model.equilibrium.methods import MethodName
 from coilset.model.section import rules
 
 
@@ -124,12 +124,12 @@ Option = Annotated[bool | int | float | str | None, BeforeValidator(_one_value)]
 class SolverSpec(Strict):
     """How equilibrium is found."""
 
-    method: Annotated[Literal[tuple(METHODS)], Field(description="iteration method")] = "newton"
+    method: Annotated[MethodName, Field(description="iteration method")] = "newton"
     tolerance: Annotated[float, Field(gt=0, lt=1, description="ε of (6.3.1)")] = 1e-9
     options: Annotated[
         dict[Annotated[str, Field(pattern="^[a-z]\\w*$")], Option],
-        Field(default_factory=dict, description="any PETSc options, without the leading hyphen; they win"),
-    ]
+        Field(description="any PETSc options, without the leading hyphen; they win"),
+    ] = Field(default_factory=dict)
     control: ControlSpec = ControlSpec()
 
 

@@ -5,8 +5,8 @@ those of the n stations come x, y, z and rotations θx, θy, θz of the bottom a
 these the stations' rotations since the last equilibrium, 3 n + 12 + 3 i + k. Positions of all stations are known on
 every rank (they are small), every rank evaluates all contacts, and adds each row where it lives.
 
-Every kind is a `Contact`. What only some of them do has a protocol of its own, asked for by isinstance: `LimitsStep`,
-`HasMemory`, `Augmented`.
+Every kind is a `Contact`. What only some of them do has a protocol of its own, asked for by isinstance: `BearsOnWire`,
+`LimitsStep`, `HasMemory`, `Augmented`.
 """
 
 from dataclasses import dataclass
@@ -107,17 +107,27 @@ class Contact(Protocol):
         ...
 
     @property
-    def points(self) -> WirePoints | None:
-        """What `Contribution.point` counts, or None; with points go `lengths`, (m,), mm of wire on which each bears."""
-        ...
-
-    @property
     def needs_rotations(self) -> bool:
         """Does it ask for `TrialPositions.rotations`?"""
         ...
 
     def evaluate(self, trial: TrialPositions) -> Contribution:
         """Forces and stiffness at a trial state. A kind with a memory writes its trial arrays."""
+        ...
+
+
+@runtime_checkable
+class BearsOnWire(Contact, Protocol):
+    """A contact that bears on points of the wire."""
+
+    @property
+    def points(self) -> WirePoints:
+        """What `Contribution.point` counts."""
+        ...
+
+    @property
+    def lengths(self) -> np.ndarray:
+        """Wire on which each point bears, shape (m,), mm."""
         ...
 
 

@@ -157,6 +157,10 @@ class WirePoints:
     def __len__(self) -> int:
         return len(self.xi)
 
+    def tip(self, end: str) -> int:
+        """Number of the point at the wire's tip of an end, `bottom` or `top`."""
+        return 0 if end == "bottom" else len(self) - 1
+
     def at(self, values: np.ndarray) -> np.ndarray:
         """Values of the stations, shape (n, …), at the points, shape (m, …)."""
         return np.einsum("mk,mk...->m...", self.weights, values[self.stations])

@@ -56,7 +56,7 @@ class Friction(ABC):
         seats: of both seats at the start, shape (12,), mm and rad.
     """
 
-    points, needs_rotations = None, True
+    needs_rotations = True
 
     def __init__(self, normal: Seat | Coils, mu: float, stations: np.ndarray, seats: np.ndarray):
         self.normal, self.mu, self.end, self.name = normal, mu, normal.end, f"{normal.name} friction"

@@ -17,7 +17,7 @@ class Gaps:
     """
 
     # gap elements are few: they limit no step, but close and open by the iteration alone, as in the thesis
-    name, end, points, needs_rotations = "gap", None, None, False
+    name, end, needs_rotations = "gap", None, False
 
     def __init__(self, pairs: ArrayLike, free_length: ArrayLike, stiffness: ArrayLike, onset: float):
         self.pairs = np.asarray(pairs, dtype=np.int64).reshape(-1, 2)
@@ -51,7 +51,7 @@ class Stops:
         onset: distance over which contact sets in, mm.
     """
 
-    name, end, points, needs_rotations = "stop", None, None, False
+    name, end, needs_rotations = "stop", None, False
 
     def __init__(self, stations: ArrayLike, normal: ArrayLike, level: ArrayLike, stiffness: ArrayLike, onset: float):
         self.stations = np.asarray(stations, dtype=np.int64)

@@ -24,14 +24,14 @@ class Groove:
         seats: of both seats at the stress-free state, shape (12,).
     """
 
-    points, needs_rotations = None, False
+    needs_rotations = False
 
     def __init__(
         self, end: str, points: WirePoints, turns: float, stations: np.ndarray, bedding: float, seats: np.ndarray
     ):
         self.name, self.end = f"{end} groove", end
         self.plate, self.wire = Plate(end, len(stations)), points
-        tip = 0 if end == "bottom" else len(points) - 1
+        tip = points.tip(end)
         inside = np.flatnonzero(np.abs(points.turns - points.turns[tip]) <= turns + 1e-9)
         self.at, self.stop = np.append(inside, tip), len(inside)  # the last element is the groove's end
         self.stiffness = bedding * np.append(points.length[inside], 2.0 * points.radius[tip])
@@ -64,7 +64,7 @@ class Mount:
         seats: of both seats, shape (12,), where the springs are slack.
     """
 
-    end, points, needs_rotations = None, None, False
+    end, needs_rotations = None, False
 
     def __init__(self, end: str, stations: int, stiffness: ArrayLike, seats: np.ndarray):
         plate = Plate(end, stations)

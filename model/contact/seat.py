@@ -55,7 +55,7 @@ class Seat:
         self.plate = Plate(end, len(stations))
         # on a flat seat that moves along the axis only, z of wire and seat take part, and the gap is linear in them
         self.linear = not (moves or slope)
-        self.tip = 0 if end == "bottom" else len(points) - 1
+        self.tip = points.tip(end)
         self.stiffness = bedding * points.length
         # a wire that stands on its tip bears by its end face, whatever the mesh
         self.stiffness[self.tip] = bedding * 2.0 * points.radius[self.tip]

@@ -108,7 +108,7 @@ class LineLayout(Layout):
         everything[self._all_dofs] = ordered
         return everything[self.start : self.stop]
 
-    def natural(self, field: Field) -> np.ndarray | None:
+    def natural(self, field: Field) -> np.ndarray:
         """A field at the last equilibrium in an order that no partition changes; cells on rank 0 only; collective."""
         if field.where is Where.STATION:
             return self.gather(field.equilibrium)

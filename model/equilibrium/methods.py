@@ -10,7 +10,7 @@ one matrix for the whole step comes to no rest, as the thesis found (6.3). `snes
 from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, Literal
 
 from coilset.meshes.errors import InputError
 
@@ -25,7 +25,8 @@ PRECONDITIONED = {f"npc_{key}": value for key, value in (ONE_STEP | KEPT).items(
 
 FIRST = {**ONE_STEP, "snes_linesearch_type": "basic"}  # does nothing but meet the prescribed increments
 
-METHODS: dict[str, dict[str, Any]] = {
+MethodName = Literal["newton", "modified-newton", "modified-newton-anderson", "bfgs", "broyden", "arc-length"]
+METHODS: dict[str, dict[str, Any]] = {  # each MethodName
     # Newton-Raphson (4.4.4)
     # its corrections are scaled by coilset.model.equilibrium.line_search
     "newton": {"snes_type": "newtonls", "snes_linesearch_type": "basic", "snes_max_it": 30, **DIRECT},

@@ -68,7 +68,7 @@ class Newton:
         control: NewtonControl | None = None,
         limit: ContactLimit | None = None,
         augmentation_tolerance: float = np.inf,
-        prepare: Callable[[PETSc.Mat], None] | None = None,
+        prepare: Callable[[PETSc.Mat], object] = lambda matrix: None,
     ) -> None:
         self.system, self.control = system, control or NewtonControl()
         self.augmentation_tolerance, self.prepare = augmentation_tolerance, prepare
@@ -228,8 +228,7 @@ class Newton:
         version = self.matrix.version
         self.system.tangent(X, self.load, self.matrix, self._at_step_start, self._corrected)
         self._at_step_start, self._corrected = False, None
-        if self.prepare is not None:
-            self.prepare(P)
+        self.prepare(P)
         if self.matrix.version != version:  # PETSc may take the new matrix for one with the old pattern
             for each in (self.snes, self._first, self.snes.getNPC() if self.snes.hasNPC() else None):
                 if each is not None:

@@ -62,7 +62,7 @@ def point_state(setup: Setup, result: Result) -> xr.Dataset:
 def pressure_along_wire(setup: Setup, result: Result) -> xr.Dataset:
     """Force per length of wire of each kind of contact in every step, at the points of the wire that ever bear."""
     resultants, kinds = result.seats, setup.contacts
-    wire_turns = next((kind.wire_turns for kind in kinds if kind.wire_turns is not None), None)
+    wire_turns = next((kind.wire_turns for kind in kinds if len(kind.wire_turns)), None)
     if wire_turns is None or not resultants:
         return xr.Dataset()
     rows = np.concatenate([one.pressure for one in resultants])

@@ -153,14 +153,17 @@ class ContactRecord:
     Attributes:
         name: for labels.
         end: `bottom` or `top` for a seat, else None.
-        wire_turns: turns of the points of the wire at which it is evaluated, shape (m,); None for other kinds.
-        tip: number of the point at the wire's tip, of a seat.
+        wire_turns: turns of the points of the wire on which it bears, shape (m,); empty for kinds that do not.
     """
 
     name: str
     end: str | None
-    wire_turns: np.ndarray | None
-    tip: int
+    wire_turns: np.ndarray
+
+    @property
+    def turns_from_tip(self) -> np.ndarray:
+        """Turns from the wire's tip at a seat's end to each point, shape (m,)."""
+        return np.abs(self.wire_turns - self.wire_turns[0 if self.end == "bottom" else -1])
 
 
 @dataclass(frozen=True)

@@ -85,7 +85,7 @@ def seat_pressure(path: str | Path, setup: Setup, result: Result) -> bool:
     seats = {
         contact.end: (kind, contact)
         for kind, contact in enumerate(setup.contacts)
-        if contact.end and contact.wire_turns is not None
+        if contact.end and len(contact.wire_turns)
     }
     if not seats or not result.seats:
         return False
@@ -123,7 +123,7 @@ def seat_pressure(path: str | Path, setup: Setup, result: Result) -> bool:
 def draw_pressure(axes: Axes, result: Result, kind: int, contact: ContactRecord, greatest: float) -> Any:
     """Pressure of one kind of contact as colour over the place along the wire and the step; None if there is none."""
     rows = [one.pressure[one.pressure[:, 0] == kind] for one in result.seats]
-    away = np.abs(contact.wire_turns - contact.wire_turns[contact.tip])
+    away = contact.turns_from_tip
     bearing = np.unique(np.concatenate(rows)[:, 1].astype(int))
     if not len(bearing):
         return None

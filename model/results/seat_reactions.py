@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coilset.model.contact.base import ENDS, SEAT_DOFS, Contact, Contribution
+from coilset.model.contact.base import ENDS, SEAT_DOFS, BearsOnWire, Contact, Contribution
 from coilset.model.contact.resultants import Wrench, station_forces, station_moments
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.layout import LineLayout
@@ -69,12 +69,12 @@ class _Observer:
         crossing = wrench.crossing(centre) if abs(wrench.force[2]) > faint else np.full(2, np.nan)
         spot, length, down = np.full(2, np.nan), 0.0, 0.0
         for contact, part in self.parts:
-            if contact.end == end and contact.points is not None:
+            if contact.end == end and isinstance(contact, BearsOnWire):
                 bears = part.bears
                 number, wire = part.point[bears], contact.points
                 points = wire.at(self.x)[number]
                 length += float(wire.length[number].sum())
-                down = float(np.abs(wire.turns[number] - wire.turns[contact.tip]).max(initial=down))
+                down = float(np.abs(wire.turns[number] - wire.turns[wire.tip(end)]).max(initial=down))
                 if part.pressure.sum() > faint:
                     spot = part.pressure[bears] @ points[:, :2] / part.pressure[bears].sum()
         numbers = (side * wrench.force[2], *wrench.force[:2], *wrench.about(centre), *crossing, np.hypot(*crossing),
@@ -98,9 +98,9 @@ def active_turns(rod: Rod, turns: np.ndarray, force: float) -> float:
 
 def pressures(parts: Parts) -> np.ndarray:
     """Rows of SeatReactions.pressure: forces of each kind of contact summed over what bears at a point."""
-    rows = [np.empty((0, 3))]
+    rows: list[np.ndarray] = [np.empty((0, 3))]
     for kind, (contact, part) in enumerate(parts):
-        if contact.points is None or not len(part.point):
+        if not isinstance(contact, BearsOnWire) or not len(part.point):
             continue
         force = np.bincount(part.point, np.where(part.bears, part.pressure, 0.0), len(contact.points))
         bears = np.flatnonzero(force)
@@ -111,7 +111,7 @@ def pressures(parts: Parts) -> np.ndarray:
 
 def free_turns(parts: Parts, pressure: np.ndarray) -> float:
     """Turns of wire that touch nothing, each point for the turns that it stands for."""
-    points = next((contact.points for contact, _ in parts if contact.points is not None), None)
+    points = next((contact.points for contact, _ in parts if isinstance(contact, BearsOnWire)), None)
     if points is None:
         return float("nan")
     step = 0.5 * np.diff(points.turns)

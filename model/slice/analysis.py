@@ -176,7 +176,10 @@ class SliceAnalysis:
             return "height", self.spring.block_height
         if to.force is not None:
             return "force", to.force
-        return "height", to.height if to.height is not None else self.spring.free_length - to.travel
+        if to.height is not None:
+            return "height", to.height
+        assert to.travel is not None  # a target has one entry
+        return "height", self.spring.free_length - to.travel
 
     def check_targets(self) -> None:
         """Refuse a load program that asks for less height than that of the coils lying on each other.

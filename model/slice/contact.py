@@ -1,6 +1,7 @@
 """A coil on its own neighbour: a one-sided bedding between the section's surface and that of the next coil."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -36,6 +37,33 @@ class Pressure:
     rows: np.ndarray
     columns: np.ndarray
     values: np.ndarray
+
+
+class SliceContact(Protocol):
+    """What stands between the coils: their contact, or nothing.
+
+    Attributes:
+        onset: distance over which contact sets in, mm.
+        blocks: blocks of degrees of freedom that may touch.
+    """
+
+    onset: float
+    blocks: np.ndarray
+
+    def evaluate(self) -> Pressure:
+        """Forces and stiffness at the body's increment."""
+        ...
+
+
+class NoContact:
+    """Coils that pass through each other."""
+
+    onset, blocks = 0.0, np.empty(0, int)
+
+    def evaluate(self) -> Pressure:
+        """Nothing presses, and no gap closes."""
+        none, places = np.empty(0), np.empty(0, int)
+        return Pressure(np.inf, 0, 0.0, np.zeros((1, 3)), np.zeros(2), places, places, none)
 
 
 class SelfContact:

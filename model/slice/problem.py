@@ -11,7 +11,7 @@ from petsc4py import PETSc
 
 from coilset.meshes.errors import SolveError
 from coilset.model.slice.bordered import BorderedMatrix
-from coilset.model.slice.contact import SelfContact
+from coilset.model.slice.contact import NoContact, SelfContact, SliceContact
 from coilset.model.slice.forms import RISE, TURN, assemble
 from coilset.model.slice.slice import Slice
 from coilset.model.slice.watch import Watch
@@ -43,27 +43,30 @@ class SliceProblem:
     Args:
         body: Slice.
         free_ends: the ends may turn about the coil's axis (no torque); else they cannot (λ = 1).
-        contact: SelfContact of the body, or None: coils pass through each other. It takes part from the first step
+        contact: SelfContact of the body; without it coils pass through each other. It takes part from the first step
             on that would press coils into each other.
         precision: ε of (6.3.1): out-of-balance forces over those that the step puts on the slice.
 
     Attributes:
         force: axial force at the last equilibrium, compression positive, N; torque: about the axis, N mm.
-        pressure: `Pressure` of the contact there, None without contact.
+        pressure: `Pressure` of the contact there.
         touching: whether contact takes part.
     """
 
     def __init__(
         self, body: Slice, free_ends: bool = False, contact: SelfContact | None = None, precision: float = 1e-8
     ):
-        self.body, self.free_ends, self.contact, self.precision = body, free_ends, contact, precision
+        self.body, self.free_ends, self.precision = body, free_ends, precision
+        self.contact: SliceContact = contact or NoContact()
         centre = int(np.argmin(np.linalg.norm(body.start - [body.coil.radius, 0.0, 0.0], axis=1)))
         # a shift along the axis and a turn about it change nothing: they are taken out at the middle of the section
         self._gauge = np.array([3 * centre + 1, 3 * centre + 2])
         self._scale = np.array([1.0, body.coil.radius])
         self._n = body.u.size
         self.force, self.torque, self._direction = 0.0, 0.0, 0.0
-        self.pressure = contact.evaluate() if contact else None
+        self.pressure = self.contact.evaluate()
+        self._at, self._good = np.empty(0), True
+        self._columns: list[np.ndarray | None] = [None, None]
         self._solvers: dict[bool, tuple[BorderedMatrix, PETSc.SNES]] = {}
         self._let_touch(False)
 
@@ -132,7 +135,7 @@ class SliceProblem:
     def _assemble(self) -> None:
         forms, scale = self.body.forms, self._scale
         free, moves = [self._force is not None, self.free_ends], [True, self._turns]
-        self._columns = columns = [assemble(forms["column", k]) / scale[k] if moves[k] else None for k in (RISE, TURN)]
+        columns = self._columns = [assemble(forms["column", k]) / scale[k] if moves[k] else None for k in (RISE, TURN)]
         rows = [assemble(forms["row", k]) / scale[k] if free[k] else None for k in (RISE, TURN)]
         corner = np.eye(2)
         for i, j in itertools.product((RISE, TURN), repeat=2):
@@ -216,13 +219,12 @@ class SliceProblem:
 
     def _sinks_in(self) -> bool:
         """Whether coils lie in each other at an equilibrium that was found without contact."""
-        return self.contact is not None and not self.touching and self.contact.evaluate().gap < 0.0
+        return not self.touching and self.contact.evaluate().gap < 0.0
 
     def _accept(self) -> None:
         axial, self.torque = self.resultants()
         self.force = -axial
-        if self.contact is not None:
-            self.pressure = self._pressure if self.touching else self.contact.evaluate()
+        self.pressure = self._pressure if self.touching else self.contact.evaluate()
         self.body.commit()
         if self.touching and not self.pressure.bearing:
             self._let_touch(False)
@@ -230,7 +232,7 @@ class SliceProblem:
     def _attempt(self, value: float, by_force: bool, turning: float) -> bool:
         """Newton's method from the linear answer at the last moduli, K Δu = −R − ∂R/∂h̄ Δh̄; whether it converged."""
         self._linear_answer(value, by_force, turning)
-        if by_force and self.contact is not None and not self.touching:
+        if by_force and not self.touching:
             self._hold_back(value)
         self.snes.solve(None, self._X)
         return self.snes.getConvergedReason() > 0 and self._set(self._X)
@@ -254,13 +256,17 @@ class SliceProblem:
         b, self._load = -rest, np.linalg.norm(rest)
         if not by_force:
             b[-2] = value - self.body.rise
-            self._load = np.linalg.norm(self._columns[RISE]) * abs(b[-2])
+            self._load = self._column_norm(RISE) * abs(b[-2])
         if turning:
             b[-1] = turning * self._scale[TURN]
-            self._load += np.linalg.norm(self._columns[TURN]) * abs(b[-1])
+            self._load += self._column_norm(TURN) * abs(b[-1])
         diagonal = self._matrix.petsc.getDiagonal().array[:-2]
         self._floor = 0.5 * np.finfo(float).eps * np.linalg.norm(diagonal * self.body.x.ravel())
         ksp = self.snes.getKSP()
         ksp.setOperators(self._matrix.petsc)
         self._b.setArray(b)
         ksp.solve(self._b, self._X)
+
+    def _column_norm(self, k: int) -> float:
+        column = self._columns[k]
+        return 0.0 if column is None else float(np.linalg.norm(column))

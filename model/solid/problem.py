@@ -59,11 +59,11 @@ class SolidProblem:
         held = np.unique(np.concatenate([self.bottom.blocks, self.top.blocks]))
         self.system = System(solid, layout)
         self.newton = Newton(self.system, method, precision, NewtonControl(), prepare=self._prepare)
-        self._multigrid = None
+        self._multigrid: VertexMultigrid | None = None
         if self.solver.startswith("multigrid"):
             self._multigrid = VertexMultigrid(solid.configuration, held, self.newton.snes.getKSP().getPC())
             self.newton.snes.setFromOptions()  # now that the preconditioner has its levels
-        self.predictor = HeadPredictor(self.newton, held)
+        self.predictor = HeadPredictor(self.newton, solid, held)
         self._held = held[held < solid.configuration.owned]
         self.continuation = Continuation(self.newton, steps, starts=self._starts)
         self.system.restore()
@@ -128,12 +128,13 @@ class HeadPredictor:
     It tears no end element, and the body stays at the last equilibrium.
 
     Args:
-        newton: Newton of a solid.
+        newton: Newton of the solid.
+        solid: Solid.
         held: blocks of the heads, ghosts included.
     """
 
-    def __init__(self, newton: Newton, held: np.ndarray) -> None:
-        self.newton, self.solid = newton, newton.system.body
+    def __init__(self, newton: Newton, solid: Solid, held: np.ndarray) -> None:
+        self.newton, self.solid = newton, solid
         self._prescribed = fem.Function(self.solid.V)
         self._conditions = [fem.dirichletbc(self._prescribed, held)]
         self._start, self._rest = (newton.system.layout.vector() for _ in range(2))

@@ -100,7 +100,7 @@ class Plan:
         self.notices: list[str] = []
         for row in self.rows:
             try:
-                case = check(self.data(row), self.case_path)
+                case: Case = check(self.data(row), self.case_path)
             except InputError as error:
                 inputs = ", ".join(f"{name} = {shown(value)}" for name, value in zip(self.names, row, strict=True))
                 raise InputError(f"{error.problem} (in the case {inputs})", error.place) from None

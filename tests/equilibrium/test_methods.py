@@ -1,5 +1,7 @@
 """Every iteration method as SNES options: same state, failures in words, options of the user's."""
 
+from typing import get_args
+
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -8,7 +10,7 @@ from scipy.optimize import brentq
 from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.equilibrium.methods import METHODS, rod_method
+from coilset.model.equilibrium.methods import METHODS, MethodName, rod_method
 from coilset.model.equilibrium.newton import Newton
 from coilset.model.material import library
 from coilset.model.section.rules import abramowitz9
@@ -87,3 +89,7 @@ def test_arc_length_goes_past_a_limit_point():
     assert frame.step(forces={frame.dof(1, 2): -1.3 * limit}).converged
     expected = brentq(lambda w: force(w) - 1.3 * limit, 2.0 * h, 4.0 * h)
     assert -frame.moved(1)[2] == pytest.approx(expected, rel=5e-3)
+
+
+def test_the_names_of_methods_are_those_of_the_case_file():
+    assert set(METHODS) == set(get_args(MethodName))

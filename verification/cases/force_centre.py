@@ -154,9 +154,7 @@ def draw_paths(study, elastic):
             over.plot(c["travel"], c["centre"] / RADIUS, "^:", color=colour, ms=3, lw=1.0,
                       label=f"force centre, {ends} ends")  # fmt: skip
             kind, contact = next(
-                (k, one)
-                for k, one in enumerate(analysis.setup.contacts)
-                if one.end == "bottom" and one.wire_turns is not None
+                (k, one) for k, one in enumerate(analysis.setup.contacts) if one.end == "bottom" and len(one.wire_turns)
             )
             rows = np.concatenate([one.pressure for one in analysis.result.seats])
             shown = draw_pressure(axes, analysis.result, kind, contact, rows[rows[:, 0] == kind, 2].max())
