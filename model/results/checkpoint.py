@@ -19,7 +19,8 @@ from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.program import ProgramPosition
 from coilset.model.results.folder import make, whole
 from coilset.model.results.provenance import changed, provenance
-from coilset.model.results.record import Result, SeatReactions, Snapshot, Step
+from coilset.model.results.record import Result, Snapshot
+from coilset.model.results.step_journal import StepJournal
 from coilset.model.state import State
 
 # what must be the same to go on
@@ -54,6 +55,7 @@ class Checkpoint:
     def __init__(self, folder: str | Path, case: Case) -> None:
         self.folder = Path(folder) / "checkpoint"
         self.case, self.provenance = case.model_dump(mode="json"), provenance(case)
+        self.journal = StepJournal(self.folder / "steps.jsonl")
 
     # ---- saving ----------------------------------------------------------------------------------------------------
 
@@ -62,19 +64,17 @@ class Checkpoint:
         arrays: dict[str, Any] = {PREFIX + name: layout.natural(field) for name, field in state.items()}
         if layout.comm.rank:
             return
-        arrays["pressure"] = np.concatenate([np.empty((0, 3)), *(one.pressure for one in result.seats)])
-        arrays["bearing_points"] = np.array([len(one.pressure) for one in result.seats], dtype=int)
         about = {
             "case": self.case,
             "provenance": self.provenance,
             "position": asdict(position),
             "rate": result.rate,
             "warnings": result.warnings,
-            "steps": [asdict(step) for step in result.steps],
-            "seats": [one.row() for one in result.seats],
+            "steps": len(result.steps),
             "snapshots": len(result.snapshots),
         }
         make(self.folder)
+        self.journal.append(result.steps, result.seats)
         for number, snapshot in enumerate(result.snapshots):
             self._save_snapshot(number, snapshot)
         with whole(self.folder / "state.npz") as path, open(path, "wb") as file:
@@ -88,8 +88,8 @@ class Checkpoint:
 
     def clear(self) -> None:
         """Forget an earlier run."""
-        for path in self.folder.glob("*.npz"):
-            path.unlink()
+        for path in (*self.folder.glob("*.npz"), self.journal.path):
+            path.unlink(missing_ok=True)
 
     # ---- resuming --------------------------------------------------------------------------------------------------
 
@@ -121,23 +121,17 @@ class Checkpoint:
             about = json.loads(str(loaded["about"]))
             self._compare(about)
             arrays = {name.removeprefix(PREFIX): values for name, values in loaded.items() if name.startswith(PREFIX)}
-            return Saved(arrays, self._position(about), self._result(loaded, about))
+            result = self._result(about)
+            return Saved(arrays, self._position(about, result), result)
         except InputError:
             raise
         except Exception as error:
             reason = str(error).partition("\n")[0] or type(error).__name__
             raise InputError(f"the checkpoint is not readable: {reason}; {ANEW}", "", path) from None
 
-    def _result(self, loaded: Mapping[str, Any], about: Mapping[str, Any]) -> Result:
-        parts = np.split(loaded["pressure"], np.cumsum(loaded["bearing_points"])[:-1])
-        seats = zip(about["seats"], parts[: len(about["seats"])], strict=True)
-        return Result(
-            tuple(Step(**step) for step in about["steps"]),
-            tuple(SeatReactions.from_row(*pair) for pair in seats),
-            tuple(self._snapshot(number) for number in range(about["snapshots"])),
-            about["rate"],
-            warnings=tuple(about["warnings"]),
-        )
+    def _result(self, about: Mapping[str, Any]) -> Result:
+        snapshots = tuple(self._snapshot(number) for number in range(about["snapshots"]))
+        return Result(*self.journal.read(about["steps"]), snapshots, about["rate"], warnings=tuple(about["warnings"]))
 
     def _snapshot(self, number: int) -> Snapshot:
         found: dict[str, Any] = _arrays(self.folder / f"snapshot-{number:02d}.npz")
@@ -146,15 +140,15 @@ class Checkpoint:
         found["components"] = tuple(str(name) for name in found["components"])
         return Snapshot(**found)
 
-    def _position(self, about: Mapping[str, Any]) -> ProgramPosition:
+    def _position(self, about: Mapping[str, Any], result: Result) -> ProgramPosition:
         """Where to go on; a changed target begins its phase where the spring stands now."""
         saved = about["position"]
         position = ProgramPosition(**{**saved, "walk": Position(**saved["walk"])})
         stage, old, new = position.stage, about["case"]["loading"], self.case["loading"]
         if old[stage : stage + 1] == new[stage : stage + 1]:
             return position
-        last = about["steps"][-1] if about["steps"] else None
-        height, force = (last["seat_height_mm"], last["force_N"]) if last else (position.height, position.force)
+        last = result.steps[-1] if result.steps else None
+        height, force = (last.seat_height_mm, last.force_N) if last else (position.height, position.force)
         return replace(position, height=height, force=force, walk=Position())
 
     def _compare(self, about: Mapping[str, Any]) -> None:

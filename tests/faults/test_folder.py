@@ -73,7 +73,7 @@ def older(arrays):
     arrays["about"] = np.array(json.dumps(about))
 
 
-STATE, SNAPSHOT = "state.npz", "snapshot-00.npz"
+STATE, STEPS, SNAPSHOT = "state.npz", "steps.jsonl", "snapshot-00.npz"
 DAMAGES = {
     "truncated": (STATE, lambda path: path.write_bytes(path.read_bytes()[:-300])),
     "flipped": (STATE, flip),
@@ -82,6 +82,9 @@ DAMAGES = {
     "wrong shape": (STATE, lambda path: rewrite(path, lambda arrays: arrays.update(state_x=np.zeros((3, 3))))),
     "not a number": (STATE, lambda path: rewrite(path, lambda arrays: arrays["state_x"].fill(np.nan))),
     "older version": (STATE, lambda path: rewrite(path, older)),
+    "steps missing": (STEPS, lambda path: path.unlink()),
+    "steps truncated": (STEPS, lambda path: path.write_bytes(path.read_bytes()[:-300])),
+    "steps damaged": (STEPS, lambda path: path.write_bytes(path.read_bytes().replace(b'"step"', b'"stop"'))),
     "snapshot missing": (SNAPSHOT, lambda path: path.unlink()),
     "snapshot truncated": (SNAPSHOT, lambda path: path.write_bytes(path.read_bytes()[:-300])),
     "snapshot empty": (SNAPSHOT, lambda path: path.write_bytes(b"")),
