@@ -9,6 +9,7 @@ import numpy as np
 from dolfinx import fem
 from petsc4py import PETSc
 
+from coilset.meshes.compat import NOT_A_NUMBER
 from coilset.meshes.errors import SolveError
 from coilset.model.slice.bordered import BorderedMatrix
 from coilset.model.slice.contact import NoContact, SelfContact, SliceContact
@@ -157,7 +158,7 @@ class SliceProblem:
     def _converged(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> Any:
         norm, reason = norms[2], PETSc.SNES.ConvergedReason
         if not np.isfinite(norm):
-            return reason.DIVERGED_FNORM_NAN
+            return NOT_A_NUMBER
         return reason.CONVERGED_FNORM_RELATIVE if norm <= max(self.precision * self._load, self._floor) else 0
 
     # ---- steps -----------------------------------------------------------------------------------------------------

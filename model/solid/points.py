@@ -36,12 +36,12 @@ class MaterialPoints:
     """
 
     def __init__(self, law: Law, temperature: float | None = None) -> None:
-        self.law = law
+        self.law, self.temperature = law, temperature
         self._parameters = law.parameters(temperature)
 
     def initial_state(self, points: int) -> np.ndarray:
         """Point states of unstressed points, shape (points, n_state); first stress and back stress, 6 entries each."""
-        return initial_state(self.law, points, 6)
+        return initial_state(self.law, points, 6, self.temperature)
 
     def update(self, old: np.ndarray, strain: np.ndarray, new: np.ndarray, C: np.ndarray) -> bool:
         """Write new point states and moduli, see `update_points`; False if the law found no solution."""

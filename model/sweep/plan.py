@@ -19,6 +19,7 @@ from coilset.model.standards.wires import wire
 from coilset.model.sweep.design import rows
 from coilset.model.sweep.rehearsal import Rehearsal
 from coilset.model.sweep.spec import SweepSpec
+from coilset.model.version import __version__
 
 KEY_BYTES = 12
 Row = tuple[Any, ...]
@@ -111,8 +112,8 @@ class Plan:
 
 
 def key(case: Case) -> str:
-    """Digest of a case: its entries, its material's constants, and the file of a measured spring."""
-    content = case.model_dump(mode="json")
+    """Digest of a case: its entries, its material's constants, the file of a measured spring, and the version."""
+    content = {"version": __version__} | case.model_dump(mode="json")
     content["material"] = material_digest(case.material)
     if "file" in content["spring"]:
         content["spring"]["file"] = file_digest(Path(content["spring"]["file"]))

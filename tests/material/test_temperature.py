@@ -11,6 +11,7 @@ import yaml
 
 from coilset.meshes.errors import InputError
 from coilset.model.material import library, points, programs
+from coilset.model.solid.points import MaterialPoints
 
 TEMPERATURES = (293.15, 393.15, 593.15)
 CHANGES = (  # of Ck 15's constants, at the three temperatures
@@ -89,6 +90,11 @@ def error(law, states, exact, reference):
     held = [0, 3, 4] if components == 3 else range(6)
     flow = np.sqrt([1.5 * reference.k2(y) for y in exact])
     return (np.abs(states[:, :components] - exact[:, held]).max(axis=1) / flow).max()
+
+
+def test_points_of_a_solid_begin_at_its_temperature(material_file):
+    law, warm = library.load(material_file(heating=HEAT)), TEMPERATURES[0] + 20.0
+    assert MaterialPoints(law, warm).initial_state(3)[:, -1] == pytest.approx(warm)
 
 
 @pytest.mark.parametrize("name", [*ROD_PATHS, "full stress state"])

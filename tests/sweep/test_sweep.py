@@ -290,6 +290,13 @@ def test_a_changed_material_file_makes_new_cases(write_sweep, tmp_path):
     assert Plan(write_sweep(text)).keys != first
 
 
+def test_another_version_makes_new_cases(write_sweep, monkeypatch):
+    text = "vary: {spring.wire_diameter: [5.0]}"
+    first = Plan(write_sweep(text)).keys
+    monkeypatch.setattr("coilset.model.sweep.plan.__version__", "0.0.1")
+    assert Plan(write_sweep(text)).keys != first
+
+
 def test_records_hold_no_nan(write_sweep):
     plan = Plan(write_sweep("change: {loading: [{to: {travel: 1}, steps: 1}]}\nvary: {spring.wire_diameter: [5.0]}"))
     record = evaluate(plan.data(plan.rows[0]), MPI.COMM_SELF)
