@@ -84,10 +84,10 @@ class Foresees(Protocol):
         ...
 
     def foresee(self, length: float) -> None:
-        """Build the tangents with the forces foreseen after `length` of the correction, until `forget` or `update`."""
+        """Build the tangents with the forces foreseen after `length` of the correction, until `stop_foreseeing`."""
         ...
 
-    def forget(self) -> None:
+    def stop_foreseeing(self) -> None:
         """Build the tangents with the forces of the trial state."""
         ...
 

@@ -72,30 +72,30 @@ class Imbalance:
     """How far a state is from equilibrium.
 
     Attributes:
-        rest: norm of the out-of-balance forces |r − f|, N.
+        residual_norm: of the out-of-balance forces |r − f|, N.
         change: norm of the change of loads and reactions since the step's start |²R − ²F|, N.
         missed: part of the prescribed increments that is still missing.
     """
 
-    rest: float
+    residual_norm: float
     change: float
     missed: float
 
     @property
     def ratio(self) -> float:
         """Left side of (6.3.1)."""
-        return self.rest / self.change if self.change > 0.0 else np.inf
+        return self.residual_norm / self.change if self.change > 0.0 else np.inf
 
 
 def imbalance(system: System, load: Load, F: PETSc.Vec) -> Imbalance:
     """Imbalance of the state that was evaluated last and has the residual `F`; collective."""
-    rest = F.getArray(readonly=True).copy()
-    rest[load.held] = 0.0
+    residual = F.getArray(readonly=True).copy()
+    residual[load.held] = 0.0
     supports = np.union1d(load.held, load.loaded) if len(load.loaded) else load.held
     reactions = system.state["reactions"]
     change = reactions.trial[supports] - reactions.equilibrium[supports]
     missed = F.getArray(readonly=True)[load.held] / system.body.constraint_weight
-    squares = np.array([rest @ rest, change @ change, missed @ missed])
+    squares = np.array([residual @ residual, change @ change, missed @ missed])
     if system.comm.size > 1:
         squares = system.comm.allreduce(squares)
     norms, prescribed = np.sqrt(squares), load.prescribed()
@@ -121,7 +121,7 @@ class EquilibriumTest:
 
     def is_met(self, found: Imbalance, tolerance: float, rounding: float) -> bool:
         """Is it an equilibrium to ε = `tolerance`, or to `rounding`, N?"""
-        return found.missed <= self.tolerance and found.rest <= max(tolerance * found.change, rounding)
+        return found.missed <= self.tolerance and found.residual_norm <= max(tolerance * found.change, rounding)
 
     def is_lost(self, iteration: int, norm: float, divergence: float) -> int | None:
         """The reason to give up: a residual that has grown by the factor `divergence`, or no longer falls."""

@@ -244,7 +244,7 @@ class System:
         assert isinstance(self.body, Foresees)
         self.body.foresee(length)
         self.last_tangent(load, matrix, at_step_start)
-        self.body.forget()
+        self.body.stop_foreseeing()
 
     def last_tangent(self, load: Load, matrix: TangentMatrix, at_step_start: bool = False) -> None:
         """As `tangent`, with the moduli of the last evaluation, at the state as it is now; collective."""

@@ -25,7 +25,7 @@ class Frames:
         E: triads (columns), shape (cells, 3, 3).
         T: charts' tangents of both nodes, P: rates of their turns, shape (cells, 2, 3, 3).
         W: what makes the triad's spin about its chord, shape (cells, 3, 3).
-        share: of the turns in the shear angles, shape (cells,).
+        shear_fraction: of the rotations that is in the shear angles, shape (cells,).
         strain: section strains, shape (cells, 2, 6).
     """
 
@@ -35,7 +35,7 @@ class Frames:
     T: np.ndarray
     P: np.ndarray
     W: np.ndarray
-    share: np.ndarray
+    shear_fraction: np.ndarray
     strain: np.ndarray
 
 
@@ -58,7 +58,7 @@ def linear_strains(frames: Frames, u: np.ndarray, turns: np.ndarray, shear: np.n
     frame = np.stack([about, -d[:, 2] / l, d[:, 1] / l], axis=1)
     t = np.einsum("naij,naj->nai", frames.P, np.einsum("nji,naj->nai", frames.E, spins) - frame[:, None])
     mean, difference = 0.5 * (t[:, 0] + t[:, 1]), t[:, 1] - t[:, 0]
-    excess = shear - frames.share[:, None] * mean[:, 1:]
+    excess = shear - frames.shear_fraction[:, None] * mean[:, 1:]
     e = np.empty((len(l), 2, 6))
     e[..., 0] = (d[:, 0] / l)[:, None]
     e[..., 1], e[..., 2] = excess[:, 1, None], -excess[:, 0, None]

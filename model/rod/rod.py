@@ -189,7 +189,7 @@ class Rod:
         self.T.values[:] = self.chart[self.cells]
         start, trial = self._section_start, self._section_trial
         has_stress = self.sections.update(self._strain.trial, start, trial, self.s.values, self.D.values)
-        self.forget()
+        self.stop_foreseeing()
         return has_stress
 
     def follow(self) -> None:
@@ -211,7 +211,7 @@ class Rod:
         assert self._prediction is not None  # `predict` comes before
         self.foreseen.values[:] = self._prediction.forces_after(length)
 
-    def forget(self) -> None:
+    def stop_foreseeing(self) -> None:
         """Build the tangents with the section forces as they are; see Foresees."""
         self.foreseen.values[:] = self.s.values
 

@@ -113,19 +113,19 @@ class SliceProblem:
         """Axial force, tension positive, N, and torque, N mm, at the increment, what contact bears included."""
         return self.body.resultants() + (self._pressure.numbers if self.touching else 0.0)
 
-    def _rest(self) -> np.ndarray:
+    def _residual_forces(self) -> np.ndarray:
         """Out-of-balance forces at the increment, shape (n + 2,), N."""
-        rest = np.zeros(self._n + 2)
-        rest[:-2] = (self.body.forces + (self._pressure.forces if self.touching else 0.0)).ravel()
-        rest[self._gauge] = 0.0
+        residual = np.zeros(self._n + 2)
+        residual[:-2] = (self.body.forces + (self._pressure.forces if self.touching else 0.0)).ravel()
+        residual[self._gauge] = 0.0
         if self._force is not None or self.free_ends:
             driven = (self.resultants() - [-(self._force or 0.0), 0.0]) / self._scale
-            rest[-2:] = np.where([self._force is not None, self.free_ends], driven, 0.0)
-        return rest
+            residual[-2:] = np.where([self._force is not None, self.free_ends], driven, 0.0)
+        return residual
 
     def _residual(self, snes: PETSc.SNES, X: PETSc.Vec, F: PETSc.Vec) -> None:
         if self._set(X):
-            F.setArray(self._rest())
+            F.setArray(self._residual_forces())
         else:
             F.set(np.inf)
 
@@ -252,9 +252,9 @@ class SliceProblem:
         self._at, self._good = np.zeros(self._n + 2), True
         if self.touching:
             self._pressure = self.contact.evaluate()
-        rest = self._rest()
+        residual = self._residual_forces()
         self._assemble()
-        b, self._load = -rest, np.linalg.norm(rest)
+        b, self._load = -residual, np.linalg.norm(residual)
         if not by_force:
             b[-2] = value - self.body.rise
             self._load = self._column_norm(RISE) * abs(b[-2])

@@ -137,7 +137,7 @@ class HeadPredictor:
         self.newton, self.solid = newton, solid
         self._prescribed = fem.Function(self.solid.V)
         self._conditions = [fem.dirichletbc(self._prescribed, held)]
-        self._start, self._rest = (newton.system.layout.vector() for _ in range(2))
+        self._start, self._residual_forces = (newton.system.layout.vector() for _ in range(2))
 
     def __call__(self, load: Load) -> Start:
         """Solve for it; one iteration is counted; collective."""
@@ -150,11 +150,11 @@ class HeadPredictor:
         b = la.vector(solid.V.dofmap.index_map, 3)
         fem.apply_lifting(b.array, [solid.forms.tangent], [self._conditions])  # −K_fh g
         b.scatter_reverse(la.InsertMode.add)
-        rest = b.array[: system.layout.owned] - system.state["reactions"].equilibrium
-        rest[load.held] = load.increments
-        self._rest.setArray(rest)
+        residual = b.array[: system.layout.owned] - system.state["reactions"].equilibrium
+        residual[load.held] = load.increments
+        self._residual_forces.setArray(residual)
         ksp = newton.snes.getKSP()
         ksp.setOperators(newton.matrix.mat)
-        ksp.solve(self._rest, self._start)
+        ksp.solve(self._residual_forces, self._start)
         self._start.getArray()[load.held] = load.increments  # exactly, also if the solve is iterative
         return Start(self._start, 1, ksp.getIterationNumber())

@@ -36,7 +36,7 @@ def test_foreseen_forces_are_the_derivative_of_the_forces(turned):
     rod.foresee(1.0)
     scale = np.abs(exact).max(axis=(0, 1))
     np.testing.assert_allclose((rod.foreseen.values - forces - exact) / scale, 0.0, atol=1e-7)
-    rod.forget()
+    rod.stop_foreseeing()
     np.testing.assert_array_equal(rod.foreseen.values, forces)
 
 
