@@ -4,7 +4,9 @@ import json
 import os
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
@@ -16,7 +18,7 @@ from coilset.verification.benchmarks.target import ITERATION, per_element, secon
 WIDTH = 140  # columns where the output goes to a file
 
 
-def bench(out, full, cold):
+def bench(out: str, full: bool, cold: bool) -> None:
     """Run the benchmarks; see `coilset bench --help`.
 
     Raises:
@@ -24,15 +26,15 @@ def bench(out, full, cold):
     """
     environment = dict(os.environ)  # as it was before MPI
     console = Console(highlight=False, width=None if sys.stdout.isatty() else WIDTH)
-    began, out = time.perf_counter(), Path(out)
+    began, folder = time.perf_counter(), Path(out)
     with console.status("") as status:
         record = measure_all(full, cold, environment, lambda name: status.update(f"measuring: {name}"))
     from coilset.verification.benchmarks.figure import draw
 
-    out.mkdir(parents=True, exist_ok=True)
-    with whole(out / "bench.json") as path:
+    folder.mkdir(parents=True, exist_ok=True)
+    with whole(folder / "bench.json") as path:
         path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
-    draw(out / "bench.png", record)
+    draw(folder / "bench.png", record)
     for table in (_stages(record), _elements(record["elements"]), _ranks(record["ranks"]), _targets(record["targets"])):
         console.print(table)
     cases = record["cases"]
@@ -42,24 +44,24 @@ def bench(out, full, cold):
     machine = record["machine"]
     console.print(f"{machine['processor']}, {machine['cores']} cores, load {machine['load']:.1f} at the start, "
                   f"{record['load_after']:.1f} at the end; {time.perf_counter() - began:.0f} s; "
-                  f"bench.json, bench.png in {out}{os.sep}")  # fmt: skip
+                  f"bench.json, bench.png in {folder}{os.sep}")  # fmt: skip
 
 
-def _new(title, *columns):
+def _new(title: str, *columns: str) -> Table:
     table = Table(title=title, title_justify="left", box=None, padding=(0, 2), header_style="bold")
     for column in columns:
         table.add_column(column, justify="left" if column == columns[0] else "right")
     return table
 
 
-def _stages(record):
+def _stages(record: dict[str, Any]) -> Table:
     """Time by stage of the example, warm; compilers if asked."""
     example = record["example"]
     title = (f"example: {example['elements']} elements, {example['section_points']} points a section, "
              f"{example['steps']} steps, {example['iterations']} iterations")  # fmt: skip
     table = _new(title, "stage", "time, ms", "processor, ms")
 
-    def row(name, pair, style=""):
+    def row(name: str, pair: Sequence[float], style: str = "") -> None:
         table.add_row(name, *(f"{1e3 * value:.1f}" for value in pair), style=style)
 
     row("import", example["import"])
@@ -74,12 +76,12 @@ def _stages(record):
     return table
 
 
-def _more(first, warm):
+def _more(first: Sequence[float], warm: Sequence[float]) -> list[float]:
     """By how much the first analysis of a process takes longer than the others."""
     return [one - other for one, other in zip(first, warm, strict=True)]
 
 
-def _elements(runs):
+def _elements(runs: list[dict[str, Any]]) -> Table:
     table = _new("one plastic step from rest, clamped heads; µs of the processor for an element in an iteration",
                  "elements", "iterations", "plastic", "all, s", "memory, GiB", "µs", *ITERATION)  # fmt: skip
     for run in runs:
@@ -89,7 +91,7 @@ def _elements(runs):
     return table
 
 
-def _ranks(runs):
+def _ranks(runs: list[dict[str, Any]]) -> Table:
     first = runs[0]
     table = _new(f"{first['elements']:,} elements on several ranks", "ranks", "time, s", "faster", "law, processor",
                  "assemble, processor", "memory of a rank, GiB", "force against one rank")  # fmt: skip
@@ -101,7 +103,7 @@ def _ranks(runs):
     return table
 
 
-def _targets(rows):
+def _targets(rows: list[dict[str, Any]]) -> Table:
     table = _new("aimed at", "quantity", "measured", "at most")
     for row in rows:
         style = "" if row["value"] <= row["limit"] else "yellow"

@@ -1,11 +1,14 @@
 """`coilset solve --interactive`: watch each step, and change size, method and target before the next."""
 
 import signal
+from collections.abc import Callable
 
 from coilset.meshes.errors import InputError
+from coilset.model.analysis import Analysis
 from coilset.model.case.entry import check_entries
 from coilset.model.case.phases import Phase
 from coilset.model.case.yaml import load_yaml
+from coilset.model.results.record import Step
 
 HELP = """\
 Enter            the next step
@@ -25,10 +28,10 @@ class Prompt:
         ask: returns the user's line for a prompt.
     """
 
-    def __init__(self, analysis, say, ask=input):
+    def __init__(self, analysis: Analysis, say: Callable[[str], object], ask: Callable[[str], str] = input) -> None:
         self.analysis, self.say, self.ask, self.free = analysis, say, ask, False
 
-    def __call__(self, step):
+    def __call__(self, step: Step) -> None:
         """Ask until the user lets the next step go."""
         while not self.free:
             try:

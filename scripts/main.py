@@ -5,6 +5,7 @@ import signal
 import sys
 import time
 from types import FrameType
+from typing import TYPE_CHECKING
 
 from coilset.meshes.errors import CoilsetError
 from coilset.model.processes import first_rank
@@ -13,6 +14,9 @@ from coilset.scripts.material import app as material
 from coilset.scripts.output import Output, output_closed
 from coilset.scripts.plain import typer
 from coilset.scripts.target import file_targets, folder_target
+
+if TYPE_CHECKING:  # commands load what they need
+    from mpi4py import MPI
 
 HELP = """How far does a coil spring set, and what stress stays in it?
 
@@ -48,11 +52,12 @@ def options(
     version: bool = typer.Option(False, "--version", is_eager=True, callback=_show_version, help="print versions"),
 ) -> None:
     """Options before the command."""
-    if context.get_parameter_source("ranks").name == "COMMANDLINE":
+    source, name = context.get_parameter_source("ranks"), context.invoked_subcommand
+    if source is not None and source.name == "COMMANDLINE" and name is not None:
         from coilset.scripts.ranks import check, launch
 
-        command = sys.argv[sys.argv.index(context.invoked_subcommand) :]
-        check(ranks, context.invoked_subcommand)
+        command = sys.argv[sys.argv.index(name) :]
+        check(ranks, name)
         if ranks > 1 and not {"-h", "--help"} & set(command):
             raise SystemExit(launch(ranks, command))  # the ranks have said why
 
@@ -288,7 +293,7 @@ def _leave_together(error: CoilsetError) -> None:
         time.sleep(0.01)
 
 
-def _several_ranks():
+def _several_ranks() -> "MPI.Comm | None":
     """The communicator of all ranks, if MPI runs on several."""
     if "mpi4py.MPI" not in sys.modules:
         return None

@@ -2,12 +2,22 @@
 
 import csv
 import os
+from collections.abc import Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from coilset.meshes.errors import InputError
 from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.plain import typer
 from coilset.scripts.target import folder_target
+
+if TYPE_CHECKING:  # commands load what they need
+    from matplotlib.figure import Figure
+    from rich.console import Console
+    from rich.table import Table
+
+    from coilset.model.material.law import Law
+    from coilset.model.material.programs import History, Program
 
 app = typer.Typer(help="Draw a material, test it at one point, or fit it to tests.", no_args_is_help=True)
 MATERIAL = typer.Argument(help="name in the library, or the path of a material file")
@@ -104,17 +114,17 @@ def fit(
     _save(figures.fit(result, name), folder / "fit.png", force, console)
 
 
-def _folder(out, name):
+def _folder(out: str | None, name: str) -> Path:
     return Path(out or Path("results") / "material" / name)
 
 
-def _refuse(paths, force):
+def _refuse(paths: Iterable[Path], force: bool) -> None:
     for path in paths:
         if path.exists() and not force:
             raise InputError("is there already; give --force to replace it", "", path)
 
 
-def _save(figure, path, force, console):
+def _save(figure: "Figure", path: Path, force: bool, console: "Console") -> None:
     from coilset.model.results.folder import whole
 
     _refuse([path], force)
@@ -124,7 +134,7 @@ def _save(figure, path, force, console):
     console.print(f"picture in {path.parent}{os.sep}{path.name}")
 
 
-def _write_csv(path, history):
+def _write_csv(path: Path, history: "History") -> None:
     from coilset.model.results.folder import whole
 
     names, values = zip(*history.columns(), strict=True)
@@ -134,7 +144,7 @@ def _write_csv(path, history):
         writer.writerows(zip(*(column.tolist() for column in values), strict=True))
 
 
-def _constants(law):
+def _constants(law: "Law") -> "Table":
     from rich.table import Table
 
     from coilset.model.material.file import UNITS
@@ -152,7 +162,7 @@ def _constants(law):
     return table
 
 
-def _ends(program, history):
+def _ends(program: "Program", history: "History") -> "Table":
     """Table of the state at the end of each step: the strains and stresses that the program moves, and b*."""
     import numpy as np
     from rich.table import Table

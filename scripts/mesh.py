@@ -1,16 +1,19 @@
 """`coilset mesh`: the data of a case's spring, its drawing, and its mesh as a file."""
 
 import os
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+import numpy as np
 from mpi4py import MPI
 from rich.console import Console
 from rich.table import Table
 
 from coilset.meshes.errors import InputError
+from coilset.meshes.spring import Spring
 from coilset.model.case import read_case
 from coilset.model.results.folder import whole
-from coilset.model.standards.data import spring_data
+from coilset.model.standards.data import SpringData, spring_data
 from coilset.model.standards.steel import STEEL, Elastic
 from coilset.model.standards.warnings import spring_warnings
 from coilset.model.standards.wires.law import case_law
@@ -18,7 +21,14 @@ from coilset.model.standards.wires.law import case_law
 FILES = ("drawing.png", "spring.png")
 
 
-def mesh(case_file, out=None, force=False, settings=(), write=(), pictures=True):
+def mesh(
+    case_file: str | Path,
+    out: str | Path | None = None,
+    force: bool = False,
+    settings: Sequence[str] = (),
+    write: Sequence[str] = (),
+    pictures: bool = True,
+) -> None:
     """Print the data of a spring, draw it, and write its mesh; see `coilset mesh --help`.
 
     Args:
@@ -36,8 +46,8 @@ def mesh(case_file, out=None, force=False, settings=(), write=(), pictures=True)
         return  # nothing here is worth dividing
     console = Console(highlight=False)
     case = read_case(case_file, settings)
-    out = Path(out or Path("results") / Path(case_file).stem)
-    _refuse_to_replace([out / name for name in FILES if pictures] + [Path(path) for path in write], force)
+    folder = Path(out or Path("results") / Path(case_file).stem)
+    _refuse_to_replace([folder / name for name in FILES if pictures] + [Path(path) for path in write], force)
     try:
         spring = case.spring.build()
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
@@ -54,18 +64,18 @@ def mesh(case_file, out=None, force=False, settings=(), write=(), pictures=True)
         write_mesh(spring, turns, path)
         console.print(f"mesh in {path}")
     if pictures:
-        out.mkdir(parents=True, exist_ok=True)
-        _draw(spring, out, Path(case_file).stem, console)
-        console.print(f"pictures in {out}{os.sep}")
+        folder.mkdir(parents=True, exist_ok=True)
+        _draw(spring, folder, Path(case_file).stem, console)
+        console.print(f"pictures in {folder}{os.sep}")
 
 
-def _refuse_to_replace(paths, force):
+def _refuse_to_replace(paths: Iterable[Path], force: bool) -> None:
     for path in paths:
         if path.exists() and not force:
             raise InputError("is there already; give --force to replace it", "", path)
 
 
-def _table(data, turns):
+def _table(data: SpringData, turns: np.ndarray) -> Table:
     table = Table(show_header=False, box=None, padding=(0, 2))
     for label, value, unit in data.rows():
         table.add_row(label, f"{value} {unit}".strip())
@@ -73,7 +83,7 @@ def _table(data, turns):
     return table
 
 
-def _draw(spring, out, name, console):
+def _draw(spring: Spring, out: Path, name: str, console: Console) -> None:
     from coilset.meshes import drawing, view
     from coilset.model.results import display
 

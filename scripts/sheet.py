@@ -1,29 +1,46 @@
 """`coilset sheet`: the formulas of the standards for a case's spring, beside what a run found."""
 
 import os
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import get_args
 
 from mpi4py import MPI
 from rich.console import Console
 
 from coilset.meshes.errors import InputError
-from coilset.model.case import read_case
+from coilset.meshes.spring import Spring
+from coilset.model.case import Case, read_case
 from coilset.model.standards import found, goodman
 from coilset.model.standards.cylinder import Cylinder
-from coilset.model.standards.rows import sections
+from coilset.model.standards.en15800 import Grade
+from coilset.model.standards.found import Found
+from coilset.model.standards.rows import Row, sections
 from coilset.model.standards.sheet import Sheet, working_lengths
 from coilset.model.standards.steel import STEEL, Elastic
-from coilset.model.standards.warnings import spring_warnings
+from coilset.model.standards.warnings import Warning, spring_warnings
 from coilset.model.standards.wires import names, wire
 from coilset.model.standards.wires.law import case_law
 from coilset.model.standards.working import endurance_warnings, gap_warnings, presetting_warning, stress_warnings
 
 FIGURE = "goodman.png"
+GRADES: dict[int, Grade] = {grade: grade for grade in get_args(Grade)}
 
 
-def sheet(case_file, results=None, wire_name=None, lengths=(), grade=2, surface="as coiled", dynamic=False, out=None,
-          force=False, settings=(), pictures=True):  # fmt: skip
+def sheet(
+    case_file: str | Path | None,
+    results: str | Path | None = None,
+    wire_name: str | None = None,
+    lengths: Sequence[float] = (),
+    grade: int = 2,
+    surface: str = "as coiled",
+    dynamic: bool = False,
+    out: str | Path | None = None,
+    force: bool = False,
+    settings: Sequence[str] = (),
+    pictures: bool = True,
+) -> None:
     """Print the sheet of a spring and draw its Goodman diagram; see `coilset sheet --help`.
 
     Raises:
@@ -35,16 +52,16 @@ def sheet(case_file, results=None, wire_name=None, lengths=(), grade=2, surface=
     if case_file is None:
         raise InputError("name a case file, or give --wires to list the wires", "coilset sheet")
     case = read_case(case_file, settings)
-    out = Path(out or Path("results") / Path(case_file).stem)
+    folder = Path(out or Path("results") / Path(case_file).stem)
     run = found.read(results) if results else None
     try:
         spring = case.spring.build()
-        made = _sheet(case, spring, run, wire_name, lengths, grade, surface, dynamic)
+        made = _sheet(case, spring, run, wire_name, lengths, GRADES[grade], surface, dynamic)
     except InputError as error:
         raise InputError(error.problem, error.place, error.file or case_file) from None
-    drawn = pictures and made.cycle is not None and made.endured is not None
-    if drawn and (out / FIGURE).exists() and not force:
-        raise InputError("is there already; give --force to replace it", "", out / FIGURE)
+    diagram = _diagram(made) if pictures else None
+    if diagram is not None and (folder / FIGURE).exists() and not force:
+        raise InputError("is there already; give --force to replace it", "", folder / FIGURE)
     for title, rows in sections(made):
         console.print(f"[bold]{title}[/]")
         for line in _lines(rows, run is not None):
@@ -53,14 +70,13 @@ def sheet(case_file, results=None, wire_name=None, lengths=(), grade=2, surface=
         console.print(f"the run was made with the material {run.summary.get('material')}, not with {made.wire.name}")
     for warning in _warnings(spring, made):
         console.print(f"[yellow]warning:[/] {warning.text}")
-    if drawn:
-        out.mkdir(parents=True, exist_ok=True)
-        title = f"{made.wire.name}, {made.spring.d:g} mm"
-        goodman.draw(out / FIGURE, title, made.endured, made.cycle, run.residual if run else None)
-        console.print(f"Goodman diagram in {out}{os.sep}{FIGURE}")
+    if diagram is not None:
+        folder.mkdir(parents=True, exist_ok=True)
+        goodman.draw(folder / FIGURE, *diagram, run.residual if run else None)
+        console.print(f"Goodman diagram in {folder}{os.sep}{FIGURE}")
 
 
-def list_wires():
+def list_wires() -> None:
     """Print the wires that are known, the range of their diameters, and how sure their strength is."""
     console = Console(highlight=False)
     for name in names():
@@ -69,7 +85,16 @@ def list_wires():
         console.print(f"{name:28} {ranges + ' mm':24} {known.entry.strength.sure}", soft_wrap=True)
 
 
-def _sheet(case, spring, run, wire_name, lengths, grade, surface, dynamic):
+def _sheet(
+    case: Case,
+    spring: Spring,
+    run: Found | None,
+    wire_name: str | None,
+    lengths: Sequence[float],
+    grade: Grade,
+    surface: str,
+    dynamic: bool,
+) -> Sheet:
     law, cylinder = case_law(case, spring), Cylinder.of(spring)
     named = wire_name or getattr(case.material, "wire", None)
     known = wire(named) if named else None
@@ -88,7 +113,15 @@ def _sheet(case, spring, run, wire_name, lengths, grade, surface, dynamic):
     return replace(made, lengths=tuple(planned))
 
 
-def _warnings(spring, made):
+def _diagram(made: Sheet) -> tuple[str, goodman.Line, goodman.Cycle] | None:
+    """Title, line and cycle of the Goodman diagram; None without a wire of known endurance or a cycle."""
+    known, endured, cycle = made.wire, made.endured, made.cycle
+    if known is None or endured is None or cycle is None:
+        return None
+    return f"{known.name}, {made.spring.d:g} mm", endured, cycle
+
+
+def _warnings(spring: Spring, made: Sheet) -> list[Warning]:
     cylinder, warnings = made.spring, spring_warnings(spring)
     warnings += gap_warnings(cylinder, made.lengths, made.dynamic)
     if made.wire:
@@ -102,7 +135,7 @@ def _warnings(spring, made):
     return warnings
 
 
-def _lines(rows, beside):
+def _lines(rows: Sequence[Row], beside: bool) -> Iterator[str]:
     """Text of a section: label, value, unit, what was found, formula and how it was checked; reasons on lines below."""
     width = max(len(row.label) for row in rows)
     for row in rows:
@@ -114,5 +147,5 @@ def _lines(rows, beside):
             yield f"  {'':{width}} [dim]{row.why}[/]"
 
 
-def _number(value):
+def _number(value: float | None) -> str:
     return "-" if value is None else f"{value:.5g}"

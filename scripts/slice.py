@@ -1,7 +1,9 @@
 """`coilset slice`: a cylindrical spring by the section of its wire alone, as a three-dimensional body."""
 
 import os
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from mpi4py import MPI
 from rich.console import Console
@@ -11,12 +13,20 @@ from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.section_shapes import parse
 from coilset.model.case import read_case
 from coilset.model.results.folder import prepare, write_summary
-from coilset.model.slice.analysis import SliceAnalysis
+from coilset.model.slice.analysis import ACROSS, SliceAnalysis, SliceStep
 from coilset.model.slice.summary import summarise, write_history
 from coilset.model.standards.warnings import spring_warnings
 
 
-def slice_case(case_file, out=None, force=False, settings=(), section=None, across=None, pictures=True):
+def slice_case(
+    case_file: str | Path,
+    out: str | Path | None = None,
+    force: bool = False,
+    settings: Sequence[str] = (),
+    section: str | None = None,
+    across: float | None = None,
+    pictures: bool = True,
+) -> None:
     """Run the slice of a case; see `coilset slice --help`.
 
     Args:
@@ -35,14 +45,14 @@ def slice_case(case_file, out=None, force=False, settings=(), section=None, acro
         return  # a section is too small to be divided
     console = Console(highlight=False)
     case = read_case(case_file, settings)
-    out = Path(out or Path("results") / f"{Path(case_file).stem}-slice")
+    folder = Path(out or Path("results") / f"{Path(case_file).stem}-slice")
     try:
-        options = {} if across is None else {"across": across}
-        analysis = SliceAnalysis(case, parse(section) if section else None, **options)
+        outline = parse(section) if section else None
+        analysis = SliceAnalysis(case, outline, ACROSS if across is None else across)
         analysis.check_targets()
     except InputError as error:
         raise InputError(error.problem, error.place, error.file or case_file) from None
-    prepare(out, force)
+    prepare(folder, force)
     for warning in spring_warnings(analysis.spring):
         console.print(f"[yellow]warning:[/] {warning.text}")
     targets = ", ".join(phase.label for phase in case.loading)
@@ -54,19 +64,19 @@ def slice_case(case_file, out=None, force=False, settings=(), section=None, acro
     except SolveError as error:
         failure = error
     summary = summarise(analysis)
-    _write(out, analysis, summary, pictures)
-    _conclude(console, summary, out)
+    _write(folder, analysis, summary, pictures)
+    _conclude(console, summary, folder)
     if failure is not None:
         raise failure
 
 
-def _row(step):
+def _row(step: SliceStep) -> str:
     touching = "   coils touch" if step.contacts else ""
     force = round(step.force_N, 3) + 0.0  # no -0.000
     return f"{step.number:7d}{step.seat_height_mm:17.4f}{force:13.3f}{step.iterations:13d}{touching}"
 
 
-def _write(out, analysis, summary, pictures):
+def _write(out: Path, analysis: SliceAnalysis, summary: dict[str, Any], pictures: bool) -> None:
     from coilset.model.slice import output
 
     write_history(out, analysis.result.steps)
@@ -76,8 +86,8 @@ def _write(out, analysis, summary, pictures):
     write_summary(out, summary)
 
 
-def _conclude(console, summary, out):
-    def number(value, unit, digits=4):
+def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
+    def number(value: float | None, unit: str, digits: int = 4) -> str:
         return "not reached" if value is None else f"{round(value, digits) + 0.0:.{digits}f} {unit}"  # no -0.0
 
     loaded, released = summary["loaded"], summary["released"] or {}

@@ -1,9 +1,12 @@
 """`coilset solve`: read, run, write, draw, and say what was found."""
 
 import contextlib
+import logging
 import os
 import time
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from mpi4py import MPI
 from rich.console import Console
@@ -15,6 +18,7 @@ from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.folder import clear, prepare, write_history, write_seats, write_summary
+from coilset.model.results.record import Result, Setup, Step
 from coilset.model.results.summary import summarise
 from coilset.model.standards.warnings import spring_warnings
 from coilset.scripts.interactive import Prompt
@@ -24,7 +28,16 @@ from coilset.scripts.log import run_log
 STARTED = float(os.environ.get("COILSET_STARTED", time.time()))
 
 
-def solve(case_file, out, force, settings, pictures, resume=False, interactive=False, comm=MPI.COMM_WORLD):
+def solve(
+    case_file: str | Path,
+    out: str | Path | None,
+    force: bool,
+    settings: Sequence[str],
+    pictures: bool,
+    resume: bool = False,
+    interactive: bool = False,
+    comm: MPI.Comm = MPI.COMM_WORLD,
+) -> None:
     """Run one case; see `coilset solve --help`.
 
     Raises:
@@ -34,25 +47,34 @@ def solve(case_file, out, force, settings, pictures, resume=False, interactive=F
     if interactive and comm.size > 1:
         raise InputError("works on one rank; leave -n out", "--interactive")
     case = read_case(case_file, settings)
-    out = Path(out or Path("results") / Path(case_file).stem)
+    folder = Path(out or Path("results") / Path(case_file).stem)
     try:
         analysis = Analysis(case, comm)
     except InputError as error:
         raise InputError(error.problem, error.place, error.file or case_file) from None
-    on_first_rank(comm, lambda: prepare(out, force or resume))
+    on_first_rank(comm, lambda: prepare(folder, force or resume))
     with contextlib.ExitStack() as stack:
-        on_first_rank(comm, lambda: _begin(stack.enter_context(run_log(out)), out, resume))
-        _solve(console, analysis, case_file, out, pictures, resume, interactive)
+        on_first_rank(comm, lambda: _begin(stack.enter_context(run_log(folder)), folder, resume))
+        _solve(console, analysis, case_file, folder, pictures, resume, interactive)
 
 
-def _begin(log, out, resume):
+def _begin(log: logging.FileHandler, out: Path, resume: bool) -> None:
     """Nothing of an earlier run is left in the folder that is now ours, but what is to be gone on from."""
     if not resume:
+        assert log.stream is not None  # it is open from the start
         log.stream.truncate(0)
         clear(out)
 
 
-def _solve(console, analysis, case_file, out, pictures, resume, interactive):
+def _solve(
+    console: Console,
+    analysis: Analysis,
+    case_file: str | Path,
+    out: Path,
+    pictures: bool,
+    resume: bool,
+    interactive: bool,
+) -> None:
     comm, checkpoint = analysis.comm, Checkpoint(out, analysis.case)
     if resume:
         analysis.resume(checkpoint.load(comm))
@@ -62,7 +84,7 @@ def _solve(console, analysis, case_file, out, pictures, resume, interactive):
     analysed = time.perf_counter() - began
     summary = comm.bcast(summarise(analysis.setup, analysis.result) if comm.rank == 0 else None)
 
-    def write():
+    def write() -> None:
         _write(out, analysis.setup, analysis.result, summary)
         if pictures:
             _draw(out, analysis.setup, analysis.result, summary, console)
@@ -75,7 +97,7 @@ def _solve(console, analysis, case_file, out, pictures, resume, interactive):
         raise failure
 
 
-def _announce(console, analysis, case_file, resume):
+def _announce(console: Console, analysis: Analysis, case_file: str | Path, resume: bool) -> None:
     about_spring = [warning.text for warning in spring_warnings(analysis.spring)]
     for warning in [*analysis.case.notices(), *about_spring]:
         console.print(f"[yellow]warning:[/] {warning}")
@@ -87,11 +109,13 @@ def _announce(console, analysis, case_file, resume):
     console.print("   step   seat height/mm      force/N   iterations   contacts")
 
 
-def _run(console, analysis, checkpoint, interactive):
+def _run(
+    console: Console, analysis: Analysis, checkpoint: Checkpoint, interactive: bool
+) -> SolveError | KeyboardInterrupt | None:
     """Walk through the program; what ended it early is returned, for the results up to there are written first."""
     ask = Prompt(analysis, console.print) if interactive else None
 
-    def report(step):
+    def report(step: Step) -> None:
         console.print(_row(step))
         interrupt.check()
         if ask:
@@ -105,13 +129,13 @@ def _run(console, analysis, checkpoint, interactive):
     return None
 
 
-def _row(step):
+def _row(step: Step) -> str:
     cuts = f"   cut {step.cuts} times" if step.cuts else ""
     force = round(step.force_N, 3) + 0.0  # no -0.000
     return f"{step.number:7d}{step.seat_height_mm:17.4f}{force:13.3f}{step.iterations:13d}{step.contacts:11d}{cuts}"
 
 
-def _write(out, setup, result, summary):
+def _write(out: Path, setup: Setup, result: Result, summary: dict[str, Any]) -> None:
     from coilset.model.results import dataset
 
     write_history(out, result.steps)
@@ -121,7 +145,7 @@ def _write(out, setup, result, summary):
     write_summary(out, summary)
 
 
-def _draw(out, setup, result, summary, console):
+def _draw(out: Path, setup: Setup, result: Result, summary: dict[str, Any], console: Console) -> None:
     from coilset.model.results import display, figures, scene, seat_figures
 
     last = result.snapshots[-1]
@@ -137,8 +161,8 @@ def _draw(out, setup, result, summary, console):
         console.print("[yellow]warning:[/] springs.png is not drawn: there is no display and no Xvfb")
 
 
-def _conclude(console, summary, out, analysed):
-    def number(value, unit, digits=4):
+def _conclude(console: Console, summary: dict[str, Any], out: Path, analysed: float) -> None:
+    def number(value: float | None, unit: str, digits: int = 4) -> str:
         return "not reached" if value is None else f"{round(value, digits) + 0.0:.{digits}f} {unit}"  # no -0.0
 
     table = Table(show_header=False, box=None, padding=(0, 2))

@@ -3,8 +3,10 @@
 import os
 import signal
 import time
+from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
@@ -15,8 +17,11 @@ from coilset.model.sweep import dataset
 from coilset.model.sweep.figures import draw
 from coilset.model.sweep.journal import Journal
 from coilset.model.sweep.plan import Plan
-from coilset.model.sweep.pools import local_pool, usable_cores
+from coilset.model.sweep.pools import Pool, local_pool, usable_cores
 from coilset.model.sweep.run import finished, missing, run
+
+if TYPE_CHECKING:  # at run time not before the environment is kept
+    from mpi4py import MPI
 
 REPORT_SECONDS = 30.0  # between two lines of progress where there is no terminal
 SHOWN_FAILURES = 5
@@ -37,17 +42,17 @@ def sweep(
     from mpi4py import MPI
 
     comm = MPI.COMM_WORLD
-    out = Path(out or Path("results") / Path(sweep_file).stem)
-    plan = _on_first_rank(comm, lambda: _prepare(sweep_file, out, force, resume or retry))
+    folder = Path(out or Path("results") / Path(sweep_file).stem)
+    plan = _on_first_rank(comm, lambda: _prepare(sweep_file, folder, force, resume or retry))
     console = Console(highlight=False)
     interrupted = False
     try:
-        with _pool(comm, jobs or usable_cores(), ranks_per_case, environment, out) as pool:
-            if pool is not None:
-                _lead(plan, out, retry, pool, console)
+        with _pool(comm, jobs or usable_cores(), ranks_per_case, environment, folder) as pool:
+            if pool is not None and plan is not None:
+                _lead(plan, folder, retry, pool, console)
     except KeyboardInterrupt:
         interrupted = True
-    failed = comm.bcast(_conclude(plan, out, pictures, console) if comm.rank == 0 else 0)
+    failed = comm.bcast(0 if plan is None else _conclude(plan, folder, pictures, console))
     if interrupted:
         console.print("interrupted; the same command with --resume goes on")
         raise KeyboardInterrupt
@@ -55,7 +60,7 @@ def sweep(
         raise SolveError(f"{failed} case(s) failed; their reasons are in the journal, --retry runs them again")
 
 
-def _on_first_rank(comm, prepare):
+def _on_first_rank(comm: "MPI.Comm", prepare: Callable[[], Plan]) -> Plan | None:
     """What `prepare` gives on rank 0, None elsewhere; its InputError on all ranks."""
     plan, problem = None, None
     if comm.rank == 0:
@@ -69,7 +74,7 @@ def _on_first_rank(comm, prepare):
     return plan
 
 
-def _prepare(sweep_file, out, force, resume):
+def _prepare(sweep_file: str, out: Path, force: bool, resume: bool) -> Plan:
     plan = Plan(sweep_file)
     journal = out / "journal.jsonl"
     if journal.exists() and not (force or resume):
@@ -84,7 +89,9 @@ def _prepare(sweep_file, out, force, resume):
 
 
 @contextmanager
-def _pool(comm, jobs, ranks_per_case, environment, out):
+def _pool(
+    comm: "MPI.Comm", jobs: int, ranks_per_case: int, environment: dict[str, str], out: Path
+) -> Iterator[Pool | None]:
     if comm.size > 1:
         from coilset.model.sweep.mpi_pool import mpi_pool
 
@@ -95,7 +102,7 @@ def _pool(comm, jobs, ranks_per_case, environment, out):
             yield pool
 
 
-def _lead(plan, out, retry, pool, console):
+def _lead(plan: Plan, out: Path, retry: bool, pool: Pool, console: Console) -> None:
     """Run the missing cases with a bar of their progress."""
     signal.signal(signal.SIGTERM, signal.getsignal(signal.SIGINT))  # what a job's scheduler sends at its end
     path = out / "journal.jsonl"
@@ -113,7 +120,7 @@ def _lead(plan, out, retry, pool, console):
 class Bar:
     """Progress bar with cases a minute and time left; a line now and then where there is no terminal."""
 
-    def __init__(self, total, console):
+    def __init__(self, total: int, console: Console) -> None:
         self.total, self.console, self.done, self.failed = total, console, 0, 0
         self.began = self.said = time.monotonic()
         self.bar = Progress(
@@ -123,7 +130,7 @@ class Bar:
         )  # fmt: skip
         self.task = self.bar.add_task("cases", total=total, rate="", failed="")
 
-    def report(self, record):
+    def report(self, record: dict[str, Any]) -> None:
         """A case has ended."""
         now = time.monotonic()
         self.done += 1
@@ -137,7 +144,7 @@ class Bar:
             self.console.print(f"{self.done}/{self.total} cases, {speed:.1f} a minute, {left} {failed}")
 
 
-def _conclude(plan, out, pictures, console):
+def _conclude(plan: Plan, out: Path, pictures: bool, console: Console) -> int:
     """Data set, figures, and what was found in words; returns how many cases failed."""
     data = dataset.collect(plan, out / "journal.jsonl")
     dataset.write(out / "sweep.nc", data)

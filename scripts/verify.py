@@ -3,7 +3,9 @@
 import os
 import sys
 import time
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from mpi4py import MPI
 from rich.console import Console
@@ -13,12 +15,12 @@ from coilset.meshes.errors import CoilsetError, InputError
 from coilset.model.results.folder import whole
 from coilset.verification import registry
 from coilset.verification.page import page, percent
-from coilset.verification.study import Study
+from coilset.verification.study import Check, Study
 
 WIDTH = 200  # columns where the output goes to a file
 
 
-def verify(names, out, fast, page_file=None):
+def verify(names: Sequence[str] | None, out: str | Path, fast: bool, page_file: str | None = None) -> int:
     """Run the named cases, all if none is named; returns 1 if a value is off, else 0.
 
     Args:
@@ -52,7 +54,7 @@ def verify(names, out, fast, page_file=None):
     return 1 if off else 0
 
 
-def show():
+def show() -> None:
     """List the cases."""
     table = Table(box=None, padding=(0, 2))
     for column in ("case", "", "what is compared"):
@@ -62,7 +64,7 @@ def show():
     Console(highlight=False).print(table)
 
 
-def _run(case, folder, console):
+def _run(case: registry.Case, folder: Path, console: Console) -> tuple[Study, str]:
     """The Study of a case, and what went wrong, in words."""
     console.rule(f"[bold]{case.name}[/]: {case.title}", align="left")
     study, began, problem = Study(folder), time.perf_counter(), ""
@@ -81,7 +83,7 @@ def _run(case, folder, console):
     return study, problem
 
 
-def _all_checks(found):
+def _all_checks(found: Mapping[str, tuple[Study, str]]) -> Table:
     """Every number of every case: what, computed, reference, deviation, tolerance, verdict."""
     table = Table(box=None, padding=(0, 1), header_style="bold")
     for column in ("case", "quantity", "computed", "reference", "deviation", "tolerance", "verdict", "source"):
@@ -98,7 +100,7 @@ def _all_checks(found):
     return table
 
 
-def _limits(check):
+def _limits(check: Check) -> tuple[str, str, str]:
     """Reference, deviation and tolerance, in words."""
     if check.kind == "at_most":
         return f"≤ {_number(check.reference + check.tolerance)}", "", ""
@@ -107,7 +109,7 @@ def _limits(check):
     return _number(check.reference), number(check.deviation), tolerance
 
 
-def _plain_table(content):
+def _plain_table(content: dict[str, Any]) -> Table:
     table = Table(title=content["title"], title_justify="left", box=None, padding=(0, 2), header_style="bold")
     for column in content["columns"]:
         table.add_column(column, justify="right")
@@ -116,7 +118,7 @@ def _plain_table(content):
     return table
 
 
-def _number(value):
+def _number(value: object) -> str:
     if isinstance(value, float):
         return f"{value:.6g}"
     return str(value)

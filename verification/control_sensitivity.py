@@ -23,9 +23,8 @@ from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.equilibrium.control import NewtonControl, StepControl
 from coilset.model.equilibrium.convergence import Outcome
-from coilset.model.equilibrium.load import Load
-from coilset.model.equilibrium.newton import Start
 from coilset.model.examples import EXAMPLES
+from coilset.verification.listen import listen
 
 CONTROLS: dict[str, type[NewtonControl] | type[StepControl]] = {"newton": NewtonControl, "steps": StepControl}
 GROWTHS = ("penetration_growth", "growth", "largest", "regrowth")  # at least 1
@@ -68,19 +67,16 @@ def example(name: str) -> Path:
 def count(name: str, settings: Iterable[str]) -> Counts:
     """Run a shipped spring with settings as of `--set`."""
     analysis, found = Analysis(read_case(example(name), list(settings)), MPI.COMM_SELF), Counts()
-    solve, update = analysis.newton.solve, analysis.rod.update
 
-    def counted_solve(load: Load, start: Start | None = None) -> Outcome:
-        outcome = solve(load, start)
+    def count_solve(outcome: Outcome) -> None:
         found.iterations += outcome.iterations
         found.failures += not outcome.converged
-        return outcome
 
-    def counted_update() -> bool:
+    def count_update(_: bool) -> None:
         found.evaluations += 1
-        return update()
 
-    analysis.newton.solve, analysis.rod.update = counted_solve, counted_update  # type: ignore[method-assign]
+    listen(analysis.newton, "solve", count_solve)
+    listen(analysis.rod, "update", count_update)
     try:
         analysis.run()
         found.ended = True

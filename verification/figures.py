@@ -1,9 +1,14 @@
 """Pictures that several cases share."""
 
+from collections.abc import Sequence
+
 import numpy as np
+from matplotlib.axes import Axes
+
+Column = tuple[str, str, Sequence[int | None], Sequence[int | None]]  # method, colour, ours, the table's
 
 
-def iterations(axes, labels, columns, title):
+def iterations(axes: Axes, labels: Sequence[str], columns: Sequence[Column], title: str) -> None:
     """Iterations of each row of a table, ours beside the table's; a row that diverged has a cross at the top.
 
     Args:

@@ -1,19 +1,27 @@
 """Small frames of rods, driven step by step: what the thesis's tables are computed with."""
 
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
 import numpy as np
 from mpi4py import MPI
 from scipy.spatial.transform import Rotation
 
 from coilset.meshes.frame import frame_mesh
+from coilset.meshes.placement import Placement
+from coilset.model.contact.base import Contact
 from coilset.model.equilibrium.contact_limit import ContactLimit
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.control import NewtonControl
+from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.layout import SEATS, LineLayout
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.methods import rod_method
 from coilset.model.equilibrium.newton import Newton, Start
 from coilset.model.equilibrium.system import System
+from coilset.model.material.law import Law
 from coilset.model.rod.rod import Rod
+from coilset.model.section.rules import DiskRule
 
 FREE_PENETRATION = 0.02  # wire diameters that a correction may press, as for springs
 FAR = 0.5  # rad
@@ -38,9 +46,20 @@ class Frame:
         load: Load of the last step, which knows what is held.
     """
 
-    def __init__(self, nodes, pairs, radius, law, rule, held, method="newton", options=None, contacts=(),
-                 placement=None):  # fmt: skip
-        line = frame_mesh(nodes, pairs, MPI.COMM_SELF)
+    def __init__(
+        self,
+        nodes: np.ndarray,
+        pairs: Sequence[tuple[int, int]] | np.ndarray,
+        radius: float | np.ndarray,
+        law: Law,
+        rule: DiskRule,
+        held: Iterable[tuple[int, Iterable[int]]],
+        method: str = "newton",
+        options: Mapping[str, Any] | None = None,
+        contacts: Sequence[Contact] = (),
+        placement: Placement | None = None,
+    ) -> None:
+        line = frame_mesh(nodes, np.asarray(pairs), MPI.COMM_SELF)
         self.rod = Rod(line, np.broadcast_to(np.asarray(radius, float), len(pairs)), law, rule, placement)
         self.layout = LineLayout(self.rod)
         self.system = System(self.rod, self.layout, contacts, np.zeros(SEATS))
@@ -52,11 +71,16 @@ class Frame:
         self.held |= {self.dof(node, component): 0.0 for node, components in held for component in components}
         self._stepped, self.load = False, Load.of(self.layout, self.held, {})
 
-    def dof(self, node, component):
+    def dof(self, node: int, component: int) -> int:
         """Number of a node's dof in the system."""
         return int(self.layout.station_dofs[node, component])
 
-    def step(self, moves=None, forces=None, predictor_scale=None):
+    def step(
+        self,
+        moves: Mapping[int, float] | None = None,
+        forces: Mapping[int, float] | None = None,
+        predictor_scale: float | None = None,
+    ) -> Outcome:
         """One load step.
 
         Args:
@@ -68,9 +92,10 @@ class Frame:
         Returns:
             Outcome; where it has not converged, the frame is back at the last equilibrium.
         """
-        self.load = load = Load.of(self.layout, self.held | (moves or {}), forces or {})
-        from_rest = predictor_scale is None or not self._stepped or self._has_turned_far()
-        start = Start() if from_rest else self.continuation.scaled_last(predictor_scale)
+        self.load = load = Load.of(self.layout, {**self.held, **(moves or {})}, forces or {})
+        start = Start()
+        if predictor_scale is not None and self._stepped and not self._has_turned_far():
+            start = self.continuation.scaled_last(predictor_scale)
         outcome = self.continuation.attempt(load, [start])
         self._stepped = self._stepped or outcome.converged
         return outcome
@@ -82,7 +107,7 @@ class Frame:
         turns = increments[: 6 * nodes].reshape(nodes, 6)[:, 3:]
         return bool(np.linalg.norm(turns, axis=1).max() > FAR)
 
-    def moved(self, node):
+    def moved(self, node: int) -> np.ndarray:
         """Displacement of a node since the start, mm."""
         return self.layout.gather(self.rod.x)[node] - self.rod.line.stations[node]
 
@@ -90,12 +115,12 @@ class Frame:
         """Rotation vector of a node since the start, up to a whole turn, rad."""
         return Rotation.from_matrix(self.layout.gather(self.system.state["R"].trial)[node]).as_rotvec()
 
-    def force(self, dof):
+    def force(self, dof: int) -> float:
         """Internal force at a dof, N or N mm; a support's reaction has the same sign."""
-        return float(self.layout.values(self.system.internal, dof))
+        return float(self.layout.values(self.system.internal, np.array(dof)))
 
     @property
-    def resultants(self):
+    def resultants(self) -> np.ndarray:
         """N, Q2, Q3, Mt, M2, M3 at both Gauss sections in the order of the elements, shape (m, 2, 6), N and N mm."""
         out = np.empty_like(self.rod.s.values)
         out[self.rod.line.element] = self.rod.s.values

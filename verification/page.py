@@ -49,7 +49,7 @@ def page(folder: str | Path) -> str:
     return HEAD + "\n".join(lines) + "\n\n## The cases\n\n" + "\n".join(texts) + "\n"
 
 
-def _used(check):
+def _used(check: dict[str, Any]) -> float:
     """The share of its tolerance that a number uses; of a number that is not judged, its deviation."""
     deviation = check["deviation"]
     if deviation is None:
@@ -59,7 +59,7 @@ def _used(check):
     return abs(deviation) / (check["tolerance"] or 1.0)
 
 
-def _numbers(check):
+def _numbers(check: dict[str, Any]) -> tuple[str, str, str, str]:
     """Computed, reference, deviation and tolerance as text."""
     ours = "–" if check["ours"] is None else f"{check['ours']:.6g}"
     if check["kind"] == "at_most":

@@ -9,6 +9,7 @@ from difflib import get_close_matches
 
 from coilset.meshes.errors import InputError
 from coilset.verification import cases
+from coilset.verification.study import Study
 
 
 @dataclass(frozen=True)
@@ -19,15 +20,15 @@ class Case:
     title: str
     text: str
     fast: bool
-    run: Callable
+    run: Callable[[Study], None]
 
 
-def names():
+def names() -> list[str]:
     """Names of all cases, in alphabetical order."""
     return sorted(module.name.replace("_", "-") for module in pkgutil.iter_modules(cases.__path__))
 
 
-def load(name):
+def load(name: str) -> Case:
     """The case of a name.
 
     Raises:

@@ -2,10 +2,13 @@
 
 import json
 import math
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any, SupportsFloat
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from coilset.model.results.figures import save
 from coilset.model.results.folder import whole
@@ -34,20 +37,20 @@ class Check:
     kind: str = "relative"
     reason: str = ""
 
-    def __post_init__(self):
+    def __post_init__(self) -> None:
         if self.kind not in KINDS:
             raise ValueError(f"kind '{self.kind}' is none of {', '.join(KINDS)}")
         if self.kind == "relative" and self.reference == 0.0:
             raise ValueError(f"{self.quantity}: there is no relative deviation from 0; use 'absolute'")
 
     @property
-    def deviation(self):
+    def deviation(self) -> float:
         """As the kind says; signed, but for its use in `passed`."""
         difference = self.ours - self.reference
         return difference / abs(self.reference) if self.kind == "relative" else difference
 
     @property
-    def passed(self):
+    def passed(self) -> bool:
         """Within the tolerance; never for NaN. Says nothing of a number that is not judged."""
         deviation = self.deviation if self.kind == "at_most" else abs(self.deviation)
         return bool(deviation <= self.tolerance)
@@ -72,41 +75,53 @@ class Study:
         folder: where figures and record.json go; made if it is not there.
     """
 
-    def __init__(self, folder):
+    def __init__(self, folder: str | Path) -> None:
         self.folder = Path(folder)
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.checks, self.tables, self.notes, self.figures = [], [], [], []
+        self.checks: list[Check] = []
+        self.tables: list[dict[str, Any]] = []
+        self.notes: list[str] = []
+        self.figures: list[str] = []
 
-    def check(self, quantity, ours, reference, source, tolerance=0.0, kind="relative"):
+    def check(
+        self,
+        quantity: str,
+        ours: SupportsFloat,
+        reference: SupportsFloat,
+        source: str,
+        tolerance: float = 0.0,
+        kind: str = "relative",
+    ) -> None:
         """Judge a number; see Check."""
         self.checks.append(Check(quantity, float(ours), float(reference), source, float(tolerance), kind))
 
-    def shown(self, quantity: str, ours: float, reference: float, source: str, reason: str) -> None:
+    def shown(self, quantity: str, ours: SupportsFloat, reference: SupportsFloat, source: str, reason: str) -> None:
         """Keep a number beside its reference that is not judged, with the reason; see Check."""
         kind = "relative" if reference else "absolute"
         self.checks.append(Check(quantity, float(ours), float(reference), source, float("nan"), kind, reason))
 
-    def table(self, title, columns, rows):
+    def table(self, title: str, columns: Iterable[str], rows: Iterable[Iterable[object]]) -> None:
         """Keep a table for reading; its rows hold numbers and texts, None for an empty place."""
-        rows = [[plain(value) for value in row] for row in rows]
-        self.tables.append({"title": title, "columns": list(columns), "rows": rows})
+        self.tables.append(
+            {"title": title, "columns": list(columns), "rows": [[plain(value) for value in row] for row in rows]}
+        )
 
-    def note(self, text):
+    def note(self, text: str) -> None:
         """Keep a sentence for the reader."""
         self.notes.append(text)
 
-    def figure(self, name, figure):
+    def figure(self, name: str, figure: Figure) -> None:
         """Write a matplotlib Figure as NAME.png."""
         save(figure, self.folder / f"{name}.png")
         self.figures.append(f"{name}.png")
 
     @property
-    def passed(self):
+    def passed(self) -> bool:
         """All numbers that are judged are within their tolerances, and there is at least one."""
         judged = [check for check in self.checks if check.judged]
         return bool(judged) and all(check.passed for check in judged)
 
-    def write(self, name):
+    def write(self, name: str) -> None:
         """record.json."""
         checks = [asdict(check) | {"deviation": check.deviation, "verdict": check.verdict} for check in self.checks]
         record = {"case": name, "passed": self.passed, "checks": checks, "tables": self.tables, "notes": self.notes,
@@ -115,12 +130,12 @@ class Study:
             path.write_text(json.dumps(json_ready(record), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
-def plain(value):
+def plain(value: object) -> object:
     """A Python number or text for NumPy's."""
     return value.item() if isinstance(value, np.generic) else value
 
 
-def json_ready(value):
+def json_ready(value: object) -> object:
     """The same with None for numbers that JSON does not know."""
     if isinstance(value, dict):
         return {key: json_ready(entry) for key, entry in value.items()}

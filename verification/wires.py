@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from coilset.model.contact.curve import CentreLine
+from coilset.model.contact.curve import CentreLine, WirePoints
 
 
-def wire_points(stations, radius, turns=None):
+def wire_points(stations: np.ndarray, radius: float | np.ndarray, turns: np.ndarray | None = None) -> WirePoints:
     """Points of the bedding of a wire through `stations`.
 
     Args:

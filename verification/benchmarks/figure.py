@@ -1,7 +1,11 @@
 """The picture of a bench: where the time goes, what an element costs, and what a second rank brings."""
 
+from pathlib import Path
+from typing import Any
+
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from coilset.model.results.figures import STYLE, save
@@ -12,7 +16,7 @@ from coilset.verification.benchmarks.target import FLAT, ITERATION, per_element,
 COLOURS = dict(zip(STAGES, mpl.colormaps["tab10"].colors, strict=False))
 
 
-def draw(path, record):
+def draw(path: Path, record: dict[str, Any]) -> None:
     """Write the figure as PNG."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(11.0, 3.8), layout="constrained")
@@ -26,7 +30,7 @@ def draw(path, record):
         save(figure, path)
 
 
-def _stages(axes, example):
+def _stages(axes: Axes, example: dict[str, Any]) -> None:
     spent = [1e3 * example["stages"][stage][1] for stage in STAGES]
     axes.barh(STAGES, spent, color=[COLOURS[stage] for stage in STAGES])
     for place, value in enumerate(spent):
@@ -38,7 +42,7 @@ def _stages(axes, example):
     axes.margins(x=0.15)
 
 
-def _elements(axes, runs):
+def _elements(axes: Axes, runs: list[dict[str, Any]]) -> None:
     n = [run["elements"] for run in runs]
     total = np.array([per_element(run) for run in runs])
     axes.plot(n, total, "ko-", ms=4, label="all")
@@ -57,7 +61,7 @@ def _elements(axes, runs):
     axes.grid(lw=0.3)
 
 
-def _ranks(axes, runs):
+def _ranks(axes: Axes, runs: list[dict[str, Any]]) -> None:
     place, bottom = np.arange(len(runs)), np.zeros(len(runs))
     for stage in STAGES:
         height = np.array([run["stages"][stage][0] for run in runs])

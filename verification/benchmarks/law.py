@@ -15,6 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from coilset.model.material import library, points
+from coilset.model.material.law import Law
 
 POINTS = 4000
 INCREMENTS = (1e-4, 3e-4, 1e-3)
@@ -24,7 +25,7 @@ METHODS = (("return_mapping", None), ("heun", 1e-3), ("heun", 1e-4))
 FORMS = {3: "rod", 6: "full stress state"}
 
 
-def prepared(law, components, increment):
+def prepared(law: Law, components: int, increment: float) -> tuple[np.ndarray, np.ndarray]:
     """Plastic states and the increments that go on from them."""
     rng = np.random.default_rng(0)
     state = points.initial_state(law, POINTS, components)
@@ -35,7 +36,7 @@ def prepared(law, components, increment):
     return state, increment * direction
 
 
-def rate(law, integrator, state, increments):
+def rate(law: Law, integrator: str, state: np.ndarray, increments: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
     """Points a second, the best of `SECONDS`, through the compiled loop alone."""
     loop, p = points.LOOPS[increments.shape[1], integrator], law.parameters()
     new, tangent = np.empty_like(state), np.empty((*increments.shape, increments.shape[1]))
@@ -49,7 +50,7 @@ def rate(law, integrator, state, increments):
     return POINTS / best, new, count
 
 
-def processor():
+def processor() -> str:
     """Name of the processor where the system tells it."""
     try:
         with open("/proc/cpuinfo", encoding="utf-8") as file:
@@ -58,7 +59,7 @@ def processor():
         return platform.processor() or platform.machine()
 
 
-def error(law, state, increments, new):
+def error(law: Law, state: np.ndarray, increments: np.ndarray, new: np.ndarray) -> float:
     """Root mean square error of the stress in `new` over the flow stress, of the first points."""
     some, components = slice(COMPARED), increments.shape[1]
     exact = points.update(law, state[some], increments[some], "heun", tolerance=1e-7)[0]
@@ -66,7 +67,7 @@ def error(law, state, increments, new):
     return np.sqrt((((new[some, :components] - exact[:, :components]) ** 2).sum(axis=1) / flow**2).mean())
 
 
-def main():
+def main() -> None:
     """Print the table."""
     console = Console(highlight=False, width=120)
     load, version = os.getloadavg()[0], platform.python_version()

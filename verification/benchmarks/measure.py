@@ -14,10 +14,18 @@ import json
 import resource
 import sys
 import tempfile
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from coilset.model.examples import EXAMPLES
 from coilset.verification.benchmarks.stopwatch import Stopwatch
+
+if TYPE_CHECKING:  # at run time their import is measured
+    from mpi4py import MPI
+
+    from coilset.model.analysis import Analysis
+    from coilset.model.case import Case
 
 TURNS = 2.5  # of the example's spring
 TRAVEL = 10.0  # mm, in one step: three times the travel at which the wire begins to yield
@@ -25,7 +33,7 @@ STAGES = ("mesh", "set-up", "law", "contact", "assemble", "factorise", "solve", 
 FACTORISE, SOLVE = ("MatLUFactorSym", "MatLUFactorNum"), ("MatSolve",)  # PETSc's events
 
 
-def watch_analysis(watch, analysis):
+def watch_analysis(watch: Stopwatch, analysis: "Analysis") -> None:
     """Make the stages of a solve count."""
     watch.watch(analysis.rod, "update", "law")
     for owner, function in ((analysis.rod, "tangent"), (analysis.rod, "internal_forces"),
@@ -36,7 +44,7 @@ def watch_analysis(watch, analysis):
     watch.watch(analysis.newton.limit, "step_length", "contact")
 
 
-def petsc_seconds(events):
+def petsc_seconds(events: Iterable[str]) -> float:
     """Seconds that PETSc's log holds for these events, of the clock."""
     from petsc4py import PETSc
 
@@ -46,30 +54,30 @@ def petsc_seconds(events):
 class Logged:
     """Charges what PETSc's log says was factorised and solved, and leaves the rest in `other`."""
 
-    def __init__(self, watch):
+    def __init__(self, watch: Stopwatch) -> None:
         from petsc4py import PETSc
 
         PETSc.Log.begin()
         self.watch, self.before = watch, self._read()
 
-    def _read(self):
+    def _read(self) -> dict[str, float]:
         return {"factorise": petsc_seconds(FACTORISE), "solve": petsc_seconds(SOLVE)}
 
-    def charge(self):
+    def charge(self) -> None:
         """Move what has been logged since the last call out of `other`."""
         now = self._read()
         self.watch.split("other", {name: now[name] - self.before[name] for name in now})
         self.before = now
 
 
-def read_example(settings=()):
+def read_example(settings: Iterable[str] = ()) -> "Case":
     """The example's Case."""
     from coilset.model.case import read_case
 
     return read_case(EXAMPLES / "ck15_presetting.yaml", settings)
 
 
-def build(watch, case, comm):
+def build(watch: Stopwatch, case: "Case", comm: "MPI.Comm") -> "Analysis":
     """An Analysis whose stages are watched."""
     from coilset.model.analysis import Analysis
 
@@ -79,7 +87,7 @@ def build(watch, case, comm):
     return analysis
 
 
-def watch_meshing():
+def watch_meshing() -> Stopwatch:
     """The Stopwatch whose stage `mesh` is what the analysis has made in `meshes`."""
     from coilset.model import analysis as module
 
@@ -89,7 +97,7 @@ def watch_meshing():
     return watch
 
 
-def example(repeats=5):
+def example(repeats: int = 5) -> dict[str, Any]:
     """The example, 40 elements, 12 steps down and up with contact, several times in one process.
 
     Returns:
@@ -104,7 +112,7 @@ def example(repeats=5):
         import coilset.model.analysis  # noqa: F401
     watch, runs = watch_meshing(), []
     logged = Logged(watch)
-    for _ in range(int(repeats) + 1):
+    for _ in range(repeats + 1):
         watch.wall.clear()
         watch.cpu.clear()
         analysis = build(watch, read_example(), MPI.COMM_SELF)
@@ -130,12 +138,12 @@ def example(repeats=5):
     }
 
 
-def pair(watch, stage):
+def pair(watch: Stopwatch, stage: str) -> list[float]:
     """Wall and CPU seconds of a stage."""
     return [watch.wall[stage], watch.cpu[stage]]
 
 
-def write(watch, analysis):
+def write(watch: Stopwatch, analysis: "Analysis") -> None:
     """Everything that `coilset solve` writes, into a folder that is thrown away."""
     from coilset.model.results import dataset, display, figures, scene
     from coilset.model.results.folder import write_history, write_summary
@@ -157,7 +165,7 @@ def write(watch, analysis):
                 scene.springs(folder / "springs.png", result.snapshots, analysis.setup.wire_radius)
 
 
-def press(elements, repeats=1):
+def press(elements: int, repeats: int = 1) -> dict[str, Any]:
     """The example's spring between clamped heads, in many elements, pressed far into the plastic range in one step.
 
     Returns:
@@ -168,9 +176,9 @@ def press(elements, repeats=1):
 
     comm, watch, runs = MPI.COMM_WORLD, watch_meshing(), []
     logged = Logged(watch)
-    settings = ["ends=clamped", f"mesh.elements_per_turn={float(elements) / TURNS}",
+    settings = ["ends=clamped", f"mesh.elements_per_turn={elements / TURNS}",
                 f"loading=[{{to: {{travel: {TRAVEL}}}, steps: 1}}]"]  # fmt: skip
-    for _ in range(int(repeats)):
+    for _ in range(repeats):
         watch.wall.clear()
         watch.cpu.clear()
         analysis = build(watch, read_example(settings), comm)
@@ -194,7 +202,7 @@ def press(elements, repeats=1):
     }
 
 
-def cases(count):
+def cases(count: int) -> dict[str, Any]:
     """Cases of the sweep over manufacturing tolerances, one after the other, as a worker of a sweep runs them.
 
     Returns:
@@ -206,7 +214,7 @@ def cases(count):
     from coilset.model.sweep.plan import Plan
 
     plan, watch = Plan(EXAMPLES / "sweeps" / "tolerances.yaml"), Stopwatch()
-    count = min(int(count), len(plan.rows) - 1)
+    count = min(count, len(plan.rows) - 1)
     records = [evaluate(**plan.task(plan.rows[0]), comm=MPI.COMM_SELF)]
     with watch.stage("cases"):
         records += [evaluate(**plan.task(row), comm=MPI.COMM_SELF) for row in plan.rows[1 : count + 1]]
@@ -218,17 +226,17 @@ def cases(count):
     }
 
 
-def peak_memory():
+def peak_memory() -> float:
     """Greatest resident memory of this process so far, GiB."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
 
 
-JOBS = {"example": example, "press": press, "cases": cases}
+JOBS: dict[str, Callable[..., dict[str, Any]]] = {"example": example, "press": press, "cases": cases}
 
 
-def main(job, *arguments):
-    """Run a job and print what it found."""
-    found = JOBS[job](*arguments)
+def main(job: str, *arguments: str) -> None:
+    """Run a job with whole numbers as arguments and print what it found."""
+    found = JOBS[job](*map(int, arguments))
     from mpi4py import MPI
 
     if MPI.COMM_WORLD.rank == 0:

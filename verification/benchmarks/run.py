@@ -6,6 +6,8 @@ import platform
 import subprocess
 import sys
 import tempfile
+from collections.abc import Callable
+from typing import Any
 
 from coilset.meshes.errors import CoilsetError
 from coilset.model.processes import MPI_SETTINGS, mpirun
@@ -20,7 +22,7 @@ CASES = {"quick": 20, "full": 100}
 LARGE = 4_000  # elements from which on the cost of an element should not depend on their number
 
 
-def measure(environment, job, *arguments, ranks=1):
+def measure(environment: dict[str, str], job: str, *arguments: int, ranks: int = 1) -> dict[str, Any]:
     """One measurement.
 
     Args:
@@ -41,13 +43,13 @@ def measure(environment, job, *arguments, ranks=1):
     return json.loads(done.stdout.strip().splitlines()[-1])
 
 
-def cold(environment):
+def cold(environment: dict[str, str]) -> dict[str, Any]:
     """The example with nothing compiled yet: forms and kernels are built in a folder that is thrown away."""
     with tempfile.TemporaryDirectory() as folder:
         return measure(environment | {"XDG_CACHE_HOME": folder, "NUMBA_CACHE_DIR": folder}, "example", 1)
 
 
-def bench(full, with_cold, environment, report):
+def bench(full: bool, with_cold: bool, environment: dict[str, str], report: Callable[[str], object]) -> dict[str, Any]:
     """All measurements.
 
     Args:
@@ -60,7 +62,7 @@ def bench(full, with_cold, environment, report):
         The record: plain data for JSON.
     """
     size = "full" if full else "quick"
-    record = {"machine": machine()}
+    record: dict[str, Any] = {"machine": machine()}
     report("example")
     record["example"] = measure(environment, "example", 5)
     if with_cold:
@@ -81,7 +83,7 @@ def bench(full, with_cold, environment, report):
     return record
 
 
-def machine():
+def machine() -> dict[str, Any]:
     """What it runs on, and how busy that is."""
     model = platform.processor() or platform.machine()
     try:

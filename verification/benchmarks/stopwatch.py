@@ -2,7 +2,9 @@
 
 import time
 from collections import defaultdict
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from typing import Any
 
 
 class Stopwatch:
@@ -12,12 +14,14 @@ class Stopwatch:
         wall, cpu: stage → seconds of the clock, and of this process on the processor.
     """
 
-    def __init__(self):
-        self.wall, self.cpu = defaultdict(float), defaultdict(float)
-        self._open, self._last = [], (0.0, 0.0)
+    def __init__(self) -> None:
+        self.wall: defaultdict[str, float] = defaultdict(float)
+        self.cpu: defaultdict[str, float] = defaultdict(float)
+        self._open: list[str] = []
+        self._last = (0.0, 0.0)
 
     @contextmanager
-    def stage(self, name):
+    def stage(self, name: str) -> Iterator[None]:
         """What happens inside belongs to the stage `name`."""
         self._charge()
         self._open.append(name)
@@ -27,24 +31,24 @@ class Stopwatch:
             self._charge()
             self._open.pop()
 
-    def _charge(self):
+    def _charge(self) -> None:
         now = time.perf_counter(), time.process_time()
         if self._open:
             self.wall[self._open[-1]] += now[0] - self._last[0]
             self.cpu[self._open[-1]] += now[1] - self._last[1]
         self._last = now
 
-    def watch(self, owner, function, name):
+    def watch(self, owner: object, function: str, name: str) -> None:
         """Make calls of a function of `owner`, an object or a module, count as the stage `name`."""
         inner = getattr(owner, function)
 
-        def watched(*arguments, **named):
+        def watched(*arguments: Any, **named: Any) -> Any:
             with self.stage(name):
                 return inner(*arguments, **named)
 
         setattr(owner, function, watched)
 
-    def split(self, name, shares):
+    def split(self, name: str, shares: Mapping[str, float]) -> None:
         """Divide a stage: `shares` maps new stages to wall seconds measured elsewhere; what is left keeps the name.
 
         Seconds of the processor are divided in the same ratio.

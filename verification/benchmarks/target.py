@@ -1,27 +1,30 @@
 """What the measurements say: cost of an element in an iteration, its spread, and the numbers that were aimed at."""
 
+from collections.abc import Mapping, Sequence
+from typing import Any
+
 ITERATION = ("law", "contact", "assemble", "factorise", "solve", "other")  # stages of the equilibrium iteration
 FLAT = 0.2  # how much the cost of an element may differ above LARGE elements
 
 
-def seconds(stages, kind=1):
+def seconds(stages: Mapping[str, Sequence[float]], kind: int = 1) -> float:
     """Sum of all stages; kind 0: of the clock, 1: of the processor."""
     return sum(pair[kind] for pair in stages.values())
 
 
-def per_element(run, stage=None):
+def per_element(run: dict[str, Any], stage: str | None = None) -> float:
     """Processor time of an element in a Newton iteration, µs; of all stages of the iteration, or of one."""
     spent = sum(run["stages"][name][1] for name in ITERATION) if stage is None else run["stages"][stage][1]
     return 1e6 * spent / (run["elements"] * run["iterations"])
 
 
-def spread(runs, least):
+def spread(runs: Sequence[dict[str, Any]], least: int) -> float | None:
     """Greatest over least cost of an element, less one, from `least` elements on; None for fewer than two runs."""
     costs = [per_element(run) for run in runs if run["elements"] >= least]
     return max(costs) / min(costs) - 1.0 if len(costs) > 1 else None
 
 
-def targets(record):
+def targets(record: dict[str, Any]) -> list[dict[str, Any]]:
     """Rows of what was aimed at: name, value, limit, unit; processor time is that of one core."""
     from coilset.verification.benchmarks.run import LARGE
 

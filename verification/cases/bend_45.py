@@ -20,6 +20,7 @@ from coilset.meshes.errors import SolveError
 from coilset.model.results.figures import STYLE
 from coilset.verification.chain import Z, chain, elastic
 from coilset.verification.references.rod_shooting import Stiffness, clamped_rod
+from coilset.verification.study import Study
 
 FAST = True
 RING, YOUNG, EI = 100.0, 1e7, 1e7 / 12.0
@@ -31,15 +32,16 @@ FINE = 32
 PAPER = {"x": -23.5, "y": -13.4, "z": 53.4}  # displacement of the tip at P = 600
 
 
-def arc(elements):
+def arc(elements: int) -> np.ndarray:
     """Nodes of the eighth of a circle, shape (elements + 1, 3)."""
     angle = np.linspace(0.0, np.pi / 4.0, elements + 1)
     return RING * np.stack([np.sin(angle), 1.0 - np.cos(angle), 0.0 * angle], axis=1)
 
 
-def bend(elements):
+def bend(elements: int) -> tuple[dict[float, np.ndarray], list[int]]:
     """All nodes' positions by force, shape (elements + 1, 3), and the iterations of the steps."""
-    nodes, found, counts = arc(elements), {}, []
+    nodes, found = arc(elements), {}
+    counts: list[int] = []
     frame = chain(nodes, RADIUS, elastic(YOUNG, 0.0))
     for force in FORCES:
         outcome = frame.step(forces={frame.dof(elements, Z): force}, predictor_scale=1.0 if counts else None)
@@ -50,7 +52,7 @@ def bend(elements):
     return found, counts
 
 
-def run(study):
+def run(study: Study) -> None:
     """Tips of four meshes against shooting, and shooting against the paper."""
     law = elastic(YOUNG, 0.0)
     stiffness = Stiffness.of_round_wire(RADIUS, law.E, law.G)
@@ -59,7 +61,7 @@ def run(study):
     for name, value, printed in zip("xyz", exact[600.0] - arc(1)[-1], PAPER.values(), strict=True):
         study.check(f"shooting: displacement {name} of the tip, P = 600", value, printed, "Bathe and Bolourchi", 0.02)
     found = {n: bend(n) for n in MESHES}
-    error = {n: {P: np.linalg.norm(found[n][0][P][-1] - exact[P]) / RING for P in JUDGED} for n in MESHES}
+    error = {n: {P: float(np.linalg.norm(found[n][0][P][-1] - exact[P])) / RING for P in JUDGED} for n in MESHES}
     for force in JUDGED:
         tolerance = 0.1 * (np.pi / (4.0 * FINE)) ** 2 + force / stiffness.EA
         for name, ours, theirs in zip("xyz", found[FINE][0][force][-1], exact[force], strict=True):
@@ -76,7 +78,7 @@ def run(study):
     draw(study, found[FINE][0], error)
 
 
-def draw(study, shapes, error):
+def draw(study: Study, shapes: dict[float, np.ndarray], error: dict[int, dict[float, float]]) -> None:
     """Shapes seen along y, and the error over the mesh."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.6, 3.8), layout="constrained")

@@ -14,10 +14,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.model.material import library
+from coilset.model.material.law import Law
 from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
 from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, chain, drive, straight
 from coilset.verification.references.section_integrals import bending_moment
+from coilset.verification.study import Study
 
 FAST = True
 LENGTH, RADIUS, STEPS = 1.0, 2.5, 4  # mm
@@ -26,7 +28,7 @@ FACTORS = (2.0, 5.0, 20.0)  # curvature over that at yield
 DIRECTIONS = np.arange(0.0, 31.0, 7.5)  # of the axis, degrees
 
 
-def moment(law, rule, curvature, direction):
+def moment(law: Law, rule: tuple[int, int], curvature: float, direction: float) -> float:
     """Moment about the axis of bending, N mm."""
     frame = chain(straight(LENGTH, 1), RADIUS, law, polar(*rule), [(0, ALL), (1, (ROTATION_X,))])
     axis = np.array([np.cos(np.radians(direction)), np.sin(np.radians(direction))])
@@ -37,7 +39,7 @@ def moment(law, rule, curvature, direction):
     return float(frame.resultants[0].mean(axis=0)[4:] @ axis)
 
 
-def run(study):
+def run(study: Study) -> None:
     """Errors over the direction."""
     law, errors = library.load("ideal_plastic"), {}
     for factor in FACTORS:

@@ -16,11 +16,13 @@ from matplotlib.figure import Figure
 from mpi4py import MPI
 
 from coilset.model.analysis import Analysis
-from coilset.model.case import check
+from coilset.model.case import Case, check
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
+from coilset.model.results.record import Step
 from coilset.verification.references.stability import clamped_spring
 from coilset.verification.stability import lowest_eigenvalue, negative_pivots, tangent
+from coilset.verification.study import Study
 
 FAST = True
 WIRE, DIAMETER, TURNS, PITCH = 5.0, 40.0, 40, 12.0  # mm
@@ -28,14 +30,14 @@ LAST, STEPS = 38.0, 19  # mm of travel
 MESHES = (8, 16)
 
 
-def press(mesh):
+def press(mesh: int) -> np.ndarray:
     """Travel (mm), force (N), least eigenvalue, negative pivots after each step, shape (STEPS, 4)."""
     spring = {"wire_diameter": WIRE, "mean_diameter": DIAMETER, "turns": TURNS, "pitch": PITCH}
-    case = check({"spring": spring, "material": "elastic", "ends": "clamped", "mesh": {"elements_per_turn": mesh},
+    case: Case = check({"spring": spring, "material": "elastic", "ends": "clamped", "mesh": {"elements_per_turn": mesh},
                   "loading": [{"to": {"travel": LAST}, "steps": STEPS}]})  # fmt: skip
     analysis, rows = Analysis(case, MPI.COMM_SELF), []
 
-    def keep(step):
+    def keep(step: Step) -> None:
         matrix = tangent(analysis.system, analysis.control.to_height(analysis.control.height))
         rows.append((step.travel_mm, step.force_N, lowest_eigenvalue(matrix), negative_pivots(matrix)))
 
@@ -43,15 +45,15 @@ def press(mesh):
     return np.array(rows)
 
 
-def critical(rows):
+def critical(rows: np.ndarray) -> tuple[float, float]:
     """Travel and force at which the least eigenvalue vanishes, by parabolas through the last three steps, mm and N."""
     travel, force, least = rows[-3:, :3].T
     roots = np.roots(np.polyfit(travel, least, 2))
     at = min(roots[np.isreal(roots)].real, key=lambda root: abs(root - travel[-1]))
-    return at, np.polyval(np.polyfit(travel, force, 2), at)
+    return float(at), float(np.polyval(np.polyfit(travel, force, 2), at))
 
 
-def run(study):
+def run(study: Study) -> None:
     """Critical travel and force."""
     law, found = library.load("elastic"), {mesh: press(mesh) for mesh in MESHES}
     travel, force = clamped_spring(WIRE, DIAMETER, TURNS, TURNS * PITCH, law.E, law.G)

@@ -11,8 +11,6 @@ The contact's place is where the seat's force acts. Tolerances: the linear beam 
 found between points 1.25 mm apart, and the bedding lets the beam sink in by less than 1e-3 of h.
 """
 
-from typing import Any
-
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
@@ -23,6 +21,7 @@ from coilset.model.material import library
 from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
 from coilset.verification.frame import Frame
+from coilset.verification.study import Study
 from coilset.verification.wires import wire_points
 
 FAST = True
@@ -32,7 +31,7 @@ STEPS = 24
 LOWEST = 0.12  # h/(α L) at the end
 
 
-def press():
+def press() -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
     """Heights of the clamp (mm), forces on the plane (N) and places where they act (mm from the clamp)."""
     law = library.load("elastic")
     along = np.linspace(LENGTH, 0.0, ELEMENTS + 1)  # from the tip to the clamp
@@ -43,24 +42,25 @@ def press():
     pairs = [(k, k + 1) for k in range(ELEMENTS)]
     frame = Frame(nodes, pairs, RADIUS, law, polar(), held, contacts=[seat])
     heights = np.sin(SLOPE) * LENGTH * np.linspace(1.0, LOWEST, STEPS + 1)
-    rows: list[Any] = []
+    rows: list[tuple[float, float]] = []
     for step in np.diff(heights):
         if not frame.step(moves={frame.dof(ELEMENTS, 2): step}, predictor_scale=1.0 if rows else None).converged:
             raise RuntimeError(f"no equilibrium at step {len(rows) + 1}")
         part = frame.system.last.contributions[0]
         x = points.at(frame.layout.gather(frame.rod.x))[part.point, 0]
         rows.append((part.pressure.sum(), part.pressure @ x / part.pressure.sum()))
-    return heights[1:], *np.array(rows).T, law.E * np.pi * RADIUS**4 / 4.0
+    forces, places = np.array(rows).T
+    return heights[1:], forces, places, law.E * np.pi * RADIUS**4 / 4.0
 
 
-def closed_form(h, EI):
+def closed_form(h: np.ndarray, EI: float) -> tuple[np.ndarray, np.ndarray]:
     """Force and its place of the linear beam, N and mm."""
     tip = h > SLOPE * LENGTH / 3.0
     c = np.where(tip, LENGTH, 3.0 * h / SLOPE)
     return np.where(tip, 3.0 * EI * (SLOPE * LENGTH - h) / LENGTH**3, 2.0 * SLOPE * EI / c**2), c
 
 
-def run(study):
+def run(study: Study) -> None:
     """Forces and places on the way down."""
     h, force, place, EI = press()
     P, c = closed_form(h, EI)

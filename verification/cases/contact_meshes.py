@@ -10,6 +10,7 @@ within some thousandths of a millimetre: it settles last.
 """
 
 import logging
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -20,11 +21,14 @@ from coilset.model.case import read_case
 from coilset.model.examples import EXAMPLES
 from coilset.model.results.figures import STYLE
 from coilset.model.results.summary import summarise
+from coilset.verification.study import Study
 
 SPRINGS = ("cylinder", "cone", "barrel")
 MESHES = (16, 32, 64)
 FAILED = ("no equilibrium from the last step's direction", "cut to")  # in the log of the step control
 IN_PARTS = ("no equilibrium of the whole step yet",)
+
+Run = tuple[Analysis, dict[str, Any]]  # with its summary
 
 
 class Counter(logging.Handler):
@@ -32,13 +36,13 @@ class Counter(logging.Handler):
 
     failed = parts = 0
 
-    def emit(self, record):
+    def emit(self, record: logging.LogRecord) -> None:
         """Count a record."""
         self.failed += any(words in record.getMessage() for words in FAILED)
         self.parts += any(words in record.getMessage() for words in IN_PARTS)
 
 
-def press(name, mesh, automatic):
+def press(name: str, mesh: int, automatic: bool) -> tuple[Analysis, dict[str, Any], Counter]:
     """Run an example; the Analysis, its summary, and the Counter of its solves."""
     settings = [f"mesh.elements_per_turn={mesh}"]
     settings += [f"loading.{phase}.steps=auto" for phase in (0, 1) if automatic]
@@ -55,13 +59,13 @@ def press(name, mesh, automatic):
     return analysis, summarise(analysis.setup, result), counter
 
 
-def characteristic(analysis, phase=None):
+def characteristic(analysis: Analysis, phase: int | None = None) -> np.ndarray:
     """Travel and force at the steps of a phase, or of all of them, mm and N."""
     steps = [step for step in analysis.result.steps if phase in (None, step.phase)]
     return np.array([[step.travel_mm, step.force_N] for step in steps]).T
 
 
-def run(study):
+def run(study: Study) -> None:
     """Count failures, compare meshes."""
     rows, curves = [], {}
     for name in SPRINGS:
@@ -80,7 +84,7 @@ def run(study):
     draw(study, curves)
 
 
-def compare(study, name, found):
+def compare(study: Study, name: str, found: dict[int, Run]) -> None:
     """Set and loading characteristic of neighbouring meshes."""
     finest = f"{MESHES[-1]} elements a turn"
     force = {mesh: characteristic(analysis, 0)[1] for mesh, (analysis, _) in found.items()}
@@ -91,7 +95,7 @@ def compare(study, name, found):
     study.check(f"{name}: that over the change from 16 to 32", fine / coarse, 1.0, "convergence", kind="at_most")
 
 
-def draw(study, curves):
+def draw(study: Study, curves: dict[tuple[str, int, bool], Run]) -> None:
     """Characteristics of the three springs at three meshes."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(11.0, 4.0), layout="constrained")

@@ -12,17 +12,17 @@ stiffness c is the bedding of both points together: F is c p²/(4w) up to p = 2w
 tilt of the connection.
 """
 
-from typing import Any
-
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.model.contact.coils import Coils
 from coilset.model.material import library
+from coilset.model.material.law import Law
 from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
 from coilset.verification.frame import Frame
+from coilset.verification.study import Study
 from coilset.verification.wires import wire_points
 
 FAST = True
@@ -32,7 +32,7 @@ BEDDING, ONSET = 5000.0, 1e-3  # N/mm per mm, mm
 TRAVEL = 0.025 * np.arange(1, 8)  # mm
 
 
-def contact(wires):
+def contact(wires: list[np.ndarray]) -> Coils:
     """Coils of two wires whose stations follow each other; nothing bears between the end of one and the other."""
     stations, count = np.vstack(wires), len(wires[0])
     turns = np.concatenate([np.linspace(first, first + 0.4, count) for first in (0.0, 1.0)])
@@ -41,7 +41,7 @@ def contact(wires):
     return coils
 
 
-def press():
+def press() -> tuple[np.ndarray, np.ndarray, float, Law]:
     """Forces on the ends of rod 1 and penetrations at TRAVEL, N and mm, stiffness c of the crossing, and the law."""
     law = library.load("elastic")
     directions = ((1.0, 0.0, 0.0), (np.cos(ANGLE), np.sin(ANGLE), 0.0))
@@ -56,17 +56,18 @@ def press():
     pairs = [(first + k, first + k + 1) for first in (0, count) for k in range(ELEMENTS)]
     frame = Frame(np.vstack(wires), pairs, np.repeat(RADII, ELEMENTS), law, polar(), held, contacts=[coils])
     driven = [frame.dof(node, 2) for node in ends[:2]]
-    rows: list[Any] = []
+    rows: list[tuple[float, float]] = []
     for step in np.diff(np.append(0.0, TRAVEL)):
         if not frame.step(moves=dict.fromkeys(driven, -step)).converged:
             raise RuntimeError(f"no equilibrium at step {len(rows) + 1}")
         rows.append((-sum(frame.force(dof) for dof in driven),
                      frame.system.last.contributions[0].penetration.max(initial=0.0)))  # fmt: skip
     bearing = coils.stiffness[[2 * int(PLACES[0] * ELEMENTS), 2 * (count + int(PLACES[1] * ELEMENTS))]].sum()
-    return *np.array(rows).T, bearing, law
+    forces, penetrations = np.array(rows).T
+    return forces, penetrations, bearing, law
 
 
-def compliance(law):
+def compliance(law: Law) -> float:
     """1/k1 + 1/k2, mm/N."""
     total = 0.0
     for length, radius, place in zip(LENGTHS, RADII, PLACES, strict=True):
@@ -75,7 +76,7 @@ def compliance(law):
     return total
 
 
-def run(study):
+def run(study: Study) -> None:
     """Forces and penetrations as rod 1 goes down."""
     force, depth, c, law = press()
     study.check("force before they touch, N", force[0], 0.0, "gap 0.025 mm", 1e-9, "absolute")

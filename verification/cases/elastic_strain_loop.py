@@ -18,9 +18,11 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.model.material import library
+from coilset.model.material.law import Law
 from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import DiskRule
 from coilset.verification.chain import ALL, ROTATION_X, X, chain, drive, straight
+from coilset.verification.study import Study
 
 FAST = True
 LENGTH, RADIUS, STRETCH, SHEAR = 10.0, 1.0, 0.01, 0.02
@@ -30,7 +32,7 @@ RING = DiskRule(
 )
 
 
-def loop(law, steps):
+def loop(law: Law, steps: int) -> np.ndarray:
     """σ and τ of the surface on the way, MPa, shape (4 steps + 1, 2)."""
     frame = chain(straight(LENGTH, 1), RADIUS, law, RING, [(0, ALL), (1, range(1, 6))])
     pull, turn, rows = frame.dof(1, X), frame.dof(1, ROTATION_X), [(0.0, 0.0)]
@@ -38,7 +40,7 @@ def loop(law, steps):
     # φ′ counts per current length: as the bar is shortened, it is turned back so far that γ stays
     more = twist * np.expm1(STRETCH)
 
-    def keep():
+    def keep() -> None:
         rows.append((frame.rod.point_state[0, 0, 0, 0], frame.rod.point_state[0, 0, 0, 2]))
 
     for way, angle in ((length, 0.0), (0.0, twist + more), (-length, -more), (0.0, -twist)):
@@ -46,10 +48,10 @@ def loop(law, steps):
     return np.array(rows)
 
 
-def closed_form(law):
+def closed_form(law: Law) -> np.ndarray:
     """σ and τ at the start and at the ends of the four parts, MPa, shape (5, 2)."""
 
-    def twisted(state, γ):
+    def twisted(state: np.ndarray, γ: float) -> np.ndarray:
         (σ, τ), turn = np.add(state, (2.0 * law.G, 0.0)), γ / np.sqrt(2.0)
         end = σ * np.cos(turn) - np.sqrt(2.0) * τ * np.sin(turn), τ * np.cos(turn) + σ / np.sqrt(2.0) * np.sin(turn)
         return np.array(end) - (2.0 * law.G, 0.0)
@@ -61,7 +63,7 @@ def closed_form(law):
     return np.array(states)
 
 
-def run(study):
+def run(study: Study) -> None:
     """What remains with and without spin."""
     law, none = library.load("elastic"), library.load("elastic", spin=False)
     exact, rows, paths = closed_form(law), [], {}

@@ -20,6 +20,7 @@ from coilset.model.results.figures import STYLE
 from coilset.verification.chain import Y, chain, straight
 from coilset.verification.references.elastica import cantilever
 from coilset.verification.references.rod_shooting import Stiffness, clamped_rod
+from coilset.verification.study import Study
 
 FAST = True
 LENGTH, RADIUS = 100.0, 1.0  # mm
@@ -29,11 +30,12 @@ MESHES = (8, 16, 32)
 FINE = 32
 
 
-def bend(elements):
+def bend(elements: int) -> np.ndarray:
     """Shortening u/L and deflection v/L of the tip at LOADS, shape (10, 2)."""
     law = library.load("elastic")
     unit = Stiffness.of_round_wire(RADIUS, law.E, law.G).EI / LENGTH**2
-    frame, rows = chain(straight(LENGTH, elements), RADIUS, law), []
+    frame = chain(straight(LENGTH, elements), RADIUS, law)
+    rows: list[np.ndarray] = []
     for load in LOADS:
         outcome = frame.step(forces={frame.dof(elements, Y): load * unit}, predictor_scale=1.0 if rows else None)
         if not outcome.converged:
@@ -42,7 +44,7 @@ def bend(elements):
     return np.array(rows)
 
 
-def exact(load, radius=RADIUS):
+def exact(load: float, radius: float = RADIUS) -> np.ndarray:
     """u/L and v/L by shooting."""
     law = library.load("elastic")
     stiffness = Stiffness.of_round_wire(radius, law.E, law.G)
@@ -50,7 +52,7 @@ def exact(load, radius=RADIUS):
     return np.array([1.0 - tip[0] / LENGTH, tip[1] / LENGTH])
 
 
-def run(study):
+def run(study: Study) -> None:
     """Both references, three meshes."""
     law = library.load("elastic")
     found = {n: bend(n) for n in MESHES}

@@ -22,29 +22,34 @@ from mpi4py import MPI
 
 from coilset.meshes.placement import gauss_points
 from coilset.model.analysis import Analysis
-from coilset.model.case import check
+from coilset.model.case import Case, check
 from coilset.model.results.figures import STYLE
+from coilset.model.results.record import Step
 from coilset.model.rod.kinematics import GAUSS
+from coilset.verification.study import Study
 
 FAST = True
 SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0}
-CYCLES = {"clamped, 12 mm": ("clamped", {"travel": 12.0}, 1e-4), "seats, to block": ("seats", "block", 3e-4)}
+CYCLES: dict[str, tuple[str, str | dict[str, float], float]] = {
+    "clamped, 12 mm": ("clamped", {"travel": 12.0}, 1e-4),
+    "seats, to block": ("seats", "block", 3e-4),
+}
 STEPS = (50, 100)  # each way
 
 
 class Ledger:
     """Work and energies of an Analysis, brought up to date by `keep` after each step; N mm."""
 
-    def __init__(self, analysis):
+    def __init__(self, analysis: Analysis) -> None:
         self.analysis, turns = analysis, analysis.setup.turns
         _, _, length = gauss_points(analysis.spring, turns[:-1], turns[1:], GAUSS)
         section = np.pi * analysis.setup.wire_radius[:, None] ** 2 * 0.5 * length
         self.volume = section[..., None] * analysis.rod.rule.weights
         self.history = np.zeros((*self.volume.shape, analysis.law.n_state))
         self.travel = self.force = self.work = self.back = 0.0
-        self.rows = []
+        self.rows: list[tuple[float, ...]] = []
 
-    def keep(self, step):
+    def keep(self, step: Step) -> None:
         """After a step: travel, work, elastic energy, work against the back stress, plastic work."""
         law, history = self.analysis.law, self.analysis.snapshot("step").point_state
         ζ = law.functions(history[..., 6])[2]
@@ -57,21 +62,21 @@ class Ledger:
         self.rows.append((self.travel, self.work, (self.volume * density).sum(), self.back, plastic))
 
 
-def squares(history):
+def squares(history: np.ndarray) -> np.ndarray:
     """¾ B11² + B12² + B13², whose rate over ζ is B:ε̇p."""
     return 0.75 * history[..., 3] ** 2 + history[..., 4] ** 2 + history[..., 5] ** 2
 
 
-def cycle(ends, target, steps):
+def cycle(ends: str, target: str | dict[str, float], steps: int) -> np.ndarray:
     """Rows of the Ledger, shape (steps done, 5)."""
     loading = [{"to": target, "steps": steps}, {"to": {"force": 0.0}, "steps": steps}]
-    case = check({"spring": SPRING, "material": "ck15", "ends": ends, "loading": loading})
+    case: Case = check({"spring": SPRING, "material": "ck15", "ends": ends, "loading": loading})
     ledger = Ledger(analysis := Analysis(case, MPI.COMM_SELF))
     analysis.run(ledger.keep)
     return np.array(ledger.rows)
 
 
-def run(study):
+def run(study: Study) -> None:
     """Both cycles over the steps."""
     table, found = [], {}
     for name, (ends, target, tolerance) in CYCLES.items():

@@ -18,6 +18,8 @@ force of a spring of n = k + ½ turns the distance e = 2 r/(π n (1 + G Ip/E I))
 the tips: the torque F r turns the ends by F r/(G Ip) ∫ t ds = 2 F r²/(G Ip), the moment F e turns them back.
 """
 
+from typing import Any
+
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
@@ -27,6 +29,7 @@ from coilset.model.analysis import Analysis
 from coilset.model.case import check
 from coilset.model.results.figures import STYLE
 from coilset.model.results.seat_figures import draw_pressure
+from coilset.verification.study import Study
 
 FAST = True
 WIRE, RADIUS = 4.0, 16.0
@@ -41,7 +44,9 @@ PRESSED, DOWN, LOW, UP = 16.0, 12, 20.0, (12, 24)  # mm, steps, N, steps
 COLOURS = {"open": "C0", "closed": "C3"}
 
 
-def press(ends, material, loading, seats=None):
+def press(
+    ends: str | dict[str, float], material: str, loading: list[dict[str, Any]], seats: dict[str, Any] | None = None
+) -> Analysis:
     """Analysis of a spring after its program."""
     spring = SPRINGS[ends] if isinstance(ends, str) else ends
     analysis = Analysis(
@@ -51,7 +56,7 @@ def press(ends, material, loading, seats=None):
     return analysis
 
 
-def columns(analysis):
+def columns(analysis: Analysis) -> dict[str, np.ndarray]:
     """Travel, force, tangent rate and, at the bottom, distances of pressure and force centre, wire in contact."""
     steps, seats = analysis.result.steps, [one.bottom for one in analysis.result.seats]
     travel, force = (np.array([getattr(step, name) for step in steps]) for name in ("travel_mm", "force_N"))
@@ -64,7 +69,7 @@ def columns(analysis):
     return out
 
 
-def run(study):
+def run(study: Study) -> None:
     """Elastic springs pressed down, springs of Ck 15 released, and held tips."""
     elastic = {ends: press(ends, "elastic", [{"to": {"travel": TRAVEL}, "steps": STEPS}]) for ends in SPRINGS}
     program = [{"to": {"travel": PRESSED}, "steps": DOWN}, {"to": {"force": LOW}, "steps": UP[0]},
@@ -87,7 +92,7 @@ def run(study):
     draw_release(study, plastic, tips)
 
 
-def judge_path(study, ends, c, wahl):
+def judge_path(study: Study, ends: str, c: dict[str, np.ndarray], wahl: float) -> None:
     """The centre of pressure begins at the tip and goes inwards as soon as the coil touches elsewhere."""
     study.check(f"{ends} ends: first centre of pressure over r", c["pressure"][0] / RADIUS, 1.0,
                 "the tip alone touches", 0.005)  # fmt: skip
@@ -107,11 +112,11 @@ def judge_path(study, ends, c, wahl):
     study.table(f"{ends} ends, elastic: bottom seat", list(shown), rows.tolist())
 
 
-def judge_release(study, ends, c, wahl):
+def judge_release(study: Study, ends: str, c: dict[str, np.ndarray], wahl: float) -> float:
     """Lift-off on the release path: one place bears alone, r from the axis, and the rate falls; the rate after it."""
     release = np.arange(DOWN, DOWN + sum(UP) - 1)  # at zero force nothing bears
-    alone = c["pressure"][release] > 0.99 * RADIUS
-    lying, alone = release[~alone], release[alone]
+    is_alone = c["pressure"][release] > 0.99 * RADIUS
+    lying, alone = release[~is_alone], release[is_alone]
     place, before, after = f"release, {ends} ends", c["rate"][lying[1]], c["rate"][alone[-1]]
     study.check(f"{place}: rate with the coil down, N/mm", before, wahl / c["active"][lying[1]],
                 "G d⁴/(64 r³ n), n active turns", 0.05)  # fmt: skip
@@ -123,7 +128,7 @@ def judge_release(study, ends, c, wahl):
     return after
 
 
-def held_tips(study, bending):
+def held_tips(study: Study, bending: float) -> None:
     """Tips held against turning: force centre of springs of n + ½ turns at a small load."""
     for n in (2.5, 4.5, 8.5):
         spring = {"wire_diameter": 2.0, "mean_diameter": 2 * RADIUS, "turns": n, "pitch": 4.0}
@@ -133,7 +138,7 @@ def held_tips(study, bending):
                     "Castigliano", 0.02)  # fmt: skip
 
 
-def draw_paths(study, elastic):
+def draw_paths(study: Study, elastic: dict[str, Analysis]) -> None:
     """Paths in plan, distances over travel, and pressure along the end coil."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(10.4, 7.6), layout="constrained")
@@ -170,7 +175,7 @@ def draw_paths(study, elastic):
     study.figure("force_centre", figure)
 
 
-def draw_release(study, plastic, tips):
+def draw_release(study: Study, plastic: dict[str, Analysis], tips: float) -> None:
     """Characteristic, rate, wire in contact and centre of pressure on the way down and back."""
     panels = (("force", "force in N"), ("rate", "tangent rate in N/mm"), ("down", "turns of the bottom end down"),
               ("pressure", "centre of pressure from the axis in mm"))  # fmt: skip

@@ -22,6 +22,7 @@ from coilset.model.material import library
 from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
 from coilset.verification.frame import Frame
+from coilset.verification.study import Study
 from coilset.verification.wires import wire_points
 
 LOAD, NODES, RADIUS, LENGTH = 10.0, 11, 2.0, 100.0  # N at each node, mm
@@ -31,7 +32,7 @@ SPRING = {"wire_diameter": 4.0, "mean_diameter": 32.0, "turns": 7.5, "free_lengt
 COLOURS = {0.0: "0.5", 0.1: "C0", 0.3: "C3"}  # by coefficient
 
 
-def pressed_rod(free):
+def pressed_rod(free: tuple[int, ...]) -> tuple[Frame, dict[int, float]]:
     """Frame of a rod along x, pressed on the bottom seat; of all nodes the components in `free` may move."""
     nodes = np.stack([np.linspace(0.0, LENGTH, NODES), np.zeros(NODES), np.full(NODES, RADIUS)], axis=1)
     points, seats = wire_points(nodes, RADIUS), np.zeros(2 * SEAT_DOFS)
@@ -47,7 +48,7 @@ def pressed_rod(free):
     return frame, forces
 
 
-def drag(component, way, free):
+def drag(component: int, way: float, free: tuple[int, ...]) -> tuple[float, float]:
     """Force that a rod needs to move by `way`, N, and its mean turn about its axis, rad."""
     frame, forces = pressed_rod(free)
     drawn = [frame.dof(node, component) for node in range(NODES)]
@@ -58,7 +59,7 @@ def drag(component, way, free):
     return sum(frame.force(dof) for dof in drawn), float(0.5 * (turn[:, 2, 1] - turn[:, 1, 2]).mean())
 
 
-def cycles(mu):
+def cycles(mu: float) -> np.ndarray:
     """Travel and force of two cycles, mm and N."""
     loading = [{"to": {"travel": travel}, "steps": STEPS} for travel in (TRAVEL, 0.0, TRAVEL, 0.0)]
     data = {"spring": SPRING, "material": "elastic", "contact": {"friction": {"seats": mu, "coils": mu}},
@@ -67,7 +68,7 @@ def cycles(mu):
     return np.array([(0.0, 0.0), *((step.travel_mm, step.force_N) for step in steps)]).T
 
 
-def run(study):
+def run(study: Study) -> None:
     """Rods, then springs."""
     for name, component in (("along", 0), ("across", 1)):
         force, _ = drag(component, 0.5, (component,))
@@ -92,7 +93,7 @@ def run(study):
     draw(study, curves)
 
 
-def draw(study, curves):
+def draw(study: Study, curves: dict[float, np.ndarray]) -> None:
     """Characteristics, and how far they lie beside that without friction."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.2, 3.9), layout="constrained")

@@ -22,7 +22,8 @@ from coilset.model.results.figures import STYLE
 from coilset.model.rod.kinematics import GAUSS, chord_triads
 from coilset.verification.chain import ROTATION_X, ROTATION_Y, ROTATION_Z, X, Y, Z, chain, drive
 from coilset.verification.references.rod_shooting import Stiffness
-from coilset.verification.references.uniform_helix import deformed
+from coilset.verification.references.uniform_helix import Helix, deformed
+from coilset.verification.study import Study
 
 FAST = True
 WIRE, DIAMETER, TURNS, PITCHES = 5.0, 40.0, 2, (12.0, 30.0)  # mm
@@ -32,7 +33,7 @@ JUDGED = (16, 64)
 STEPS = 4
 
 
-def press(pitch, helix, mesh):
+def press(pitch: float, helix: Helix, mesh: int) -> tuple[float, float, np.ndarray]:
     """Force, torque about the axis and the nodes' radii, N, N mm, mm."""
     spring = SpringSpec(wire_diameter=WIRE, mean_diameter=DIAMETER, turns=TURNS, pitch=pitch).build()
     turns = np.linspace(0.0, TURNS, TURNS * mesh + 1)
@@ -41,7 +42,7 @@ def press(pitch, helix, mesh):
     frame = chain(nodes, 0.5 * WIRE, library.load("elastic"), held=(), placement=placement)
     rise = pitch / (2.0 * np.pi)
     tilt = helix.inclination - np.arctan2(rise, 0.5 * DIAMETER)
-    moves = {}
+    moves: dict[int, float] = {}
     for node, sinks in ((0, 0.0), (last, TURNS * 2.0 * np.pi * (helix.rise - rise))):
         way = {X: helix.radius - 0.5 * DIAMETER, Y: 0.0, Z: sinks, ROTATION_X: tilt, ROTATION_Y: 0.0, ROTATION_Z: 0.0}
         moves |= {frame.dof(node, component): value for component, value in way.items()}
@@ -53,7 +54,7 @@ def press(pitch, helix, mesh):
     return force, torque, np.hypot(x[:, 0], x[:, 1])
 
 
-def run(study):
+def run(study: Study) -> None:
     """Force, torque and radius of both springs over the mesh."""
     law, errors, rows = library.load("elastic"), {}, []
     stiffness = Stiffness.of_round_wire(0.5 * WIRE, law.E, law.G)

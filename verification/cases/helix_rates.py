@@ -15,9 +15,10 @@ from matplotlib.figure import Figure
 from mpi4py import MPI
 
 from coilset.model.analysis import Analysis
-from coilset.model.case import check
+from coilset.model.case import Case, check
 from coilset.model.results.figures import STYLE
 from coilset.verification.springs.curved_rod import clamped_rate
+from coilset.verification.study import Study
 
 FAST = True
 WIRE, TURNS = 5.0, 2.5  # mm
@@ -25,21 +26,21 @@ INDICES, ANGLES = (4.0, 8.0, 12.0), (5.0, 12.5, 20.0)  # D/d, degrees
 TRAVEL = 5e-5  # of the free length
 
 
-def rate(index, angle):
+def rate(index: float, angle: float) -> tuple[float, float, float]:
     """The program's rate, Castigliano's and that of the formula for close coils, N/mm."""
     diameter = index * WIRE
     spring = {"wire_diameter": WIRE, "mean_diameter": diameter, "turns": TURNS,
               "pitch": np.pi * diameter * np.tan(np.radians(angle))}  # fmt: skip
     height = TURNS * spring["pitch"]
     loading = [{"to": {"travel": part * TRAVEL * height}, "steps": 1} for part in (1, 2)]
-    case = check({"spring": spring, "material": "elastic", "ends": "clamped", "loading": loading})
+    case: Case = check({"spring": spring, "material": "elastic", "ends": "clamped", "loading": loading})
     analysis = Analysis(case, MPI.COMM_SELF)
     one, two = (step.force_N / step.travel_mm for step in analysis.run().steps)
     law = analysis.law
     return 2.0 * one - two, clamped_rate(analysis.spring, law.E, law.G), law.G * WIRE**4 / (8.0 * diameter**3 * TURNS)
 
 
-def run(study):
+def run(study: Study) -> None:
     """Nine rates."""
     found = np.array([[rate(index, angle) for angle in ANGLES] for index in INDICES])
     for k, index in enumerate(INDICES):

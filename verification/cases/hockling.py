@@ -13,6 +13,7 @@ factor of 6 from 40 to 80 rods. r/L = 3e-3, so that shear counts with (r/2L)² (
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
+from scipy import sparse
 from scipy.optimize import brentq
 
 from coilset.meshes.errors import SolveError
@@ -21,6 +22,7 @@ from coilset.model.results.figures import STYLE
 from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, X, Y, Z, chain, straight
 from coilset.verification.references.stability import twisted_rod
 from coilset.verification.stability import lowest_eigenvalue, negative_pivots, tangent
+from coilset.verification.study import Study
 
 FAST = True
 LENGTH, RADIUS = 100.0, 0.3  # mm
@@ -31,7 +33,7 @@ MESHES = (20, 40, 80)
 class TwistedRod:
     """A straight rod under a tension; `twist` brings it to another torque T L/EI."""
 
-    def __init__(self, tension, elements):
+    def __init__(self, tension: float, elements: int) -> None:
         law = library.load("elastic")
         self.EI, self.GJ = law.E * np.pi * RADIUS**4 / 4.0, law.G * np.pi * RADIUS**4 / 2.0
         self.frame = chain(
@@ -41,7 +43,7 @@ class TwistedRod:
         self.pull = {self.frame.dof(elements, X): tension * 4.0 * np.pi**2 * self.EI / LENGTH**2}
         self.twist(0.0)
 
-    def twist(self, torque):
+    def twist(self, torque: float) -> sparse.csc_array:
         """Go to a torque T L/EI; the tangent there, of the free unknowns."""
         moves = {self.turn: (torque - self.torque) * self.EI / self.GJ}
         outcome = self.frame.step(moves=moves, forces=self.pull)
@@ -50,16 +52,17 @@ class TwistedRod:
         self.torque = torque
         return tangent(self.frame.system, self.frame.load)
 
-    def critical(self, near):
+    def critical(self, near: float) -> tuple[float, float]:
         """T L/EI in the sections where the least eigenvalue vanishes, sought up to 4 % beside `near`."""
         found = brentq(lambda torque: lowest_eigenvalue(self.twist(torque)), 0.96 * near, 1.04 * near, xtol=1e-7)
         self.twist(found)
         return found, self.frame.resultants[0, 0, 3] * LENGTH / self.EI
 
 
-def run(study):
+def run(study: Study) -> None:
     """Critical torques, and the signs of pivots beside them."""
-    rows, found = [], {n: [] for n in MESHES}
+    rows: list[list[object]] = []
+    found: dict[int, list[float]] = {n: [] for n in MESHES}
     for tension in TENSIONS:
         exact = twisted_rod(tension)
         for n in MESHES:

@@ -17,6 +17,7 @@ the one for limit points.
 
 import itertools
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import matplotlib as mpl
@@ -26,11 +27,15 @@ from mpi4py import MPI
 
 from coilset.meshes.errors import SolveError
 from coilset.model.analysis import Analysis
-from coilset.model.case import read_case
+from coilset.model.case import Case, read_case
+from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.methods import METHODS, rod_method
 from coilset.model.equilibrium.newton import Newton, Start
 from coilset.model.examples import EXAMPLES
 from coilset.model.results.figures import STYLE
+from coilset.model.results.record import Snapshot, Step
+from coilset.verification.listen import listen
+from coilset.verification.study import Study
 
 FAST = False
 EXAMPLE = EXAMPLES / "ck15_presetting.yaml"
@@ -45,39 +50,37 @@ class Run:
 
     analysis: Analysis
     complete: bool
-    counts: dict
+    counts: dict[str, int]
     seconds: float
 
     @property
-    def steps(self):
+    def steps(self) -> tuple[Step, ...]:
         """The converged steps."""
         return self.analysis.result.steps
 
     @property
-    def final(self):
+    def final(self) -> Snapshot:
         """The last Snapshot."""
         return self.analysis.result.snapshots[-1]
 
 
-def example(ends, method, down=1, up=1):
+def example(ends: str, method: str, down: int = 1, up: int = 1) -> Case:
     """The example's Case with other ends, method and steps."""
     settings = [f"ends={ends}", f"solver.method={method}", f"solver.tolerance={TOLERANCE}"]
     return read_case(EXAMPLE, [*settings, f"loading.0.steps={down}", f"loading.1.steps={up}"])
 
 
-def walk(ends, down, up, method):
+def walk(ends: str, down: int, up: int, method: str) -> Run:
     """Run the example to block and back to zero force."""
     case = example(ends, method, down, up)
     analysis, counts = Analysis(case, MPI.COMM_SELF), dict.fromkeys(COUNTS, 0)
-    solve = analysis.newton.solve
 
-    def counted(load, start=None):
-        outcome = solve(load, start)
+    def count(outcome: Outcome) -> None:
         for name in COUNTS:
             counts[name] += getattr(outcome, name)
-        return outcome
 
-    analysis.newton.solve, complete, began = counted, True, time.perf_counter()
+    listen(analysis.newton, "solve", count)
+    complete, began = True, time.perf_counter()
     try:
         analysis.run()
     except SolveError:
@@ -85,7 +88,7 @@ def walk(ends, down, up, method):
     return Run(analysis, complete, counts, time.perf_counter() - began)
 
 
-def newton_along(ends, steps):
+def newton_along(ends: str, steps: Iterable[Step]) -> Snapshot | None:
     """The final Snapshot of Newton along the steps of another run, or None if it fails on one of them.
 
     It starts each step from the last one's increments, then from rest, with either line search: one of these finds the
@@ -112,7 +115,7 @@ def newton_along(ends, steps):
     return analysis.snapshot("end")
 
 
-def apart(run, reference):
+def apart(run: Run, reference: Snapshot | None) -> float:
     """Greatest difference of a final state from a Snapshot: of positions over the travel, of stresses over the largest.
 
     Infinite if the run did not end, or there is no reference.
@@ -125,7 +128,7 @@ def apart(run, reference):
                np.abs(run.final.point_state[..., :3] - stress).max() / np.abs(stress).max())  # fmt: skip
 
 
-def run(study):
+def run(study: Study) -> None:
     """All methods, both kinds of ends, 10 and 60 steps."""
     walk("clamped", 2, 2, "newton")  # compiles what is to be timed
     found = {}
@@ -150,7 +153,7 @@ def run(study):
     draw(study, found)
 
 
-def draw(study, found):
+def draw(study: Study, found: dict[tuple[str, int], dict[str, Run]]) -> None:
     """Counts and time of each method, one panel a program."""
     names = [*COUNTS, "time in ms"]
     with mpl.rc_context(STYLE):

@@ -13,10 +13,11 @@ from matplotlib.figure import Figure
 
 from coilset.model.material import library, points
 from coilset.model.results.figures import STYLE
+from coilset.verification.study import Study
 
 FAST = True
 INCREMENTS = np.array([1e-3, 5e-4, 2.5e-4, 1.25e-4])
-PATHS = {
+PATHS: dict[str, list[tuple[float, float, float]]] = {
     "tension": [(0.1, 0, 0)],
     "reversed torsion": [(0, 0.1, 0), (0, -0.1, 0)],
     "tension, torsion": [(0.05, 0, 0), (0, 0.1, 0)],
@@ -29,7 +30,7 @@ METHODS = {
 }
 
 
-def follow(path, integrator, tolerance, increment):
+def follow(path: list[tuple[float, float, float]], integrator: str, tolerance: float, increment: float) -> np.ndarray:
     """States at the marks; no spin, so that the rod's torsion is pure."""
     law = library.load("ck15", spin=False, heun_tolerance=tolerance)
     state, states = points.initial_state(law, 1), []
@@ -42,7 +43,7 @@ def follow(path, integrator, tolerance, increment):
     return np.array(states)
 
 
-def run(study):
+def run(study: Study) -> None:
     """Errors and their orders."""
     law, errors = library.load("ck15"), {}
     for name, path in PATHS.items():

@@ -7,6 +7,8 @@ standard deviations for ten free constants: a constant outside is to be expected
 two branches of k² meet, is what such tests tell least. The data in examples/material/fit/ are those of seed 1.
 """
 
+from collections.abc import Iterable, Iterator
+
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
@@ -15,6 +17,7 @@ from coilset.model.material import library, programs
 from coilset.model.material.identification import fit
 from coilset.model.material.identification.experiments import Test
 from coilset.model.results.figures import STYLE
+from coilset.verification.study import Study
 
 NOISE = 0.01  # of the greatest stress of each test
 SERIES = 10
@@ -28,7 +31,7 @@ PROGRAMS = {  # targets and increments
 }  # fmt: skip
 
 
-def clean_tests():
+def clean_tests() -> Iterator[Test]:
     """The tests without noise, after the unloaded start."""
     law = library.load("ck15", heun_tolerance=1e-6)
     for name, pieces in PROGRAMS.items():
@@ -37,7 +40,7 @@ def clean_tests():
         yield Test(name, history.strain[1:, :2], history.stress[1:, :2])
 
 
-def noisy(tests, seed):
+def noisy(tests: Iterable[Test], seed: int) -> Iterator[Test]:
     """The same with noise."""
     rng = np.random.default_rng(seed)
     for test in tests:
@@ -45,13 +48,13 @@ def noisy(tests, seed):
         yield Test(test.name, test.strain, test.stress + scatter)
 
 
-def true_constants():
+def true_constants() -> dict[str, float]:
     """Ck 15's, by the names of `fit`."""
     law = library.load("ck15")
     return {name: value for name, (value, _) in law.constants(law.reference_temperature)}
 
 
-def run(study):
+def run(study: Study) -> None:
     """Fit every series; judge how often and how far the constants lie outside."""
     law, tests, true = library.load("ck15"), list(clean_tests()), true_constants()
     fits = [fit.fit(noisy(tests, seed), law.G, law.nu) for seed in range(SERIES)]
@@ -80,7 +83,7 @@ def run(study):
     _draw(study, names, value / known, stated / known)
 
 
-def _draw(study, names, value, stated):
+def _draw(study: Study, names: list[str], value: np.ndarray, stated: np.ndarray) -> None:
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.6, 4.2), layout="constrained")
         axes = figure.add_subplot()

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
 from coilset.verification.chain import ROTATION_X, X, chain, drive
+from coilset.verification.study import Study
 
 FAST = True
 ELEMENTS, RADIUS = 24, 2.5
@@ -19,7 +20,7 @@ AXIS, ANGLE = np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0), 8.0 * np.pi
 STEPS = (32, 64)
 
 
-def rotate(steps):
+def rotate(steps: int) -> tuple[np.ndarray, float, list[int]]:
     """Greatest stress after each step, MPa, distance of the nodes from their start, mm, and iterations of the steps."""
     angle = np.linspace(0.0, 3.0 * np.pi, ELEMENTS + 1)
     nodes = np.stack([20.0 * np.cos(angle), 20.0 * np.sin(angle), 2.0 * angle], axis=1)
@@ -28,11 +29,11 @@ def rotate(steps):
         frame.dof(0, ROTATION_X + k): ANGLE * AXIS[k] for k in range(3)
     }
     counts = drive(frame, steps, moves, after=lambda: stress.append(np.abs(frame.rod.point_state[..., :3]).max()))
-    back = max(np.linalg.norm(frame.moved(node)) for node in range(ELEMENTS + 1))
+    back = max(float(np.linalg.norm(frame.moved(node))) for node in range(ELEMENTS + 1))
     return np.array(stress), back, counts
 
 
-def run(study):
+def run(study: Study) -> None:
     """Stress and place after four whole rotations."""
     rows, found = [], {}
     for steps in STEPS:

@@ -17,7 +17,7 @@ a polygon of N rods errs by some (π/N)² = 3e-4, the strain along the axis coun
 half of the distance of the bedding's points, 0.016 R.
 """
 
-from typing import Any
+from collections.abc import Callable
 
 import matplotlib as mpl
 import numpy as np
@@ -32,6 +32,7 @@ from coilset.model.material import library
 from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
 from coilset.verification.frame import Frame
+from coilset.verification.study import Study
 from coilset.verification.wires import wire_points
 
 FAST = True
@@ -42,22 +43,22 @@ LENGTH_INTEGRAL, HEIGHT_INTEGRAL = beta(0.25, 0.5) / 2.0, beta(0.75, 0.5) / 2.0
 SPLIT = np.pi / 2.0 * HEIGHT_INTEGRAL / LENGTH_INTEGRAL  # h/R at which the ring leaves the plate in its middle
 
 
-def elastica(height):
+def elastica(height: float) -> tuple[float, float]:
     """F R²/EI and half of the flat length over R at a height over R."""
     if height <= SPLIT:
         return (HEIGHT_INTEGRAL / height) ** 2, np.pi / 2.0 - height * LENGTH_INTEGRAL / HEIGHT_INTEGRAL
 
-    def integral(k2, v, weight):
+    def integral(k2: float, v: float, weight: Callable[[float], np.ndarray]) -> float:
         return quad(lambda t: weight(t) / np.sqrt(k2 + 2.0 * v * np.sin(t)), 0.0, np.pi / 2.0)[0]
 
-    def force(k2):  # V of the right length; it is 0 for κ0 = 1
+    def force(k2: float) -> float:  # V of the right length; it is 0 for κ0 = 1
         return brentq(lambda v: integral(k2, v, np.ones_like) - np.pi / 2.0, 0.0, 3.0)
 
     k2 = brentq(lambda k2: integral(k2, force(k2), np.sin) - height, 1e-9, 1.0)
     return 2.0 * force(k2), 0.0
 
 
-def press():
+def press() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """F R²/EI, and half of the distance of the outermost forces over R, at HEIGHTS; positions of the last state."""
     law = library.load("elastic")
     angle = np.pi * np.linspace(0.0, 1.0, ELEMENTS + 1)
@@ -69,7 +70,7 @@ def press():
     pairs = [(k, k + 1) for k in range(ELEMENTS)]
     frame = Frame(nodes, pairs, RADIUS, law, polar(), held, contacts=[seat])
     level = int(frame.layout.seat_dofs[SEAT_DOFS + LEVEL])
-    rows: list[Any] = []
+    rows: list[tuple[float, float]] = []
     for step in np.diff(np.append(1.0, HEIGHTS)) * RING:
         if not frame.step(moves={level: step}).converged:
             raise RuntimeError(f"no equilibrium at step {len(rows) + 1}")
@@ -83,7 +84,7 @@ def press():
     return force * RING**2 / EI, flat, frame.layout.gather(frame.rod.x) + np.array([0.0, 0.0, RING + RADIUS])
 
 
-def run(study):
+def run(study: Study) -> None:
     """Forces, and the length that lies flat."""
     force, flat, x = press()
     reference = np.array([elastica(height) for height in HEIGHTS])

@@ -24,8 +24,11 @@ from scipy.spatial.transform import Rotation
 
 from coilset.meshes.errors import SolveError
 from coilset.model.material import library
+from coilset.model.material.law import Law
 from coilset.model.results.figures import STYLE
 from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, chain, straight
+from coilset.verification.frame import Frame
+from coilset.verification.study import Study
 
 FAST = True
 LENGTH, RADIUS, TURNS, STEPS = 1000.0, 2.0, 10, 40  # mm
@@ -33,7 +36,7 @@ OUT_OF_PLANE = 0.3  # rad; the moment's share that twists is its sine
 MESHES = (200, 283, 400)
 
 
-def closed_form(part, s, law):
+def closed_form(part: float, s: np.ndarray, law: Law) -> tuple[np.ndarray, Rotation, np.ndarray]:
     """Positions, mm, rotations at places `s` under a part of the moment, and the whole moment, N mm."""
     EI, GJ = law.E * np.pi * RADIUS**4 / 4.0, law.G * np.pi * RADIUS**4 / 2.0
     axis = np.array([np.sin(OUT_OF_PLANE), 0.0, np.cos(OUT_OF_PLANE)])
@@ -46,7 +49,7 @@ def closed_form(part, s, law):
     return x + (1.0 - np.cos(rate * s))[:, None] / rate * np.cross(axis, across), turn, moment
 
 
-def wind(elements):
+def wind(elements: int) -> tuple[np.ndarray, np.ndarray]:
     """Positions of all nodes, mm, and the end's moment, N mm."""
     law, nodes = library.load("elastic", spin=False), straight(LENGTH, elements)
     frame, s = chain(nodes, RADIUS, law), nodes[:, 0]
@@ -66,7 +69,7 @@ def wind(elements):
     return nodes + np.array([frame.moved(node) for node in range(elements + 1)]), moment
 
 
-def keep_length(x, length):
+def keep_length(x: np.ndarray, length: float) -> np.ndarray:
     """The helix widened about the axis through the clamp until its chords have a length, mm."""
     axis = np.array([np.sin(OUT_OF_PLANE), 0.0, np.cos(OUT_OF_PLANE)])
     along = np.outer(x @ axis, axis)
@@ -74,14 +77,14 @@ def keep_length(x, length):
     return along + (x - along) * np.sqrt((length**2 - rise @ rise) / ((chord - rise) @ (chord - rise)))
 
 
-def let(frame, moves):
+def let(frame: Frame, moves: dict[int, float]) -> None:
     """One step with prescribed displacements."""
     outcome = frame.step(moves=moves)
     if not outcome.converged:
         raise SolveError(f"no equilibrium of the helix: {outcome.reason}")
 
 
-def run(study):
+def run(study: Study) -> None:
     """Tip, moment, order."""
     law, rows, far = library.load("elastic", spin=False), [], []
     for n in MESHES:

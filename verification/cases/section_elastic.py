@@ -12,10 +12,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.model.material import library
+from coilset.model.material.law import Law
 from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
 from coilset.verification.sections.helix import WIRE, HelixSection
 from coilset.verification.solid_vs_rod import references
+from coilset.verification.study import Study
 
 FAST = True
 INDICES = (3.0, 4.0, 6.0, 8.0, 12.0)
@@ -24,7 +26,7 @@ RULES = ((2, 6), (3, 8), (4, 12), (6, 16), (8, 24))
 TOLERANCES = {"warping": 2e-3, "curved": 1.2e-2}
 
 
-def run(study):
+def run(study: Study) -> None:
     """Factors, stiffness, straight wire and figure."""
     law = library.load("elastic")
     rows = []
@@ -46,7 +48,7 @@ def run(study):
     study.figure("section_convergence", convergence(law, library.load("ck15")))
 
 
-def straight_wire(study, law):
+def straight_wire(study: Study, law: Law) -> None:
     """D/d of a thousand million is straight: EA, G Ip and EI."""
     D = HelixSection(law, "warping", 1e9, 0.0).update(np.zeros(6))[1]
     A, I = np.pi * WIRE**2 / 4, np.pi * WIRE**4 / 64
@@ -55,7 +57,7 @@ def straight_wire(study, law):
         study.check(f"straight wire, {name}", ours, reference, "Saint-Venant", 1e-8)
 
 
-def twisted(law, degree, rule):
+def twisted(law: Law, degree: int, rule: tuple[int, int]) -> np.ndarray:
     """Torque and shear at the inside of a section of D/d = 5, strained as under eight times its yield force."""
     wire = HelixSection(law, "warping", 5.0, 5.0, polar(*rule), degree)
     unit = np.linalg.solve(wire.update(np.zeros(6))[1], wire.load)
@@ -64,7 +66,7 @@ def twisted(law, degree, rule):
     return np.array([s[3], wire.inside_shear()])
 
 
-def convergence(elastic, law):
+def convergence(elastic: Law, law: Law) -> Figure:
     """Error over degree and number of points."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.6, 3.6), layout="constrained")

@@ -9,12 +9,16 @@ the rate.
 The last table measures stress on the wire's surface with the default 4 × 12 section points against 16 × 48.
 """
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 
-from coilset.verification.sections.solid import RECORDED
+from coilset.verification.sections.solid import RECORDED, Solid
 from coilset.verification.solid_vs_rod import pressing
 from coilset.verification.solid_vs_rod.pressing import FINE, WIRE, PressedSection
 from coilset.verification.solid_vs_rod.study import diameter
+from coilset.verification.study import Study
 
 KINDS = ("plane", "curved", "warping")
 TOLERANCES = {"curved": (5e-3, 8e-2), "warping": (1.5e-3, 3e-2)}  # force and set, shear stress
@@ -25,7 +29,7 @@ RATE = {"curved": 3e-3, "warping": 1e-3}
 SURFACE_TOLERANCE = 1e-2
 
 
-def run(study):
+def run(study: Study) -> None:
     """All recorded solids, and the surface with few section points."""
     rows = []
     for solid in RECORDED:
@@ -51,18 +55,18 @@ def run(study):
     surface(study)
 
 
-def pressed(solid, kind, rule=FINE):
+def pressed(solid: Solid, kind: str, rule: Mapping[str, int] = FINE) -> dict[str, Any]:
     """The rod's result, see `pressing.run_rod`."""
     case = PressedSection(solid.index, material=solid.material)
     return pressing.run_rod(case, {"kind": kind, **rule})
 
 
-def shear_inside(rod):
+def shear_inside(rod: dict[str, Any]) -> float:
     """Shear stress at the inside after release at 0.9 of the radius, where the solid is sampled, MPa."""
     return float(np.interp(-0.45 * WIRE, *diameter(rod, "end")))
 
 
-def surface(study):
+def surface(study: Study) -> None:
     """τ on the surface at the inside, loaded and released, with 4 × 12 and with 16 × 48 section points."""
     rows = []
     for solid in (RECORDED[0], RECORDED[2]):

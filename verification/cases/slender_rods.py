@@ -15,7 +15,9 @@ from matplotlib.figure import Figure
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
 from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, Y, Z, chain, straight
+from coilset.verification.frame import Frame
 from coilset.verification.references.elastica import cantilever
+from coilset.verification.study import Study
 
 FAST = False
 LENGTH, STEPS, WANTED = 100.0, 10, 8
@@ -23,7 +25,9 @@ SLENDERNESS, MESHES = (1e-3, 1e-4), (8, 32, 128)
 LOAD = 10.0  # PL²/EI of the elastica
 
 
-def walk(frame, forces=None, moves=None):
+def walk(
+    frame: Frame, forces: dict[int, float] | None = None, moves: dict[int, float] | None = None
+) -> tuple[list[int], bool]:
     """Iterations of ten equal steps, as many as converge, and whether all did."""
     counts = []
     for k in range(1, STEPS + 1):
@@ -36,7 +40,7 @@ def walk(frame, forces=None, moves=None):
     return counts, True
 
 
-def elastica(slenderness, elements):
+def elastica(slenderness: float, elements: int) -> tuple[list[int], bool, float]:
     """Iterations, whether all steps converged, and v/L of the tip."""
     law, radius = library.load("elastic"), slenderness * LENGTH
     frame = chain(straight(LENGTH, elements), radius, law)
@@ -45,15 +49,15 @@ def elastica(slenderness, elements):
     return counts, done, frame.moved(elements)[1] / LENGTH
 
 
-def circles(slenderness, elements):
+def circles(slenderness: float, elements: int) -> tuple[list[int], bool, float]:
     """Iterations, whether all steps converged, and the distance of the tip from the clamp over L."""
     plane = [(node, (Z, ROTATION_X, ROTATION_Y)) for node in range(1, elements + 1)]
     frame = chain(straight(LENGTH, elements), slenderness * LENGTH, library.load("elastic"), held=[(0, ALL), *plane])
     counts, done = walk(frame, moves={frame.dof(elements, ROTATION_Z): 4.0 * np.pi})
-    return counts, done, np.linalg.norm(np.add(frame.moved(elements), [LENGTH, 0.0, 0.0])) / LENGTH
+    return counts, done, float(np.linalg.norm(np.add(frame.moved(elements), [LENGTH, 0.0, 0.0]))) / LENGTH
 
 
-def run(study):
+def run(study: Study) -> None:
     """Iterations of both problems; values where the end was reached."""
     most, rows = {}, []
     for name, solve in (("elastica", elastica), ("two circles", circles)):

@@ -14,10 +14,12 @@ from matplotlib.figure import Figure
 
 from coilset.meshes.section_shapes import Oval, rectangle, round_wire
 from coilset.model.material import library
+from coilset.model.material.law import Law
 from coilset.model.results.figures import STYLE
 from coilset.verification.slice.references import ring_sector, torsion_constant_ellipse, torsion_constant_rectangle
 from coilset.verification.slice.runs import WIRE, elastic
 from coilset.verification.solid_vs_rod.references import goehner_exact
+from coilset.verification.study import Study
 
 FAST = True
 ENDS = np.array([[-0.5 * WIRE, 0.0], [0.5 * WIRE, 0.0]])
@@ -25,8 +27,10 @@ MESHES = ((2, 5.0), (2, 6.5), (2, 10.0), (2, 16.0), (3, 4.0), (3, 6.0), (3, 10.0
 JUDGED = (2, 10.0)
 SLENDER = 200.0
 
+Errors = tuple[int, float, float, float]  # unknowns; of the rate and of the factors inside and outside
 
-def run(study):
+
+def run(study: Study) -> None:
     """Round wire over the spring index and the mesh, then other sections."""
     law, found = library.load("elastic"), {}
     for index in (4.0, 8.0):
@@ -59,7 +63,7 @@ def run(study):
     study.figure("slice_elastic", _figure(found))
 
 
-def _round(law, index, degree, across, exact):
+def _round(law: Law, index: float, degree: int, across: float, exact: tuple[float, float, float]) -> Errors:
     """Unknowns, and relative errors of the rate and of the factors inside and outside."""
     D = index * WIRE
     ours = elastic(round_wire(WIRE), D, law, across, degree, ENDS)
@@ -68,7 +72,7 @@ def _round(law, index, degree, across, exact):
     return ours.unknowns, rate / exact[0] - 1, inside / exact[1] - 1, outside / -exact[2] - 1
 
 
-def _figure(found):
+def _figure(found: dict[tuple[float, int, float], Errors]) -> Figure:
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.6, 3.8), layout="constrained")
         for axes, index in zip(figure.subplots(1, 2, sharey=True), (4.0, 8.0), strict=True):

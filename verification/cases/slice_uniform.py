@@ -16,9 +16,11 @@ from matplotlib.figure import Figure
 
 from coilset.model import uniform
 from coilset.model.material import library
+from coilset.model.material.law import Law
 from coilset.model.results.figures import STYLE
-from coilset.verification.slice.runs import WIRE, pressed
+from coilset.verification.slice.runs import WIRE, Pressed, pressed
 from coilset.verification.solid_vs_rod.pressing import PressedSection
+from coilset.verification.study import Study
 
 FAST = True
 INDICES = (4.0, 6.0, 8.0, 12.0)
@@ -26,7 +28,7 @@ MESHES = (5.0, 6.5, 8.0, 12.0)  # triangles across, at D/d = 8
 COILS = 200
 
 
-def run(study):
+def run(study: Study) -> None:
     """Slice and rod over the spring index, the slice over its mesh, and their time."""
     law, slices, rods = library.load("ck15"), {}, {}
     for index in INDICES:
@@ -51,23 +53,23 @@ def run(study):
     study.figure("slice_uniform", _figure(slices, rods))
 
 
-def _rod(case, law):
-    coil = [WIRE, case.mean_diameter, case.pitch, 1.0]
+def _rod(case: PressedSection, law: Law) -> tuple[np.ndarray, float]:
+    coil = np.array([WIRE, case.mean_diameter, case.pitch, 1.0])
     forces, state = uniform.press(coil, law, travels=case.travel * np.arange(1, 13) / 12)
-    back, state = uniform.press(state, law, forces=[0.0])
+    back, state = uniform.press(state, law, forces=np.zeros(1))
     return forces[0], float(back[0, 0])
 
 
-def _rate(law):
+def _rate(law: Law) -> float:
     """Presses and releases a second of the processor's time."""
     coils = np.tile([WIRE, 40.0, 12.0, 1.0], (COILS, 1))
     began = time.process_time()
     state = uniform.press(coils, law, travels=6.3 * np.arange(1, 13) / 12)[1]
-    uniform.press(state, law, forces=[0.0])
+    uniform.press(state, law, forces=np.zeros(1))
     return COILS / (time.process_time() - began)
 
 
-def _figure(slices, rods):
+def _figure(slices: dict[float, Pressed], rods: dict[float, tuple[np.ndarray, float]]) -> Figure:
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.6, 3.8), layout="constrained")
         left, right = figure.subplots(1, 2)

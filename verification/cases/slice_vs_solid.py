@@ -10,6 +10,7 @@ one's force is 0.2 % from the finest.
 """
 
 import shutil
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -20,9 +21,10 @@ from coilset.model import uniform
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
-from coilset.verification.slice.runs import WIRE, pressed
+from coilset.verification.slice.runs import WIRE, Pressed, pressed
 from coilset.verification.solid_vs_rod.pressing import PressedSection, run_rod, run_solid
 from coilset.verification.solid_vs_rod.store import Store
+from coilset.verification.study import Study
 
 # D/d: unknowns, force (N) and set (mm) of the solid, docs/solid.md
 RECORDED = {4.0: (14844, 368.78, 1.1323), 6.0: (14844, 247.20, 2.5263), 8.0: (33987, 185.68, 4.4760),
@@ -30,7 +32,7 @@ RECORDED = {4.0: (14844, 368.78, 1.1323), 6.0: (14844, 247.20, 2.5263), 8.0: (33
 ACROSS = 10.0
 
 
-def run(study):
+def run(study: Study) -> None:
     """Ends, recorded solids, one solid of our own."""
     store = Store(study.folder / "unfinished", MPI.COMM_SELF, lambda line: print(line, flush=True))
     slices, ends, rows = {}, {}, []
@@ -57,23 +59,23 @@ def run(study):
     shutil.rmtree(store.folder)
 
 
-def _ends(case, store):
+def _ends(case: PressedSection, store: Store) -> tuple[float, float]:
     """Force at full travel and set of a clamped turn over those of a uniform coil, both rods of plain sections."""
     turn = store.get(f"rod-{case.name}", lambda: _of_chords(case))
     rule, law = polar(8, 24), library.load(case.material)
-    coil = [WIRE, case.mean_diameter, case.pitch, 1.0]
+    coil = np.array([WIRE, case.mean_diameter, case.pitch, 1.0])
     travels = case.travel * np.arange(1, case.steps + 1) / case.steps
     forces, state = uniform.press(coil, law, travels=travels, rule=rule, plain=True)
-    back, _ = uniform.press(state, law, forces=[0.0], rule=rule, plain=True)
+    back, _ = uniform.press(state, law, forces=np.zeros(1), rule=rule, plain=True)
     return turn["force"] / forces[0, -1], turn["set"] / back[0, 0]
 
 
-def _of_chords(case):
+def _of_chords(case: PressedSection) -> dict[str, float]:
     found = run_rod(case)
     return {"force": float(found["force"][case.steps]), "set": float(found["set"])}
 
 
-def _figure(slices, ends, solid):
+def _figure(slices: dict[float, Pressed], ends: dict[float, tuple[float, float]], solid: dict[str, Any]) -> Figure:
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.6, 3.8), layout="constrained")
         left, right = figure.subplots(1, 2)

@@ -7,6 +7,8 @@ come to rest: the same ones with full integration bear 1.5 % too much at 16 time
 The yield stress is a tenth of the library's there, so that strains stay small.
 """
 
+from collections.abc import Iterable
+
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
@@ -21,18 +23,19 @@ from coilset.model.solid.heads import Motion
 from coilset.model.solid.points import MaterialPoints
 from coilset.model.solid.problem import SolidProblem
 from coilset.verification.solid_vs_rod.references import nadai_torque, plastic_bending_moment
+from coilset.verification.study import Study
 
 FAST = True
 d, R = 5.0, 2.5
 
 
-def straight(law, grid, length=5.0, layers=2):
+def straight(law: Law, grid: SectionGrid, length: float = 5.0, layers: int = 2) -> SolidProblem:
     """A straight wire between heads."""
     wire = straight_wire(d, length, layers, MPI.COMM_SELF, grid)
     return SolidProblem(wire, MaterialPoints(law), "direct")
 
 
-def torques(problem, angles):
+def torques(problem: SolidProblem, angles: Iterable[float]) -> np.ndarray:
     """Torque of the top head at each angle, N mm."""
     out = []
     for angle in angles:
@@ -41,7 +44,7 @@ def torques(problem, angles):
     return np.array(out)
 
 
-def bending(problem, length, curvatures):
+def bending(problem: SolidProblem, length: float, curvatures: Iterable[float]) -> np.ndarray:
     """Moment of the bottom head when the top head is turned and moved along arcs, N mm."""
     out = []
     for curvature in curvatures:
@@ -51,7 +54,7 @@ def bending(problem, length, curvatures):
     return np.array(out)
 
 
-def run(study):
+def run(study: Study) -> None:
     """Torsion, elastic and plastic, and bending."""
     elastic, ideal = library.load("elastic"), library.load("ideal_plastic")
     exact = elastic.G * np.pi * R**4 / 2 * 1e-6 / 5.0
@@ -81,7 +84,7 @@ def run(study):
     study.figure("solid_closed_solutions", _figure(ratios, found, yield_shear, ratios_bent, moments))
 
 
-def _softer(law, times):
+def _softer(law: Law, times: float) -> Law:
     """The law with its yield stress divided."""
     data = law.data.model_dump()
     for constants in data["temperatures"]:
@@ -89,7 +92,9 @@ def _softer(law, times):
     return Law(MaterialFile.model_validate(data))
 
 
-def _figure(ratios, found, yield_shear, curvatures, moments):
+def _figure(
+    ratios: np.ndarray, found: np.ndarray, yield_shear: float, curvatures: np.ndarray, moments: np.ndarray
+) -> Figure:
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.6, 3.8), layout="constrained")
         left, right = figure.subplots(1, 2)

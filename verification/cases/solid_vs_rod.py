@@ -18,9 +18,10 @@ from mpi4py import MPI
 from coilset.verification.solid_vs_rod import figures
 from coilset.verification.solid_vs_rod import study as solid_study
 from coilset.verification.solid_vs_rod.store import Store
+from coilset.verification.study import Study
 
 
-def run(study):
+def run(study: Study) -> None:
     """The standard case; one that was interrupted goes on where it was."""
     store = Store(study.folder / "unfinished", MPI.COMM_SELF, lambda line: print(line, flush=True))
     found = solid_study.run(store)

@@ -20,6 +20,7 @@ from coilset.model.case import read_case
 from coilset.model.examples import EXAMPLES
 from coilset.model.results.figures import STYLE
 from coilset.model.results.summary import summarise
+from coilset.verification.study import Study
 
 FAST = False
 SPRINGS = {
@@ -30,7 +31,7 @@ STEPS = (12, 24, 48, 96)
 QUANTITIES = ("force at block, N", "set, mm")
 
 
-def press(file, steps):
+def press(file: str, steps: int) -> tuple[float, float]:
     """Force at the end of the first phase, N, and set, mm; NaN where no equilibrium was found."""
     analysis = Analysis(read_case(EXAMPLES / file, [f"loading.{k}.steps={steps}" for k in (0, 1)]), MPI.COMM_SELF)
     try:
@@ -41,14 +42,14 @@ def press(file, steps):
     return force, summarise(analysis.setup, result)["set_mm"]
 
 
-def limit(values):
+def limit(values: np.ndarray) -> tuple[float, float]:
     """Richardson's limit of a sequence with halved steps, from its last three values, and the observed order."""
     first, second = values[-2] - values[-3], values[-1] - values[-2]
     ratio = first / second
     return values[-1] + second / (ratio - 1.0), np.log2(abs(ratio))
 
 
-def run(study):
+def run(study: Study) -> None:
     """All springs, all numbers of steps."""
     found, rows = {}, []
     for name, file in SPRINGS.items():

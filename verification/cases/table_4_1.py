@@ -8,6 +8,8 @@ Two printed numbers are wrong in their last digits, as Newton's closed formula u
 (= 6 √5 − 5), and 2.2360 for 2.2361 (√5 = 2.23607, cut off instead of rounded).
 """
 
+from typing import Any
+
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
@@ -15,12 +17,13 @@ from petsc4py import PETSc
 
 from coilset.model.equilibrium.methods import rod_method
 from coilset.model.results.figures import STYLE
+from coilset.verification.study import Study
 
 FAST = True
 KEEP = 1_000_000  # iterations before a matrix is set up anew
 PLAIN = {"snes_linesearch_type": "basic", "snes_rtol": 1e-13, "snes_atol": 0.0, "snes_stol": 0.0}
 # method, more options, column name, {iteration: (K⁻¹, u)} as printed, with the two corrections
-COLUMNS = [
+COLUMNS: list[tuple[str, dict[str, Any], str, dict[int, tuple[float, float]]]] = [
     ("newton", {}, "NR", {1: (1.0, 5.0), 2: (2.2361, 8.4164), 3: (2.9011, 8.9902), 4: (2.9984, 9.0)}),
     ("modified-newton", {"snes_lag_jacobian": KEEP}, "MNR",
      {1: (1.0, 5.0), 2: (1.0, 6.5279), 3: (1.0, 7.4179), 4: (1.0, 7.9708), 5: (1.0, 8.3242), 6: (1.0, 8.5539),
@@ -35,7 +38,7 @@ SOURCE = {
 }
 
 
-def iterate(method, extra):
+def iterate(method: str, extra: dict[str, Any]) -> np.ndarray:
     """States u of all iterations, the start included."""
     X, F, A = PETSc.Vec().createSeq(1), PETSc.Vec().createSeq(1), PETSc.Mat().createAIJ((1, 1))
     A.setUp()
@@ -44,11 +47,11 @@ def iterate(method, extra):
     for key, value in settings.items():
         database[key] = value
 
-    def residual(snes, X, F):
+    def residual(snes: PETSc.SNES, X: PETSc.Vec, F: PETSc.Vec) -> None:
         F[0] = 2.0 * np.sqrt(X[0]) - 6.0
         F.assemble()
 
-    def tangent(snes, X, J, P):
+    def tangent(snes: PETSc.SNES, X: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
         P[0, 0] = 1.0 / np.sqrt(X[0])
         P.assemble()
 
@@ -64,7 +67,7 @@ def iterate(method, extra):
     return np.array(states)
 
 
-def run(study):
+def run(study: Study) -> None:
     """All printed numbers of the three columns."""
     found, rows = {}, []
     for method, extra, name, printed in COLUMNS:

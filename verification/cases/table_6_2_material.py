@@ -14,23 +14,25 @@ from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
 from coilset.model.material import library, points
+from coilset.model.material.law import Law
 from coilset.model.results.figures import STYLE
 from coilset.verification.cases.table_6_2 import PULL, READ, RELEASE, YIELD
+from coilset.verification.study import Study
 
 FAST = True
 
 
-def strains(u):
+def strains(u: float) -> np.ndarray:
     """ε of the outer bars and of the middle one at u/l."""
     return np.array([0.5 * np.log(0.5 * (1 + (1 + u) ** 2)), np.log(1 + u)])
 
 
-def force(u, stress):
+def force(u: float, stress: np.ndarray) -> float:
     """F/A0 of σ13 and σ2, N/mm²."""
     return stress[1] + 2 * (1 + u) / np.hypot(1, 1 + u) * stress[0]
 
 
-def move(law, state, u, end):
+def move(law: Law, state: np.ndarray, u: float, end: float) -> np.ndarray:
     """State of both bars after the joint went from u to end."""
     path = np.linspace(u, end, max(2, int(np.ceil(abs(end - u) / 1e-4)) + 1))
     for step in np.diff([strains(at) for at in path], axis=0):
@@ -38,13 +40,13 @@ def move(law, state, u, end):
     return state
 
 
-def release(law, state, u, load):
+def release(law: Law, state: np.ndarray, u: float, load: float) -> tuple[np.ndarray, float]:
     """State of both bars and u/l where the force is `load`."""
     end = brentq(lambda end: force(end, move(law, state, u, end)[:, 0]) - load, u - 0.02, u)
     return move(law, state, u, end), end
 
 
-def run(study):
+def run(study: Study) -> None:
     """Loading at the printed displacements, release at the printed forces."""
     law = library.load("ck15")
     state, u, rows = points.initial_state(law, 2), 0.0, []
@@ -69,7 +71,7 @@ def run(study):
     _draw(study, np.array(rows), printed)
 
 
-def _draw(study, ours, printed):
+def _draw(study: Study, ours: np.ndarray, printed: np.ndarray) -> None:
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(6.4, 4.2), layout="constrained")
         axes = figure.add_subplot()

@@ -19,7 +19,9 @@ S_j = c max(0, w_j − g_j) and w_i = M x_i²/(2EI) − Σ f_ij S_j; each of the
 tolerance is that of the onset, 1e-6 of a gap, in the small difference that is a penetration.
 """
 
+from collections.abc import Mapping
 from itertools import product
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -27,10 +29,12 @@ from matplotlib.figure import Figure
 
 from coilset.model.contact.gap import Stops
 from coilset.model.material import library
+from coilset.model.material.law import Law
 from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
 from coilset.verification import figures
 from coilset.verification.frame import KEEP, Frame
+from coilset.verification.study import Study
 
 FAST = True
 LENGTH, RADIUS, SCALE = 1000.0, 100.0, 1e-6  # mm, mm
@@ -38,16 +42,22 @@ GAPS = np.array([0.055, 0.30])  # of l · SCALE, under nodes 2 and 3
 C = 22.0  # EI/l³
 STEPS = 0.04 * np.arange(1, 11)  # M0 l/(EI · SCALE)
 # iterations of MNR (None: diverged) and BFGS
-PRINTED = [(1, 1), (1, 1), (16, 3), (1, 1), (39, 7), (1, 1), (1, 1), (1, 1), (None, 3), (None, 1)]
-EVENTS = [((), "open"), ((), ""), ((0,), "node 2 closes"), ((0,), ""), ((0, 1), "node 3 closes"), ((0, 1), ""),
-          ((0, 1), ""), ((0, 1), ""), ((1,), "node 2 opens"), ((1,), "")]  # fmt: skip
-METHODS = [
+PRINTED: list[tuple[int | None, int]] = [
+    (1, 1), (1, 1), (16, 3), (1, 1), (39, 7), (1, 1), (1, 1), (1, 1), (None, 3), (None, 1),
+]  # fmt: skip
+EVENTS: list[tuple[tuple[int, ...], str]] = [
+    ((), "open"), ((), ""), ((0,), "node 2 closes"), ((0,), ""), ((0, 1), "node 3 closes"), ((0, 1), ""),
+    ((0, 1), ""), ((0, 1), ""), ((1,), "node 2 opens"), ((1,), ""),
+]  # fmt: skip
+METHODS: list[tuple[str, str, dict[str, Any]]] = [
     ("NR", "newton", {}), ("BFGS", "bfgs", {"snes_linesearch_max_it": 10}),
     ("MNR", "modified-newton", KEEP | {"snes_linesearch_type": "basic"}),
 ]  # fmt: skip
 
+Bent = tuple[np.ndarray, np.ndarray, list[int | None]]  # of `bend`
 
-def beam(method, options, law):
+
+def beam(method: str, options: Mapping[str, Any], law: Law) -> Frame:
     """The frame: node 0 is clamped; the plane is z = 0 through the undeformed beam, and it bends downwards."""
     nodes = LENGTH * np.array([[k, 0.0, 0.0] for k in range(4)])
     stiffness = C * rigidity(law) / LENGTH**3
@@ -57,12 +67,12 @@ def beam(method, options, law):
                  [stops])  # fmt: skip
 
 
-def rigidity(law):
+def rigidity(law: Law) -> float:
     """EI, N mm²."""
     return law.E * np.pi * RADIUS**4 / 4.0
 
 
-def linear_beam(moment, shear):
+def linear_beam(moment: float, shear: float) -> tuple[np.ndarray, np.ndarray]:
     """Forces on the base in EI/l² · SCALE and deflections in l · SCALE at nodes 2 and 3, downwards.
 
     Args:
@@ -83,11 +93,12 @@ def linear_beam(moment, shear):
     raise ValueError(f"no set of closed gaps fits the moment {moment}")
 
 
-def bend(method, options, law):
+def bend(method: str, options: Mapping[str, Any], law: Law) -> Bent:
     """Forces on the base and deflections, both as in `linear_beam`, shape (10, 2), and iterations of each step."""
     frame = beam(method, options, law)
     unit = rigidity(law) / LENGTH**2 * SCALE
-    forces, moved, counts = np.full((10, 2), np.nan), np.full((10, 2), np.nan), [None] * 10
+    forces, moved = np.full((10, 2), np.nan), np.full((10, 2), np.nan)
+    counts: list[int | None] = [None] * 10
     for row, moment in enumerate(STEPS):
         outcome = frame.step(forces={frame.dof(3, 4): moment * unit * LENGTH})
         if not outcome.converged:
@@ -98,7 +109,7 @@ def bend(method, options, law):
     return forces, moved, counts
 
 
-def run(study):
+def run(study: Study) -> None:
     """Events, forces and iterations, row by row."""
     law = library.load("elastic")
     found = {name: bend(method, options, law) for name, method, options in METHODS}
@@ -124,12 +135,12 @@ def run(study):
     draw(study, found, reference)
 
 
-def shown(count):
+def shown(count: int | None) -> str:
     """A number of iterations, or that there was no convergence."""
     return "div." if count is None else str(count)
 
 
-def draw(study, found, reference):
+def draw(study: Study, found: dict[str, Bent], reference: list[tuple[np.ndarray, np.ndarray]]) -> None:
     """Distances and forces over the moment, and iterations."""
     forces, moved, _ = found["NR"]
     S, w = (np.array(part) for part in zip(*reference, strict=True))

@@ -17,10 +17,12 @@ from matplotlib.figure import Figure
 from scipy.optimize import brentq
 
 from coilset.model.material import library
+from coilset.model.material.law import Law
 from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import DiskRule, polar
 from coilset.verification.chain import ALL, ROTATION_X, X, chain, drive, straight
 from coilset.verification.references.section_integrals import plastic_path, tube_shear
+from coilset.verification.study import Study
 
 FAST = True
 LENGTH, RADIUS = 10.0, 2.5  # mm
@@ -29,11 +31,11 @@ RULES = ((8, 16), (24, 32))
 TUBE = DiskRule(polar(1, 16).points / np.hypot(*polar(1, 16).points[0]), np.full(16, 1.0 / 16.0), "ring of 16 points")
 
 
-def pull_and_twist(law, rule):
+def pull_and_twist(law: Law, rule: DiskRule) -> np.ndarray:
     """Axial force (N) and torque (N mm) at the steps of the twist, shape (STEPS + 1, 2)."""
     frame, rows = chain(straight(LENGTH, 1), RADIUS, law, rule, [(0, ALL), (1, range(1, 6))]), []
 
-    def keep():
+    def keep() -> None:
         rows.append(frame.resultants[0, 0, [0, 3]])
 
     length = LENGTH * np.expm1(STRETCH)  # ε is logarithmic
@@ -44,20 +46,19 @@ def pull_and_twist(law, rule):
     return np.array(rows)
 
 
-def point(law, shears):
+def point(law: Law, shears: np.ndarray) -> np.ndarray:
     """σ and τ of a point at increasing shear angles after the stretch, shape (n, 2), MPa."""
     if law.name == "ideal_plastic":
         top = 0.5 * np.pi - 1e-9
         angles = [brentq(lambda a, γ=γ: tube_shear(law.yield_stress, law.E, law.G, a) - γ, 0.0, top) for γ in shears]
         return law.yield_stress * np.stack([np.cos(angles), np.sin(angles) / np.sqrt(3.0)], axis=1)
     limit = law.yield_stress / law.E
-    start = plastic_path(law, [law.yield_stress, 0, 0, 0, 0], np.array([1.0, 0.0]), np.array([0.0, STRETCH - limit]))[
-        -1
-    ]
+    first = np.array([law.yield_stress, 0.0, 0.0, 0.0, 0.0])
+    start = plastic_path(law, first, np.array([1.0, 0.0]), np.array([0.0, STRETCH - limit]))[-1]
     return plastic_path(law, start, np.array([0.0, 1.0]), np.append(0.0, shears))[1:, :2]
 
 
-def exact(law):
+def exact(law: Law) -> tuple[np.ndarray, np.ndarray]:
     """σ, τ of the tube, MPa; N and T of the bar, N and N mm."""
     ξ, w = np.polynomial.legendre.leggauss(40)
     r, w = 0.5 * RADIUS * (1.0 + ξ), 0.5 * RADIUS * w * 2.0 * np.pi
@@ -65,7 +66,7 @@ def exact(law):
     return states[-1], np.array([w @ (states[:-1, 0] * r), w @ (states[:-1, 1] * r**2)])
 
 
-def run(study):
+def run(study: Study) -> None:
     """Tube and bar of two materials, two rules."""
     area, curves, rows = np.pi * RADIUS**2, {}, []
     for name in ("ideal_plastic", "ck15"):

@@ -16,18 +16,22 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.model.material import library
+from coilset.model.material.law import Law
 from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
 from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, Y, Z, chain, drive, straight
 from coilset.verification.references.section_integrals import nadai_torque, shear_curve, torque
+from coilset.verification.study import Study
 
 FAST = True
 LENGTH, RADIUS, SHEAR, STEPS = 10.0, 2.5, 0.02, 80  # mm, mm, γ at the surface
 RINGS, FINE = (4, 8, 16, 32), 16
 MATERIALS = ("ideal_plastic", "linear_isotropic", "ck15")
 
+Twisted = tuple[np.ndarray, float, np.ndarray]  # of `twist`
 
-def twist(law, rings):
+
+def twist(law: Law, rings: int) -> Twisted:
     """Torques at the steps, N mm, the twist per length that stays once it is let go, 1/mm, and τ over r at the end."""
     held = [(0, ALL), (1, (Y, Z, ROTATION_Y, ROTATION_Z))]
     frame, torques = chain(straight(LENGTH, 1), RADIUS, law, polar(rings, 12), held), [0.0]
@@ -38,14 +42,14 @@ def twist(law, rings):
     return np.array(torques), frame.rotation(1)[0] / LENGTH, stress
 
 
-def reference(law, ϑ):
+def reference(law: Law, ϑ: float) -> float:
     """Torque at the twist ϑ per length, N mm."""
     if law.name == "ideal_plastic":
-        return nadai_torque(np.sqrt(0.5 * law.k_squared(0.0)), law.G, RADIUS, ϑ)
+        return nadai_torque(float(np.sqrt(0.5 * law.k_squared(0.0))), law.G, RADIUS, ϑ)
     return torque(law, RADIUS, ϑ)
 
 
-def run(study):
+def run(study: Study) -> None:
     """Torque and springback of three materials over the rings."""
     ϑ, found, rows = SHEAR / RADIUS, {}, []
     for name in MATERIALS:
@@ -63,7 +67,7 @@ def run(study):
     draw(study, found)
 
 
-def draw(study, found):
+def draw(study: Study, found: dict[str, tuple[Law, Twisted]]) -> None:
     """Torque over the twist, and τ over the radius."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.0, 3.7), layout="constrained")

@@ -16,6 +16,8 @@ from matplotlib.figure import Figure
 from coilset.model.material import library
 from coilset.model.results.figures import STYLE
 from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, Z, chain, drive, straight
+from coilset.verification.frame import Frame
+from coilset.verification.study import Study
 
 FAST = True
 LENGTH, RADIUS = 100.0, 1.0  # mm
@@ -23,7 +25,7 @@ STEPS = 20
 MESHES = (16, 32, 64)
 
 
-def roll(elements):
+def roll(elements: int) -> tuple[float, list[np.ndarray], list[int]]:
     """M L/EI, positions of all nodes after half and after all of the steps, and iterations of the steps."""
     law, nodes, shapes = library.load("elastic"), straight(LENGTH, elements), []
     plane = [(node, (Z, ROTATION_X, ROTATION_Y)) for node in range(1, elements + 1)]
@@ -34,14 +36,15 @@ def roll(elements):
     return frame.force(turn) * LENGTH / EI, shapes, counts
 
 
-def positions(frame, nodes):
+def positions(frame: Frame, nodes: np.ndarray) -> np.ndarray:
     """Positions of all nodes, shape (n, 3), mm."""
     return np.array([node + frame.moved(k) for k, node in enumerate(nodes)])
 
 
-def run(study):
+def run(study: Study) -> None:
     """Moment, tip and height."""
-    rows, shapes = [], []
+    rows = []
+    shapes: list[np.ndarray] = []
     for n in MESHES:
         moment, shapes, counts = roll(n)
         angle, height = 4.0 * np.pi / n, np.ptp(shapes[-1][:, 1])

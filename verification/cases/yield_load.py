@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from coilset.model.analysis import Analysis
 from coilset.model.case import check
 from coilset.model.results.figures import STYLE
+from coilset.verification.study import Study
 
 FAST = True
 WIRE, DIAMETER, PITCH = 5.0, 40.0, 12.0  # mm
@@ -22,22 +23,23 @@ OFFSETS = (0.001, 0.002)  # of shear strain
 TRAVEL, STEPS = 6.0, 30  # mm a turn: 1 mm before the coils touch
 
 
-def press(turns):
+def press(turns: float) -> tuple[np.ndarray, np.ndarray, float]:
     """Travel a turn (mm), force (N) and initial rate (N/mm) of a spring pressed until shortly before block."""
     spring = {"wire_diameter": WIRE, "mean_diameter": DIAMETER, "turns": turns, "pitch": PITCH}
     loading = [{"to": {"travel": TRAVEL * turns}, "steps": STEPS}]
     result = Analysis(check({"spring": spring, "material": "ck15", "loading": loading})).run()
     curve = [(0.0, 0.0), *((step.travel_mm / turns, step.force_N) for step in result.steps)]
-    return *np.array(curve).T, result.rate
+    travels, forces = np.array(curve).T
+    return travels, forces, result.rate
 
 
-def yield_load(travel, force, rate, turns, offset):
+def yield_load(travel: np.ndarray, force: np.ndarray, rate: float, turns: float, offset: float) -> tuple[float, float]:
     """Force at `offset` beside the initial line, N, and its travel a turn, mm."""
     beside = travel - force / (rate * turns) - offset * np.pi * DIAMETER**2 / WIRE
     return np.interp(0.0, beside, force), np.interp(0.0, beside, travel)
 
 
-def run(study):
+def run(study: Study) -> None:
     """Yield loads of both springs."""
     curves = {turns: press(turns) for turns in TURNS}
     for offset in OFFSETS:

@@ -14,11 +14,11 @@ from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
 def cantilever(load: float) -> tuple[float, float]:
     """Shortening u/L and deflection v/L of the tip at the load PL²/EI."""
 
-    def parts(slope):
+    def parts(slope: float) -> tuple[float, float]:
         m = 0.5 * (1.0 + np.sin(slope))
         return m, np.arcsin(1.0 / np.sqrt(2.0 * m))
 
-    def reached(slope):
+    def reached(slope: float) -> float:
         m, start = parts(slope)
         return ellipk(m) - ellipkinc(start, m) - np.sqrt(load)
 

@@ -60,10 +60,10 @@ def clamped_rod(
     force, moment, K0 = (np.asarray(vector, float) for vector in (force, moment, curvature))
     EI, scale = stiffness.EI, stiffness.EI / length
 
-    def end(start, part):
+    def end(start: np.ndarray, part: float) -> np.ndarray:
         n = part * force
 
-        def rates(s, y):
+        def rates(s: float, y: np.ndarray) -> np.ndarray:
             R = y[3:12].reshape(3, 3)
             local, bent = R.T @ n, R.T @ y[12:] * scale
             slope = R @ (np.array([1.0, 0.0, 0.0]) + local / (stiffness.EA, stiffness.GA, stiffness.GA))

@@ -36,7 +36,7 @@ def plastic_path(law: Law, start: np.ndarray, strains: np.ndarray, times: np.nda
     if law.functions(0.0)[1] == 0.0 and law.functions(0.0)[2] == 0.0:
         raise ValueError(f"{law.name} does not harden; its sections have closed forms")
 
-    def rates(t, y):
+    def rates(t: float, y: np.ndarray) -> list[float]:
         σ, τ, B1, B2, work = y
         k2, dk2, ζ, _, κ, _ = law.functions(work)
         n1, n2 = 2.0 / 3.0 * σ - B1, τ - B2
@@ -86,7 +86,7 @@ def nadai_torque(yield_shear: float, G: float, radius: float, twist: float) -> f
 def bending_moment(yield_stress: float, E: float, radius: float, curvature: float) -> float:
     """Moment of an ideally plastic round bar: ∫ σ z dA with σ = min(E κ z, σy), N mm; no direction is special."""
 
-    def height(z):
+    def height(z: float) -> float:
         return min(E * curvature * z, yield_stress) * z * 4.0 * np.sqrt(radius**2 - z**2)
 
     core = min(radius, yield_stress / (E * curvature))

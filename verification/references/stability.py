@@ -29,7 +29,7 @@ def twisted_rod(tension: float) -> float:
     if tension == 0.0:
         return 2.0 * brentq(lambda x: np.sin(x) - x * np.cos(x), np.pi, 1.5 * np.pi, xtol=1e-14)
 
-    def determinant(d):  # in d = (x − y)/2, the mean m of x and y follows from m² − d² = x y
+    def determinant(d: float) -> float:  # in d = (x − y)/2, the mean m of x and y follows from m² − d² = x y
         m = np.sqrt(np.pi**2 * tension + d**2)
         x, y = m + d, m - d
         return np.sin(2.0 * d) * x * y - 2.0 * d * np.sin(x) * np.sin(y)

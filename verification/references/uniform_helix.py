@@ -41,14 +41,14 @@ def deformed(stiffness: Stiffness, radius: float, rise: float, new_rise: float, 
     """
     j, begin = np.hypot(radius, rise), np.arctan2(rise, radius)
 
-    def inner(unknown):
+    def inner(unknown: np.ndarray) -> tuple[float, ...]:
         R, ϑ = unknown[0] * radius, unknown[1]
         s, c, x, z = np.sin(ϑ), np.cos(ϑ), turn * unknown[0] * radius / j, new_rise / j
         N, Q = stiffness.EA * (x * c + z * s - 1.0), stiffness.GA * (z * c - x * s)
         T, M = stiffness.GJ * (turn * s / j - rise / j**2), stiffness.EI * (turn * c / j - radius / j**2)
         return R, ϑ, s, c, x, z, N, Q, T, M
 
-    def equations(unknown):
+    def equations(unknown: np.ndarray) -> np.ndarray:
         _, _, s, c, x, z, N, Q, T, M = inner(unknown)
         radial = (N * c - Q * s) * radius  # by R̄
         tilt = N * (z * c - x * s) * j - Q * (z * s + x * c) * j + turn * (T * c - M * s)  # by ϑ

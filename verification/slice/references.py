@@ -28,7 +28,7 @@ def ring_sector(index: float, degree: int = 16) -> tuple[float, float, float]:
     w = np.repeat(w, 96) * 2 * np.pi / 96
     powers = [(i, j) for i in range(degree + 1) for j in range(1, degree + 1 - i, 2)]  # odd in z
 
-    def slopes(x, z):
+    def slopes(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         in_r = np.array([i * x ** max(i - 1, 0) * z**j for i, j in powers])
         return in_r, np.array([j * x**i * z ** (j - 1) for i, j in powers])
 

@@ -11,7 +11,7 @@ from coilset.verification.solid_vs_rod import figures, study
 from coilset.verification.solid_vs_rod.store import Store
 
 
-def main(folder, extent="standard"):
+def main(folder: str, extent: str = "standard") -> None:
     """Run the standard or the whole study and print its records and its table; figures go to the folder."""
     console = Console(highlight=False, quiet=MPI.COMM_WORLD.rank != 0)
     cases = {"standard": study.STANDARD, "whole": study.WHOLE}[extent]

@@ -1,8 +1,11 @@
 """The elastic coil section: shear stress at the inside of the coil against Wahl's and Göhner's factors."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from mpi4py import MPI
 
 from coilset.meshes.solid import SectionGrid, coil_section
 from coilset.model.material import library
@@ -33,12 +36,12 @@ class ElasticCase:
     layers: int
 
     @property
-    def name(self):
+    def name(self) -> str:
         """For the store."""
         return f"elastic-C{self.index:g}-{self.grid}x{self.layers}"
 
 
-def run(case, comm):
+def run(case: ElasticCase, comm: MPI.Comm) -> dict[str, Any]:
     """Factors of 8 F D / (π d³) at mid-section, and the head's force over G d⁴ δ / (8 D³), as a dict."""
     D = case.index * WIRE
     law = library.load("elastic")
@@ -57,7 +60,7 @@ def run(case, comm):
     }  # fmt: skip
 
 
-def records(results):
+def records(results: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
     """Comparison records of the finest mesh of each spring index, with the change from the mesh before it."""
     out = []
     for index in sorted({result["index"] for result in results}):

@@ -2,13 +2,16 @@
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.tri import TriContourSet
 
 from coilset.model.results.figures import STYLE
 from coilset.verification.solid_vs_rod import pressing, references, study
+from coilset.verification.solid_vs_rod.pressing import PressedSection
 
 
-def draw(found):
+def draw(found: study.Found) -> dict[str, Figure]:
     """Draw all figures that the results allow.
 
     Args:
@@ -27,7 +30,7 @@ def draw(found):
     return out
 
 
-def factors(results):
+def factors(results: list[study.Numbers]) -> Figure:
     """Shear factor at inside and outside over the spring index, and its error over the mesh."""
     figure = Figure(figsize=(8.6, 3.8), layout="constrained")
     left, right = figure.subplots(1, 2)
@@ -53,7 +56,7 @@ def factors(results):
     return figure
 
 
-def characteristic(case, solid, rod):
+def characteristic(case: PressedSection, solid: study.Numbers, rod: study.Numbers) -> Figure:
     """Axial force and torque over travel, up and down."""
     figure = Figure(figsize=(8.6, 3.8), layout="constrained")
     left, right = figure.subplots(1, 2)
@@ -69,7 +72,7 @@ def characteristic(case, solid, rod):
     return figure
 
 
-def sections(case, solid, rod):
+def sections(case: PressedSection, solid: study.Numbers, rod: study.Numbers) -> Figure:
     """Shear stress over the mid-section of solid and rod at full travel and after release, and on the diameter."""
     figure = Figure(figsize=(10.5, 6.4), layout="constrained")
     axes = figure.subplots(2, 3)
@@ -88,7 +91,7 @@ def sections(case, solid, rod):
     return figure
 
 
-def _disk(axes, looked_at, limit):
+def _disk(axes: Axes, looked_at: study.Numbers, limit: float) -> TriContourSet:
     y, z = np.array(looked_at["y"]), np.array(looked_at["z"])
     levels = np.linspace(-limit, limit, 25)
     shown = axes.tricontourf(y, z, np.array(looked_at["stress"])[:, 2], levels=levels, cmap="RdBu_r")
@@ -99,7 +102,7 @@ def _disk(axes, looked_at, limit):
     return shown
 
 
-def deviations(pressed):
+def deviations(pressed: list[study.Pressed]) -> Figure:
     """The rod's deviation in force and set over the spring index, and the solid's change with the mesh."""
     figure = Figure(figsize=(8.6, 3.8), layout="constrained")
     left, right = figure.subplots(1, 2)

@@ -12,7 +12,7 @@ FIELDS = {"von Mises stress": "MPa", "plastic work": "N/mm²"}
 BODIES = {"full_travel": "full travel", "released": "released"}
 
 
-def draw(folder, field, unit):
+def draw(folder: Path, field: str, unit: str) -> None:
     """Both bodies beside each other, their far halves, coloured by a field: paraview_FIELD.png."""
     layout = simple.CreateLayout()
     layout.SplitHorizontal(0, 0.5)

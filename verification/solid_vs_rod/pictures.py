@@ -6,26 +6,28 @@ The same pictures by ParaView: `paraview_view.py` beside this file, run by its p
 """
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 from mpi4py import MPI
 
 from coilset.model.results import display
 from coilset.model.solid import output
+from coilset.model.solid.problem import SolidProblem
 from coilset.verification.solid_vs_rod.pressing import PressedSection, run_solid
 
 CASE = PressedSection()
 FIELDS = {"von Mises stress": "MPa", "plastic work": "N/mm²"}
 
 
-def main(folder):
+def main(folder: str | Path) -> None:
     """Press and release the section; write full_travel.vtu, released.vtu and a picture of each field."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     bodies = {}
 
-    def keep(name):
-        def write(problem):
+    def keep(name: str) -> Callable[[SolidProblem], None]:
+        def write(problem: SolidProblem) -> None:
             output.write_fields(folder / f"{name.replace(' ', '_')}.vtu", problem.solid)
             bodies[name] = output.grid(problem.solid)
 

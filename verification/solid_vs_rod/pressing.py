@@ -1,7 +1,9 @@
 """The same coil section as solid and as rod: pressed nearly to block, released, and looked at in its mid-section."""
 
 import time
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from mpi4py import MPI
@@ -10,10 +12,11 @@ from coilset.meshes.solid import SectionGrid, coil_section
 from coilset.model.analysis import Analysis
 from coilset.model.case import Case
 from coilset.model.material import library
+from coilset.model.results.record import Snapshot
 from coilset.model.section.surface import component
 from coilset.model.solid.points import MaterialPoints
 from coilset.model.solid.problem import SolidProblem
-from coilset.model.solid.program import AxialProgram
+from coilset.model.solid.program import AxialProgram, Station
 from coilset.model.solid.sampling import SectionSample, disk_grid
 
 WIRE = 5.0  # mm
@@ -44,27 +47,34 @@ class PressedSection:
     material: str = "ck15"
 
     @property
-    def mean_diameter(self):
+    def mean_diameter(self) -> float:
         """D, mm."""
         return self.index * WIRE
 
     @property
-    def pitch(self):
+    def pitch(self) -> float:
         """Rise in the turn, mm."""
         return WIRE + 7.0 * (self.index / 8.0) ** 2
 
     @property
-    def travel(self):
+    def travel(self) -> float:
         """Nine tenths of the way to block, where the two ends of the turn do not touch yet, mm."""
         return 0.9 * (self.pitch - WIRE)
 
     @property
-    def name(self):
+    def name(self) -> str:
         """For the store."""
         return f"pressed-{self.material}-C{self.index:g}-{self.grid}x{self.layers}-{self.steps}"
 
 
-def run_solid(case, comm, solver="auto", report=lambda line: None, on_full=None, on_end=None):
+def run_solid(
+    case: PressedSection,
+    comm: MPI.Comm,
+    solver: str = "auto",
+    report: Callable[[str], object] = lambda line: None,
+    on_full: Callable[[SolidProblem], object] | None = None,
+    on_end: Callable[[SolidProblem], object] | None = None,
+) -> dict[str, Any]:
     """Press and release the solid.
 
     Args:
@@ -84,7 +94,7 @@ def run_solid(case, comm, solver="auto", report=lambda line: None, on_full=None,
     problem = SolidProblem(wire, MaterialPoints(library.load(case.material)), solver)
     sample = SectionSample(problem.solid, 0.5 * wire.length, *disk_grid(0.5 * WIRE))
 
-    def say(s):
+    def say(s: Station) -> None:
         report(f"  travel {s.travel:8.4f} mm   force {s.force:10.4f} N   {s.iterations} iterations")
 
     program = AxialProgram(problem, say)
@@ -105,12 +115,12 @@ def run_solid(case, comm, solver="auto", report=lambda line: None, on_full=None,
     }  # fmt: skip
 
 
-def _looked_at(sample):
+def _looked_at(sample: SectionSample) -> dict[str, Any]:
     stress = sample.stress()
     return {"y": sample.y.tolist(), "z": sample.z.tolist(), "stress": stress.tolist()}
 
 
-def run_rod(case, section=PLANE):
+def run_rod(case: PressedSection, section: Mapping[str, object] = PLANE) -> dict[str, Any]:
     """Press and release the rod, on this rank alone.
 
     Args:
@@ -143,7 +153,7 @@ def run_rod(case, section=PLANE):
     }  # fmt: skip
 
 
-def _torque(analysis):
+def _torque(analysis: Analysis) -> float:
     """Moment about the coil's axis that the section resultants of the middle element carry, N mm."""
     snapshot = analysis.snapshot("now")
     middle = ROD_ELEMENTS // 2
@@ -152,7 +162,7 @@ def _torque(analysis):
     return float((E @ resultants[3:] + np.cross(centre, E @ resultants[:3]))[2])
 
 
-def _rod_section(analysis, snapshot):
+def _rod_section(analysis: Analysis, snapshot: Snapshot) -> dict[str, Any]:
     """Places and stresses of the middle element's section points, in the axes t, outward, t × outward."""
     middle = ROD_ELEMENTS // 2
     radius = float(analysis.setup.wire_radius[middle])

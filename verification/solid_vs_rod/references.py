@@ -1,9 +1,14 @@
 """Known solutions: the curved wire under an axial force, the straight wire in elastic-plastic torsion and bending."""
 
+from collections.abc import Sequence
+from typing import TypeVar
+
 import numpy as np
 
+Number = TypeVar("Number", float, np.ndarray)
 
-def wahl_factor(index):
+
+def wahl_factor(index: Number) -> Number:
     """Wahl's factor of the shear stress at the inside of a coil over 8 F D / (π d³).
 
     A. M. Wahl, Mechanical Springs, 2nd ed., McGraw-Hill 1963: (4C − 1)/(4C − 4) + 0.615/C, with C = D/d.
@@ -11,7 +16,7 @@ def wahl_factor(index):
     return (4 * index - 1) / (4 * index - 4) + 0.615 / index
 
 
-def goehner_series(index):
+def goehner_series(index: Number) -> Number:
     """Göhner's factor as a series, 1 + 5/4 C⁻¹ + 7/8 C⁻² + C⁻³.
 
     O. Göhner, Ing.-Arch. 1 (1930) 619; in this form in DIN 2089, and to C⁻² in Timoshenko and Goodier, Theory of
@@ -20,7 +25,7 @@ def goehner_series(index):
     return 1 + 1.25 / index + 0.875 / index**2 + 1 / index**3
 
 
-def goehner_exact(index, degree=14, places=(-1.0, 1.0)):
+def goehner_exact(index: float, degree: int = 14, places: Sequence[float] = (-1.0, 1.0)) -> tuple[float, ...]:
     """Shear stress on the diameter through the coil's axis, from Göhner's boundary value problem, solved to rounding.
 
     A sector of a ring of circular section with radius R under opposite forces along its axis (pitch → 0) has the
@@ -45,7 +50,7 @@ def goehner_exact(index, degree=14, places=(-1.0, 1.0)):
     w = np.repeat(w, 96) * 2 * np.pi / 96
     powers = [(i, 2 * j) for i in range(degree + 1) for j in range(degree // 2 + 1) if i + 2 * j <= degree]
 
-    def gradients(x, z):
+    def gradients(x: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         value, d_dx, d_dz = [], [], []
         for i, j in powers:
             bubble, m = 1 - x * x - z * z, x**i * z**j
@@ -65,7 +70,7 @@ def goehner_exact(index, degree=14, places=(-1.0, 1.0)):
     return tuple(factors)
 
 
-def nadai_torque(yield_shear, radius, ratio):
+def nadai_torque(yield_shear: float, radius: float, ratio: Number) -> Number:
     """Torque of a straight round wire without hardening, N mm.
 
     A. Nadai, Plasticity, McGraw-Hill 1931: (2π/3) τ_y R³ (1 − ¼ (θ_y/θ)³) for a twist θ beyond θ_y = τ_y/(G R).
@@ -78,7 +83,7 @@ def nadai_torque(yield_shear, radius, ratio):
     return 2 * np.pi / 3 * yield_shear * radius**3 * (1 - 0.25 / ratio**3)
 
 
-def plastic_bending_moment(yield_stress, radius, ratio):
+def plastic_bending_moment(yield_stress: float, radius: float, ratio: float) -> float:
     """Bending moment of a straight round wire without hardening after beam theory, N mm.
 
     ∫ σ y dA with σ = σ_y y / h in the elastic core |y| < h = R / ratio, ± σ_y beyond; 4/3 σ_y R³ at the limit.

@@ -12,6 +12,9 @@ Time of one linearised step of 200,000 unknowns, five times; first on one rank, 
 import os
 import sys
 import time
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
 
 from mpi4py import MPI
 
@@ -30,7 +33,7 @@ REPETITIONS = 5
 STAGES = ("points", "assembly", "solve")
 
 
-def pressed(size, comm, solver="multigrid"):
+def pressed(size: str, comm: MPI.Comm, solver: str = "multigrid") -> SolidProblem:
     """The section of D/d = 8 after a first small step, which compiles and plans."""
     grid, layers = SIZES[size]
     case = PressedSection()
@@ -40,7 +43,7 @@ def pressed(size, comm, solver="multigrid"):
     return problem
 
 
-def iterations(size, comm):
+def iterations(size: str, comm: MPI.Comm) -> dict[str, Any]:
     """One elastic step, and one to a travel at which nearly all of the wire's section flows.
 
     Returns:
@@ -58,7 +61,7 @@ def iterations(size, comm):
     return out
 
 
-def timed(size, comm):
+def timed(size: str, comm: MPI.Comm) -> dict[str, Any]:
     """Repeat a linearised step: stresses and moduli at the points and their forces, tangent and coarse one, solution.
 
     Returns:
@@ -70,7 +73,7 @@ def timed(size, comm):
     return {"unknowns": problem.unknowns, "ranks": comm.size, "repetitions": repetitions}
 
 
-def _repetition(problem, comm):
+def _repetition(problem: SolidProblem, comm: MPI.Comm) -> dict[str, float]:
     comm.barrier()
     assembled, cpu, wall = problem.solid.seconds["assembly"], time.process_time(), [time.perf_counter()]
     problem.system.restore()
@@ -85,22 +88,22 @@ def _repetition(problem, comm):
     return {**out, "iterations": linear, "share": comm.allreduce(share, op=MPI.MIN)}
 
 
-def best(result):
+def best(result: dict[str, Any]) -> dict[str, float]:
     """Each stage's least time of the repetitions, and that of all together."""
     out = {stage: min(r[stage] for r in result["repetitions"]) for stage in STAGES}
     return {**out, "all": min(sum(r[stage] for stage in STAGES) for r in result["repetitions"])}
 
 
-def _report_iterations(store, sizes):
+def _report_iterations(store: Store, sizes: Sequence[str]) -> None:
     for size in sizes or SIZES:
-        result = store.get(f"iterations-{size}", lambda size=size: iterations(size, store.comm))
+        result = store.get(f"iterations-{size}", partial(iterations, size, store.comm))
         for name in ("elastic", "plastic"):
             step = result[name]
             store.report(f"{result['unknowns']:8d} unknowns, {name}: {step['iterations']:.1f} iterations a solve, "
                          f"{step['solves']} solves, {step['seconds']:.0f} s on {result['ranks']} rank(s)")  # fmt: skip
 
 
-def _report_times(store):
+def _report_times(store: Store) -> None:
     result = store.put(f"time-{store.comm.size}", timed(TIMED, store.comm))
     store.report(f"{result['unknowns']} unknowns on {result['ranks']} rank(s), load {os.getloadavg()[0]:.1f}; seconds")
     for r in result["repetitions"]:
@@ -113,7 +116,7 @@ def _report_times(store):
                      + ", ".join(f"{name} {one[name] / more[name]:.2f}" for name in more))  # fmt: skip
 
 
-def main(folder, *what):
+def main(folder: str, *what: str) -> None:
     """Measure and print."""
     store = Store(folder, MPI.COMM_WORLD, print)
     if what == ("time",):

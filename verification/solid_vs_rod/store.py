@@ -1,7 +1,11 @@
 """Results of a study's cases on disk, so that an interrupted study goes on where it was."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
+
+from mpi4py import MPI
 
 from coilset.model.results.folder import whole
 
@@ -15,13 +19,13 @@ class Store:
         report: called with a line of progress, on the first rank.
     """
 
-    def __init__(self, folder, comm, report=lambda line: None):
+    def __init__(self, folder: str | Path, comm: MPI.Comm, report: Callable[[str], object] = lambda line: None) -> None:
         self.folder, self.comm = Path(folder), comm
         self.report = report if comm.rank == 0 else lambda line: None
         if comm.rank == 0:
             self.folder.mkdir(parents=True, exist_ok=True)
 
-    def get(self, name, compute):
+    def get(self, name: str, compute: Callable[[], dict[str, Any]]) -> dict[str, Any]:
         """The case's result: read if it is there, else computed and written.
 
         Args:
@@ -35,14 +39,14 @@ class Store:
         self.report(f"{name}: begun")
         return self.put(name, compute())
 
-    def read(self, name):
+    def read(self, name: str) -> dict[str, Any] | None:
         """The case's result on all ranks, None if it is not there."""
         path, known = self.folder / f"{name}.json", None
         if self.comm.rank == 0 and path.exists():
             known = json.loads(path.read_text(encoding="utf-8"))
         return self.comm.bcast(known)
 
-    def put(self, name, result):
+    def put(self, name: str, result: dict[str, Any]) -> dict[str, Any]:
         """Write the case's result, plain data, in place of what is there, and return it."""
         if self.comm.rank == 0:
             with whole(self.folder / f"{name}.json") as part:

@@ -1,20 +1,43 @@
 """The cases of the study, the numbers drawn from them, and their comparison records."""
 
+from functools import partial
+from typing import Any, TypedDict
+
 import numpy as np
 
 from coilset.verification.solid_vs_rod import elastic, pressing
 from coilset.verification.solid_vs_rod.elastic import ElasticCase
 from coilset.verification.solid_vs_rod.pressing import PressedSection
+from coilset.verification.solid_vs_rod.store import Store
 
 INDICES = (4.0, 6.0, 8.0, 12.0)
 # elements along the core's side and of rings, and along the wire
 MESHES = ((1, 12), (2, 16), (3, 24), (4, 32))
 
-STANDARD = {
+Numbers = dict[str, Any]  # what a solid or rod has found: plain data, see `elastic.run`, `pressing.run_solid`
+Pressed = tuple[PressedSection, Numbers, Numbers]  # solid's result, rod's result
+TableRow = tuple[str, int, str, float, float, float | None]
+
+
+class Cases(TypedDict):
+    """What is to be run."""
+
+    elastic: list[ElasticCase]
+    pressed: list[PressedSection]
+
+
+class Found(TypedDict):
+    """What has been found."""
+
+    elastic: list[Numbers]
+    pressed: list[Pressed]
+
+
+STANDARD: Cases = {
     "elastic": [ElasticCase(C, *mesh) for C in (4.0, 12.0) for mesh in MESHES[1:3]],
     "pressed": [PressedSection(8.0, 2, 16)],
 }
-WHOLE = {
+WHOLE: Cases = {
     "elastic": [ElasticCase(C, *mesh) for C in INDICES for mesh in MESHES],
     "pressed": [PressedSection(8.0, *mesh) for mesh in MESHES]
     + [PressedSection(C, *MESHES[2]) for C in INDICES if C != 8.0]
@@ -22,7 +45,7 @@ WHOLE = {
 }
 
 
-def run(store, cases=STANDARD, solver="auto"):
+def run(store: Store, cases: Cases = STANDARD, solver: str = "auto") -> Found:
     """Run what is not known yet.
 
     Args:
@@ -31,18 +54,18 @@ def run(store, cases=STANDARD, solver="auto"):
         solver: see `coilset.model.solid.solvers`.
 
     Returns:
-        Dict: `elastic`: list of results; `pressed`: list of (PressedSection, solid's result, rod's result).
+        Found.
     """
-    found = {"elastic": [store.get(c.name, lambda c=c: elastic.run(c, store.comm)) for c in cases["elastic"]]}
-    found["pressed"] = []
+    results = [store.get(case.name, partial(elastic.run, case, store.comm)) for case in cases["elastic"]]
+    found: Found = {"elastic": results, "pressed": []}
     for case in cases["pressed"]:
-        solid = store.get(case.name, lambda c=case: pressing.run_solid(c, store.comm, solver, store.report))
-        rod = store.get(f"rod-{case.name}", lambda c=case: pressing.run_rod(c))
+        solid = store.get(case.name, partial(pressing.run_solid, case, store.comm, solver, store.report))
+        rod = store.get(f"rod-{case.name}", partial(pressing.run_rod, case))
         found["pressed"].append((case, solid, rod))
     return found
 
 
-def diameter(result, moment):
+def diameter(result: Numbers, moment: str) -> tuple[np.ndarray, np.ndarray]:
     """Shear stress τ13 along the diameter that points to the coil's axis.
 
     Args:
@@ -56,18 +79,18 @@ def diameter(result, moment):
     places = np.array([result[moment]["y"], result[moment]["z"]])
     radius, angle = np.round(np.hypot(*places), 9), np.arctan2(places[1], places[0])
     shear = np.array(result[moment]["stress"])[:, 2]
-    found = {}
+    shears: dict[float, float] = {}
     for ring in np.unique(radius):
         for side, wanted in ((1.0, 0.0), (-1.0, np.pi)):
             off = np.abs(np.angle(np.exp(1j * (angle - wanted))))
             nearest = radius == ring
             nearest &= off < off[nearest].min() + 1e-6
-            found[side * ring] = float(shear[nearest].mean())
-    y = np.array(sorted(found))
-    return y, np.array([found[place] for place in y])
+            shears[side * ring] = float(shear[nearest].mean())
+    y = np.array(sorted(shears))
+    return y, np.array([shears[place] for place in y])
 
 
-def numbers(case, solid, rod):
+def numbers(case: PressedSection, solid: Numbers, rod: Numbers) -> dict[str, tuple[float, float]]:
     """What is compared for one pressed section: name → (solid, rod); N, N mm, mm, MPa."""
     i = case.steps
     at = 0.45 * pressing.WIRE  # 0.9 of the radius; the rod's outermost ring of points lies at 0.99
@@ -79,19 +102,20 @@ def numbers(case, solid, rod):
     for moment, when in (("full", "at full travel"), ("end", "after release")):
         lines = [diameter(result, moment) for result in (solid, rod)]
         for place, y in (("inside", -at), ("outside", at)):
-            out[f"shear {place} {when}"] = tuple(float(np.interp(y, *line)) for line in lines)
+            of_solid, of_rod = (float(np.interp(y, *line)) for line in lines)
+            out[f"shear {place} {when}"] = of_solid, of_rod
     return out
 
 
-def finest(found):
+def finest(found: Found) -> list[Pressed]:
     """(PressedSection, solid, rod) of each index's finest mesh, by index; of equal meshes the one with 12 steps."""
-    best = {}
+    best: dict[float, Pressed] = {}
     for result in sorted(found["pressed"], key=lambda r: (r[1]["unknowns"], -abs(r[0].steps - PressedSection.steps))):
         best[result[0].index] = result
     return [best[index] for index in sorted(best)]
 
 
-def records(found):
+def records(found: Found) -> list[dict[str, Any]]:
     """Comparison records of each index's finest mesh: quantity, ours, reference, source, tolerance (relative)."""
     out = elastic.records(found["elastic"])
     for case, solid, rod in finest(found):
@@ -104,7 +128,7 @@ def records(found):
     return out
 
 
-def table(found):
+def table(found: Found) -> list[TableRow]:
     """Rows for a table: case, unknowns, quantity, solid, rod, rod over solid − 1 (None for stresses near zero)."""
     rows = []
     for case, solid, rod in found["pressed"]:

@@ -3,9 +3,10 @@
 import numpy as np
 
 from coilset.meshes.ends import touching_pitch
+from coilset.meshes.spring import Spring
 
 
-def clamped_rate(spring, E, G):
+def clamped_rate(spring: Spring, E: float, G: float) -> float:
     """Initial rate between heads that move along the axis only, by Castigliano, N/mm.
 
     The complementary energy ∫ N²/EA + Q²/GA + T²/GIp + M²/EI ds of the true centre line gives the displacement of the
@@ -31,7 +32,7 @@ def clamped_rate(spring, E, G):
     return np.linalg.solve(compliance, [0, 0, 1, 0, 0, 0])[2]
 
 
-def torsion_characteristic(spring, G, forces):
+def torsion_characteristic(spring: Spring, G: float, forces: np.ndarray) -> np.ndarray:
     """Travel under axial forces if only torsion counts and a coil stops to give way once it lies on the next, mm.
 
     s(F) = ∫ min(64 F r³/(G d⁴), p − p_block) dt: each turn gives way as in the formula for cylinders, until its pitch
@@ -52,7 +53,7 @@ def torsion_characteristic(spring, G, forces):
     return np.minimum(way, spring.pitch(t) - touching_pitch(d, spring.slope(t))) @ weight
 
 
-def _points(spring):
+def _points(spring: Spring) -> tuple[np.ndarray, np.ndarray]:
     """Points and weights along the turns, Gauss's rule between the breaks of the spring's functions."""
     ξ, w = np.polynomial.legendre.leggauss(4)
     half = 0.5 * np.diff(spring.breaks)[:, None]

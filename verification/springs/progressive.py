@@ -6,6 +6,7 @@ Coils whose radii differ by a good part of a wire slip over each other in the en
 a seat is so flat that they pass each other freely, and the other springs are compressed less far.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -67,12 +68,12 @@ class Characteristic:
     work: float
 
     @property
-    def rates(self):
+    def rates(self) -> np.ndarray:
         """Slopes between the steps, N/mm, shape (STEPS,)."""
         return np.diff(self.force, prepend=0.0) / np.diff(self.travel, prepend=0.0)
 
 
-def solve(name):
+def solve(name: str) -> Characteristic:
     """The `Characteristic` of a case."""
     ends, travel, spring = CASES[name]
     loading = [{"to": {"travel": travel}, "steps": STEPS}]
@@ -84,7 +85,7 @@ def solve(name):
     return Characteristic(np.array([step.travel_mm for step in steps]), force, formula, work)
 
 
-def figure(found, path):
+def figure(found: Mapping[str, Characteristic], path: str | Path) -> None:
     """Draw characteristics, name → `Characteristic`, beside the formula's."""
     with mpl.rc_context(STYLE):
         drawn = Figure(figsize=(9.6, 3.7), layout="constrained")

@@ -5,6 +5,7 @@ arcs, or until they give way as much (`polygon_nodes`); and sections that lie on
 (`section_placement`).
 """
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import matplotlib as mpl
@@ -14,7 +15,8 @@ from mpi4py import MPI
 
 from coilset.meshes.line import line_mesh
 from coilset.meshes.placement import polygon_nodes, section_placement
-from coilset.meshes.spring import SpringSpec
+from coilset.meshes.shapes import Barrel
+from coilset.meshes.spring import Spring, SpringSpec
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.layout import SEATS, LineLayout
@@ -22,6 +24,7 @@ from coilset.model.equilibrium.methods import rod_method
 from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.system import System
 from coilset.model.material import library
+from coilset.model.material.law import Law
 from coilset.model.results.figures import STYLE, save
 from coilset.model.rod.kinematics import GAUSS, chord_triads
 from coilset.model.rod.rod import Rod
@@ -39,12 +42,12 @@ REPRESENTATIONS = {
 SPRINGS = {
     "cylinder, 2.5 turns": SpringSpec(wire_diameter=5.0, mean_diameter=40.0, turns=2.5, pitch=12.0),
     "barrel, 6 turns": SpringSpec(
-        wire_diameter=5.0, mean_diameter={"shape": "barrel", "ends": 30.0, "middle": 50.0}, turns=6.0, pitch=14.0
+        wire_diameter=5.0, mean_diameter=Barrel(shape="barrel", ends=30.0, middle=50.0), turns=6.0, pitch=14.0
     ),
 }
 
 
-def rate(spring, turns, representation, law):
+def rate(spring: Spring, turns: np.ndarray, representation: str, law: Law) -> float:
     """Initial rate between clamped heads, N/mm.
 
     Args:
@@ -73,7 +76,7 @@ def rate(spring, turns, representation, law):
     return (forces[0] - forces[1]) / (2 * TRAVEL * spring.free_length)
 
 
-def study():
+def study() -> dict[str, dict[str, np.ndarray]]:
     """Relative errors of the rate: spring → representation → errors at `ELEMENTS` a turn, shape (4,)."""
     law = library.load("ck15")
     errors = {}
@@ -87,7 +90,7 @@ def study():
     return errors
 
 
-def figure(errors, path):
+def figure(errors: Mapping[str, Mapping[str, np.ndarray]], path: str | Path) -> None:
     """Draw the errors over the elements in a turn."""
     with mpl.rc_context(STYLE):
         drawn = Figure(figsize=(9.2, 4.6), layout="constrained")

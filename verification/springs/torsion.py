@@ -7,6 +7,7 @@ and seats do to the end coils are left out. Only the law's curve in simple shear
 import numpy as np
 
 from coilset.meshes.ends import touching_pitch
+from coilset.meshes.spring import Spring
 from coilset.model.material import programs
 from coilset.model.material.law import Law
 from coilset.verification.springs.curved_rod import _points
@@ -32,7 +33,7 @@ class CoilByCoil:
         law: Law of its material.
     """
 
-    def __init__(self, spring, law):
+    def __init__(self, spring: Spring, law: Law) -> None:
         turns, self.weight = _points(spring)
         self.r, self.a, self.G = spring.mean_radius(turns), 0.5 * spring.wire_diameter(turns), law.G
         self.way = np.maximum(spring.pitch(turns) - touching_pitch(2 * self.a, spring.slope(turns)), 0.0)
