@@ -116,7 +116,7 @@ def variants(names: Iterable[str], steps: str | int) -> Iterator[tuple[str, list
             if chosen and field.name not in chosen:
                 continue
             kind = "auto" if group == "steps" and field.name in AUTOMATIC else steps
-            for value in halved_and_doubled(field.name, field.default):  # type: ignore[arg-type]
+            for value in halved_and_doubled(field.name, getattr(control(), field.name)):
                 yield f"{field.name} = {value:g}", [
                     *in_steps(kind), f"solver.control.{group}.{field.name}={value!r}"
                 ]  # fmt: skip
