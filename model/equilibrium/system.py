@@ -63,8 +63,14 @@ class System:
         self._reactions = self.state.add("reactions", np.zeros(layout.size_local), Where.UNKNOWN)
         self.internal = layout.vector(self._reactions.trial)
         self._local = la.vector(layout.index_map, layout.block_size)
+        # asked once, for the test of a protocol takes longer than what it guards
+        self._rotating = body if isinstance(body, HasRotations) else None
+        self._foreseeing = body if isinstance(body, Foresees) else None
+        self._limiting = [k for k, contact in enumerate(self.contacts) if isinstance(contact, LimitsStep)]
+        self._augmented = [contact for contact in self.contacts if isinstance(contact, Augmented)]
         self._is_rotation = np.zeros(layout.size_local, dtype=bool)
-        if isinstance(body, HasRotations):
+        if self._rotating is not None:
+            body = self._rotating
             self._is_rotation[body.rotation_dofs[body.rotation_dofs < layout.owned]] = True
         self.last, self.evaluations = Evaluation(np.full(layout.size_local, np.nan), True, []), 0
 
@@ -140,9 +146,8 @@ class System:
         """Greatest penetration of coils and seats at the last evaluation, mm; infinite where no stress was found."""
         if not self.last.has_stress:
             return np.inf
-        parts = zip(self.contacts, self.last.contributions, strict=False)
-        found = (part.penetration.max(initial=0.0) for contact, part in parts if isinstance(contact, LimitsStep))
-        return max(found, default=0.0)
+        parts = [self.last.contributions[k] for k in self._limiting] if self.last.contributions else []
+        return max((part.penetration.max(initial=0.0) for part in parts), default=0.0)
 
     @property
     def touches(self) -> bool:
@@ -173,9 +178,8 @@ class System:
     def augment(self) -> None:
         """Press contacts harder where they have sunk in (augmented Lagrange), from now on; collective."""
         trial = TrialPositions(self.line.gather(self.state["x"].trial), self.seats)
-        for contact in self.contacts:
-            if isinstance(contact, Augmented):
-                contact.augment(trial)
+        for contact in self._augmented:
+            contact.augment(trial)
         self.expire()
 
     # ---- residual and tangent --------------------------------------------------------------------------------------
@@ -195,10 +199,10 @@ class System:
         self.internal.copy(F)
         target, force = load.at(load_factor, self._reactions.equilibrium)
         values, x = F.getArray(), self.last.increments
-        if isinstance(self.body, HasRotations) and self._is_rotation[load.loaded].any():
+        if self._rotating is not None and self._is_rotation[load.loaded].any():
             outer = np.zeros(len(values))
             outer[load.loaded] = force
-            self.body.to_charts(outer)
+            self._rotating.to_charts(outer)
             values -= outer
         else:
             values[load.loaded] -= force
@@ -209,16 +213,17 @@ class System:
 
         The last evaluation is that of the increments before it.
         """
-        assert isinstance(self.body, Foresees)
-        function, owned = self.body.correction, self.layout.owned
+        body = self._foreseeing
+        assert body is not None
+        function, owned = body.correction, self.layout.owned
         function.x.array[:owned] = -correction.getArray(readonly=True)[:owned]
         function.x.scatter_forward()
-        self.body.predict()
+        body.predict()
 
     def residual_without_turning(self, load: Load, load_factor: float, length: float, F: PETSc.Vec) -> None:
         """As `residual` at the last evaluation, `length` of the predicted correction away, for a body that Foresees."""
-        assert isinstance(self.body, Foresees)
-        internal, body = self.internal.copy(), self.body
+        internal, body = self.internal.copy(), self._foreseeing
+        assert body is not None
         self._assemble_internal(lambda vector: body.forces_without_turning(vector, length))
         self._out_of_balance(load, load_factor, F)
         internal.copy(self.internal)
@@ -241,10 +246,11 @@ class System:
         if length is None:
             self.last_tangent(load, matrix, at_step_start)
             return
-        assert isinstance(self.body, Foresees)
-        self.body.foresee(length)
+        body = self._foreseeing
+        assert body is not None
+        body.foresee(length)
         self.last_tangent(load, matrix, at_step_start)
-        self.body.stop_foreseeing()
+        body.stop_foreseeing()
 
     def last_tangent(self, load: Load, matrix: TangentMatrix, at_step_start: bool = False) -> None:
         """As `tangent`, with the moduli of the last evaluation, at the state as it is now; collective."""
