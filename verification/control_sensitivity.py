@@ -1,6 +1,6 @@
 """How much each number of `solver.control` matters: halved and doubled, and counted over shipped springs.
 
-    scripts/coilset python verification/control_sensitivity.py [--springs NAME …] [--steps N] [--fields NAME …]
+    scripts/coilset python verification/control_sensitivity.py [--springs NAME …] [--steps N] [--fields NAME …] …
 
 Each spring goes to block and back to zero force, once a variant. A number with an upper bound of 1 is doubled as far as
 halfway to 1; of a growth, which is at least 1, the excess over 1 is halved and doubled; the travel of the probe and the
@@ -11,7 +11,7 @@ updates, those of line searches included), failed solves and cuts. Each row is w
 import argparse
 import csv
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TextIO
@@ -122,13 +122,13 @@ def variants(names: Iterable[str], steps: str | int) -> Iterator[tuple[str, list
                 ]  # fmt: skip
 
 
-def table(springs: Iterable[str], names: Iterable[str], steps: str | int, out: TextIO) -> None:
-    """Write a row for each spring and variant."""
+def table(springs: Iterable[str], names: Iterable[str], steps: str | int, given: Sequence[str], out: TextIO) -> None:
+    """Write a row for each spring and variant; `given` are settings of all of them."""
     rows = csv.writer(out)
     rows.writerow(COLUMNS)
     for spring in springs:
         for variant, settings in variants(names, steps):
-            found = count(spring, settings)
+            found = count(spring, [*given, *settings])
             rows.writerow([spring, variant, *(getattr(found, column) for column in COLUMNS[2:])])
             out.flush()
 
@@ -139,13 +139,14 @@ def main() -> None:
     parser.add_argument("--springs", nargs="+", default=["ck15_presetting", "barrel", "funnel", "measured"])
     parser.add_argument("--fields", nargs="+", default=[], help="only these (default: all)")
     parser.add_argument("--steps", default="12", help="equal steps of each phase, or auto")
+    parser.add_argument("--set", nargs="+", default=[], dest="settings", help="settings of all runs")
     parser.add_argument("--out", type=Path, help="CSV file (default: the screen)")
     given = parser.parse_args()
     if given.out is None:
-        table(given.springs, given.fields, given.steps, sys.stdout)
+        table(given.springs, given.fields, given.steps, given.settings, sys.stdout)
     else:
         with given.out.open("w", encoding="utf-8") as out:
-            table(given.springs, given.fields, given.steps, out)
+            table(given.springs, given.fields, given.steps, given.settings, out)
 
 
 if __name__ == "__main__":
