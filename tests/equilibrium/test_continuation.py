@@ -135,5 +135,5 @@ def test_an_initial_rate_without_equilibrium_is_no_end(make):
     assert result.complete
     assert np.isnan(result.rate)
     assert len(result.warnings) == 1
-    assert "initial rate" in result.warnings[0]
+    assert result.warnings[0].name == "initial rate"
     assert summarise(analysis.setup, result)["rate_N_per_mm"] is None
