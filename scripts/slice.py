@@ -13,6 +13,7 @@ from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.section_shapes import parse
 from coilset.model.case import read_case
 from coilset.model.results.folder import prepare, write_summary
+from coilset.model.results.provenance import origin
 from coilset.model.slice.analysis import ACROSS, SliceAnalysis, SliceStep
 from coilset.model.slice.summary import summarise, write_history
 from coilset.model.standards.case_warnings import case_warnings
@@ -83,7 +84,7 @@ def _write(out: Path, analysis: SliceAnalysis, summary: dict[str, Any], pictures
     output.write_fields(out, analysis)
     if pictures:
         output.figure(out / "section.png", analysis)
-    write_summary(out, summary)
+    write_summary(out, {**summary, "origin": origin(analysis.case)})
 
 
 def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:

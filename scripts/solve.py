@@ -18,6 +18,7 @@ from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.folder import clear, prepare, write_history, write_seats, write_summary
+from coilset.model.results.provenance import origin
 from coilset.model.results.record import Result, Setup, Step
 from coilset.model.results.summary import summarise
 from coilset.scripts.interactive import Prompt
@@ -85,7 +86,7 @@ def _solve(
     summary = comm.bcast(summarise(analysis.setup, analysis.result) if comm.rank == 0 else None)
 
     def write() -> None:
-        _write(out, analysis.setup, analysis.result, summary)
+        _write(out, analysis.setup, analysis.result, summary, origin(analysis.case))
         if pictures:
             _draw(out, analysis.setup, analysis.result, summary, console)
 
@@ -134,14 +135,15 @@ def _row(step: Step) -> str:
     return f"{step.number:7d}{step.seat_height_mm:17.4f}{force:13.3f}{step.iterations:13d}{step.contacts:11d}{cuts}"
 
 
-def _write(out: Path, setup: Setup, result: Result, summary: dict[str, Any]) -> None:
+def _write(out: Path, setup: Setup, result: Result, summary: dict[str, Any], made_with: dict[str, Any]) -> None:
     from coilset.model.results import dataset
 
     write_history(out, result.steps)
     write_seats(out, result.seats)
-    dataset.write_points(out, dataset.point_state(setup, result))
+    points = dataset.point_state(setup, result)
+    dataset.write_points(out, dataset.with_origin(points, setup, result, made_with))
     dataset.write_fields(out, setup, result.snapshots)
-    write_summary(out, summary)
+    write_summary(out, {**summary, "origin": made_with})
 
 
 def _draw(out: Path, setup: Setup, result: Result, summary: dict[str, Any], console: Console) -> None:
