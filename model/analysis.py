@@ -17,6 +17,7 @@ from coilset.model.case.phases import Phase
 from coilset.model.case.targets import check_targets
 from coilset.model.contact.base import BearsOnWire
 from coilset.model.contact.build import build_contacts, seats_at
+from coilset.model.effort import Effort, machine_memory
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
 from coilset.model.equilibrium.continuation import Continuation
@@ -73,9 +74,11 @@ class Analysis:
     def __init__(self, case: Case, comm: MPI.Comm = MPI.COMM_WORLD) -> None:
         self.case, self.comm = case, comm
         self.spring = spring = case.spring.build()
-        check_targets(case, spring)
-        turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
         self.law = case_law(case, spring)
+        check_targets(case, spring, self.law.G)
+        turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
+        effort = Effort.of(len(turns) - 1, self.case.mesh.section.points, self._planned_steps())
+        effort.check_memory(machine_memory())
         line = line_mesh(spring.centre_line(turns), comm)
         radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
         section, placement = case.mesh.section, straight(len(turns) - 1)
@@ -102,10 +105,11 @@ class Analysis:
             ContactRecord(one.name, one.end, one.points.turns if isinstance(one, BearsOnWire) else np.empty(0))
             for one in contacts
         )
+        warnings = *case_warnings(case, spring, self.law), *effort.warnings()
         self.setup = Setup(spring, self.law.name, case.ends, tuple(p.label for p in case.loading), turns, radius,
                            self.rod.rule, records, section.kind, placement,
                            buckling_travel(spring, self.law.G / self.law.E), self._limits(float(radius.min())),
-                           tuple(case.rates_at), case_warnings(case, spring, self.law))  # fmt: skip
+                           tuple(case.rates_at), warnings)  # fmt: skip
         self.result = Result()
 
     def _newton(self, wire_diameter: float) -> Newton:
@@ -119,6 +123,10 @@ class Analysis:
         # an arc by which every node moves by about the wire's radius
         arc = self.rod.largest_radius * np.sqrt(len(self.layout.station_dofs))
         return rod_method(name, self.comm.size, self.case.solver.options, arc)
+
+    def _planned_steps(self) -> int:
+        automatic = self.case.solver.control.steps.automatic
+        return sum(automatic if phase.steps == "auto" else phase.steps for phase in self.case.loading)
 
     def _limits(self, radius: float) -> Limits:
         return Limits(self.law.validity.plastic_work, case_strength(self.case, self.spring), PENETRATION * 2.0 * radius)
