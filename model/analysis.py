@@ -100,6 +100,7 @@ class Analysis:
         limit = case.contact.penetration_limit * 2.0 * float(radius.min())
         self.stability = Stability(self.newton)
         self.continuation = Continuation(self.newton, case.solver.control.steps, limit, stability=self.stability)
+        self.continuation.refusal = self._passed
         self.program = LoadProgram(self.control, self.continuation)
         records = tuple(
             ContactRecord(one.name, one.end, one.points.turns if isinstance(one, BearsOnWire) else np.empty(0))
@@ -127,6 +128,13 @@ class Analysis:
     def _planned_steps(self) -> int:
         automatic = self.case.solver.control.steps.automatic
         return sum(automatic if phase.steps == "auto" else phase.steps for phase in self.case.loading)
+
+    def _passed(self) -> str | None:
+        """Why the state on trial is none of a spring: its heads have passed each other; collective."""
+        height, wire = self.control.trial_height, 2.0 * self.rod.largest_radius
+        if height >= wire:
+            return None
+        return f"the heads would be {height:.4g} mm apart, less than the wire's {wire:.4g} mm"
 
     def _limits(self, radius: float) -> Limits:
         return Limits(self.law.validity.plastic_work, case_strength(self.case, self.spring), PENETRATION * 2.0 * radius)
