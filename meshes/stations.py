@@ -12,7 +12,8 @@ from coilset.meshes.shapes import Table, form_of_entry
 if TYPE_CHECKING:
     from coilset.meshes.geometry import Spring
 
-LEAST, MOST = 3, 1_000_000
+LEAST, MOST = 3, 1_000_000  # elements in a turn
+ALL = 10_000_000  # elements of a spring
 
 ElementsPerTurn = Annotated[
     Annotated[float, Field(ge=LEAST, le=MOST, strict=True), Tag("(number)")] | Annotated[Table, Tag("(table)")],
@@ -60,6 +61,8 @@ def stations(spring: "Spring", elements_per_turn: ElementsPerTurn = 16, sagitta:
             f"{densities.min():.4g} to {densities.max():.4g} elements in a turn; must be {LEAST} to {MOST}", "mesh"
         )
     count = np.concatenate([[0.0], np.cumsum(functions.integral(density, breaks, points=2))])
+    if count[-1] > ALL:
+        raise InputError(f"{count[-1]:.4g} elements; must be {ALL:,} at most", "mesh")
     elements = int(np.ceil(count[-1] * (1 - 1e-9)))
     if np.ptp(densities) == 0:
         return np.linspace(0.0, spring.turns, elements + 1)

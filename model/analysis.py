@@ -17,6 +17,7 @@ from coilset.model.case.phases import Phase
 from coilset.model.case.targets import check_targets
 from coilset.model.contact.base import BearsOnWire
 from coilset.model.contact.build import build_contacts, seats_at
+from coilset.model.effort import Effort, machine_memory
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
 from coilset.model.equilibrium.continuation import Continuation
@@ -29,15 +30,21 @@ from coilset.model.equilibrium.system import System
 from coilset.model.results.balance import imbalance
 from coilset.model.results.buckling import axis_offset, buckling
 from coilset.model.results.checkpoint import Saved
-from coilset.model.results.record import ContactRecord, Result, Setup, Snapshot, Step
-from coilset.model.results.seat_reactions import seat_reactions
+from coilset.model.results.record import ContactRecord, Limits, Result, SeatReactions, Setup, Snapshot, Step
+from coilset.model.results.seat_reactions import faint_force, mean_torque, seat_reactions
+from coilset.model.results.shape import clearance, least_rise
+from coilset.model.results.warnings import step_warnings
 from coilset.model.rod.kinematics import GAUSS, chord_triads
 from coilset.model.rod.rod import Rod
+from coilset.model.section import surface
 from coilset.model.standards.buckling import buckling_travel
-from coilset.model.standards.wires.law import case_law
-from coilset.model.state import State
+from coilset.model.standards.case_warnings import case_warnings
+from coilset.model.standards.wires.law import case_law, case_strength
+from coilset.model.state import State, Where
+from coilset.model.warning import Warning
 
 log = logging.getLogger("coilset.steps")
+PENETRATION = 0.02  # usual greatest penetration in wire diameters; a case may allow more
 
 
 class Save(Protocol):
@@ -67,9 +74,11 @@ class Analysis:
     def __init__(self, case: Case, comm: MPI.Comm = MPI.COMM_WORLD) -> None:
         self.case, self.comm = case, comm
         self.spring = spring = case.spring.build()
-        check_targets(case, spring)
-        turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
         self.law = case_law(case, spring)
+        check_targets(case, spring, self.law.G)
+        turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
+        effort = Effort.of(len(turns) - 1, self.case.mesh.section.points, self._planned_steps())
+        effort.check_memory(machine_memory())
         line = line_mesh(spring.centre_line(turns), comm)
         radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
         section, placement = case.mesh.section, straight(len(turns) - 1)
@@ -82,6 +91,7 @@ class Analysis:
         contacts = build_contacts(case.contact, seats, spring, turns, line.stations, self.law.E)
         self.layout = LineLayout(self.rod)
         self.system = System(self.rod, self.layout, contacts, seats_at(spring.free_length))
+        self.torque = self.system.state.add("torque", mean_torque(self.rod), Where.ELEMENT)
         self.newton = self._newton(2.0 * self.rod.largest_radius)
         self.control = AxialControl(
             self.system, spring.free_length, case.ends == "clamped", case.seats.hold == "tips",
@@ -90,14 +100,17 @@ class Analysis:
         limit = case.contact.penetration_limit * 2.0 * float(radius.min())
         self.stability = Stability(self.newton)
         self.continuation = Continuation(self.newton, case.solver.control.steps, limit, stability=self.stability)
+        self.continuation.refusal = self._passed
         self.program = LoadProgram(self.control, self.continuation)
         records = tuple(
             ContactRecord(one.name, one.end, one.points.turns if isinstance(one, BearsOnWire) else np.empty(0))
             for one in contacts
         )
+        warnings = *case_warnings(case, spring, self.law), *effort.warnings()
         self.setup = Setup(spring, self.law.name, case.ends, tuple(p.label for p in case.loading), turns, radius,
                            self.rod.rule, records, section.kind, placement,
-                           buckling_travel(spring, self.law.G / self.law.E))  # fmt: skip
+                           buckling_travel(spring, self.law.G / self.law.E), self._limits(float(radius.min())),
+                           tuple(case.rates_at), warnings)  # fmt: skip
         self.result = Result()
 
     def _newton(self, wire_diameter: float) -> Newton:
@@ -111,6 +124,20 @@ class Analysis:
         # an arc by which every node moves by about the wire's radius
         arc = self.rod.largest_radius * np.sqrt(len(self.layout.station_dofs))
         return rod_method(name, self.comm.size, self.case.solver.options, arc)
+
+    def _planned_steps(self) -> int:
+        automatic = self.case.solver.control.steps.automatic
+        return sum(automatic if phase.steps == "auto" else phase.steps for phase in self.case.loading)
+
+    def _passed(self) -> str | None:
+        """Why the state on trial is none of a spring: its heads have passed each other; collective."""
+        height, wire = self.control.trial_height, 2.0 * self.rod.largest_radius
+        if height >= wire:
+            return None
+        return f"the heads would be {height:.4g} mm apart, less than the wire's {wire:.4g} mm"
+
+    def _limits(self, radius: float) -> Limits:
+        return Limits(self.law.validity.plastic_work, case_strength(self.case, self.spring), PENETRATION * 2.0 * radius)
 
     def use_method(self, name: str) -> None:
         """Go on with another iteration method.
@@ -139,8 +166,9 @@ class Analysis:
             if not self.result.snapshots:
                 self.result = replace(self.result, rate=self.initial_rate(), snapshots=(self.snapshot("start"),))
                 if math.isnan(self.result.rate):
-                    self.result = replace(self.result, warnings=("the initial rate is not known: no equilibrium was "
-                                                                 "found at the first touch",))  # fmt: skip
+                    problem = "the initial rate is not known: no equilibrium was found at the first touch"
+                    unknown = Warning("initial rate", "start", problem)
+                    self.result = replace(self.result, warnings=(unknown,))
             for number in range(self.program.number, len(self.case.loading)):
                 phase = self.case.loading[number]
                 for taken in self.program.run(self.stage(phase)):
@@ -204,16 +232,37 @@ class Analysis:
     def _record(self, phase: int, taken: StepTaken) -> Step:
         height, force, last = self.control.height, self.control.force, self.system.last
         contacts = sum(part.closed for part in last.contributions)
+        greatest = max(self.result.greatest_force, abs(force))
+        x, turns = self.layout.gather(self.rod.x), self.setup.turns
+        lifts = self.case.ends == "seats" and force < -faint_force(self.rod, greatest)
         step = Step(taken.number, phase, taken.progress, height, self.spring.free_length - height, force,
                     taken.outcome.iterations, taken.outcome.evaluations, taken.outcome.failed_solves, taken.cuts,
                     contacts, self.system.max_penetration,
                     taken.outcome.negative_pivots, int(taken.outcome.left_branch),
-                    axis_offset(self.layout.gather(self.rod.x), self.rod.line.stations, self.setup.turns),
-                    self._least_eigenvalue())  # fmt: skip
-        greatest = max(self.result.greatest_force, abs(force))
-        seats = seat_reactions(self.system, self.control, self.setup.turns, step.number, greatest)
+                    axis_offset(x, self.rod.line.stations, turns), self._least_eigenvalue(),
+                    self._greatest_plastic_work(), clearance(self.system, x) if lifts else 0.0,
+                    least_rise(x, turns, self.spring))  # fmt: skip
+        seats = self._seat_reactions(step.number, greatest)
+        known = {warning.name for warning in step_warnings(self.setup, self.result)}
         self.result = replace(self.result, steps=(*self.result.steps, step), seats=(*self.result.seats, seats))
+        for warning in step_warnings(self.setup, self.result):
+            if warning.name not in known:
+                log.warning("warning: %s", warning.message)
         return step
+
+    def _seat_reactions(self, step: int, greatest_force: float) -> SeatReactions:
+        """At the last equilibrium, whose torque is kept for the next step's active turns."""
+        force = self.result.steps[-1].force_N if self.result.steps else 0.0
+        before = force, self.torque.equilibrium
+        reactions = seat_reactions(self.system, self.control, self.setup.turns, step, greatest_force, before)
+        for kept in (self.torque.trial, self.torque.equilibrium):
+            np.copyto(kept, mean_torque(self.rod))
+        return reactions
+
+    def _greatest_plastic_work(self) -> float:
+        """Greatest b* on the wire's surface at the last equilibrium, N/mm²; collective."""
+        work = surface.component(self.rod.surface_state, self.rod.sections.components, "b")
+        return float(self.comm.allreduce(work.max(initial=0.0), op=MPI.MAX))
 
     def _least_eigenvalue(self) -> float | None:
         """Of the tangent, N/mm, while a spring slender enough to buckle has not done so; else None; collective."""

@@ -39,7 +39,7 @@ app.add_typer(material, name="material")
 
 def _show_version(wanted: bool) -> None:
     if wanted:
-        from coilset.scripts.versions import versions
+        from coilset.model.version import versions
 
         print(versions())
         raise typer.Exit

@@ -56,7 +56,7 @@ def mesh(
         raise InputError(error.problem, error.place, error.file or case_file) from None
     console.print(_table(spring_data(spring, Elastic(law.G, law.E, getattr(law, "density", STEEL.density))), turns))
     for warning in spring_warnings(spring):
-        console.print(f"[yellow]warning:[/] {warning.text}")
+        console.print(f"[yellow]warning:[/] {warning.message}")
     for path in write:
         from coilset.meshes.export import write_mesh
 

@@ -13,16 +13,18 @@ from coilset.meshes.errors import InputError
 from coilset.meshes.spring import Spring
 from coilset.model.case import Case, read_case
 from coilset.model.standards import found, goodman
+from coilset.model.standards.case_warnings import sheet_warnings
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.en15800 import Grade
 from coilset.model.standards.found import Found
 from coilset.model.standards.rows import Row, sections
 from coilset.model.standards.sheet import Sheet, working_lengths
 from coilset.model.standards.steel import STEEL, Elastic
-from coilset.model.standards.warnings import Warning, spring_warnings
+from coilset.model.standards.warnings import spring_warnings
 from coilset.model.standards.wires import names, wire
 from coilset.model.standards.wires.law import case_law
-from coilset.model.standards.working import endurance_warnings, gap_warnings, presetting_warning, stress_warnings
+from coilset.model.standards.working import presetting_warning
+from coilset.model.warning import Warning
 
 FIGURE = "goodman.png"
 GRADES: dict[int, Grade] = {grade: grade for grade in get_args(Grade)}
@@ -69,7 +71,7 @@ def sheet(
     if run and made.wire and not str(run.summary.get("material")).startswith(made.wire.name):
         console.print(f"the run was made with the material {run.summary.get('material')}, not with {made.wire.name}")
     for warning in _warnings(spring, made):
-        console.print(f"[yellow]warning:[/] {warning.text}")
+        console.print(f"[yellow]warning:[/] {warning.message}")
     if diagram is not None:
         folder.mkdir(parents=True, exist_ok=True)
         goodman.draw(folder / FIGURE, *diagram, run.residual if run else None)
@@ -122,13 +124,8 @@ def _diagram(made: Sheet) -> tuple[str, goodman.Line, goodman.Cycle] | None:
 
 
 def _warnings(spring: Spring, made: Sheet) -> list[Warning]:
-    cylinder, warnings = made.spring, spring_warnings(spring)
-    warnings += gap_warnings(cylinder, made.lengths, made.dynamic)
-    if made.wire:
-        lengths = [*made.lengths, cylinder.solid]
-        warnings += stress_warnings(cylinder, made.elastic.shear_modulus, lengths, made.wire)
-    if made.cycle and made.endured:
-        warnings += endurance_warnings(made.cycle, made.endured)
+    cylinder = made.spring
+    warnings = [*spring_warnings(spring), *sheet_warnings(made, [cylinder.solid])]
     set_mm = made.at_run("set_mm")
     if set_mm is not None:
         warnings += filter(None, [presetting_warning(set_mm, cylinder.length - cylinder.solid)])

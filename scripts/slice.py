@@ -13,9 +13,10 @@ from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.section_shapes import parse
 from coilset.model.case import read_case
 from coilset.model.results.folder import prepare, write_summary
+from coilset.model.results.provenance import origin
 from coilset.model.slice.analysis import ACROSS, SliceAnalysis, SliceStep
 from coilset.model.slice.summary import summarise, write_history
-from coilset.model.standards.warnings import spring_warnings
+from coilset.model.standards.case_warnings import case_warnings
 
 
 def slice_case(
@@ -53,8 +54,8 @@ def slice_case(
     except InputError as error:
         raise InputError(error.problem, error.place, error.file or case_file) from None
     prepare(folder, force)
-    for warning in spring_warnings(analysis.spring):
-        console.print(f"[yellow]warning:[/] {warning.text}")
+    for warning in case_warnings(case, analysis.spring, analysis.law):
+        console.print(f"[yellow]warning:[/] {warning.message}")
     targets = ", ".join(phase.label for phase in case.loading)
     console.print(f"{Path(case_file).name}: slice with {analysis.body.u.size + 2} unknowns, to {targets}")
     console.print("   step   seat height/mm      force/N   iterations")
@@ -83,7 +84,7 @@ def _write(out: Path, analysis: SliceAnalysis, summary: dict[str, Any], pictures
     output.write_fields(out, analysis)
     if pictures:
         output.figure(out / "section.png", analysis)
-    write_summary(out, summary)
+    write_summary(out, {**summary, "origin": origin(analysis.case)})
 
 
 def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
@@ -102,3 +103,5 @@ def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
     table.add_row("greatest shear at the surface, released", number(released.get("surface_shear_max_MPa"), "MPa", 2))
     table.add_row("results in", f"{out}{os.sep}")
     console.print(table)
+    for warning in summary["warnings"]:
+        console.print(f"[yellow]warning:[/] {warning['message']}")

@@ -18,13 +18,14 @@ from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.folder import clear, prepare, write_history, write_seats, write_summary
+from coilset.model.results.provenance import origin
 from coilset.model.results.record import Result, Setup, Step
 from coilset.model.results.summary import summarise
-from coilset.model.standards.warnings import spring_warnings
 from coilset.scripts.interactive import Prompt
 from coilset.scripts.interrupt import Interrupt
 from coilset.scripts.log import run_log
 
+log = logging.getLogger("coilset.steps")
 STARTED = float(os.environ.get("COILSET_STARTED", time.time()))
 
 
@@ -85,7 +86,7 @@ def _solve(
     summary = comm.bcast(summarise(analysis.setup, analysis.result) if comm.rank == 0 else None)
 
     def write() -> None:
-        _write(out, analysis.setup, analysis.result, summary)
+        _write(out, analysis.setup, analysis.result, summary, origin(analysis.case))
         if pictures:
             _draw(out, analysis.setup, analysis.result, summary, console)
 
@@ -98,9 +99,8 @@ def _solve(
 
 
 def _announce(console: Console, analysis: Analysis, case_file: str | Path, resume: bool) -> None:
-    about_spring = [warning.text for warning in spring_warnings(analysis.spring)]
-    for warning in [*analysis.case.notices(), *about_spring]:
-        console.print(f"[yellow]warning:[/] {warning}")
+    for warning in analysis.setup.warnings:
+        console.print(f"[yellow]warning:[/] {warning.message}")
     targets = ", ".join(phase.label for phase in analysis.case.loading)
     elements, ranks = len(analysis.setup.turns) - 1, analysis.comm.size
     console.print(f"{Path(case_file).name}: {elements} elements, to {targets}, {ranks} rank(s)")
@@ -135,14 +135,15 @@ def _row(step: Step) -> str:
     return f"{step.number:7d}{step.seat_height_mm:17.4f}{force:13.3f}{step.iterations:13d}{step.contacts:11d}{cuts}"
 
 
-def _write(out: Path, setup: Setup, result: Result, summary: dict[str, Any]) -> None:
+def _write(out: Path, setup: Setup, result: Result, summary: dict[str, Any], made_with: dict[str, Any]) -> None:
     from coilset.model.results import dataset
 
     write_history(out, result.steps)
     write_seats(out, result.seats)
-    dataset.write_points(out, dataset.point_state(setup, result))
+    points = dataset.point_state(setup, result)
+    dataset.write_points(out, dataset.with_origin(points, setup, result, made_with))
     dataset.write_fields(out, setup, result.snapshots)
-    write_summary(out, summary)
+    write_summary(out, {**summary, "origin": made_with})
 
 
 def _draw(out: Path, setup: Setup, result: Result, summary: dict[str, Any], console: Console) -> None:
@@ -170,6 +171,9 @@ def _conclude(console: Console, summary: dict[str, Any], out: Path, analysed: fl
     table.add_row("free length after", number(summary["free_length_after_mm"], "mm"))
     table.add_row("[bold]set[/]", f"[bold]{number(summary['set_mm'], 'mm')}[/]")
     table.add_row("initial rate", number(summary["rate_N_per_mm"], "N/mm"))
+    table.add_row("rate between 30 and 70 % of the travel", number(summary["rate_30_70_N_per_mm"], "N/mm"))
+    for rate in summary["rates"]:
+        table.add_row(f"rate at {rate['travel_mm']:g} mm", number(rate["rate_N_per_mm"], "N/mm"))
     table.add_row("greatest force", number(summary["force_max_N"], "N", 2))
     table.add_row("block height", number(summary["block_height_mm"], "mm"))
     table.add_row("greatest residual shear stress", number(summary["residual_shear_max_MPa"], "MPa", 2))
@@ -177,14 +181,6 @@ def _conclude(console: Console, summary: dict[str, Any], out: Path, analysed: fl
     table.add_row("results in", f"{out}{os.sep}")
     console.print(table)
     for warning in summary["warnings"]:
-        console.print(f"[yellow]warning:[/] {warning}")
-    if summary["buckled"]:
-        standard = summary["buckling_travel_EN_13906_1_mm"]
-        beside = "never" if standard is None else f"at {standard:.4g} mm"
-        where = f"{summary['buckling_travel_mm']:.4g} mm and {summary['buckling_force_N']:.4g} N"
-        console.print(f"[yellow]warning:[/] the spring buckled at a travel of {where} (EN 13906-1: {beside}); "
-                      "what follows is of the buckled shape")  # fmt: skip
-    if summary["unstable_steps"]:
-        console.print(f"[yellow]warning:[/] {summary['unstable_steps']} steps are unstable equilibria, no stable one "
-                      "was found beside them: several branches exist, smaller steps may find another")  # fmt: skip
+        console.print(f"[yellow]warning:[/] {warning['message']}")
+        log.warning("warning: %s: %s", warning["name"], warning["message"])
     console.print(f"analysis {analysed:.2f} s, all {time.time() - STARTED:.2f} s")

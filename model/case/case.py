@@ -43,6 +43,11 @@ class SectionSpec(Strict):
                              f"needs {needed}; give more points or a lower degree")  # fmt: skip
         return self
 
+    @property
+    def points(self) -> int:
+        """Number of points in a rod's two sections."""
+        return 2 * (9 if self.rule == "abramowitz9" else self.radial * self.angular)
+
     def build(self) -> rules.DiskRule:
         """The quadrature rule."""
         return rules.abramowitz9() if self.rule == "abramowitz9" else rules.polar(self.radial, self.angular)
@@ -162,6 +167,10 @@ class Case(Strict):
     contact: ContactSpec = ContactSpec()
     solver: SolverSpec = SolverSpec()
     loading: Annotated[list[Phase], Field(strict=False, min_length=1, description="targets, one after the other")]
+    rates_at: Annotated[
+        list[Annotated[float, Field(gt=0)]],
+        Field(default_factory=list, description="travels, mm, at which the rate of the first compression is given"),
+    ]
 
     @field_validator("material")
     @classmethod

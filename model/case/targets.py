@@ -1,24 +1,55 @@
-"""Targets judged before a run: seats only press, and no seat comes nearer than the wires between them allow."""
+"""Targets judged before a run: seats only press, and no coil comes nearer to the next than their wires allow."""
 
+import numpy as np
+
+from coilset.meshes.ends import touching_pitch
 from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
 from coilset.model.case.case import Case
 from coilset.model.case.phases import Target
 
 SLACK = 1e-9  # of the free length: rounding of a height that was computed
+BORNE = 2.0  # times the elastic force at which all coils lie on each other: beyond it a target is no spring's any more
 
 
-def check_targets(case: Case, spring: Spring) -> None:
-    """Refuse targets on seats that would have to pull.
+def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
+    """Refuse targets that no spring can reach.
+
+    Args:
+        case: Case.
+        spring: its spring.
+        shear_modulus: G of its material, MPa.
 
     Raises:
-        InputError: a negative force or travel, or a height above the free length, with the numbers.
+        InputError: with the numbers: seats that would have to pull, a height below block, or a force far above the one
+            at which all coils lie on each other.
     """
-    if case.ends != "seats":
-        return
+    flat = case.ends == "clamped" or {case.seats.bottom.shape, case.seats.top.shape} == {"flat"}
+    lowest = spring.block_height if flat else 0.0  # with other seats the block is not known
+    greatest = BORNE * closing_force(spring, shear_modulus)
     for number, phase in enumerate(case.loading):
         if isinstance(phase.to, Target):
-            _only_press(phase.to, spring.free_length, f"loading.{number}.to")
+            place = f"loading.{number}.to"
+            if case.ends == "seats":
+                _only_press(phase.to, spring.free_length, place)
+            _not_below(phase.to, spring.free_length, lowest, place)
+            if phase.to.force is not None and phase.to.force > greatest:
+                raise InputError(f"is {phase.to.force:g} N, but all coils of this spring lie on each other at about "
+                                 f"{greatest / BORNE:.4g} N, or less if it yields; give block, or a smaller force",
+                                 f"{place}.force")  # fmt: skip
+
+
+def closing_force(spring: Spring, shear_modulus: float) -> float:
+    """Force at which the last coil of an elastic spring lies on the next, from the torsion of its wire, N.
+
+    A coil that rises by p over the rise p0 with which it lies on the next closes at F = G d⁴ (p − p0)/(8 D³). A spring
+    of less than a turn has no coils to close: infinite.
+    """
+    if spring.turns <= 1.0:
+        return np.inf
+    t = np.linspace(0.0, spring.turns, 16 * int(np.ceil(min(spring.turns, 1000.0))) + 1)
+    d, play = spring.wire_diameter(t), spring.pitch(t) - touching_pitch(spring.wire_diameter(t), spring.slope(t))
+    return float((shear_modulus * d**4 * np.maximum(play, 0.0) / (64.0 * spring.mean_radius(t) ** 3)).max())
 
 
 def _only_press(target: Target, free_length: float, place: str) -> None:
@@ -30,3 +61,14 @@ def _only_press(target: Target, free_length: float, place: str) -> None:
     if target.height is not None and target.height > (1.0 + SLACK) * free_length:
         raise InputError(f"is {target.height:g} mm, above the free length of {free_length:.6g} mm, but seats cannot "
                          "pull; give a height up to it, or ends: clamped", f"{place}.height")  # fmt: skip
+
+
+def _not_below(target: Target, free_length: float, lowest: float, place: str) -> None:
+    travel, slack = free_length - lowest, SLACK * free_length
+    if target.travel is not None and target.travel > travel + slack:
+        end = "where it is at block; give block, or less" if lowest else "which is its free length; give less"
+        raise InputError(f"is {target.travel:g} mm, but the spring can be pressed by {travel:.6g} mm only, {end}",
+                         f"{place}.travel")  # fmt: skip
+    if target.height is not None and target.height < lowest - slack:
+        raise InputError(f"is {target.height:g} mm, below the block height of {lowest:.6g} mm; give block, or more",
+                         f"{place}.height")  # fmt: skip

@@ -1,6 +1,7 @@
 """How an axial force or height is put on a spring: by its top seat, or by its clamped top end."""
 
 from collections.abc import Sequence
+from typing import Literal
 
 import numpy as np
 
@@ -48,7 +49,7 @@ class AxialControl:
                 held += [layout.seat_dofs[SEAT_DOFS * number + dof] for dof in dofs]
         self.held = {int(dof): 0.0 for dof in held}
         self.tips = {"bottom": (0, components), "top": (len(layout.station_dofs) - 1, components)}
-        self._start = self._level()
+        self._start = self._level("equilibrium")
 
     def to_height(self, height: float) -> Load:
         """The load that brings the spring from the last equilibrium to a height, mm."""
@@ -61,7 +62,12 @@ class AxialControl:
     @property
     def height(self) -> float:
         """At the last equilibrium, mm."""
-        return self.free_length + (self._level() - self._start)
+        return self.free_length + (self._level("equilibrium") - self._start)
+
+    @property
+    def trial_height(self) -> float:
+        """On trial, mm; collective."""
+        return self.free_length + (self._level("trial") - self._start)
 
     @property
     def force(self) -> float:
@@ -73,12 +79,12 @@ class AxialControl:
         """Axial force on trial, compression positive, N; collective."""
         return self._force(self.system.state["reactions"].trial)
 
-    def _level(self) -> float:
-        """Level of the driven head at the last equilibrium, mm; collective."""
+    def _level(self, when: Literal["equilibrium", "trial"]) -> float:
+        """Level of the driven head, mm; collective."""
         state = self.system.state
         if self.clamped:
-            return float(self.layout.gather(state["x"].equilibrium)[-1, 2])
-        return float(state["seats"].equilibrium[SEAT_DOFS + LEVEL])
+            return float(self.layout.gather(getattr(state["x"], when))[-1, 2])
+        return float(getattr(state["seats"], when)[SEAT_DOFS + LEVEL])
 
     def _force(self, reactions: np.ndarray) -> float:
         return -float(self.layout.values(self.layout.vector(reactions), np.array(self.axial)))

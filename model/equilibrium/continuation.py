@@ -70,6 +70,7 @@ class Continuation:
         stability: Stability; None: states are not judged.
 
     Attributes:
+        refusal: why the state on trial can be none of a body, in words, although forces balance; None if it can.
         position: Position.
         number: steps so far.
         negative_pivots: of the tangent at the last equilibrium; 0 if it is stable.
@@ -86,6 +87,7 @@ class Continuation:
         self.newton, self.system, self.control = newton, newton.system, control or StepControl()
         self.penetration_limit, self.starts = penetration_limit, starts or self.from_last_step
         self.stability, self.negative_pivots = stability, 0
+        self.refusal: Callable[[], str | None] = lambda: None
         self.position, self.number, self._attempts = Position(), 0, 0
         self._spent: list[Outcome] = []  # all solves of the step in progress
         self._unstable = 0.0  # size of the step in progress at which it ended unstable
@@ -144,6 +146,8 @@ class Continuation:
         """An equilibrium in which bodies are pressed deep into each other counts as none."""
         if outcome.converged and (depth := self.system.max_penetration) > self.penetration_limit:
             reason = f"coils or seats would lie {depth:.4g} mm in each other, more than {self.penetration_limit:.4g} mm"
+            return replace(outcome, converged=False, reason=reason)
+        if outcome.converged and (reason := self.refusal()) is not None:
             return replace(outcome, converged=False, reason=reason)
         return outcome
 

@@ -22,6 +22,7 @@ from coilset.model.results.provenance import changed, provenance
 from coilset.model.results.record import Result, Snapshot
 from coilset.model.results.step_journal import StepJournal
 from coilset.model.state import State
+from coilset.model.warning import Warning
 
 # what must be the same to go on
 SPRING_ENTRIES = ("spring", "material", "temperature", "ends", "seats", "mesh", "contact")
@@ -69,7 +70,7 @@ class Checkpoint:
             "provenance": self.provenance,
             "position": asdict(position),
             "rate": result.rate,
-            "warnings": result.warnings,
+            "warnings": [asdict(warning) for warning in result.warnings],
             "steps": len(result.steps),
             "snapshots": len(result.snapshots),
         }
@@ -131,7 +132,8 @@ class Checkpoint:
 
     def _result(self, about: Mapping[str, Any]) -> Result:
         snapshots = tuple(self._snapshot(number) for number in range(about["snapshots"]))
-        return Result(*self.journal.read(about["steps"]), snapshots, about["rate"], warnings=tuple(about["warnings"]))
+        warnings = tuple(Warning(**warning) for warning in about["warnings"])
+        return Result(*self.journal.read(about["steps"]), snapshots, about["rate"], warnings=warnings)
 
     def _snapshot(self, number: int) -> Snapshot:
         found: dict[str, Any] = _arrays(self.folder / f"snapshot-{number:02d}.npz")

@@ -1,7 +1,10 @@
 """Fields of the snapshots: a labelled data set of the section points, and line meshes for ParaView."""
 
-from collections.abc import Sequence
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 import meshio
 import numpy as np
@@ -9,6 +12,7 @@ import xarray as xr
 
 from coilset.model.results.folder import make, reserve, whole
 from coilset.model.results.record import Result, Setup, Snapshot
+from coilset.model.results.warnings import run_warnings
 from coilset.model.section.rules import SURFACE_POINTS
 from coilset.model.section.surface import component, shear
 
@@ -79,6 +83,14 @@ def pressure_along_wire(setup: Setup, result: Result) -> xr.Dataset:
             "wire_turn": ("wire_point", wire_turns[bearing], {"units": "1"}),
         },
     )
+
+
+def with_origin(data: xr.Dataset, setup: Setup, result: Result, origin: Mapping[str, Any]) -> xr.Dataset:
+    """The data set with what it was made with, and the run's warnings, as texts of JSON in its attributes."""
+    warnings = [asdict(warning) for warning in run_warnings(setup, result)]
+    texts = {name: value if isinstance(value, str) else json.dumps(value) for name, value in origin.items()}
+    renamed = {"material_file" if name == "material" else name: text for name, text in texts.items()}
+    return data.assign_attrs(**renamed, warnings=json.dumps(warnings), complete=str(result.complete).lower())
 
 
 def write_points(folder: str | Path, data: xr.Dataset) -> None:

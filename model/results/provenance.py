@@ -1,12 +1,15 @@
-"""What a run was made with: the content of the files that its case names, and the program's version."""
+"""What a run was made with: the whole case, the content of the files that it names, the program and the machine."""
 
 import hashlib
+import platform
+from datetime import UTC, datetime
 from pathlib import Path
+from typing import Any
 
 from coilset.meshes.errors import InputError
 from coilset.model.case import Case
 from coilset.model.standards.wires.law import case_law
-from coilset.model.version import __version__
+from coilset.model.version import __version__, versions
 
 DIGEST_BYTES = 16
 
@@ -31,6 +34,27 @@ def contents(case: Case) -> dict[str, str]:
 def provenance(case: Case) -> dict[str, object]:
     """Version and contents, for a checkpoint; raises as `contents`."""
     return {"version": __version__, "contents": contents(case)}
+
+
+def origin(case: Case) -> dict[str, Any]:
+    """What is needed to run a case again and to know whether it is the same: for results that stand by themselves.
+
+    Args:
+        case: Case.
+
+    Returns:
+        Plain data: the `case` with all its defaults, the constants of its `material`, digests of the `contents` that it
+        names, `versions`, `date` (UTC) and `platform`.
+    """
+    law = case_law(case, case.spring.build())
+    return {
+        "case": case.model_dump(mode="json"),
+        "material": law.data.model_dump(mode="json"),
+        "contents": contents(case),
+        "versions": versions(),
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+        "platform": platform.platform(),
+    }
 
 
 def changed(then: object, now: dict[str, object]) -> str | None:

@@ -11,6 +11,7 @@ from coilset.model.contact.base import ENDS
 from coilset.model.rod.kinematics import GAUSS
 from coilset.model.section import surface
 from coilset.model.section.rules import DiskRule
+from coilset.model.warning import Warning
 
 
 @dataclass(frozen=True)
@@ -25,6 +26,10 @@ class Step:
         left_branch: 1 if an unstable path was left for a stable one on the way to it, else 0.
         axis_offset_mm: greatest distance by which a turn's mean has moved off the spring's axis.
         least_eigenvalue: of the tangent, N/mm; None where it was not asked for.
+        plastic_work_max_N_per_mm2: greatest b* on the wire's surface.
+        lift_off_mm: clearance between the wire and the seat that it has left; 0 while both seats press.
+        least_rise: least rise from a coil to the next, over the rise with which it lies on it; None where coils pass
+            each other by their shape, or there is only one.
     """
 
     number: int
@@ -43,6 +48,9 @@ class Step:
     left_branch: int = 0
     axis_offset_mm: float = 0.0
     least_eigenvalue: float | None = None
+    plastic_work_max_N_per_mm2: float = 0.0
+    lift_off_mm: float = 0.0
+    least_rise: float | None = None
 
 
 @dataclass(frozen=True)
@@ -116,7 +124,8 @@ class SeatReactions:
     Attributes:
         step: number of the step.
         active_turns: turns that bear the load, ∫ (Mt/(F r))² dt: the number of turns under the torque F r throughout
-            that would hold as much torsional energy, as in R = G d⁴/(64 r³ n).
+            that would hold as much torsional energy, as in R = G d⁴/(64 r³ n). On release, and up to the greatest force
+            so far, of the step's changes of Mt and F: a spring that has set keeps a torque that goes with no force.
         free_turns: turns of wire that touch neither seat nor coil.
         bottom, top: SeatReactions of the ends.
         pressure: one row for each point of the wire that bears: number of the kind of contact, number of the point,
@@ -167,6 +176,21 @@ class ContactRecord:
 
 
 @dataclass(frozen=True)
+class Limits:
+    """What the numbers of a run are held against.
+
+    Attributes:
+        plastic_work: b* up to which the material's constants are valid, N/mm².
+        strength: least tensile strength of the wire, MPa; None if no wire of a standard is named.
+        penetration: usual greatest penetration, mm.
+    """
+
+    plastic_work: float
+    strength: float | None
+    penetration: float
+
+
+@dataclass(frozen=True)
 class Setup:
     """What a run was made of.
 
@@ -182,6 +206,9 @@ class Setup:
         section_kind: plane, curved or warping.
         placement: of the sections, Placement.
         buckling_travel: at which the spring buckles after EN 13906-1, mm; infinite if it never does.
+        limits: Limits.
+        rates_at: travels, mm, at which the rate is asked for.
+        warnings: Warnings about the case, before it ran.
     """
 
     spring: Spring
@@ -195,6 +222,9 @@ class Setup:
     section_kind: str
     placement: Placement
     buckling_travel: float
+    limits: Limits
+    rates_at: tuple[float, ...] = ()
+    warnings: tuple[Warning, ...] = ()
 
     @property
     def section_turns(self) -> np.ndarray:
@@ -226,7 +256,7 @@ class Result:
         steps: converged Steps, seats: SeatReactions after each of them.
         snapshots: Snapshots at the start and after each phase.
         rate: initial rate, N/mm; NaN where no equilibrium was found for it.
-        warnings: what the run has to say about itself, in words.
+        warnings: Warnings of moments that its other records do not show.
     """
 
     steps: tuple[Step, ...] = ()
@@ -234,7 +264,7 @@ class Result:
     snapshots: tuple[Snapshot, ...] = field(default=(), repr=False)
     rate: float = float("nan")
     complete: bool = False
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[Warning, ...] = ()
 
     @property
     def greatest_force(self) -> float:

@@ -21,7 +21,12 @@ Parts = Sequence[tuple[Contact, Contribution]]
 
 
 def seat_reactions(
-    system: System, control: AxialControl, turns: np.ndarray, step: int, greatest_force: float
+    system: System,
+    control: AxialControl,
+    turns: np.ndarray,
+    step: int,
+    greatest_force: float,
+    before: tuple[float, np.ndarray],
 ) -> SeatReactions:
     """Reactions at the equilibrium that was just reached; collective.
 
@@ -31,16 +36,26 @@ def seat_reactions(
         turns: of the stations, shape (n + 1,).
         step: number of the step.
         greatest_force: size of the greatest axial force so far, this one's included, N.
+        before: axial force, N, and `mean_torque` of the last equilibrium but this.
 
     Returns:
         SeatReactions, the same on every rank.
     """
     observer, force = _Observer(system, control), control.force
-    faint = max(FAINT * greatest_force, ROUNDING * observer.layout.rod.axial_force)
+    faint = faint_force(observer.layout.rod, greatest_force)
     pressure = pressures(observer.parts)
     bottom, top = (observer.reaction(end, faint) for end in ENDS)
-    active = active_turns(observer.layout.rod, turns, force) if abs(force) > faint else np.nan
+    rod = observer.layout.rod
+    if abs(force) >= greatest_force:  # never was it loaded so far: the whole force counts
+        before = 0.0, np.zeros_like(before[1])
+    change = force - before[0]
+    active = active_turns(rod, turns, change, before[1]) if min(abs(force), abs(change)) > faint else np.nan
     return SeatReactions(step, active, free_turns(observer.parts, pressure), bottom, top, pressure)
+
+
+def faint_force(rod: Rod, greatest_force: float) -> float:
+    """Axial force that is as good as none, N; `greatest_force` is the size of the greatest one so far."""
+    return max(FAINT * greatest_force, ROUNDING * rod.axial_force)
 
 
 class _Observer:
@@ -87,12 +102,23 @@ class _Observer:
         return float(np.arctan2(np.hypot(axis[0], axis[1]), axis[2]))
 
 
-def active_turns(rod: Rod, turns: np.ndarray, force: float) -> float:
-    """∫ (Mt/(F r))² dt over all turns, with the mean torque Mt and the distance r from the axis of each element."""
+def mean_torque(rod: Rod) -> np.ndarray:
+    """Mt of the owned elements, the mean over each, N mm."""
+    return rod.s.values[:, :, 3].mean(axis=1)
+
+
+def active_turns(rod: Rod, turns: np.ndarray, change: float, before: np.ndarray) -> float:
+    """∫ (ΔMt/(ΔF r))² dt over all turns, Mt the torque, r the distance of each element from the axis; collective.
+
+    Args:
+        rod: Rod.
+        turns: of the stations, shape (n + 1,).
+        change: ΔF of the axial force, N.
+        before: `mean_torque` before the change.
+    """
     line = rod.line
-    torque = rod.s.values[:, :, 3].mean(axis=1)
     r = np.hypot(*rod.x[rod.cells].mean(axis=1)[:, :2].T)
-    active = (torque / (force * r)) ** 2 @ np.diff(turns)[line.element[: line.owned_cells]]
+    active = ((mean_torque(rod) - before) / (change * r)) ** 2 @ np.diff(turns)[line.element[: line.owned_cells]]
     return float(line.mesh.comm.allreduce(active))
 
 

@@ -1,13 +1,17 @@
 """The few numbers that answer the question."""
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from math import isfinite
 from typing import Any
 
 import numpy as np
 
 from coilset.model.results.buckling import buckling
+from coilset.model.results.rates import rates
 from coilset.model.results.record import Result, Setup, Snapshot
+from coilset.model.results.warnings import released as is_released
+from coilset.model.results.warnings import run_warnings
 from coilset.model.section import surface
 
 
@@ -21,7 +25,7 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
     last = result.snapshots[-1]
     forces = [step.force_N for step in result.steps]
     greatest = max(forces, default=0.0, key=abs)
-    released = bool(result.steps) and abs(last.force) <= 1e-6 * abs(greatest)
+    released = is_released(result)
     before, buckled = setup.spring.free_length, buckling(result.steps, setup.mean_diameter)
     after = setup.outer_length(last.x) if released else None
     return {
@@ -30,6 +34,7 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         "free_length_after_mm": after,
         "set_mm": None if after is None else before - after,
         "rate_N_per_mm": result.rate if isfinite(result.rate) else None,
+        **rates(setup, result, released),
         "force_max_N": greatest,
         "block_height_mm": setup.spring.block_height,
         "residual_shear_max_MPa": float(last.shear.max()) if released else None,
@@ -38,6 +43,7 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         "shear_inside_max_MPa": max(shear_inside(setup, shot) for shot in result.snapshots),
         **peaks(setup, "residual_", [last] if released else []),
         **peaks(setup, "", result.snapshots),
+        **plastic_work(setup, result),
         "steps": len(result.steps),
         "iterations": sum(step.iterations for step in result.steps),
         "evaluations": sum(step.evaluations for step in result.steps),
@@ -52,7 +58,8 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         "elements": len(setup.turns) - 1,
         "section_kind": setup.section_kind,
         "section_rule": setup.rule.name,
-        "warnings": list(result.warnings),
+        "lift_off_max_mm": max((step.lift_off_mm for step in result.steps), default=0.0),
+        "warnings": [asdict(warning) for warning in run_warnings(setup, result)],
     }
 
 
@@ -79,3 +86,16 @@ def peaks(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str,
         for unit, value in (("MPa", "value"), ("turn", "turn"), ("angle_deg", "angle")):
             found[f"{prefix}{name}_surface_max_{unit}"] = getattr(top, value) if top else None
     return found
+
+
+def plastic_work(setup: Setup, result: Result) -> dict[str, float | None]:
+    """The greatest plastic work b* on the surface, where it is, and up to which the material's constants are valid."""
+    tops = [surface.peak(surface.component(shot.surface_state, shot.components, "b"), setup.section_turns, setup.inside)
+            for shot in result.snapshots]  # fmt: skip
+    top = max(tops, key=lambda one: one.value)
+    return {
+        "plastic_work_max_N_per_mm2": max([top.value, *(step.plastic_work_max_N_per_mm2 for step in result.steps)]),
+        "plastic_work_max_turn": top.turn if top.value > 0.0 else None,
+        "plastic_work_max_angle_deg": top.angle if top.value > 0.0 else None,
+        "plastic_work_known_to_N_per_mm2": setup.limits.plastic_work,
+    }

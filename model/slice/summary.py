@@ -8,8 +8,11 @@ from typing import Any
 import numpy as np
 
 from coilset.model.results.folder import whole
+from coilset.model.results.warnings import beyond_validity
 from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot, SliceStep
 from coilset.model.slice.watch import equivalent, shear
+from coilset.model.standards.case_warnings import case_warnings
+from coilset.model.warning import Warning
 
 # Entries of a spring's summary that one section cannot know, for it has no axis that could bend, or tells otherwise:
 # its stresses at the surface are in `loaded` and `released`.
@@ -20,7 +23,9 @@ UNSEEN = (
     "residual_equivalent_surface_max_MPa", "residual_equivalent_surface_max_turn",
     "residual_equivalent_surface_max_angle_deg", "shear_surface_max_MPa", "shear_surface_max_turn",
     "shear_surface_max_angle_deg", "equivalent_surface_max_MPa", "equivalent_surface_max_turn",
-    "equivalent_surface_max_angle_deg", "evaluations", "failed_solves", "section_kind", "warnings",
+    "equivalent_surface_max_angle_deg", "evaluations", "failed_solves", "section_kind",
+    "rate_30_70_N_per_mm", "rate_30_70_after_N_per_mm", "rates", "plastic_work_max_turn", "plastic_work_max_angle_deg",
+    "lift_off_max_mm",
 )  # fmt: skip
 
 
@@ -57,9 +62,20 @@ def summarise(analysis: SliceAnalysis) -> dict:
         "inside_factor": result.inside_factor,
         "plastic_work_max_N_per_mm2": max(float(shot.work.max()) for shot in result.snapshots),
         "plastic_work_known_to_N_per_mm2": analysis.law.validity.plastic_work,
+        "warnings": [asdict(warning) for warning in slice_warnings(analysis)],
         "loaded": at_surface(analysis, loaded),
         "released": at_surface(analysis, last) if released else None,
     }
+
+
+def slice_warnings(analysis: SliceAnalysis) -> list[Warning]:
+    """Warnings about the case, and of plastic work beyond the material's validity."""
+    found, limit = list(case_warnings(analysis.case, analysis.spring, analysis.law)), analysis.law.validity.plastic_work
+    beyond = [shot for shot in analysis.result.snapshots if shot.work.max() > limit]
+    if beyond:
+        greatest = max(float(shot.work.max()) for shot in beyond)
+        found.append(beyond_validity(greatest, limit, analysis.law.name, beyond[0].name))
+    return found
 
 
 def _greatest_shear(shot: Any) -> float:

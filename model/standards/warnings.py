@@ -1,7 +1,6 @@
 """What a spring maker would warn of, each warning with its numbers; nothing here forbids a spring."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -9,27 +8,11 @@ from coilset.meshes.checks import TOUCH
 from coilset.meshes.ends import touching_pitch
 from coilset.meshes.geometry import Spring
 from coilset.model.standards.buckling import buckling_travel
+from coilset.model.warning import Warning
 
 INDEX_USUAL = (4.0, 20.0)  # EN 15800, table 1: cold coiled springs
 ACTIVE_LEAST = 2.0  # EN 13906-1: number of active coils
 TIP_LEAST = 0.25  # of the wire's diameter
-
-
-@dataclass(frozen=True)
-class Warning:
-    """One thing to think about before the spring is made.
-
-    Attributes:
-        code: short name of the kind of warning, such as `index` or `buckling`.
-        place: entry of the case file that it is about.
-        text: one line for people, with its numbers.
-        numbers: the same numbers by name, with the unit in the name, for programs.
-    """
-
-    code: str
-    place: str
-    text: str
-    numbers: dict[str, float] = field(default_factory=dict)
 
 
 def spring_warnings(spring: Spring) -> list[Warning]:
@@ -48,7 +31,8 @@ def _index(spring: Spring) -> Iterator[Warning]:
             "spring.mean_diameter",
             f"D/d = {index[i]:.3g} at turn {t[i]:.3g} is outside of the "
             f"{low:g} to {high:g} usual in cold coiling (EN 15800)",
-            {"index": float(index[i]), "turn": float(t[i]), "least": low, "greatest": high},
+            float(index[i]),
+            low if index[i] < low else high,
         )
 
 
@@ -66,7 +50,8 @@ def _solid_coils(spring: Spring) -> Iterator[Warning]:
             "spring.pitch",
             "coils of the body are solid before any load, between the turns "
             f"{solid[0]:.3g} and {solid[-1]:.3g}; their pitch is {pitch:.4g} mm",
-            {"first_turn": float(solid[0]), "last_turn": float(solid[-1]), "pitch_mm": pitch},
+            pitch,
+            unit="mm",
         )
 
 
@@ -77,7 +62,8 @@ def _active(spring: Spring) -> Iterator[Warning]:
             "spring.turns",
             f"only {spring.active_turns:.3g} active turns; formulas for rate "
             f"and stress need {ACTIVE_LEAST:g} or more (EN 13906-1)",
-            {"active_turns": spring.active_turns, "least": ACTIVE_LEAST},
+            spring.active_turns,
+            ACTIVE_LEAST,
         )
 
 
@@ -90,7 +76,9 @@ def _ground(spring: Spring) -> Iterator[Warning]:
                 "spring.end_coils",
                 f"the ground {name} end is {end.tip_thickness * d:.3g} mm "
                 f"thin at its tip, less than a quarter of the wire ({TIP_LEAST * d:.3g} mm)",
-                {"tip_mm": end.tip_thickness * d, "least_mm": TIP_LEAST * d},
+                end.tip_thickness * d,
+                TIP_LEAST * d,
+                "mm",
             )
         flat = spring.flat_turns(name)
         if flat > end.end_turns + 1e-9:
@@ -99,7 +87,9 @@ def _ground(spring: Spring) -> Iterator[Warning]:
                 "spring.end_coils",
                 f"the flat of the {name} end runs over {flat:.3g} turns "
                 f"and cuts into the transition; its end turns are {end.end_turns:.3g}",
-                {"flat_turns": flat, "end_turns": end.end_turns},
+                flat,
+                end.end_turns,
+                "turns",
             )
 
 
@@ -112,5 +102,7 @@ def _buckling(spring: Spring) -> Iterator[Warning]:
             "spring.free_length",
             f"slender, L0/D = {slender:.3g}: unguided it buckles at "
             f"{limit:.3g} mm of travel on parallel seats, before its block at {travel:.3g} mm (EN 13906-1)",
-            {"slenderness": slender, "buckling_travel_mm": limit, "block_travel_mm": travel},
+            limit,
+            travel,
+            "mm",
         )

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.goodman import Cycle, Line
-from coilset.model.standards.warnings import Warning
 from coilset.model.standards.wires.wire import Wire
+from coilset.model.warning import Warning
 
 PRESETTING_LEAST = 0.1  # of the travel to block; a rule of thumb without a source
 
@@ -16,8 +16,8 @@ def gap_warnings(spring: Cylinder, lengths: Sequence[float], dynamic: bool = Fal
     needed = en13906.gap_sum(spring.d, spring.D, spring.n, dynamic)
     return [
         Warning("gap", "loading", f"at {length:.4g} mm the gaps between the coils add up to "
-                f"{length - spring.solid:.3g} mm, less than the {needed:.3g} mm of EN 13906-1", {
-                    "length_mm": length, "gap_mm": length - spring.solid, "least_mm": needed})
+                f"{length - spring.solid:.3g} mm, less than the {needed:.3g} mm of EN 13906-1",
+                length - spring.solid, needed, "mm")
         for length in lengths if length - spring.solid < needed
     ]  # fmt: skip
 
@@ -32,8 +32,7 @@ def stress_warnings(spring: Cylinder, shear_modulus: float, lengths: Sequence[fl
         if stress > allowed:
             found.append(
                 Warning("stress", "loading", f"at {length:.4g} mm the nominal shear stress is {stress:.4g} N/mm², "
-                        f"above the {allowed:.4g} N/mm² that {wire.name} is allowed", {
-                            "length_mm": length, "stress_MPa": stress, "allowed_MPa": allowed})
+                        f"above the {allowed:.4g} N/mm² that {wire.name} is allowed", stress, allowed, "MPa")
             )  # fmt: skip
     return found
 
@@ -45,7 +44,7 @@ def endurance_warnings(cycle: Cycle, endured: Line) -> list[Warning]:
         return []
     return [Warning("endurance", "loading", f"the corrected stress varies by {spread:.4g} N/mm² over {cycle.lower:.4g} "
                     f"N/mm²; {allowed:.4g} N/mm² is endured {endured.times} times, {endured.surface}",
-                    {"range_MPa": spread, "lower_MPa": cycle.lower, "endured_MPa": allowed})]  # fmt: skip
+                    spread, allowed, "MPa")]  # fmt: skip
 
 
 def presetting_warning(set_mm: float, travel: float) -> Warning | None:
@@ -62,4 +61,4 @@ def presetting_warning(set_mm: float, travel: float) -> Warning | None:
     share = set_mm / travel
     return Warning("presetting", "loading", f"presetting takes {set_mm:.3g} mm, {100 * share:.2g} % of the travel to "
                    f"block; {100 * PRESETTING_LEAST:g} % or more is usual",
-                   {"set_mm": set_mm, "travel_mm": travel, "least_share": PRESETTING_LEAST})  # fmt: skip
+                   set_mm, PRESETTING_LEAST * travel, "mm")  # fmt: skip

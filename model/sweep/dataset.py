@@ -40,6 +40,7 @@ def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
     records = {record["key"]: record for record in read_records(journal) if record["key"] in places}
     n = len(plan)
     status, reason = np.full(n, "missing", dtype=object), np.full(n, "", dtype=object)
+    warnings = np.full(n, "", dtype=object)
     seconds = np.full(n, np.nan)
     responses: dict[str, np.ndarray] = {}
     longest = max((len(record["steps"].get("force_N", ())) for record in records.values()), default=0)
@@ -47,6 +48,7 @@ def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
     for key, record in records.items():
         at = places[key]
         status[at], reason[at], seconds[at] = record["status"], record["reason"], record["seconds"]
+        warnings[at] = ", ".join(warning["name"] for warning in record["summary"].get("warnings", ()))
         for name, curve in curves.items():
             column = np.array(record["steps"].get(name, ()), dtype=float)
             curve[at, : len(column)] = column
@@ -59,7 +61,12 @@ def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
     data: dict[str, Any] = {name: ("case", column, _attributes(*quantity(name))) for name, column in responses.items()}
     data |= {f"curve_{name}": (("case", "step"), curve, _attributes(*quantity(name)) | {"units": CURVE[name]})
              for name, curve in curves.items()}  # fmt: skip
-    data |= {"status": ("case", status), "reason": ("case", reason), "seconds": ("case", seconds, {"units": "s"})}
+    data |= {
+        "status": ("case", status),
+        "reason": ("case", reason),
+        "warnings": ("case", warnings),
+        "seconds": ("case", seconds, {"units": "s"}),
+    }
     coordinates: dict[str, Any] = {name: ("case", *_input(plan, k)) for k, name in enumerate(plan.names)}
     attributes: dict[str, Any] = {"title": f"sweep {plan.path.stem}", "design": plan.spec.design, "inputs": plan.names}
     if plan.spec.samples is not None:

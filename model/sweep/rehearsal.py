@@ -9,12 +9,13 @@ from typing import Any
 from coilset.meshes.errors import InputError
 from coilset.model.case import Case
 from coilset.model.case.entry import shown
+from coilset.model.case.targets import check_targets
 from coilset.model.standards.wires.law import case_law
 from coilset.model.sweep.spec import SweepSpec, Values
 
 
 def build_input(case: Case) -> None:
-    """Build the spring, its nodes and the material of a case, and forget them.
+    """Build the spring, its nodes and the material of a case, judge its targets, and forget them.
 
     Raises:
         InputError: with what is wrong, as the case itself would when it runs.
@@ -22,6 +23,7 @@ def build_input(case: Case) -> None:
     spring = case.spring.build()
     spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
     law = case_law(case, spring)
+    check_targets(case, spring, law.G)
     if case.temperature is not None:
         law.known(case.temperature)
 

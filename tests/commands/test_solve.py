@@ -121,7 +121,8 @@ def test_a_missing_file_and_a_wrong_option_leave_nothing_behind(tmp_path):
 
 def test_an_impossible_target_keeps_the_results_and_ends_with_3(example, tmp_path):
     data = yaml.safe_load(example.read_text())
-    data["ends"], data["loading"] = "clamped", [{"to": {"travel": 3}, "steps": 2}, {"to": {"force": 1e7}, "steps": 1}]
+    data["ends"], data["loading"] = "clamped", [{"to": {"travel": 3}, "steps": 2}, {"to": {"force": 1e3}, "steps": 1}]
+    data["contact"] = {"penetration_limit": 1e-4}
     (tmp_path / "case.yaml").write_text(yaml.safe_dump(data))
     done = coilset("solve", "case.yaml", "--no-pictures", cwd=tmp_path)
     assert done.returncode == 3

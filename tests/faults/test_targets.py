@@ -1,12 +1,14 @@
-"""Seats only press: targets that would have them pull are refused before the run, with the numbers."""
+"""Targets judged before the run, with the numbers: seats only press, and nothing is pressed beyond its block."""
 
 import pytest
 
 from coilset.meshes.errors import InputError
+from coilset.meshes.spring import SpringSpec
 from coilset.model.case import read_case
-from coilset.model.case.targets import check_targets
+from coilset.model.case.targets import check_targets, closing_force
 from coilset.scripts.solve import solve
 
+G = 84000.0
 PULLS = [("force", -1000, "-1000 N"), ("travel", -2, "-2 mm"), ("height", 40, "40 mm, above the free length of 35 mm")]
 
 
@@ -18,10 +20,55 @@ def test_seats_do_not_pull(example, tmp_path, entry, value, words):
     assert f"loading.1.to.{entry}" in str(caught.value)
     assert not (tmp_path / "out").exists()
     clamped = read_case(example, [loading, "ends=clamped"])
-    check_targets(clamped, clamped.spring.build())  # heads of clamped ends pull
+    check_targets(clamped, clamped.spring.build(), G)  # heads of clamped ends pull
 
 
 @pytest.mark.parametrize("target", ["force: 0", "travel: 0", "height: 35"])
 def test_an_unloaded_spring_is_no_pull(example, target):
     case = read_case(example, [f"loading=[{{to: {{{target}}}}}]"])
-    check_targets(case, case.spring.build())
+    check_targets(case, case.spring.build(), G)
+
+
+BEYOND = [
+    ("travel: 25", "travel: is 25 mm, but the spring can be pressed by 17.5 mm only, where it is at block"),
+    ("travel: 1e9", "travel: is 1e+09 mm"),
+    ("height: 10", "height: is 10 mm, below the block height of 17.5 mm"),
+    ("height: 17.49", "height: is 17.49 mm, below the block height of 17.5 mm"),
+    ("force: 5000", "force: is 5000 N, but all coils of this spring lie on each other at about 717.8 N"),
+]
+
+
+@pytest.mark.parametrize(("target", "words"), BEYOND)
+@pytest.mark.parametrize("ends", ["seats", "clamped"])
+def test_nothing_is_pressed_beyond_its_block(example, tmp_path, target, words, ends):
+    settings = [f"loading=[{{to: block}}, {{to: {{{target}}}}}]", f"ends={ends}"]
+    with pytest.raises(InputError) as caught:
+        solve(example, tmp_path / "out", False, settings, False)
+    assert f"loading.1.to.{words}" in str(caught.value)
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("target", ["travel: 17.5", "height: 17.5", "force: 1400"])
+def test_block_itself_is_not_beyond(example, target):
+    case = read_case(example, [f"loading=[{{to: {{{target}}}}}]"])
+    check_targets(case, case.spring.build(), G)
+
+
+def test_seats_of_other_shapes_have_no_known_block(example):
+    seats = "seats={bottom: {shape: conical, angle: 10}}"
+    for travel, fits in ((20, True), (34.9, True), (35.1, False)):
+        case = read_case(example, [seats, f"loading=[{{to: {{travel: {travel}}}}}]"])
+        if fits:
+            check_targets(case, case.spring.build(), G)
+        else:
+            with pytest.raises(InputError, match="its free length"):
+                check_targets(case, case.spring.build(), G)
+
+
+def test_the_closing_force_is_that_of_the_last_coil():
+    """G d⁴ (p − d)/(8 D³) of a cylinder; of a cone whose coils nest beside each other, of its smallest coil."""
+    shape = {"wire_diameter": 5.0, "turns": 4.0, "pitch": 12.0}
+    cylinder = SpringSpec.model_validate({**shape, "mean_diameter": 40.0}).build()
+    assert closing_force(cylinder, G) == pytest.approx(G * 5**4 * 7 / (8 * 40**3), rel=1e-12)
+    cone = SpringSpec.model_validate({**shape, "mean_diameter": {"shape": "cone", "bottom": 100, "top": 50}}).build()
+    assert closing_force(cone, G) == pytest.approx(G * 5**4 * 12 / (8 * 50**3), rel=1e-12)

@@ -68,7 +68,7 @@ def read_json(path: Path) -> dict[str, Column]:
     """One column for each entry of a summary; checks and columns of tables of a record of verification."""
     data = json.loads(path.read_text(encoding="utf-8"))
     if "checks" not in data:
-        return {name: column([value]) for name, value in data.items()}
+        return {name: column([value]) for name, value in data.items() if name != "origin"}  # it holds the date
     found = {}
     for place, check in enumerate(data["checks"]):
         # a number that ought to vanish is measured by what it may be
@@ -106,7 +106,8 @@ def number(text: str) -> float | int | str:
 def column(values, scale: float = 0.0) -> Column:
     """A Column; None is not a number."""
     if isinstance(values, list):
-        values = np.array([np.nan if value is None else value for value in values])
+        plain = [json.dumps(value) if isinstance(value, list | dict) else value for value in values]
+        values = np.array([np.nan if value is None else value for value in plain])
     values = np.asarray(values)
     if values.dtype.kind == "O":
         values = values.astype(str)

@@ -52,4 +52,4 @@ WARNED = [
 
 @pytest.mark.parametrize(("entries", "warning"), WARNED, ids=[warning[:40] for _, warning in WARNED])
 def test_doubtful_spring_is_warned_of(entries, warning):
-    assert warning in [found.text for found in warnings(entries)]
+    assert warning in [found.message for found in warnings(entries)]

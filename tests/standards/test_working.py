@@ -5,9 +5,9 @@ import pytest
 from coilset.meshes.errors import InputError
 from coilset.meshes.spring import SpringSpec
 from coilset.model.standards.cylinder import Cylinder
-from coilset.model.standards.warnings import Warning
 from coilset.model.standards.wires import wire
 from coilset.model.standards.working import gap_warnings, presetting_warning, stress_warnings
+from coilset.model.warning import Warning
 
 SPEC = {
     "wire_diameter": 4.0,
@@ -43,8 +43,10 @@ def test_gap():
     # Sa = 5.5 (0.0015 · 32²/4 + 0.4) = 4.312 mm over the block length of 28 mm
     assert gap_warnings(cylinder(), [50.0, 32.32]) == []
     (found,) = gap_warnings(cylinder(), [50.0, 32.3])
-    assert found.text == "at 32.3 mm the gaps between the coils add up to 4.3 mm, less than the 4.31 mm of EN 13906-1"
-    assert found.numbers["least_mm"] == pytest.approx(4.312)
+    assert (
+        found.message == "at 32.3 mm the gaps between the coils add up to 4.3 mm, less than the 4.31 mm of EN 13906-1"
+    )
+    assert found.limit == pytest.approx(4.312)
     assert len(gap_warnings(cylinder(), [32.32], dynamic=True)) == 1
 
 
@@ -54,13 +56,13 @@ def test_stress():
     bound = 972.35 / 18.425
     assert stress_warnings(cylinder(free_length=90.0), 81500.0, [90 - bound + 0.1], known) == []
     (found,) = stress_warnings(cylinder(free_length=90.0), 81500.0, [90 - bound - 0.1], known)
-    assert found.code == "stress"
-    assert found.numbers["allowed_MPa"] == pytest.approx(972.3, abs=0.1)
-    assert "EN 10270-1 SH is allowed" in found.text
+    assert found.name == "stress"
+    assert found.limit == pytest.approx(972.3, abs=0.1)
+    assert "EN 10270-1 SH is allowed" in found.message
 
 
 def test_presetting():
     assert presetting_warning(3.3, 32.0) is None
     found = presetting_warning(1.6, 32.0)
     assert isinstance(found, Warning)
-    assert found.text == "presetting takes 1.6 mm, 5 % of the travel to block; 10 % or more is usual"
+    assert found.message == "presetting takes 1.6 mm, 5 % of the travel to block; 10 % or more is usual"

@@ -86,6 +86,11 @@ def case_law(case: Case, spring: Spring) -> Law:
     return wire_law(case.material.wire, wire_diameter(spring))
 
 
+def case_strength(case: Case, spring: Spring) -> float | None:
+    """Least tensile strength Rm of a case's wire, MPa; None if its material is no wire of a standard."""
+    return None if isinstance(case.material, str) else wire(case.material.wire).strength(wire_diameter(spring))
+
+
 def wire_diameter(spring: Spring) -> float:
     """The one wire diameter of a spring, mm; that of a measured spring may vary by the tolerance of wires, 2 %.
 

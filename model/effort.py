@@ -1,0 +1,75 @@
+"""What a run will take, before it begins: from the cost of an element as measured in docs/scaling.md."""
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from coilset.meshes.errors import InputError
+from coilset.model.warning import Warning
+
+# Measured with 96 points a section, docs/scaling.md: 37 µs of 48 are the law's, 10.8 kB of 26 are the points'.
+SECONDS_OF_POINT = 37e-6 / 96
+SECONDS_OF_ELEMENT = 11e-6
+BYTES_OF_POINT = 10.8e3 / 96
+BYTES_OF_ELEMENT = 15.2e3
+BYTES_OF_PROGRAM = 0.3e9  # with all its libraries
+EVALUATIONS = 6.0  # of a step, mean of the example's 24 steps to block and back
+LONG = 3600.0  # seconds from which a run is said to be long
+CGROUP = Path("/sys/fs/cgroup/memory.max")
+
+
+@dataclass(frozen=True)
+class Effort:
+    """An estimate, good to a factor of about two where steps are not cut; coils that touch cost as much again.
+
+    Attributes:
+        elements, steps: numbers of both.
+        seconds: of one processor.
+        memory: bytes.
+    """
+
+    elements: int
+    steps: int
+    seconds: float
+    memory: float
+
+    @classmethod
+    def of(cls, elements: int, points: int, steps: int) -> "Effort":
+        """The effort for so many elements, points of a section and steps."""
+        once = elements * (SECONDS_OF_ELEMENT + SECONDS_OF_POINT * points)
+        memory = BYTES_OF_PROGRAM + elements * (BYTES_OF_ELEMENT + BYTES_OF_POINT * points)
+        return cls(elements, steps, EVALUATIONS * steps * once, memory)
+
+    def check_memory(self, present: float) -> None:
+        """Refuse a run for which the machine has not memory enough, whatever else it does.
+
+        Args:
+            present: memory of the machine, bytes.
+
+        Raises:
+            InputError: with the numbers.
+        """
+        if self.memory > present:
+            needed, there = (f"{size / 2**30:.3g} GiB" for size in (self.memory, present))
+            raise InputError(f"{self.elements:,} elements need about {needed}, and this machine has {there}; "
+                             "give fewer elements or points in a section", "mesh")  # fmt: skip
+
+    def warnings(self) -> list[Warning]:
+        """A run that takes long."""
+        if self.seconds <= LONG:
+            return []
+        hours = self.seconds / 3600.0
+        message = (
+            f"{self.elements:,} elements in {self.steps:,} steps take about {hours:.2g} hours of one processor; "
+            "fewer elements or steps take less"
+        )
+        return [Warning("duration", "mesh", message, hours, LONG / 3600.0, "h")]
+
+
+def machine_memory() -> float:
+    """Memory that processes here may have, bytes: the machine's, or that of the container."""
+    present = float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")
+    try:
+        return min(present, float(CGROUP.read_text()))  # "max" without a limit
+    except (OSError, ValueError):
+        return present

@@ -1,0 +1,76 @@
+"""Rates of a spring from its characteristic: as makers measure it, and at travels that are asked for."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from coilset.model.results.record import Result, Setup, Step
+
+MAKERS = (0.3, 0.7)  # of the travel to block, between which EN 15800 measures the rate
+
+
+def first_compression(steps: Sequence[Step]) -> tuple[np.ndarray, np.ndarray]:
+    """Travel, mm, and force, N, from the start to where the spring is first let go again."""
+    travel, force = [0.0], [0.0]
+    for step in steps:
+        if step.travel_mm <= travel[-1]:
+            break
+        travel.append(step.travel_mm)
+        force.append(step.force_N)
+    return np.array(travel), np.array(force)
+
+
+def last_release(steps: Sequence[Step], height: float) -> tuple[np.ndarray, np.ndarray]:
+    """Travel from the height at which the spring is free of load in the end, mm, and force, N, of the last release."""
+    travel, force = [0.0], [0.0]
+    for step in reversed(steps[:-1]):
+        if height - step.seat_height_mm <= travel[-1]:
+            break
+        travel.append(height - step.seat_height_mm)
+        force.append(step.force_N)
+    return np.array(travel), np.array(force)
+
+
+def makers_rate(travel: np.ndarray, force: np.ndarray, whole: float) -> float | None:
+    """Force over travel between 30 and 70 % of the travel to block, N/mm; None if the curve does not reach so far.
+
+    Args:
+        travel, force: ascending travels, mm, and forces, N.
+        whole: travel to block, mm.
+    """
+    low, high = (share * whole for share in MAKERS)
+    if whole <= 0.0 or travel[-1] < high:
+        return None
+    return float(np.diff(np.interp([low, high], travel, force))[0] / (high - low))
+
+
+def rate_at(travel: np.ndarray, force: np.ndarray, at: float) -> float | None:
+    """Slope at a travel of the parabola through the three points next to it, N/mm; None beyond the curve."""
+    if len(travel) < 3 or at > travel[-1]:
+        return None
+    middle = int(np.clip(np.abs(travel - at).argmin(), 1, len(travel) - 2))
+    near = slice(middle - 1, middle + 2)
+    return float(np.polyval(np.polyder(np.polyfit(travel[near] - at, force[near], 2)), 0.0))
+
+
+def rates(setup: Setup, result: Result, is_released: bool) -> dict[str, object]:
+    """Entries of the summary: the rates between 30 and 70 % of the travel to block, and those that are asked for.
+
+    Args:
+        setup: Setup.
+        result: Result.
+        is_released: whether the spring is free of load where the run stands.
+    """
+    travel, force = first_compression(result.steps)
+    block, height = setup.spring.block_height, result.snapshots[-1].height
+    after = None
+    if is_released:
+        after = makers_rate(*last_release(result.steps, height), height - block)
+    return {
+        "rate_30_70_N_per_mm": makers_rate(travel, force, setup.spring.free_length - block),
+        "rate_30_70_after_N_per_mm": after,
+        "rates": [
+            {"travel_mm": at, "force_N": float(np.interp(at, travel, force)) if at <= travel[-1] else None,
+             "rate_N_per_mm": rate_at(travel, force, at)} for at in setup.rates_at
+        ],
+    }  # fmt: skip

@@ -1,0 +1,46 @@
+"""What the shape of a pressed spring says about it: has a seat been left, have coils slipped past each other?"""
+
+import numpy as np
+
+from coilset.meshes.ends import touching_pitch
+from coilset.meshes.geometry import Spring
+from coilset.model.contact.seat import Seat
+from coilset.model.equilibrium.system import System
+
+PASSING = 0.5  # of the wire: a rise to touch below this part of it is that of coils that pass each other by their shape
+
+
+def clearance(system: System, x: np.ndarray) -> float:
+    """Greatest distance between a seat and the wire, mm; 0 where both touch, or there are none.
+
+    Args:
+        system: System.
+        x: station positions, shape (n, 3), mm.
+    """
+    seats = [contact for contact in system.contacts if isinstance(contact, Seat)]
+    return max((float(seat.gaps(seat.points.at(x), system.seats).min()) for seat in seats), default=0.0)
+
+
+def least_rise(x: np.ndarray, turns: np.ndarray, spring: Spring) -> float | None:
+    """Least rise of the wire over a turn, over the rise with which a coil lies on the next: 1 at block.
+
+    Contact cannot hold a coil that has slipped sideways past the next one; then this falls far below 1, and below 0
+    where it has passed.
+
+    Args:
+        x: station positions, shape (n, 3), mm.
+        turns: of the stations, shape (n,).
+        spring: the stress-free spring.
+
+    Returns:
+        None without two coils one above the other.
+    """
+    lower = turns[turns <= turns[-1] - 1.0]
+    diameter = 0.5 * (spring.wire_diameter(lower) + spring.wire_diameter(lower + 1.0))
+    change = spring.mean_radius(lower + 1.0) - spring.mean_radius(lower)
+    touching = touching_pitch(diameter, change)
+    lies = touching > PASSING * diameter
+    if not lies.any():
+        return None
+    rise = np.interp(lower + 1.0, turns, x[:, 2]) - np.interp(lower, turns, x[:, 2])
+    return float((rise[lies] / touching[lies]).min())

@@ -1,0 +1,160 @@
+"""What a run has to say about itself, read from its records, so that a resumed run says the same."""
+
+from collections.abc import Callable, Iterator
+from math import isfinite
+
+from coilset.model.results.buckling import buckling
+from coilset.model.results.record import Result, Setup, Snapshot, Step
+from coilset.model.section import surface
+from coilset.model.standards.working import presetting_warning
+from coilset.model.warning import Warning
+
+SLIPPED = 0.7  # of the rise to touch: coils of one wire that lie so are shifted sideways by 0.71 of their diameter
+Check = Callable[[Setup, Result], Iterator[Warning]]
+
+
+def run_warnings(setup: Setup, result: Result) -> list[Warning]:
+    """All warnings of a run: those about its case, those of its steps, those about what it has found.
+
+    Args:
+        setup: Setup.
+        result: Result, complete or not; its snapshots are whole on rank 0 only.
+    """
+    found = [warning for check in FOUND for warning in check(setup, result)]
+    return [*setup.warnings, *result.warnings, *step_warnings(setup, result), *found]
+
+
+def step_warnings(setup: Setup, result: Result) -> list[Warning]:
+    """Warnings that the steps alone show, at the first step that shows them."""
+    return [warning for check in SEEN for warning in check(setup, result)]
+
+
+def accuracy_warning(error: float, asked: float, place: str) -> Warning | None:
+    """A step whose estimated error is above the accuracy that was asked for; both are relative."""
+    if error <= asked:
+        return None
+    message = (
+        f"the error of the steps is about {100 * error:.2g} %, more than the {100 * asked:.2g} % asked for; "
+        "smaller steps make it less"
+    )
+    return Warning("step error", place, message, error, asked)
+
+
+def beyond_validity(greatest: float, limit: float, material: str, place: str) -> Warning:
+    """Plastic work beyond that up to which a material's constants are valid, N/mm²; `place` is where it began."""
+    message = (
+        f"the plastic work b* is up to {greatest:.4g} N/mm², and the constants of {material} are valid up to "
+        f"{limit:.4g} N/mm²; it is beyond since {place}"
+    )
+    return Warning("plastic work", place, message, greatest, limit, "N/mm²")
+
+
+# ---- from the steps --------------------------------------------------------------------------------------------------
+
+
+def _plastic_work(setup: Setup, result: Result) -> Iterator[Warning]:
+    limit = setup.limits.plastic_work
+    first = next((step for step in result.steps if step.plastic_work_max_N_per_mm2 > limit), None)
+    if first is not None:
+        greatest = max(step.plastic_work_max_N_per_mm2 for step in result.steps)
+        yield beyond_validity(greatest, limit, setup.material, _place(first))
+
+
+def _lift_off(setup: Setup, result: Result) -> Iterator[Warning]:
+    lifted = [step for step in result.steps if step.lift_off_mm > 0.0]
+    if lifted:
+        greatest, place = max(step.lift_off_mm for step in lifted), _place(lifted[0])
+        message = (
+            f"the spring leaves a seat at {place}, by up to {greatest:.4g} mm: seats cannot pull, and a soft string "
+            "holds it in place, whose force is no force of the spring"
+        )
+        yield Warning("lift-off", place, message, greatest, 0.0, "mm")
+
+
+def _slipped(setup: Setup, result: Result) -> Iterator[Warning]:
+    first = next((step for step in result.steps if _rise(step) < SLIPPED), None)
+    if first is not None:
+        least, place = min(_rise(step) for step in result.steps), _place(first)
+        message = (
+            f"coils have slipped past each other since {place}: the rise from one to the next is {least:.2g} of what "
+            "it is where they lie on each other"
+        )
+        yield Warning("coils slipped", place, message, least, SLIPPED)
+
+
+def _rise(step: Step) -> float:
+    return 1.0 if step.least_rise is None else step.least_rise
+
+
+def _penetration(setup: Setup, result: Result) -> Iterator[Warning]:
+    deepest, limit = max(result.steps, key=lambda step: step.penetration_mm, default=None), setup.limits.penetration
+    if deepest is not None and deepest.penetration_mm > limit:
+        depth, place = deepest.penetration_mm, _place(deepest)
+        message = f"coils or seats lie {depth:.3g} mm in each other at {place}, more than {limit:.3g} mm"
+        yield Warning("penetration", place, message, depth, limit, "mm")
+
+
+def _buckled(setup: Setup, result: Result) -> Iterator[Warning]:
+    found, limit = buckling(result.steps, setup.mean_diameter), setup.buckling_travel
+    if found is not None:
+        beside = f"at {limit:.4g} mm" if isfinite(limit) else "never"
+        message = (
+            f"the spring buckled at a travel of {found.travel_mm:.4g} mm and {found.force_N:.4g} N (EN 13906-1: "
+            f"{beside}); what follows is of the buckled shape"
+        )
+        place = f"travel {found.travel_mm:.4g} mm"
+        yield Warning("buckled", place, message, found.travel_mm, limit if isfinite(limit) else None, "mm")
+
+
+def _unstable(setup: Setup, result: Result) -> Iterator[Warning]:
+    unstable = [step for step in result.steps if step.negative_pivots > 0]
+    if unstable:
+        message = (
+            f"{len(unstable)} steps are unstable equilibria, no stable one was found beside them: several branches "
+            "exist, smaller steps may find another"
+        )
+        yield Warning("unstable", _place(unstable[0]), message, len(unstable), 0.0)
+
+
+def _place(step: Step) -> str:
+    return f"step {step.number}, travel {step.travel_mm:.4g} mm"
+
+
+# ---- from what was found ---------------------------------------------------------------------------------------------
+
+
+def _strength(setup: Setup, result: Result) -> Iterator[Warning]:
+    strength = setup.limits.strength
+    if strength is None or not result.snapshots:
+        return
+    greatest, shot = max(((_equivalent(shot), shot) for shot in result.snapshots), key=lambda pair: pair[0])
+    if greatest > strength:
+        message = (
+            f"the equivalent stress is {greatest:.4g} N/mm² at {shot.name}, above the wire's least strength Rm of "
+            f"{strength:.4g} N/mm²"
+        )
+        yield Warning("strength", shot.name, message, greatest, strength, "MPa")
+
+
+def _equivalent(shot: Snapshot) -> float:
+    return float(surface.equivalent(shot.surface_state, shot.components).max())
+
+
+def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
+    """Of a program that goes to block and comes back."""
+    if "block" in setup.phases and released(result):
+        spring = setup.spring
+        set_mm = spring.free_length - setup.outer_length(result.snapshots[-1].x)
+        warning = presetting_warning(set_mm, spring.free_length - spring.block_height)
+        if warning is not None:
+            yield warning
+
+
+def released(result: Result) -> bool:
+    """Whether the spring is free of load where the run stands."""
+    greatest = max((abs(step.force_N) for step in result.steps), default=0.0)
+    return bool(result.steps) and abs(result.snapshots[-1].force) <= 1e-6 * greatest
+
+
+SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _penetration, _buckled, _unstable)
+FOUND: tuple[Check, ...] = (_strength, _presetting)

@@ -1,0 +1,59 @@
+"""All that a spring maker would warn of about a case before it runs: its entries, its spring, its working lengths."""
+
+from collections.abc import Iterator
+
+from coilset.meshes.errors import InputError
+from coilset.meshes.geometry import Spring
+from coilset.model.case import Case
+from coilset.model.material.law import Law
+from coilset.model.standards.cylinder import Cylinder
+from coilset.model.standards.sheet import Sheet, working_lengths
+from coilset.model.standards.steel import STEEL, Elastic
+from coilset.model.standards.warnings import spring_warnings
+from coilset.model.standards.wires import wire
+from coilset.model.standards.working import endurance_warnings, gap_warnings, stress_warnings
+from coilset.model.warning import Warning
+
+
+def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
+    """Warnings about a case, before it runs.
+
+    Args:
+        case: Case.
+        spring: its spring.
+        law: its material.
+    """
+    return (*_renamed(case), *spring_warnings(spring), *_working(case, spring, law))
+
+
+def _renamed(case: Case) -> Iterator[Warning]:
+    for notice in case.notices():
+        yield Warning("earlier name", notice.partition(":")[0], notice)
+
+
+def _working(case: Case, spring: Spring, law: Law) -> list[Warning]:
+    """About the load program, of cylinders of one wire, which the formulas are for."""
+    try:
+        cylinder = Cylinder.of(spring)
+    except InputError:
+        return []
+    named = None if isinstance(case.material, str) else wire(case.material.wire)
+    made = Sheet(cylinder, Elastic(law.G, law.E, STEEL.density), spring.wire_length, named)
+    lengths = working_lengths(case.loading, cylinder.length, made.rate, cylinder.solid)
+    to_block = [cylinder.solid] if any(phase.to == "block" for phase in case.loading) else []
+    return sheet_warnings(Sheet(cylinder, made.elastic, made.helix, named, lengths), to_block)
+
+
+def sheet_warnings(made: Sheet, to_block: list[float]) -> list[Warning]:
+    """Warnings about the working lengths of a sheet.
+
+    Args:
+        made: Sheet.
+        to_block: the block length, mm, if the spring goes there, for the stress alone.
+    """
+    found = gap_warnings(made.spring, made.lengths, made.dynamic)
+    if made.wire:
+        found += stress_warnings(made.spring, made.elastic.shear_modulus, [*made.lengths, *to_block], made.wire)
+    if made.cycle and made.endured:
+        found += endurance_warnings(made.cycle, made.endured)
+    return found

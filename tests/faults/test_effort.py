@@ -1,0 +1,46 @@
+"""What a run will take is said before it begins; what no machine could hold is refused."""
+
+import pytest
+
+from coilset.meshes.errors import InputError
+from coilset.model import analysis as room
+from coilset.model.analysis import Analysis
+from coilset.model.case import read_case
+from coilset.model.effort import Effort, machine_memory
+
+
+def test_the_estimate_is_that_of_the_measured_table():
+    """docs/scaling.md: 40,000 elements with 96 points, 9 iterations of one step: 18.4 s and 1.26 GiB."""
+    effort = Effort.of(40_000, 96, 1)
+    assert effort.seconds == pytest.approx(18.42 * 6 / 9, rel=0.1)
+    assert effort.memory == pytest.approx(1.26 * 2**30, rel=0.1)
+    assert Effort.of(400_000, 96, 1).memory == pytest.approx(10.12 * 2**30, rel=0.05)
+
+
+def test_more_than_the_memory_is_refused():
+    effort = Effort.of(40_000, 96, 1)
+    effort.check_memory(effort.memory)
+    with pytest.raises(InputError, match=r"40,000 elements need about 1\.25 GiB, and this machine has 1 GiB"):
+        effort.check_memory(2.0**30)
+    assert 2**28 < machine_memory() < 2**50
+
+
+@pytest.mark.parametrize(
+    "setting", ["mesh.elements_per_turn=1e6", "mesh.section={radial: 64, angular: 256}", "mesh.sagitta=1e-12"]
+)
+def test_a_mesh_without_measure_is_refused_at_once(example, monkeypatch, setting):
+    monkeypatch.setattr(room, "line_mesh", None)  # nothing is built
+    monkeypatch.setattr(room, "machine_memory", lambda: 2.0**33)
+    with pytest.raises(InputError, match="mesh") as caught:
+        Analysis(
+            read_case(example, ["mesh.elements_per_turn=2000", setting, "ends=clamped", "loading=[{to: {travel: 1}}]"])
+        )
+    assert "\n" not in str(caught.value)
+
+
+def test_a_run_of_hours_is_said():
+    assert Effort.of(40, 96, 24).warnings() == []
+    (warning,) = Effort.of(40_000, 96, 1000).warnings()
+    assert warning.name == "duration"
+    assert warning.value == pytest.approx(3.2, abs=0.1)
+    assert "about 3.2 hours" in warning.message

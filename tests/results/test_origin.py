@@ -1,0 +1,51 @@
+"""Results stand by themselves: the case in them runs again, and gives the same."""
+
+import json
+
+import numpy as np
+import pytest
+import xarray as xr
+from mpi4py import MPI
+
+from coilset.model.analysis import Analysis
+from coilset.model.case import check, read_case
+from coilset.model.material.file import MaterialFile
+from coilset.model.results.provenance import origin
+from coilset.model.results.summary import summarise
+from coilset.model.version import __version__
+from coilset.scripts.solve import solve
+
+COARSE = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "loading=[{to: {travel: 3}, steps: 2}]"]
+
+
+@pytest.fixture(scope="module")
+def folder(example, tmp_path_factory):
+    out = tmp_path_factory.mktemp("run") / "out"
+    solve(example, out, False, [*COARSE, "spring.mean_diameter=110"], False, comm=MPI.COMM_SELF)
+    return out
+
+
+def test_the_case_in_a_summary_runs_again(folder, ck15):
+    summary = json.loads((folder / "summary.json").read_text())
+    again = Analysis(check(summary["origin"]["case"]), MPI.COMM_SELF)
+    found = summarise(again.setup, again.run())
+    found = json.loads(json.dumps(found))
+    assert found == {name: value for name, value in summary.items() if name != "origin"}
+    assert MaterialFile.model_validate(summary["origin"]["material"]) == ck15.data
+
+
+def test_points_hold_the_same(folder):
+    made_with = json.loads((folder / "summary.json").read_text())["origin"]
+    with xr.open_dataset(folder / "points.nc", engine="h5netcdf") as data:
+        assert json.loads(data.attrs["case"]) == made_with["case"]
+        assert json.loads(data.attrs["material_file"]) == made_with["material"]
+        assert {name: data.attrs[name] for name in ("date", "platform", "versions")}.items() <= made_with.items()
+        (warning,) = json.loads(data.attrs["warnings"])
+    assert warning["name"] == "index"  # D/d = 22
+    assert __version__ in made_with["versions"]
+    assert np.datetime64(made_with["date"].removesuffix("+00:00")) > np.datetime64("2020-01-01")
+
+
+def test_the_file_of_a_measured_spring_is_told_by_its_content(example):
+    made_with = origin(read_case(example.parent / "springs" / "measured.yaml"))
+    assert set(made_with["contents"]) == {"material", "spring.file"}

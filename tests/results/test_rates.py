@@ -1,0 +1,65 @@
+"""Rates from a characteristic, against curves whose slope is known, and active turns of a spring that is let go."""
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from coilset.model.analysis import Analysis
+from coilset.model.case import read_case
+from coilset.model.results.rates import first_compression, last_release, makers_rate, rate_at
+from coilset.model.results.record import Step
+from coilset.model.results.summary import summarise
+
+TRAVEL = np.linspace(0.0, 10.0, 21)
+
+
+def step(number, travel, force, free_length=50.0):
+    return Step(number, 0, 1.0, free_length - travel, travel, force, 1, 1, 0, 0, 0, 0.0)
+
+
+def test_the_makers_rate_is_the_secant_from_30_to_70():
+    force = 3.0 * TRAVEL + 0.5 * TRAVEL**2
+    assert makers_rate(TRAVEL, force, 10.0) == pytest.approx((3 * 4 + 0.5 * (49 - 9)) / 4)
+    assert makers_rate(TRAVEL, force, 15.0) is None
+
+
+@pytest.mark.parametrize("at", [0.1, 4.2, 9.9])
+def test_the_rate_at_a_travel_is_exact_for_a_parabola(at):
+    assert rate_at(TRAVEL, 3.0 * TRAVEL + 0.5 * TRAVEL**2, at) == pytest.approx(3.0 + at, rel=1e-10)
+    assert rate_at(TRAVEL, TRAVEL, 10.1) is None
+
+
+def test_branches_of_a_characteristic():
+    there = [step(k, travel, 2 * travel) for k, travel in enumerate((2.0, 4.0, 6.0))]
+    back = [step(3 + k, travel, 3 * (travel - 2.0)) for k, travel in enumerate((4.0, 2.0))]
+    assert first_compression([*there, *back])[0].tolist() == [0.0, 2.0, 4.0, 6.0]
+    travel, force = last_release([*there, *back], 48.0)
+    assert travel.tolist() == [0.0, 2.0, 4.0]
+    assert force.tolist() == [0.0, 6.0, 12.0]
+
+
+@pytest.fixture(scope="module")
+def pressed(example):
+    loading = "loading=[{to: {travel: 13}, steps: 7}, {to: {force: 0}, steps: 5}, {to: {force: 100}, steps: 2}]"
+    settings = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "rates_at=[1.0]", loading]
+    analysis = Analysis(read_case(example, settings), MPI.COMM_SELF)
+    analysis.run()
+    return analysis
+
+
+def test_active_turns_of_release_are_those_of_loading(pressed):
+    """A spring that has set keeps a torque that goes with no force: counted with it there were more than all turns."""
+    active = np.array([one.active_turns for one in pressed.result.seats])
+    forces = np.array([one.force_N for one in pressed.result.steps])
+    assert np.isnan(active[11])  # free of load
+    assert active[7:11] == pytest.approx(active[0], rel=0.02)
+    assert active[12:] == pytest.approx(active[0], rel=0.02)
+    assert np.all(np.diff(forces[7:12]) < 0)
+
+
+def test_the_rates_of_a_spring_that_sets(pressed):
+    summary = summarise(pressed.setup, pressed.result)
+    assert summary["rate_30_70_N_per_mm"] < 0.2 * summary["rate_N_per_mm"]  # it yields from a tenth of the travel on
+    (asked,) = summary["rates"]
+    assert asked["travel_mm"] == 1.0
+    assert asked["rate_N_per_mm"] == pytest.approx(summary["rate_N_per_mm"], rel=0.1)

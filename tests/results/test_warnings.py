@@ -1,0 +1,129 @@
+"""What a run says about itself: each warning on either side of its bound, as data, on the screen and in the log."""
+
+import json
+from dataclasses import replace
+
+import pytest
+from mpi4py import MPI
+
+from coilset.model.analysis import Analysis
+from coilset.model.case import read_case
+from coilset.model.results.checkpoint import Checkpoint
+from coilset.model.results.record import Result, Step
+from coilset.model.results.summary import summarise
+from coilset.model.results.warnings import accuracy_warning, run_warnings, step_warnings
+from coilset.model.standards.case_warnings import case_warnings
+from coilset.model.standards.wires.law import case_law
+from coilset.model.warning import Warning
+from coilset.scripts.solve import solve
+
+COARSE = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9"]
+LIFTED = "loading=[{to: {travel: 8}, steps: 4}, {to: {force: 0}, steps: 2}, {to: {travel: 0}, steps: 2}]"
+
+
+@pytest.fixture(scope="module")
+def lifted(example):
+    """A spring that sets and is then drawn up to its free length."""
+    analysis = Analysis(read_case(example, [*COARSE, LIFTED, "rates_at=[4]"]), MPI.COMM_SELF)
+    analysis.run()
+    return analysis
+
+
+def names(warnings):
+    return [warning.name for warning in warnings]
+
+
+def test_a_seat_that_lifts_off_is_told(lifted):
+    (warning,) = run_warnings(lifted.setup, lifted.result)
+    steps = lifted.result.steps
+    assert warning.name == "lift-off"
+    assert warning.place.startswith("step 7, ")
+    assert [step.lift_off_mm > 0.0 for step in steps] == [False] * 6 + [True] * 2
+    # the gaps at both seats make up what the spring has set, as seen where it was free of load
+    gap = steps[-1].seat_height_mm - steps[5].seat_height_mm
+    assert steps[-1].lift_off_mm == pytest.approx(0.5 * gap, rel=0.01)
+    assert warning.value == steps[-1].lift_off_mm
+
+
+def test_no_rate_is_that_of_a_lifted_seat(lifted):
+    summary = summarise(lifted.setup, lifted.result)
+    (asked,) = summary["rates"]
+    assert asked["rate_N_per_mm"] > 0.0
+    assert summary["rate_30_70_after_N_per_mm"] is None  # not free of load: the string pulls
+    assert summary["warnings"] == [vars(warning) for warning in run_warnings(lifted.setup, lifted.result)]
+
+
+def test_warnings_of_steps(lifted):
+    step = Step(1, 0, 1.0, 30.0, 5.0, 100.0, 3, 4, 0, 0, 2, 0.0)
+    setup, limits = lifted.setup, lifted.setup.limits
+    bounds = [
+        ("plastic work", {"plastic_work_max_N_per_mm2": limits.plastic_work}, 1.001),
+        ("penetration", {"penetration_mm": limits.penetration}, 1.001),
+        ("coils slipped", {"least_rise": 0.7}, 0.999),
+        ("lift-off", {"lift_off_mm": 0.0}, None),
+        ("unstable", {"negative_pivots": 0}, None),
+    ]
+    for name, right, factor in bounds:
+        wrong = {key: value * factor if factor else 1 for key, value in right.items()}
+        assert step_warnings(setup, Result(steps=(replace(step, **right),))) == []
+        found = step_warnings(setup, Result(steps=(step, replace(step, number=2, **wrong))))
+        assert name in names(found)
+        assert next(one for one in found if one.name == name).place.startswith("step 2, ") or name == "buckled"
+
+
+def test_the_steps_error_is_held_against_the_accuracy_asked_for():
+    assert accuracy_warning(0.01, 0.01, "block") is None
+    assert accuracy_warning(0.02, 0.01, "block").value == 0.02
+
+
+def test_stress_above_the_wires_strength(example):
+    wire = "material={wire: EN 10270-1 SH}"
+    block = [*COARSE, wire, "loading=[{to: {travel: 17}, steps: 3}]"]
+    analysis = Analysis(read_case(example, block), MPI.COMM_SELF)
+    analysis.run()
+    strength = analysis.setup.limits.strength
+    assert strength == pytest.approx(1656.8, abs=0.1)  # 2230 − 820 lg 5
+    assert names(analysis.setup.warnings) == ["gap"]
+    assert "strength" not in names(run_warnings(analysis.setup, analysis.result))
+    lower = replace(analysis.setup, limits=replace(analysis.setup.limits, strength=300.0))
+    assert "strength" in names(run_warnings(lower, analysis.result))
+
+
+@pytest.mark.parametrize(("height", "found"), [(65.0, []), (64.5, ["stress"]), (63.0, ["stress"])])
+def test_nominal_stress_above_what_a_named_wire_is_allowed(example, height, found):
+    """R = 81500 · 5⁴/(8 · 40³ · 2.5) = 39.79 N/mm, τ = 8 D R s/(π d³) = 32.43 s; 0.56 Rm = 927.8 N/mm² at 28.6 mm."""
+    settings = ["material={wire: EN 10270-1 SH}", "spring.pitch=35.4", f"loading=[{{to: {{height: {height}}}}}]"]
+    case = read_case(example, settings)
+    spring = case.spring.build()
+    assert spring.free_length == pytest.approx(93.5)
+    assert names(case_warnings(case, spring, case_law(case, spring))) == found
+
+
+def test_little_presetting(example):
+    settings = [*COARSE, "material=elastic", "loading=[{to: block, steps: 6}, {to: {force: 0}, steps: 4}]"]
+    analysis = Analysis(read_case(example, settings), MPI.COMM_SELF)
+    analysis.run()
+    found = next(one for one in run_warnings(analysis.setup, analysis.result) if one.name == "presetting")
+    assert found.value == pytest.approx(0.0, abs=1e-4)
+    assert found.limit == pytest.approx(0.1 * 17.5)
+
+
+def test_they_are_in_the_log_the_summary_and_the_checkpoint(example, tmp_path, capsys):
+    solve(example, tmp_path / "out", False, [*COARSE, LIFTED, "contact.deepest=0.02"], False, comm=MPI.COMM_SELF)
+    found = json.loads((tmp_path / "out" / "summary.json").read_text())["warnings"]
+    assert [one["name"] for one in found] == ["earlier name", "lift-off"]
+    log = (tmp_path / "out" / "log.txt").read_text()
+    printed = " ".join(capsys.readouterr().out.split())
+    for one in found:
+        assert one["message"] in log
+        assert printed.rindex("warning: " + one["message"]) > printed.index("results in")
+    assert log.index("leaves a seat") < log.index("step 8:")  # said when it happened
+
+
+def test_a_checkpoint_keeps_warnings(example, tmp_path):
+    case = read_case(example, [*COARSE, "loading=[{to: {travel: 1}, steps: 1}]"])
+    analysis, checkpoint = Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case)
+    warning = Warning("initial rate", "start", "the initial rate is not known")
+    analysis.result = replace(analysis.result, warnings=(warning,))
+    analysis.run(save=checkpoint.save)
+    assert checkpoint.load(MPI.COMM_SELF).result.warnings == (warning,)
