@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
 
 STRAIGHT = 1e-9  # curvature, 1/mm, below which a section has no normal
@@ -138,6 +139,27 @@ def section_placement(
     P[..., :3, :3] = P[..., 3:, 3:] = np.swapaxes(Q, -1, -2)
     P[..., :3, 3:] = np.swapaxes(Q, -1, -2) @ K_cross_o
     return Placement(P / stretch[..., None, None], stretch, curvature, torsion)
+
+
+def refuse_sharp_bends(placement: Placement, radius: np.ndarray, turns: np.ndarray) -> None:
+    """A wire bent to a radius below its own has no length left at the inside: 1 − κ y is negative there.
+
+    Args:
+        placement: of the sections.
+        radius: of the wire, each element's, mm, shape (n,).
+        turns: of the nodes, shape (n + 1,).
+
+    Raises:
+        InputError: if there is such a place.
+    """
+    bent = placement.curvature * radius[:, None]
+    if bent.size and bent.max() >= 1.0:
+        i, g = np.unravel_index(np.argmax(bent), bent.shape)
+        raise InputError(
+            f"the wire of radius {radius[i]:.4g} mm is bent to a radius of {1 / placement.curvature[i, g]:.4g} mm near "
+            f"turn {turns[i]:.4g}; give smoother points, their noise (spring.noise), or mesh.section.kind: plane",
+            "spring",
+        )
 
 
 def _least_turn(t: np.ndarray) -> np.ndarray:

@@ -40,7 +40,9 @@ class SectionMesh:
         return 2.0 * np.sqrt(self.area / np.pi)
 
 
-def section_mesh(outline: Outline, across: float = 5.0, degree: int = 3, surface: float = 1.0) -> SectionMesh:
+def section_mesh(
+    outline: Outline, across: float = 5.0, degree: int = 3, surface: float = 1.0, inside: float = 1.0
+) -> SectionMesh:
     """Mesh a section.
 
     Args:
@@ -48,6 +50,8 @@ def section_mesh(outline: Outline, across: float = 5.0, degree: int = 3, surface
         across: triangles across the round section of the same area.
         degree: of the triangles' sides and of the displacements, 2 or 3.
         surface: how much finer the triangles are at the surface than in the middle.
+        inside: how much finer they are at the inside of the coil, where stress is greatest and steep: from the place of
+            least ξ to the middle their size grows in proportion to the distance.
 
     Returns:
         SectionMesh.
@@ -67,8 +71,8 @@ def section_mesh(outline: Outline, across: float = 5.0, degree: int = 3, surface
         gmsh.model.occ.synchronize()
         area, outer = gmsh.model.occ.getMass(2, face), gmsh.model.getBoundary([(2, face)], oriented=False)
         size = 2.0 * np.sqrt(area / np.pi) / across
-        _sizes(size, surface, [tag for _, tag in outer])
         extent = _extent([tag for _, tag in outer])
+        _sizes(size, surface, inside, [tag for _, tag in outer], extent)
         gmsh.model.addPhysicalGroup(2, [face], name="section")
         gmsh.model.mesh.generate(2)
         gmsh.model.mesh.setOrder(degree)
@@ -90,8 +94,10 @@ def _extent(curves: list[int]) -> tuple[float, float, float, float]:
     return (*np.sort(points[:, 0])[[0, -1]].tolist(), *np.sort(points[:, 1])[[0, -1]].tolist())
 
 
-def _sizes(size: float, surface: float, curves: list[int]) -> None:
-    """Triangles of a size, and of size/surface at the curves, in the current gmsh model."""
+def _sizes(
+    size: float, surface: float, inside: float, curves: list[int], extent: tuple[float, float, float, float]
+) -> None:
+    """Triangles of a size, of size/surface at the curves and size/inside at the inside, in the current gmsh model."""
     field, options = gmsh.model.mesh.field, gmsh.option
     for name in ("MeshSizeFromPoints", "MeshSizeFromCurvature", "MeshSizeExtendFromBoundary"):
         options.setNumber(f"Mesh.{name}", 0)
@@ -104,3 +110,10 @@ def _sizes(size: float, surface: float, curves: list[int]) -> None:
                         ("DistMin", 0.5 * size / surface), ("DistMax", 2.0 * size)):  # fmt: skip
         field.setNumber(threshold, name, value)
     field.setAsBackgroundMesh(threshold)
+    left, right, low, high = extent
+
+    def nearer(dimension: int, tag: int, ξ: float, η: float, zero: float, asked: float) -> float:
+        away = np.hypot(ξ - left, η - 0.5 * (low + high)) / (0.5 * (right - left))
+        return min(asked, size * (1.0 / inside + (1.0 - 1.0 / inside) * away))
+
+    gmsh.model.mesh.setSizeCallback(nearer)

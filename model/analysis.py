@@ -11,7 +11,7 @@ from mpi4py import MPI
 
 from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.line import line_mesh
-from coilset.meshes.placement import section_placement, straight
+from coilset.meshes.placement import refuse_sharp_bends, section_placement, straight
 from coilset.model.case import Case
 from coilset.model.case.phases import Phase
 from coilset.model.case.targets import check_targets
@@ -85,6 +85,7 @@ class Analysis:
         if case.mesh.axis == "curved":
             chords = chord_triads(np.diff(line.stations, axis=0))
             placement = section_placement(spring, turns, chords, GAUSS, section.kind != "plane")
+            refuse_sharp_bends(placement, radius, turns)
         self.rod = Rod(line, radius, self.law, section.build(), placement, case.temperature, section.kind,
                        section.degree)  # fmt: skip
         seats = case.seats if case.ends == "seats" else None

@@ -6,9 +6,11 @@ d₃ = −sin ϑ e_θ + cos ϑ e_z the strains of the section, E = (Γ₁, Γ₃
 
     Γ₁ = x′·d₁ − 1,   Γ₃ = x′·d₃,   K₁ = λ sin ϑ/j − h/j²,   K₃ = λ cos ϑ/j − R/j²,
 
-those of its points (y outward, z along d₃, m = 1 + yR/j², weight of the area m)
+those of its points (y outward, z along d₃, κ = R/j², m = 1 + κ y, weight of the area m)
 
-    ε₁₁ = ln(1 + (Γ₁ + K₃ y)/m),   γ₁₂ = K₁ z/m,   γ₁₃ = (Γ₃ − K₁ y)/m.
+    ε₁₁ = ln(1 + (Γ₁ + K₃ y)/m),   γ₁₂ = (K₁ z − κ w)/m + ∂w/∂y,   γ₁₃ = (Γ₃ − K₁ y)/m + ∂w/∂z
+
+with the warping w = −3/7 Γ₃ z (ρ² − 2/3) of `coilset.model.section.curved`, ρ = 1 on the surface.
 
 Equilibrium is ∂W/∂R̄ = ∂W/∂ϑ = 0 of the work W per radian; ∂W/∂h̄ = N sin ϑ + Q₃ cos ϑ is the axial force and ∂W/∂λ
 the torque. For plans, inverse design and start values; docs/slice.md says how far it is from the slice.
@@ -24,7 +26,7 @@ from coilset.meshes.errors import SolveError
 from coilset.model.material.law import Law
 from coilset.model.material.points import initial_state
 from coilset.model.section.rules import DiskRule, polar, upper_half
-from coilset.model.section.uniform import RISE, Rod, step
+from coilset.model.section.uniform import RISE, Rod, force_shear, step
 
 SMALLEST_PART = 2.0**-8  # of a step, before it is given up
 
@@ -96,7 +98,7 @@ def press(
             the coil's plane mirrors ε₁₁ and γ₁₃, and turns the sign of γ₁₂.
         free_ends: the ends may turn about the coil's axis (no torque); else they keep the turn λ that they have.
         temperature: K; default is the law's reference temperature.
-        plain: m = 1, all fibres of the section count as equally long; for comparisons.
+        plain: the thesis's section, m = 1 and w = 0; for comparisons.
 
     Returns:
         What was not given, forces (N) or travels (mm), shape (n, steps), and the UniformState at the end.
@@ -147,7 +149,10 @@ def _press(
         d, D, pitch, turns = coils[i]
         R, h = 0.5 * D, pitch / (2.0 * math.pi)
         j, area, bend = math.hypot(R, h), 0.25 * math.pi * d * d * w, 0.0 if plain else R / (R * R + h * h)
-        rod = Rod(p, R, h, j, 0.5 * d * y, 0.5 * d * z, area, bend, by_force, free)
+        across, along = np.zeros_like(y), np.ones_like(y)
+        if not plain:
+            across, along = force_shear(0.5 * d, 0.5 * d * y, 0.5 * d * z, bend)
+        rod = Rod(p, R, h, j, 0.5 * d * y, 0.5 * d * z, area, bend, across, along, by_force, free)
         last = 0.0
         for k in range(targets.shape[1]):
             start, end = force[i], targets[i, k]

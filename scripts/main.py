@@ -88,7 +88,7 @@ def slice_(
     force: bool = typer.Option(False, "--force", help="replace results that are there"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
     section: str = typer.Option(None, help="oval:4:5, rectangle:4:5:0.5, trapezoid:4:5:6:0.4, FILE.csv"),
-    across: float = typer.Option(None, help="triangles across the section; default 6.5"),
+    across: float = typer.Option(None, help="triangles across the section; default 5.75"),
     pictures: bool = typer.Option(True, help="draw the figure"),
 ) -> None:
     """Press and release a cylindrical spring as a 3D body, by one section of its wire, and write what it found."""

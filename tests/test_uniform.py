@@ -9,7 +9,7 @@ from coilset.meshes.errors import SolveError
 from coilset.model import uniform
 from coilset.model.material import library
 from coilset.model.section.rules import polar, upper_half
-from coilset.model.section.uniform import Rod, integrate, residual_and_tangent, strains
+from coilset.model.section.uniform import Rod, force_shear, integrate, residual_and_tangent, strains
 
 COIL = np.array([5.0, 40.0, 12.0, 2.5])
 
@@ -18,7 +18,8 @@ def rod(law, free=True):
     rule, R, h = polar(), 20.0, 12.0 / (2 * np.pi)
     y, z = 2.5 * np.ascontiguousarray(rule.points.T)
     j = math.hypot(R, h)
-    return Rod(law.parameters(), R, h, j, y, z, np.pi * 6.25 * rule.weights, R / j**2, True, free)
+    bend, area = R / j**2, np.pi * 6.25 * rule.weights
+    return Rod(law.parameters(), R, h, j, y, z, area, bend, *force_shear(2.5, y, z, bend), True, free)
 
 
 def forces(case, q, old_E, points):

@@ -24,9 +24,9 @@ class SectionSpec(Strict):
 
     kind: Annotated[
         Literal["plane", "curved", "warping"],
-        Field(description="plane as in the thesis; curved: plane, with fibres as long as the curved wire makes them; "
-                          "warping: free to warp, with all six stresses"),
-    ] = "plane"  # fmt: skip
+        Field(description="plane as in the thesis; curved: fibres as long as the curved wire makes them, and the shear "
+                          "of the transverse force; warping: free to warp, with all six stresses"),
+    ] = "curved"  # fmt: skip
     degree: Annotated[Whole, Field(ge=1, le=7, description="of the polynomials of a section that warps")] = 3
     rule: Annotated[Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")] = (
         "polar"

@@ -1,7 +1,7 @@
 """The kinds of sections: what a wire's cross-section may do, and what it knows of the wire's curvature.
 
 - plane: the thesis's; it stays plane and knows nothing of the curvature,
-- curved: it stays plane, and its fibres are as long as the curved wire makes them,
+- curved: its fibres are as long as the curved wire makes them, and it warps as its transverse force asks,
 - warping: it warps as the curved and twisted wire asks, and bears all six stresses.
 """
 
@@ -12,6 +12,7 @@ import numpy as np
 
 from coilset.meshes.placement import Placement
 from coilset.model.material.law import Law
+from coilset.model.section.curved import CurvedSections
 from coilset.model.section.plane import PlaneSections
 from coilset.model.section.rules import DiskRule
 from coilset.model.section.warping import WarpingSections
@@ -62,6 +63,5 @@ def make_sections(
         raise ValueError(f"kind '{kind}' is none of {', '.join(KINDS)}")
     if kind == "warping":
         return WarpingSections(law, parameters, rule, radius, placement, temperature, degree)
-    if kind == "plane":
-        placement = placement._replace(curvature=np.zeros_like(placement.curvature))
-    return PlaneSections(law, parameters, rule, radius, placement, temperature)
+    sections = CurvedSections if kind == "curved" else PlaneSections
+    return sections(law, parameters, rule, radius, placement, temperature)

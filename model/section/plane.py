@@ -1,12 +1,4 @@
-"""Sections that stay plane, with three stresses at their points (5.2.42); of a straight wire or of a curved one.
-
-In a wire of curvature κ a fibre at the distance y from the axis, towards the centre of curvature, is shorter than the
-axis by g = 1 − κ y. A section that moves as a rigid disk with the strains Γ and K strains it by
-
-    (ε11, γ12, γ13) = (Γ + K × r) / g,   r = (0, y, z),
-
-and the virtual work ∫ σ : δε g dA leaves the resultants s = ∫ (σ, σ × …) dA free of g. κ = 0 is the thesis's section.
-"""
+"""The thesis's sections: they stay plane, in a straight wire, with three stresses at their points (5.2.4), (5.2.42)."""
 
 import math
 from collections.abc import Mapping
@@ -85,8 +77,8 @@ class PlaneSections:
         """
         place = self.placement
         status = update_sections(
-            self.parameters, self.y, self.z, self.weights, self.radius, place.curvature, strain - start["strain"],
-            place.matrices, place.stretch, start["point_state"], trial["point_state"], s, D,
+            self.parameters, self.y, self.z, self.weights, self.radius, strain - start["strain"], place.matrices,
+            place.stretch, start["point_state"], trial["point_state"], s, D,
         )  # fmt: skip
         return status == 0
 
@@ -97,8 +89,8 @@ class PlaneSections:
         """
         place = self.placement
         update_surface(
-            self.parameters, self.rim_y, self.rim_z, self.radius, place.curvature, strain - start["strain"],
-            place.matrices, start["surface_state"], trial["surface_state"],
+            self.parameters, self.rim_y, self.rim_z, self.radius, strain - start["strain"], place.matrices,
+            start["surface_state"], trial["surface_state"],
         )  # fmt: skip
 
 
@@ -109,7 +101,6 @@ def update_sections(
     z: np.ndarray,
     w: np.ndarray,
     radius: np.ndarray,
-    curvature: np.ndarray,
     de: np.ndarray,
     placement: np.ndarray,
     stretch: np.ndarray,
@@ -127,7 +118,6 @@ def update_sections(
         p: parameters of the material law.
         y, z, w: points of the unit disk and weights, shape (points,).
         radius: wire radius of each element, shape (cells,), mm.
-        curvature: κ of the wire, towards y, shape (cells, 2), 1/mm.
         de: increments of the section strains ε, γ12, γ13, φ′, κ2 = −w″, κ3 = v″, shape (cells, 2, 6).
         placement: shape (cells, 2, 6, 6), stretch: ds/dx, shape (cells, 2).
         old: state at the last equilibrium, shape (cells, 2, points, n_state); not changed.
@@ -152,9 +142,9 @@ def update_sections(
             resultant[:] = 0.0
             tangent[:] = 0.0
             for k in range(len(w)):
-                inverse = 1.0 / (1.0 - curvature[c, g] * R * y[k])
-                if not integrate_point(p, R * y[k], R * z[k], area * w[k], inverse, d, old[c, g, k], new[c, g, k],
-                                       C, resultant, tangent):  # fmt: skip
+                if not integrate_point(
+                    p, R * y[k], R * z[k], area * w[k], d, old[c, g, k], new[c, g, k], C, resultant, tangent
+                ):
                     return -1
             if not math.isfinite(resultant.sum()):
                 return -1
@@ -164,11 +154,10 @@ def update_sections(
 
 @njit(**INLINE)
 def strain_point(
-    p: np.ndarray, y: float, z: float, inverse: float, d: np.ndarray, old: np.ndarray, new: np.ndarray, C: np.ndarray
+    p: np.ndarray, y: float, z: float, d: np.ndarray, old: np.ndarray, new: np.ndarray, C: np.ndarray
 ) -> int:
-    """The law at one point: ε11 = (ε + κ2 z − κ3 y)/g, γ12 = (γ2 − φ′ z)/g, γ13 = (γ3 + φ′ y)/g (5.2.4)."""
-    e11 = (d[0] + d[4] * z - d[5] * y) * inverse
-    return return_map(p, old, e11, (d[1] - d[3] * z) * inverse, (d[2] + d[3] * y) * inverse, new, C)
+    """The law at one point: ε11 = ε + κ2 z − κ3 y, γ12 = γ2 − φ′ z, γ13 = γ3 + φ′ y (5.2.4)."""
+    return return_map(p, old, d[0] + d[4] * z - d[5] * y, d[1] - d[3] * z, d[2] + d[3] * y, new, C)
 
 
 @njit(**INLINE)
@@ -177,7 +166,6 @@ def integrate_point(
     y: float,
     z: float,
     dA: float,
-    inverse: float,
     d: np.ndarray,
     old: np.ndarray,
     new: np.ndarray,
@@ -185,8 +173,8 @@ def integrate_point(
     resultant: np.ndarray,
     tangent: np.ndarray,
 ) -> bool:
-    """Add one point's share to the section; `inverse` is 1/g."""
-    if strain_point(p, y, z, inverse, d, old, new, C) < 0:
+    """Add one point's share to the section."""
+    if strain_point(p, y, z, d, old, new, C) < 0:
         return False
     sigma, t2, t3 = new[0] * dA, new[1] * dA, new[2] * dA
     resultant[0] += sigma
@@ -195,8 +183,7 @@ def integrate_point(
     resultant[3] += t3 * y - t2 * z
     resultant[4] += sigma * z
     resultant[5] -= sigma * y
-    # tangent = Zᵀ C Z dA/g with Z = g ∂(ε11, γ12, γ13)/∂e; only the entries of Z that are not zero
-    dA *= inverse
+    # tangent = Zᵀ C Z dA with Z = ∂(ε11, γ12, γ13)/∂e; only the entries of Z that are not zero
     for i in range(3):
         c0, c1, c2 = C[i, 0] * dA, C[i, 1] * dA, C[i, 2] * dA
         row3 = c2 * y - c1 * z
@@ -224,7 +211,6 @@ def update_surface(
     y: np.ndarray,
     z: np.ndarray,
     radius: np.ndarray,
-    curvature: np.ndarray,
     de: np.ndarray,
     placement: np.ndarray,
     old: np.ndarray,
@@ -238,6 +224,5 @@ def update_surface(
         for g in range(2):
             to_section(placement[c, g], de[c, g], d)
             for k in range(len(y)):
-                inverse = 1.0 / (1.0 - curvature[c, g] * R * y[k])
-                if strain_point(p, R * y[k], R * z[k], inverse, d, old[c, g, k], new[c, g, k], C) < 0:
+                if strain_point(p, R * y[k], R * z[k], d, old[c, g, k], new[c, g, k], C) < 0:
                     new[c, g, k, :] = math.nan

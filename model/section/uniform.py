@@ -11,6 +11,7 @@ from numba import njit
 
 from coilset.model.material.functions import INLINE
 from coilset.model.material.rod import return_map
+from coilset.model.section.curved import shear_by_force
 
 RADIUS, INCLINATION, RISE, TURN = range(4)  # the coordinates q = (R̄, ϑ, h̄, λ)
 MAX_ITERATIONS = 25
@@ -18,8 +19,19 @@ PRECISION = 1e-9  # out-of-balance force over that which the step puts on the co
 ROUNDING = 1e-13  # below which, times the greatest resultant, nothing is out of balance
 
 # One coil and how it is driven: constants of the law; radius R, rise h, j = √(R² + h²); places and areas of the points;
-# dm/dy, R/j² or, for a plain section, 0.
-Rod = namedtuple("Rod", "p R h j y z area bend by_force free")
+# dm/dy, R/j² or, for a plain section, 0; m ∂(γ₁₂, γ₁₃)/∂Γ₃ at the points.
+Rod = namedtuple("Rod", "p R h j y z area bend across along by_force free")
+
+
+@njit(cache=True)
+def force_shear(r: float, y: np.ndarray, z: np.ndarray, bend: float) -> tuple[np.ndarray, np.ndarray]:
+    """m ∂(γ₁₂, γ₁₃)/∂Γ₃ at points y (outward), z of a wire of radius r, mm, as in `coilset.model.section.curved`."""
+    across, along = np.empty_like(y), np.empty_like(y)
+    for k in range(len(y)):
+        # y is outward here, towards the centre there
+        shear = shear_by_force(-y[k] / r, z[k] / r, bend * r, 1.0 + bend * y[k])
+        across[k], along[k] = -shear[1], shear[3]
+    return across, along
 
 
 @njit(**INLINE)
@@ -81,24 +93,27 @@ def integrate(
         if not stretched > 0.0:
             return False
         e11 = math.log(stretched / before)
-        g12 = (E[2] - old_E[2]) * z / m
-        g13 = (E[1] - old_E[1] - y * (E[2] - old_E[2])) / m
+        across, along = rod.across[k], rod.along[k]
+        g12 = (across * (E[1] - old_E[1]) + (E[2] - old_E[2]) * z) / m
+        g13 = (along * (E[1] - old_E[1]) - y * (E[2] - old_E[2])) / m
         if return_map(rod.p, old[k], e11, g12, g13, new[k], C) < 0:
             return False
         dA = rod.area[k] * m
-        # a = ∂(ε₁₁, γ₁₂, γ₁₃)/∂E: (a, 0, 0, ya), (0, 0, zb, 0), (0, b, −yb, 0)
+        # ∂(ε₁₁, γ₁₂, γ₁₃)/∂E: (a, 0, 0, ya), b (0, across, z, 0), b (0, along, −y, 0)
         a, b = 1.0 / stretched, 1.0 / m
         σ, t2, t3 = new[k, 0] * dA, new[k, 1] * dA, new[k, 2] * dA
         S[0] += σ * a
-        S[1] += t3 * b
+        S[1] += (t2 * across + t3 * along) * b
         S[2] += (t2 * z - t3 * y) * b
         S[3] += σ * a * y
         c00 = (C[0, 0] * dA - σ) * a * a  # with the logarithm's second derivative
-        c0q, cq0 = C[0, 2] * dA * a * b, C[2, 0] * dA * a * b
-        c0t, ct0 = (C[0, 1] * z - C[0, 2] * y) * dA * a * b, (C[1, 0] * z - C[2, 0] * y) * dA * a * b
-        cqq = C[2, 2] * dA * b * b
-        cqt, ctq = (C[2, 1] * z - C[2, 2] * y) * dA * b * b, (C[1, 2] * z - C[2, 2] * y) * dA * b * b
-        ctt = (z * (C[1, 1] * z - C[1, 2] * y) - y * (C[2, 1] * z - C[2, 2] * y)) * dA * b * b
+        ab, bb = dA * a * b, dA * b * b
+        c0q, cq0 = (C[0, 1] * across + C[0, 2] * along) * ab, (C[1, 0] * across + C[2, 0] * along) * ab
+        c0t, ct0 = (C[0, 1] * z - C[0, 2] * y) * ab, (C[1, 0] * z - C[2, 0] * y) * ab
+        q2, q3 = (C[1, 1] * across + C[1, 2] * along) * bb, (C[2, 1] * across + C[2, 2] * along) * bb
+        t2, t3 = (C[1, 1] * z - C[1, 2] * y) * bb, (C[2, 1] * z - C[2, 2] * y) * bb
+        cqq, cqt = across * q2 + along * q3, across * t2 + along * t3
+        ctq, ctt = z * q2 - y * q3, z * t2 - y * t3
         T[0, 0] += c00
         T[0, 1] += c0q
         T[0, 2] += c0t

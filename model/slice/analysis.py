@@ -18,7 +18,7 @@ from coilset.model.slice.slice import Coil, Slice
 from coilset.model.slice.watch import Watch
 from coilset.model.standards.wires.law import case_law
 
-ACROSS = 6.5  # triangles across the section: 600 unknowns of a round wire
+ACROSS, INSIDE = 5.75, 2.0  # triangles across the section, how much finer at the inside: 600 unknowns of a round wire
 AUTOMATIC = 16  # equal steps of a phase whose steps are `auto`
 PROBE = 1e-6  # travel by which the initial rate is measured, in free lengths
 TOUCHING = 1e-7  # gap at which coils count as touching, in wire diameters
@@ -103,7 +103,7 @@ class SliceAnalysis:
         d, D, pitch = (_same_in_all_turns(self.spring, name) for name in ("wire_diameter", "mean_diameter", "pitch"))
         self.wire_diameter, self.mean_diameter, self.is_round = d, D, outline is None
         self.coil, self.turns = Coil(0.5 * D, pitch), self.spring.turns
-        section = section_mesh(outline or round_wire(d), across, degree)
+        section = section_mesh(outline or round_wire(d), across, degree, inside=INSIDE)
         _fits(section.extent, d)
         self.body = Slice(section, self.coil, self.law, case.temperature)
         self.lattice = Lattice(self.body)

@@ -33,7 +33,7 @@ VARIANTS = {
     "augmented": (SPRING, ["contact.penetration=0.001"]),
     "friction": (CONE, ["contact.friction={seats: 0.1, coils: 0.1}"]),
     "automatic-steps": (CONE, ["loading.0.steps=auto", "loading.1.steps=auto"]),
-    "chords-abramowitz9": (SPRING, ["mesh.axis=chords", "mesh.section.rule=abramowitz9"]),
+    "chords-abramowitz9": (SPRING, ["mesh={axis: chords, section: {kind: plane, rule: abramowitz9}}"]),
     "bfgs": (SPRING, ["solver.method=bfgs", "ends=clamped", PRESSED]),
     "modified-newton": (SPRING, ["solver.method=modified-newton", "ends=clamped", PRESSED]),
     "arc-length": (SPRING, ["solver.method=arc-length", "ends=clamped", PRESSED]),

@@ -8,9 +8,11 @@ from coilset.meshes.spring import SpringSpec
 from coilset.model.analysis import Analysis
 from coilset.model.case import Case
 from coilset.model.results.summary import summarise
+from coilset.verification.springs.curved_rod import clamped_rate
 from coilset.verification.springs.torsion import CoilByCoil
 
 WIRE, MEAN, TURNS, PITCH = 5.0, 40.0, 2.5, 12.0
+PLANE = {"section": {"kind": "plane"}}
 
 
 def case(loading, elements=16, ends="clamped", **mesh):
@@ -63,7 +65,7 @@ def test_rate_converges_with_order_two_to_castigliano(ck15):
     """The chord polygon of the thesis: error of h², 0.1 % at 320 elements."""
     exact, errors = castigliano(ck15.E, ck15.G), []
     for per_turn in (16, 32, 64, 128):
-        rate = Analysis(case([{"to": {"travel": 1}}], per_turn, axis="chords"), MPI.COMM_SELF).initial_rate()
+        rate = Analysis(case([{"to": {"travel": 1}}], per_turn, axis="chords", **PLANE), MPI.COMM_SELF).initial_rate()
         errors.append(rate / exact - 1)
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     np.testing.assert_allclose(orders, 2.0, atol=0.12)
@@ -75,8 +77,17 @@ def test_curved_axis_meets_castigliano_at_16_elements_a_turn(ck15):
     size of what the probe's travel, a thousandth of the length, makes of the rate; the polygon has 3.5e-2."""
     exact = castigliano(ck15.E, ck15.G)
     for per_turn in (8, 16, 32):
-        rate = Analysis(case([{"to": {"travel": 1}}], per_turn), MPI.COMM_SELF).initial_rate()
+        rate = Analysis(case([{"to": {"travel": 1}}], per_turn, **PLANE), MPI.COMM_SELF).initial_rate()
         assert rate == pytest.approx(exact, rel=1e-4), per_turn
+
+
+def test_a_section_that_knows_the_curvature_meets_castigliano_with_its_stiffnesses(ck15):
+    """1.1 % stiffer than without, by the closed integrals of 1/g over the disk; 3e-5 is measured."""
+    spring = SpringSpec(wire_diameter=WIRE, mean_diameter=MEAN, turns=TURNS, pitch=PITCH).build()
+    exact = clamped_rate(spring, ck15.E, ck15.G, curved=True)
+    assert exact / castigliano(ck15.E, ck15.G) == pytest.approx(1.011, abs=1e-3)
+    rate = Analysis(case([{"to": {"travel": 1}}]), MPI.COMM_SELF).initial_rate()
+    assert rate == pytest.approx(exact, rel=1e-4)
 
 
 @pytest.fixture(scope="module")
@@ -100,11 +111,12 @@ def test_force_and_set_do_not_depend_on_the_number_of_steps(by_steps):
 
 def test_force_and_set_are_those_of_a_wire_in_torsion(by_steps, ck15):
     """The force of coils that twist and flow, without bending and heads, and what it leaves when it is taken off by the
-    elastic rate; 0.8 % and 0.02 % are found."""
+    elastic rate, that of the sections' curvature; 0.8 % and 0.01 % are found."""
     spring = SpringSpec(wire_diameter=WIRE, mean_diameter=MEAN, turns=TURNS, pitch=PITCH).build()
     force = CoilByCoil(spring, ck15).force(np.array([10.0]))[0]
     assert by_steps[160]["force"] == pytest.approx(force, rel=0.015)
-    assert by_steps[160]["set_mm"] == pytest.approx(10.0 - force / castigliano(ck15.E, ck15.G), rel=0.005)
+    back = force / clamped_rate(spring, ck15.E, ck15.G, curved=True)
+    assert by_steps[160]["set_mm"] == pytest.approx(10.0 - back, rel=0.003)
 
 
 def test_newton_needs_few_iterations(by_steps):
@@ -113,9 +125,11 @@ def test_newton_needs_few_iterations(by_steps):
 
 
 def test_small_travel_leaves_no_set():
-    """Below yield (τ = 106 MPa, some 2 mm) the spring comes back; what is left is rounding of the solve."""
+    """Below yield (τ = 106 MPa, some 2 mm) the spring comes back, nothing flows; what is left is a millionth of the
+    travel, the solve's tolerance."""
     analysis = Analysis(case([{"to": {"travel": 1.5}, "steps": 2}, {"to": {"force": 0}, "steps": 2}]), MPI.COMM_SELF)
-    assert abs(summarise(analysis.setup, analysis.run())["set_mm"]) < 1e-6
+    assert abs(summarise(analysis.setup, analysis.run())["set_mm"]) < 1.5e-6
+    assert not analysis.snapshot("end").point_state[..., 6].any()
 
 
 @pytest.mark.mpi

@@ -41,6 +41,7 @@ SPRINGS = {
 GROOVE = {"hold": "groove", "groove": 0.1}
 TRAVEL, STEPS = 18.0, 18
 PRESSED, DOWN, LOW, UP = 16.0, 12, 20.0, (12, 24)  # mm, steps, N, steps
+PLANE = {"section": {"kind": "plane"}}  # as the formulas here, which are those of straight wire
 COLOURS = {"open": "C0", "closed": "C3"}
 
 
@@ -50,7 +51,8 @@ def press(
     """Analysis of a spring after its program."""
     spring = SPRINGS[ends] if isinstance(ends, str) else ends
     analysis = Analysis(
-        check({"spring": spring, "material": material, "seats": seats or GROOVE, "loading": loading}), MPI.COMM_SELF
+        check({"spring": spring, "material": material, "seats": seats or GROOVE, "loading": loading, "mesh": PLANE}),
+        MPI.COMM_SELF,
     )
     analysis.run()
     return analysis

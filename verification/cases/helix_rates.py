@@ -1,12 +1,13 @@
 """Initial rates of clamped springs, D/d 4 to 12 and pitch 5° to 20°, against Castigliano's integral of the curved rod
 
-Nine cylinders of 2.5 turns, 16 rods a turn. The reference integrates the complementary energy of the true centre line
-with the six reactions of a clamped head (`springs/curved_rod.py`); it knows no elements. The rate is that at no
-travel: forces at 5e-5 and 1e-4 of the free length are extrapolated to zero, so that the characteristic's curvature
-counts with its second order only, 1e-8.
+Nine cylinders of 2.5 turns, 16 rods a turn, with sections that know the wire's curvature (`curved`) and the thesis's
+(`plane`). The reference integrates the complementary energy of the true centre line with the six reactions of a
+clamped head (`springs/curved_rod.py`), for `curved` with stiffnesses of its own of such a section; it knows no
+elements. The rate is that at no travel: forces at 5e-5 and 1e-4 of the free length are extrapolated to zero, so that
+the characteristic's curvature counts with its second order only, 1e-8.
 
-Tolerance: 3e-5, of which 0.7 to 2.2e-5 was found. The row of the formula G d⁴/8 D³ n, which knows neither pitch nor
-heads, is for reading.
+Tolerance: 3e-5, of which 0.7 to 2.3e-5 was found. The table of the formula G d⁴/8 D³ n, which knows neither pitch nor
+heads nor the sections' curvature, is for reading.
 """
 
 import matplotlib as mpl
@@ -24,40 +25,50 @@ FAST = True
 WIRE, TURNS = 5.0, 2.5  # mm
 INDICES, ANGLES = (4.0, 8.0, 12.0), (5.0, 12.5, 20.0)  # D/d, degrees
 TRAVEL = 5e-5  # of the free length
+KINDS = {"curved": "-", "plane": ":"}  # and how they are drawn
 
 
-def rate(index: float, angle: float) -> tuple[float, float, float]:
+def rate(index: float, angle: float, kind: str) -> tuple[float, float, float]:
     """The program's rate, Castigliano's and that of the formula for close coils, N/mm."""
     diameter = index * WIRE
     spring = {"wire_diameter": WIRE, "mean_diameter": diameter, "turns": TURNS,
               "pitch": np.pi * diameter * np.tan(np.radians(angle))}  # fmt: skip
     height = TURNS * spring["pitch"]
     loading = [{"to": {"travel": part * TRAVEL * height}, "steps": 1} for part in (1, 2)]
-    case: Case = check({"spring": spring, "material": "elastic", "ends": "clamped", "loading": loading})
+    case: Case = check({"spring": spring, "material": "elastic", "ends": "clamped", "loading": loading,
+                  "mesh": {"section": {"kind": kind}}})  # fmt: skip
     analysis = Analysis(case, MPI.COMM_SELF)
     one, two = (step.force_N / step.travel_mm for step in analysis.run().steps)
-    law = analysis.law
-    return 2.0 * one - two, clamped_rate(analysis.spring, law.E, law.G), law.G * WIRE**4 / (8.0 * diameter**3 * TURNS)
+    law, curved = analysis.law, kind == "curved"
+    exact = clamped_rate(analysis.spring, law.E, law.G, curved)
+    return 2.0 * one - two, exact, law.G * WIRE**4 / (8.0 * diameter**3 * TURNS)
 
 
 def run(study: Study) -> None:
-    """Nine rates."""
-    found = np.array([[rate(index, angle) for angle in ANGLES] for index in INDICES])
-    for k, index in enumerate(INDICES):
-        for m, angle in enumerate(ANGLES):
-            ours, exact, _ = found[k, m]
-            study.check(f"rate, D/d = {index:g}, pitch {angle:g}°, N/mm", ours, exact, "Castigliano", 3e-5)
-    rows = [
-        [angle, *(100 * (found[k, m, 2] / found[k, m, 1] - 1) for k in range(len(INDICES)))]
-        for m, angle in enumerate(ANGLES)
-    ]
-    study.table("G d⁴/(8 D³ n) over Castigliano, %", ["pitch, °", *(f"D/d = {i:g}" for i in INDICES)], rows)
-    with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(5.4, 3.6), layout="constrained")
-        axes = figure.add_subplot()
+    """Nine rates of both kinds."""
+    found = {kind: np.array([[rate(i, angle, kind) for angle in ANGLES] for i in INDICES]) for kind in KINDS}
+    for kind, rates in found.items():
         for k, index in enumerate(INDICES):
-            axes.plot(ANGLES, 1e6 * (found[k, :, 0] / found[k, :, 1] - 1.0), "o-", ms=4, lw=1, label=f"D/d = {index:g}")
+            for m, angle in enumerate(ANGLES):
+                ours, exact, _ = rates[k, m]
+                name = f"rate, {kind}, D/d = {index:g}, pitch {angle:g}°, N/mm"
+                study.check(name, ours, exact, f"Castigliano, {kind} sections", 3e-5)
+        rows = [[angle, *100.0 * (rates[:, m, 2] / rates[:, m, 1] - 1.0)] for m, angle in enumerate(ANGLES)]
+        heads = ["pitch, °", *(f"D/d = {i:g}" for i in INDICES)]
+        study.table(f"G d⁴/(8 D³ n) over Castigliano with {kind} sections, %", heads, rows)
+    study.figure("helix_rates", draw(found))
+
+
+def draw(found: dict[str, np.ndarray]) -> Figure:
+    """Errors over the pitch."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(5.8, 3.8), layout="constrained")
+        axes = figure.add_subplot()
+        for kind, style in KINDS.items():
+            for k, index in enumerate(INDICES):
+                errors = 1e6 * (found[kind][k, :, 0] / found[kind][k, :, 1] - 1.0)
+                axes.plot(ANGLES, errors, f"C{k}o{style}", ms=4, lw=1, label=f"{kind}, D/d = {index:g}")
         axes.set(xlabel="pitch angle in °", ylabel="error of the rate in 10⁻⁶", title="Clamped springs, 16 rods a turn")
         axes.grid(lw=0.3)
         axes.legend(fontsize=8)
-    study.figure("helix_rates", figure)
+    return figure

@@ -16,6 +16,7 @@ from coilset.meshes.section_shapes import Oval, rectangle, round_wire
 from coilset.model.material import library
 from coilset.model.material.law import Law
 from coilset.model.results.figures import STYLE
+from coilset.model.slice.analysis import ACROSS
 from coilset.verification.slice.references import ring_sector, torsion_constant_ellipse, torsion_constant_rectangle
 from coilset.verification.slice.runs import WIRE, elastic
 from coilset.verification.solid_vs_rod.references import goehner_exact
@@ -23,8 +24,8 @@ from coilset.verification.study import Study
 
 FAST = True
 ENDS = np.array([[-0.5 * WIRE, 0.0], [0.5 * WIRE, 0.0]])
-MESHES = ((2, 5.0), (2, 6.5), (2, 10.0), (2, 16.0), (3, 4.0), (3, 6.0), (3, 10.0))
-JUDGED = (2, 10.0)
+MESHES = ((2, 4.5), (2, ACROSS), (2, 9.0), (2, 14.0), (3, 3.5), (3, 5.5), (3, 9.0))
+JUDGED = (2, ACROSS)
 SLENDER = 200.0
 
 Errors = tuple[int, float, float, float]  # unknowns; of the rate and of the factors inside and outside
@@ -74,7 +75,7 @@ def _round(law: Law, index: float, degree: int, across: float, exact: tuple[floa
 
 def _figure(found: dict[tuple[float, int, float], Errors]) -> Figure:
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(8.6, 3.8), layout="constrained")
+        figure = Figure(figsize=(9.6, 3.8), layout="constrained")
         for axes, index in zip(figure.subplots(1, 2, sharey=True), (4.0, 8.0), strict=True):
             for degree, style in ((2, "o-"), (3, "s--")):
                 values = np.array([found[index, d, a] for d, a in MESHES if d == degree])
@@ -85,6 +86,6 @@ def _figure(found: dict[tuple[float, int, float], Errors]) -> Figure:
             axes.set(xlabel="unknowns", title=f"D/d = {index:g}")
             axes.grid(lw=0.3)
         figure.axes[0].set(ylabel="error in %")
-        figure.axes[1].legend(fontsize=7)
+        figure.legend(*figure.axes[1].get_legend_handles_labels(), loc="outside right center", fontsize=8)
         figure.suptitle("Elastic slice against the torsion of a ring's sector (dotted: 0.05 %)")
     return figure

@@ -26,8 +26,9 @@ TRAVEL, STEPS = 6.0, 30  # mm a turn: 1 mm before the coils touch
 def press(turns: float) -> tuple[np.ndarray, np.ndarray, float]:
     """Travel a turn (mm), force (N) and initial rate (N/mm) of a spring pressed until shortly before block."""
     spring = {"wire_diameter": WIRE, "mean_diameter": DIAMETER, "turns": turns, "pitch": PITCH}
+    mesh = {"section": {"kind": "plane"}}  # the thesis's
     loading = [{"to": {"travel": TRAVEL * turns}, "steps": STEPS}]
-    result = Analysis(check({"spring": spring, "material": "ck15", "loading": loading})).run()
+    result = Analysis(check({"spring": spring, "material": "ck15", "loading": loading, "mesh": mesh})).run()
     curve = [(0.0, 0.0), *((step.travel_mm / turns, step.force_N) for step in result.steps)]
     travels, forces = np.array(curve).T
     return travels, forces, result.rate

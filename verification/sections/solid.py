@@ -2,6 +2,10 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from coilset.verification.solid_vs_rod.pressing import PressedSection
+
 
 @dataclass(frozen=True)
 class Solid:
@@ -14,7 +18,8 @@ class Solid:
         force: at full travel, N.
         set: travel at which the force is zero again, mm.
         shear: τ at the inside of the coil after release, at 0.9 of the wire's radius, MPa.
-        elastic: force after the first step, which is elastic, N; None where it was not kept.
+        elastic: force after the first step, which is elastic, N; None where it is not, or was not kept.
+        gap: of `PressedSection`.
     """
 
     material: str
@@ -24,6 +29,17 @@ class Solid:
     set: float
     shear: float
     elastic: float | None = None
+    gap: float = 1.0
+
+    @property
+    def case(self) -> PressedSection:
+        """The turn, and how it is pressed; the grid is that of 14,844 unknowns."""
+        return PressedSection(self.index, 3, 24, 12, self.material, self.gap)
+
+    @property
+    def numbers(self) -> np.ndarray:
+        """Force, set and residual shear."""
+        return np.array([self.force, self.set, self.shear])
 
 
 # Ck 15: docs/solid.md, "The rod against it". Linear hardening: `PressedSection(index, 3, 24, 12, "linear_isotropic")`.

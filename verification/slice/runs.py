@@ -9,6 +9,7 @@ from coilset.meshes.section import section_mesh
 from coilset.meshes.section_shapes import Outline, round_wire
 from coilset.model.material import library
 from coilset.model.material.law import Law
+from coilset.model.slice.analysis import ACROSS, INSIDE
 from coilset.model.slice.problem import SliceProblem
 from coilset.model.slice.slice import Coil, Slice
 from coilset.model.slice.watch import Watch
@@ -27,7 +28,7 @@ class Elastic:
 
 def elastic(outline: Outline, diameter: float, law: Law, across: float, degree: int, places: np.ndarray) -> Elastic:
     """Linear answer of a ring's turns that are pressed together, shear per force at the places (ξ, η), 1/mm²."""
-    body = Slice(section_mesh(outline, across, degree), Coil(0.5 * diameter, 0.0), law)
+    body = Slice(section_mesh(outline, across, degree, inside=INSIDE), Coil(0.5 * diameter, 0.0), law)
     watch, rise = Watch(body, places), 1e-7 * diameter
     force, stress = SliceProblem(body).probe(-rise, watch)
     return Elastic(body.u.size + 2, force / (2.0 * np.pi * rise), np.abs(stress[:, 4]) / force)
@@ -52,11 +53,11 @@ class Pressed:
     released: np.ndarray
 
 
-def pressed(index: float, pitch: float, travel: float, across: float = 6.5, degree: int = 2, steps: int = 12,
+def pressed(index: float, pitch: float, travel: float, across: float = ACROSS, degree: int = 2, steps: int = 12,
             material: str = "ck15") -> Pressed:  # fmt: skip
     """Press a turn in equal steps and release it in one."""
     coil = Coil(0.5 * index * WIRE, pitch)
-    body = Slice(section_mesh(round_wire(WIRE), across, degree), coil, library.load(material))
+    body = Slice(section_mesh(round_wire(WIRE), across, degree, inside=INSIDE), coil, library.load(material))
     watch = Watch(body, np.array([[-0.45 * WIRE, 0.0], [0.45 * WIRE, 0.0]]))
     problem = SliceProblem(body)
     problem.probe(coil.rise * (1 - 1e-9), watch)  # compiles what is not

@@ -38,6 +38,7 @@ class PressedSection:
         layers: elements along the wire.
         steps: down; a third as many back.
         material: of the library.
+        gap: between the coils, over that at which the shear strain is the same.
     """
 
     index: float = 8.0
@@ -45,6 +46,7 @@ class PressedSection:
     layers: int = 24
     steps: int = 12
     material: str = "ck15"
+    gap: float = 1.0
 
     @property
     def mean_diameter(self) -> float:
@@ -54,7 +56,12 @@ class PressedSection:
     @property
     def pitch(self) -> float:
         """Rise in the turn, mm."""
-        return WIRE + 7.0 * (self.index / 8.0) ** 2
+        return WIRE + 7.0 * self.gap * (self.index / 8.0) ** 2
+
+    @property
+    def pitch_angle(self):
+        """Of the centre line, degrees."""
+        return float(np.degrees(np.arctan(self.pitch / (np.pi * self.mean_diameter))))
 
     @property
     def travel(self) -> float:
@@ -64,7 +71,8 @@ class PressedSection:
     @property
     def name(self) -> str:
         """For the store."""
-        return f"pressed-{self.material}-C{self.index:g}-{self.grid}x{self.layers}-{self.steps}"
+        gap = "" if self.gap == 1.0 else f"-gap{self.gap:g}"
+        return f"pressed-{self.material}-C{self.index:g}-{self.grid}x{self.layers}-{self.steps}{gap}"
 
 
 def run_solid(

@@ -2,6 +2,7 @@
 
 Slender springs of thin wire stay elastic until they are almost solid. Their characteristics stand against
 `torsion_characteristic`, which knows of neither heads, nor bending, nor that a coil needs a whole turn to lie down.
+Their sections are plane, as the formula's.
 Coils whose radii differ by a good part of a wire slip over each other in the end, as there is no friction; the cone on
 a seat is so flat that they pass each other freely, and the other springs are compressed less far.
 """
@@ -77,7 +78,8 @@ def solve(name: str) -> Characteristic:
     """The `Characteristic` of a case."""
     ends, travel, spring = CASES[name]
     loading = [{"to": {"travel": travel}, "steps": STEPS}]
-    analysis = Analysis(check({"spring": spring, "ends": ends, "loading": loading}), MPI.COMM_SELF)
+    data = {"spring": spring, "ends": ends, "loading": loading, "mesh": {"section": {"kind": "plane"}}}
+    analysis = Analysis(check(data), MPI.COMM_SELF)
     steps = analysis.run().steps
     force = np.array([step.force_N for step in steps])
     formula = torsion_characteristic(analysis.spring, analysis.law.G, force)
