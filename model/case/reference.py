@@ -17,6 +17,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 KINDS = {float: "number", int: "whole number", str: "text", bool: "`true`, `false`", Any: "any value"}
+PLURALS = {"number": "numbers", "text": "texts", "any value": "any values"}
 SIGNS = {Gt: ("gt", ">"), Ge: ("ge", "≥"), Lt: ("lt", "<"), Le: ("le", "≤")}
 
 
@@ -164,7 +165,7 @@ def _forms(annotation: Any, metadata: tuple[Any, ...]) -> Iterator[Form]:
 
 def _collected(words: str, inner: list[Form], metadata: tuple[Any, ...], least: str) -> Form:
     return Form(
-        words + " or ".join(dict.fromkeys(form.kind for form in inner)),
+        words + " or ".join(dict.fromkeys(PLURALS.get(form.kind, form.kind) for form in inner)),
         ", ".join(filter(None, [least, *dict.fromkeys(form.range for form in inner)])),
         _unit(metadata) or next((form.unit for form in inner if form.unit), ""),
         any(form.is_real for form in inner),
