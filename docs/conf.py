@@ -9,6 +9,7 @@ from sphinx.application import Sphinx
 DOCS = Path(__file__).resolve().parent
 sys.path.insert(0, str(DOCS / "generators"))
 
+import command_pages  # noqa: E402
 import docstrings  # noqa: E402
 import entry_pages  # noqa: E402
 import python_pages  # noqa: E402
@@ -57,6 +58,7 @@ def _own_environments(app: Sphinx, doctree: nodes.document) -> None:
 def _generate(app: Sphinx) -> None:
     """Write the pages that are read off the program."""
     entry_pages.write(DOCS / "reference" / "generated")
+    command_pages.write(DOCS / "reference" / "generated")
     python_pages.write(DOCS / "reference" / "python")
 
 
