@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
+from annotated_types import Unit
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from coilset.meshes import functions
@@ -11,7 +12,7 @@ from coilset.meshes.entry import Strict
 
 CLOSED_TURNS, CLOSED_TRANSITION, GROUND_TIP = 1.0, 0.5, 0.25
 
-_Turns = Annotated[float, Field(ge=0.01, allow_inf_nan=False, strict=True)]
+_Turns = Annotated[float, Unit("turns"), Field(ge=0.01, allow_inf_nan=False, strict=True)]
 
 
 class EndCoils(Strict):
@@ -31,6 +32,7 @@ class EndCoils(Strict):
     ] = None
     tip: Annotated[
         float | None,
+        Unit("wire diameters"),
         Field(gt=0, lt=1, strict=True, description=f"thickness of the ground tip over d, {GROUND_TIP:g} if not given"),
     ] = None
 

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import meshio
 import numpy as np
+from annotated_types import Unit
 from pydantic import Field, ValidationInfo, field_validator
 
 from coilset.meshes import functions
@@ -30,7 +31,9 @@ class MeasuredSpec(Strict):
     file: Annotated[str, Field(description="CSV with the columns x, y, z, wire_diameter, or a mesh that meshio reads")]
     wire_diameter: Annotated[Length | None, Field(description="mm, for a file that has none")] = None
     noise: Annotated[
-        float, Field(ge=0, allow_inf_nan=False, strict=True, description="standard deviation of the points, mm")
+        float,
+        Unit("mm"),
+        Field(ge=0, allow_inf_nan=False, strict=True, description="standard deviation of the points, mm"),
     ] = 0.0
     end_coils: Ends = OPEN
 

@@ -3,6 +3,7 @@
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
+from annotated_types import Unit
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from coilset.meshes import functions
@@ -13,13 +14,14 @@ CLOSEST = 1e-3  # turns
 
 
 def _of_a_spring(length: float) -> float:
+    """0.001 to 100,000."""
     if not SHORTEST <= length <= LONGEST:
         raise ValueError(f"{length:g} is no length of a spring; must be {SHORTEST:g} to {LONGEST:g}")
     return length
 
 
-Length = Annotated[float, Field(gt=0, allow_inf_nan=False, strict=True), AfterValidator(_of_a_spring)]
-Turn = Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
+Length = Annotated[float, Unit("mm"), Field(gt=0, allow_inf_nan=False, strict=True), AfterValidator(_of_a_spring)]
+Turn = Annotated[float, Unit("turns"), Field(ge=0, allow_inf_nan=False, strict=True)]
 
 
 class Table(Strict):
@@ -28,7 +30,10 @@ class Table(Strict):
     turns: Annotated[
         tuple[Turn, ...], Field(strict=False, min_length=2, description="turns from the bottom end, increasing")
     ]
-    values: Annotated[tuple[Length, ...], Field(strict=False, min_length=2, description="values at these turns, mm")]
+    values: Annotated[
+        tuple[Length, ...],
+        Field(strict=False, min_length=2, description="values at these turns, mm; of elements_per_turn: rods"),
+    ]
     interpolation: Annotated[
         Literal["linear", "monotone", "spline"],
         Field(description="linear; monotone (cubic without overshoot, smooth slope); spline (cubic, smooth curvature)"),
@@ -80,7 +85,9 @@ class Funnel(Strict):
     shape: Literal["funnel"]
     bottom: Annotated[Length, Field(description="mean coil diameter at the bottom end, mm")]
     neck: Annotated[Length, Field(description="mean coil diameter of the cylinder, mm")]
-    cone_turns: Annotated[float, Field(ge=0.1, allow_inf_nan=False, strict=True, description="turns of the cone")]
+    cone_turns: Annotated[
+        float, Unit("turns"), Field(ge=0.1, allow_inf_nan=False, strict=True, description="turns of the cone")
+    ]
 
     def function(self, turns: float) -> functions.PPoly:
         """The diameter as a function of the turn, mm; raises ValueError if the cone has too many turns."""

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
+from annotated_types import Unit
 from pydantic import Discriminator, Field, Tag, model_validator
 from scipy.optimize import brentq
 
@@ -34,9 +35,13 @@ class SpringSpec(Strict):
     inner_diameter: Annotated[
         DiameterProfile | None, Field(description="inner coil diameter Di = D − d, mm, in place of the mean one")
     ] = None
-    turns: Annotated[float, Field(ge=0.1, le=1000, strict=True, description="all turns, end turns included")]
+    turns: Annotated[
+        float, Unit("turns"), Field(ge=0.1, le=1000, strict=True, description="all turns, end turns included")
+    ]
     pitch: Annotated[
-        Profile | None, Field(description="rise in a turn of the body, mm; a number or a table; or give free_length")
+        Profile | None,
+        Unit("mm"),
+        Field(description="rise in a turn of the body, mm; a number or a table; or give free_length"),
     ] = None
     free_length: Annotated[
         Length | None, Field(description="outer length of the unloaded spring, mm; or give pitch")

@@ -3,6 +3,7 @@
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
+from annotated_types import Unit
 from pydantic import Discriminator, Field, Tag
 
 from coilset.meshes import functions
@@ -16,7 +17,8 @@ LEAST, MOST = 3, 1_000_000  # elements in a turn
 ALL = 10_000_000  # elements of a spring
 
 ElementsPerTurn = Annotated[
-    Annotated[float, Field(ge=LEAST, le=MOST, strict=True), Tag("(number)")] | Annotated[Table, Tag("(table)")],
+    Annotated[float, Unit("1"), Field(ge=LEAST, le=MOST, strict=True), Tag("(number)")]
+    | Annotated[Table, Tag("(table)")],
     Discriminator(form_of_entry, custom_error_type="form", custom_error_message="must be a number or a table"),
 ]
 """Number of elements in a turn, or a table of it over the turns where the mesh is graded."""

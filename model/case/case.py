@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
 
+from annotated_types import Unit
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
 from coilset.meshes.spring import SpringEntry
@@ -60,7 +61,9 @@ class MeshSpec(Strict):
         ElementsPerTurn, Field(description="straight rods per turn, a number or a table over the turns")
     ] = 16
     sagitta: Annotated[
-        float | None, Field(gt=0, description="greatest distance of a rod from the wire's axis, mm; makes more rods")
+        float | None,
+        Unit("mm"),
+        Field(gt=0, description="greatest distance of a rod from the wire's axis, mm; makes more rods"),
     ] = None
     axis: Annotated[
         Literal["curved", "chords"],
@@ -78,8 +81,8 @@ class MeshSpec(Strict):
 class FrictionSpec(Strict):
     """Coefficients of Coulomb friction; 0 is none."""
 
-    seats: Annotated[float, Field(ge=0, lt=2, description="of the wire on the seats")] = 0.0
-    coils: Annotated[float, Field(ge=0, lt=2, description="of coils on coils")] = 0.0
+    seats: Annotated[float, Unit("1"), Field(ge=0, lt=2, description="of the wire on the seats")] = 0.0
+    coils: Annotated[float, Unit("1"), Field(ge=0, lt=2, description="of coils on coils")] = 0.0
 
 
 class ContactSpec(Strict):
@@ -92,13 +95,19 @@ class ContactSpec(Strict):
         Field(description="closest points of the wires, or the thesis's gap elements between nodes one turn apart"),
     ] = "closest"
     bedding: Annotated[
-        float | None, Field(gt=0, description="force per length and penetration, N/mm per mm; default E/40")
+        float | None,
+        Unit("N/mm²"),
+        Field(gt=0, description="force per length and penetration, N/mm per mm; default E/40"),
     ] = None
     penetration_limit: Annotated[
-        float, Field(gt=0, description="penetration in wire diameters beyond which a step is no equilibrium")
+        float,
+        Unit("wire diameters"),
+        Field(gt=0, description="penetration in wire diameters beyond which a step is no equilibrium"),
     ] = 0.02
     augmentation_tolerance: Annotated[
-        float | None, Field(gt=0, description="greatest penetration, mm, reached by augmented Lagrange; default: any")
+        float | None,
+        Unit("mm"),
+        Field(gt=0, description="greatest penetration, mm, reached by augmented Lagrange; default: any"),
     ] = None
     friction: FrictionSpec = FrictionSpec()
 
@@ -130,9 +139,10 @@ class SolverSpec(Strict):
     """How equilibrium is found."""
 
     method: Annotated[MethodName, Field(description="iteration method")] = "newton"
-    tolerance: Annotated[float, Field(gt=0, lt=1, description="ε of (6.3.1)")] = 1e-9
+    tolerance: Annotated[float, Unit("1"), Field(gt=0, lt=1, description="ε of (6.3.1)")] = 1e-9
     options: Annotated[
         dict[Annotated[str, Field(pattern="^[a-z]\\w*$")], Option],
+        Unit("of the option"),
         Field(description="any PETSc options, without the leading hyphen; they win"),
     ] = Field(default_factory=dict)
     control: ControlSpec = ControlSpec()
@@ -159,7 +169,9 @@ class Case(Strict):
         Material, Field(description="name in the library, path of a material file, or {wire: name of a wire}")
     ] = "ck15"
     temperature: Annotated[
-        float | None, Field(gt=0, description="of the spring throughout, K; default: the material file's first")
+        float | None,
+        Unit("K"),
+        Field(gt=0, description="of the spring throughout, K; default: the material file's first"),
     ] = None
     ends: Annotated[Literal["seats", "clamped"], Field(description="seats or clamped")] = "seats"
     seats: SeatsSpec = SeatsSpec()

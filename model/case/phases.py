@@ -2,6 +2,7 @@
 
 from typing import Annotated, Any, Literal, Self
 
+from annotated_types import Unit
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from coilset.model.case.entry import WORD_OR_NUMBER, Strict, Whole
@@ -10,9 +11,11 @@ from coilset.model.case.entry import WORD_OR_NUMBER, Strict, Whole
 class Target(Strict):
     """One of travel, height or force; compression is positive."""
 
-    travel: Annotated[float | None, Field(description="shortening of the spring since the start, mm")] = None
-    height: Annotated[float | None, Field(gt=0, description="distance of the seats, mm")] = None
-    force: Annotated[float | None, Field(description="axial force, compression positive, N")] = None
+    travel: Annotated[float | None, Unit("mm"), Field(description="shortening of the spring since the start, mm")] = (
+        None
+    )
+    height: Annotated[float | None, Unit("mm"), Field(gt=0, description="distance of the seats, mm")] = None
+    force: Annotated[float | None, Unit("N"), Field(description="axial force, compression positive, N")] = None
 
     @model_validator(mode="after")
     def _one(self) -> Self:

@@ -3,6 +3,7 @@
 import math
 from typing import Annotated, Literal, Self
 
+from annotated_types import Unit
 from pydantic import Field, Tag, model_validator
 
 from coilset.model.case.entry import WORD_OR_NUMBER, Strict
@@ -20,15 +21,23 @@ class SeatSpec(Strict):
 
     shape: Annotated[Literal["flat", "conical", "stepped"], Field(description="form of its surface")] = "flat"
     angle: Annotated[
-        float | None, Field(gt=-60, lt=60, description="of a conical seat, degrees by which it rises outwards")
+        float | None,
+        Unit("degrees"),
+        Field(gt=-60, lt=60, description="of a conical seat, degrees by which it rises outwards"),
     ] = None
     turns: Annotated[
-        float | None, Field(gt=0, description="of a stepped seat, turns from the tip over which it follows the wire")
+        float | None,
+        Unit("turns"),
+        Field(gt=0, description="of a stepped seat, turns from the tip over which it follows the wire"),
     ] = None
-    sideways: Annotated[Freedom, Field(description="held, free, or stiffness in N/mm")] = "held"
-    tilt: Annotated[Freedom, Field(description="held, free (ball joint), or stiffness in N mm/rad")] = "held"
+    sideways: Annotated[Freedom, Unit("N/mm"), Field(description="held, free, or stiffness in N/mm")] = "held"
+    tilt: Annotated[
+        Freedom, Unit("N mm/rad"), Field(description="held, free (ball joint), or stiffness in N mm/rad")
+    ] = "held"
     turn: Annotated[
-        Freedom, Field(description="turning about the spring's axis: held, free, or stiffness in N mm/rad")
+        Freedom,
+        Unit("N mm/rad"),
+        Field(description="turning about the spring's axis: held, free, or stiffness in N mm/rad"),
     ] = "held"
 
     @model_validator(mode="after")
@@ -68,7 +77,9 @@ class SeatsSpec(Strict):
         Literal["tips", "groove"],
         Field(description="tips: held sideways and against turning, as in pockets; groove: end coils in a smooth one"),
     ] = "tips"
-    groove: Annotated[float | None, Field(gt=0, description=f"turns of the groove, {GROOVE:g} if not given")] = None
+    groove: Annotated[
+        float | None, Unit("turns"), Field(gt=0, description=f"turns of the groove, {GROOVE:g} if not given")
+    ] = None
     bottom: SeatSpec = SeatSpec()
     top: SeatSpec = SeatSpec()
 

@@ -6,11 +6,12 @@ How much each of them matters is measured in docs/methods.md: each halved and do
 from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
+from annotated_types import Unit
 from pydantic import ConfigDict, Field
 
-Positive = Annotated[float, Field(gt=0)]
-Share = Annotated[float, Field(gt=0, lt=1)]
-Growth = Annotated[float, Field(ge=1)]
+Positive = Annotated[float, Unit("1"), Field(gt=0)]
+Share = Annotated[float, Unit("1"), Field(gt=0, lt=1)]
+Growth = Annotated[float, Unit("1"), Field(ge=1)]
 Count = Annotated[int, Field(ge=1)]
 STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
 
@@ -66,7 +67,7 @@ class StepControl:
     Attributes:
         smallest: size below which the walk is given up.
         attempts: solves for each regular step, and `spare_attempts` more, before the walk is said to stall.
-        spare_attempts: see there.
+        spare_attempts: see `attempts`.
         automatic: regular steps of an automatic phase; its first step is one of them.
         easy: iterations up to which an automatic step lets the next one grow.
         hard: iterations from which it makes the next one shrink.
@@ -79,7 +80,7 @@ class StepControl:
         unstable_cuts: how often a step is cut where it ends in an unstable state, before its path is left.
         branch_amplitude: greatest displacement of the weakest mode by which a path is left at first, in wire radii.
         branch_trials: amplitudes that are tried, each `branch_growth` times the one before.
-        branch_growth: see there.
+        branch_growth: see `branch_trials`.
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = STRICT

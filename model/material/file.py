@@ -7,6 +7,7 @@ import math
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+from annotated_types import Unit
 from pydantic import Discriminator, Field, Tag
 
 from coilset.model.case.entry import Strict, check_entries
@@ -19,27 +20,27 @@ NONE = "its constants, or 'none' if the material has no such function"
 class Elasticity(Strict):
     """Elastic constants (3.1.2)."""
 
-    G: Annotated[float, Field(gt=0, description="the shear modulus, N/mm²")]
-    nu: Annotated[float, Field(gt=-1, lt=0.5, description="Poisson's ratio")]
-    alpha: Annotated[float, Field(ge=0, description="the coefficient of thermal expansion, 1/K")] = 0.0
+    G: Annotated[float, Unit("N/mm²"), Field(gt=0, description="the shear modulus, N/mm²")]
+    nu: Annotated[float, Unit("1"), Field(gt=-1, lt=0.5, description="Poisson's ratio")]
+    alpha: Annotated[float, Unit("1/K"), Field(ge=0, description="the coefficient of thermal expansion, 1/K")] = 0.0
 
 
 class Saturation(Strict):
     """Second branch of k², b* ≥ b1."""
 
-    b1: Annotated[float, Field(ge=0, description="the plastic work where it begins, N/mm²")]
-    k1_squared: Annotated[float, Field(gt=0, description="k² there, N²/mm⁴")]
-    k_inf_squared: Annotated[float, Field(gt=0, description="k² far out, N²/mm⁴")]
-    a4: Annotated[float, Field(ge=0, description="a number in mm²/N")]
+    b1: Annotated[float, Unit("N/mm²"), Field(ge=0, description="the plastic work where it begins, N/mm²")]
+    k1_squared: Annotated[float, Unit("N²/mm⁴"), Field(gt=0, description="k² where it begins, N²/mm⁴")]
+    k_inf_squared: Annotated[float, Unit("N²/mm⁴"), Field(gt=0, description="k² at great plastic work, N²/mm⁴")]
+    a4: Annotated[float, Unit("mm²/N"), Field(ge=0, description="the decay of its distance from k∞², mm²/N")]
 
 
 class IsotropicHardening(Strict):
     """k²(b*): k0² + a1 (1 + a2 b* − exp(−a3 b*)) and, if there is one, the second branch."""
 
-    k0_squared: Annotated[float, Field(gt=0, description="k² at first yield, N²/mm⁴")]
-    a1: Annotated[float, Field(ge=0, description="a number in N²/mm⁴")] = 0.0
-    a2: Annotated[float, Field(description="a number in mm²/N")] = 0.0
-    a3: Annotated[float, Field(ge=0, description="a number in mm²/N")] = 0.0
+    k0_squared: Annotated[float, Unit("N²/mm⁴"), Field(gt=0, description="k² at first yield, N²/mm⁴")]
+    a1: Annotated[float, Unit("N²/mm⁴"), Field(ge=0, description="the rise of the exponential part, N²/mm⁴")] = 0.0
+    a2: Annotated[float, Unit("mm²/N"), Field(description="the slope of the linear part over a1, mm²/N")] = 0.0
+    a3: Annotated[float, Unit("mm²/N"), Field(ge=0, description="the decay of the exponential part, mm²/N")] = 0.0
     saturation: Saturation | None = None
 
     def first_branch(self, b: float) -> float:
@@ -50,15 +51,17 @@ class IsotropicHardening(Strict):
 class KinematicHardening(Strict):
     """ζ(b*) = a5 (a6 + a7 exp(−a7 b*)) sqrt(6 k²)."""
 
-    a5: Annotated[float, Field(ge=0, description="a number in N/mm²")]
-    a6: Annotated[float, Field(ge=0, description="a number in mm²/N")]
-    a7: Annotated[float, Field(ge=0, description="a number in mm²/N")]
+    a5: Annotated[float, Unit("N/mm²"), Field(ge=0, description="the factor of ζ, N/mm²")]
+    a6: Annotated[float, Unit("mm²/N"), Field(ge=0, description="the level to which ζ falls, mm²/N")]
+    a7: Annotated[
+        float, Unit("mm²/N"), Field(ge=0, description="the height and the decay of its part that vanishes, mm²/N")
+    ]
 
 
 class NonNormality(Strict):
     """2Gκ(b*) = a b*³."""
 
-    a: Annotated[float, Field(ge=0, description="a number in mm⁶/N³")]
+    a: Annotated[float, Unit("mm⁶/N³"), Field(ge=0, description="the factor of b*³, mm⁶/N³")]
 
 
 def _kind(value: Any) -> str:
@@ -72,7 +75,7 @@ Word = Annotated[Literal["none"], Tag("(none)")]
 class Constants(Strict):
     """All constants at one temperature; a function that the material has not is said to be `none`."""
 
-    temperature: Annotated[float, Field(gt=0, description="the temperature of the constants, K")]
+    temperature: Annotated[float, Unit("K"), Field(gt=0, description="the temperature of the constants, K")]
     elasticity: Annotated[Elasticity, Field(description="G and nu")]
     isotropic: Annotated[
         Annotated[IsotropicHardening, Tag("(constants)")] | Word, Discriminator(_kind), Field(description=NONE)
@@ -88,15 +91,21 @@ class Constants(Strict):
 class Heating(Strict):
     """Adiabatic heating: of the plastic work b* the fraction `dissipated` warms the material."""
 
-    dissipated: Annotated[float, Field(gt=0, le=1, description="the fraction of plastic work that becomes heat")]
-    density: Annotated[float, Field(gt=0, description="a number in t/mm³")]
-    specific_heat: Annotated[float, Field(gt=0, description="a number in N mm/(t K) = mm²/(s² K)")]
+    dissipated: Annotated[
+        float, Unit("1"), Field(gt=0, le=1, description="the fraction of plastic work that becomes heat")
+    ]
+    density: Annotated[float, Unit("t/mm³"), Field(gt=0, description="the density, t/mm³")]
+    specific_heat: Annotated[
+        float, Unit("mm²/(s² K)"), Field(gt=0, description="the specific heat, N mm/(t K) = mm²/(s² K)")
+    ]
 
 
 class Validity(Strict):
     """Where the constants may be trusted; the checks of the functions go up to the greatest plastic work."""
 
-    plastic_work: Annotated[float, Field(gt=0, description="the largest b* up to which the constants are valid, N/mm²")]
+    plastic_work: Annotated[
+        float, Unit("N/mm²"), Field(gt=0, description="the largest b* up to which the constants are valid, N/mm²")
+    ]
     remark: Annotated[Text, Field(description="where else the constants may be trusted")]
 
 

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
+from annotated_types import Unit
 from pydantic import Field
 
 from coilset.meshes.errors import InputError, SolveError
@@ -29,14 +30,16 @@ STRESSES = {
 }
 MAX_ITERATIONS = 50
 MAX_HALVINGS = 12
-Temperature = Annotated[float, Field(gt=0)]
+Temperature = Annotated[float, Unit("K"), Field(gt=0)]
 
 
 class Step(Strict):
     """One straight piece of a program."""
 
-    name: str = ""
-    to: Annotated[dict[str, float], Field(description="strains (1) and stresses (N/mm²) at the end")] = Field({})
+    name: Annotated[str, Field(description="what it is, for readers")] = ""
+    to: Annotated[
+        dict[str, float], Unit("1, N/mm²"), Field(description="strains (1) and stresses (N/mm²) at the end")
+    ] = Field({})
     temperature: Annotated[Temperature | None, Field(description="at the end, K")] = None
     increments: Annotated[Whole, Field(ge=1, le=1_000_000, description="the number of equal increments")]
 
@@ -45,9 +48,11 @@ class Program(Strict):
     """A whole program."""
 
     name: Annotated[str, Field(description="a name for the program")]
-    description: str = ""
-    source: str = ""
-    form: Literal["rod", "solid"] = "rod"
+    description: Annotated[str, Field(description="what it is for, in a sentence")] = ""
+    source: Annotated[str, Field(description="where it comes from")] = ""
+    form: Annotated[Literal["rod", "solid"], Field(description="rod: three stresses; solid: all six components")] = (
+        "rod"
+    )
     temperature: Annotated[Temperature | None, Field(description="at the start, K")] = None
     steps: Annotated[tuple[Step, ...], Field(strict=False, min_length=1, description="a list of steps")]
 

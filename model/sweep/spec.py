@@ -5,6 +5,7 @@ from difflib import get_close_matches
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
+from annotated_types import Unit
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 from scipy import stats
 
@@ -52,8 +53,8 @@ class Values(Input):
 class Range(Input):
     """From here to there; a sampling design spreads values evenly over it."""
 
-    start: Annotated[float, Field(alias="from", description="first value")]
-    stop: Annotated[float, Field(alias="to", description="last value")]
+    start: Annotated[float, Unit("of the entry"), Field(alias="from", description="first value")]
+    stop: Annotated[float, Unit("of the entry"), Field(alias="to", description="last value")]
     count: Annotated[Whole | None, Field(ge=2, le=1_000_000, description="number of values in a grid")] = None
     spacing: Annotated[Literal["linear", "log"], Field(description="equal differences or equal ratios")] = "linear"
 
@@ -81,9 +82,11 @@ class Range(Input):
 class Normal(Input):
     """Manufacturing scatter: normal about the mean, parts outside mean ± tolerance are sorted out."""
 
-    mean: Annotated[float, Field(description="middle of the tolerance")]
-    tolerance: Annotated[float, Field(gt=0, description="half of the tolerance's width")]
-    sigmas: Annotated[float, Field(gt=0, le=10, description="standard deviations in the tolerance")] = 3.0
+    mean: Annotated[float, Unit("of the entry"), Field(description="middle of the tolerance")]
+    tolerance: Annotated[float, Unit("of the entry"), Field(gt=0, description="half of the tolerance's width")]
+    sigmas: Annotated[
+        float, Unit("standard deviations"), Field(gt=0, le=10, description="standard deviations in the tolerance")
+    ] = 3.0
 
     def grid(self) -> list[Any]:
         """There is none."""
@@ -115,9 +118,9 @@ class Lines(Strict):
 
     kind: Literal["lines"]
     of: Annotated[str, Field(description="entry of the summary, such as set_mm")] = "set_mm"
-    x: str
-    colour: str | None = None
-    panels: str | None = None
+    x: Annotated[str, Field(description="the input along the axis")]
+    colour: Annotated[str | None, Field(description="the input that has a line for each value")] = None
+    panels: Annotated[str | None, Field(description="the input that has a panel for each value")] = None
 
 
 class Map(Strict):
@@ -125,8 +128,8 @@ class Map(Strict):
 
     kind: Literal["map"]
     of: Annotated[str, Field(description="entry of the summary")] = "set_mm"
-    x: str
-    y: str
+    x: Annotated[str, Field(description="the input along the horizontal axis")]
+    y: Annotated[str, Field(description="the input along the vertical axis")]
 
 
 class Family(Strict):
@@ -194,8 +197,12 @@ class SweepSpec(Strict):
     ] = "grid"
     samples: Annotated[Whole | None, Field(ge=2, le=100_000_000, description="cases of a sampling design")] = None
     seed: Annotated[Whole, Field(ge=0, description="of a sampling design's random numbers")] = 0
-    time_limit: Annotated[float | None, Field(gt=0, description="seconds after which a case is given up")] = None
-    figures: list[AnyFigure] | None = None
+    time_limit: Annotated[
+        float | None, Unit("s"), Field(gt=0, description="seconds after which a case is given up")
+    ] = None
+    figures: Annotated[
+        list[AnyFigure] | None, Field(description="figures to draw; default: those that suit the design")
+    ] = None
 
     @model_validator(mode="after")
     def _design_fits(self) -> Self:

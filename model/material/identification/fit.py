@@ -4,6 +4,7 @@
    yield condition (3.1.4) makes k² = ⅔σ².
 2. Torsion with reversal parts it into isotropic and kinematic hardening, ζ(b*).
 3. Tension-torsion with an abrupt change gives the deviation from normality, κ(b*).
+
 Last, all constants are adjusted together to all tests, from several bends b1* of k²; the uncertainties are those of
 this step.
 """

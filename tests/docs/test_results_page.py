@@ -1,0 +1,51 @@
+"""No entry, column or variable that a run writes lacks its row in the reference, and no row is of one that is gone."""
+
+import re
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+
+from coilset.model.analysis import Analysis
+from coilset.model.case import read_case
+from coilset.model.results.dataset import point_state
+from coilset.model.results.record import SeatReaction, SeatReactions, Step
+from coilset.model.results.summary import summarise
+
+PAGE = (Path(__file__).resolve().parents[2] / "docs/reference/results.md").read_text(encoding="utf-8")
+SHORT = ["loading=[{to: {travel: 1}, steps: 1}, {to: {force: 0}, steps: 1}]", "mesh.elements_per_turn=8"]
+
+
+def rows(heading, first="entry|column|variable"):
+    """Names in the first column of the tables that begin so, under a heading."""
+    section = re.split(r"^## ", PAGE.partition(f"\n## {heading}\n")[2], flags=re.MULTILINE)[0]
+    found = []
+    for table in re.split(r"\n\n", section):
+        if re.match(rf"\s*\| (?:{first}) \|", table):
+            found += re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE)
+    return found
+
+
+@pytest.fixture(scope="module")
+def run(example):
+    analysis = Analysis(read_case(example, SHORT))
+    return analysis.setup, analysis.run()
+
+
+def test_history():
+    assert sorted(rows("history.csv")) == sorted(item.name for item in fields(Step))
+
+
+def test_seats(run):
+    own = [item.name for item in fields(SeatReactions) if item.name not in ("bottom", "top", "pressure")]
+    assert sorted(rows("seats.csv")) == sorted([*own, *(item.name for item in fields(SeatReaction))])
+
+
+def test_summary(run):
+    assert sorted(rows("summary.json")) == sorted(summarise(*run))
+
+
+def test_points(run):
+    data = point_state(*run)
+    assert sorted(rows("points.nc")) == sorted(data.data_vars)
+    assert sorted(rows("points.nc", "coordinate")) == sorted(data.coords)
