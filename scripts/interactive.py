@@ -5,9 +5,9 @@ from collections.abc import Callable
 
 from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
-from coilset.model.case.entry import check_entries
 from coilset.model.case.phases import Phase
-from coilset.model.case.yaml import load_yaml
+from coilset.model.entries.entry import check_entries
+from coilset.model.entries.yaml import load_yaml
 from coilset.model.results.record import Step
 
 HELP = """\

@@ -12,6 +12,7 @@ from rich.console import Console
 from coilset.meshes.errors import InputError
 from coilset.meshes.spring import Spring
 from coilset.model.case import Case, read_case
+from coilset.model.results import goodman_figure
 from coilset.model.standards import found, goodman
 from coilset.model.standards.case_warnings import sheet_warnings
 from coilset.model.standards.cylinder import Cylinder
@@ -74,7 +75,7 @@ def sheet(
         console.print(f"[yellow]warning:[/] {warning.message}")
     if diagram is not None:
         folder.mkdir(parents=True, exist_ok=True)
-        goodman.draw(folder / FIGURE, *diagram, run.residual if run else None)
+        goodman_figure.draw(folder / FIGURE, *diagram, run.residual if run else None)
         console.print(f"Goodman diagram in {folder}{os.sep}{FIGURE}")
 
 

@@ -10,11 +10,11 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo,
 
 from coilset.meshes.spring import SpringEntry
 from coilset.meshes.stations import ElementsPerTurn
-from coilset.model.case.entry import Strict, Whole, check_entries
 from coilset.model.case.phases import Phase
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.case.settings import assign, located
-from coilset.model.case.yaml import read_data
+from coilset.model.entries.entry import Strict, Whole, check_entries
+from coilset.model.entries.yaml import read_data
 from coilset.model.equilibrium.control import NewtonControl, StepControl
 from coilset.model.equilibrium.methods import MethodName
 from coilset.model.section import rules

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Self
 from annotated_types import Unit
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from coilset.model.case.entry import WORD_OR_NUMBER, Strict, Whole
+from coilset.model.entries.entry import WORD_OR_NUMBER, Strict, Whole
 
 
 class Target(Strict):

@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import Any
 
 from coilset.meshes.errors import InputError
-from coilset.model.case.entry import shortened, shown
-from coilset.model.case.yaml import load_yaml
+from coilset.model.entries.entry import shortened, shown
+from coilset.model.entries.yaml import load_yaml
 
 FILES = ("material", "spring.file")  # entries that are paths, or may be
 

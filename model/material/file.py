@@ -10,8 +10,8 @@ from typing import Annotated, Any, Literal
 from annotated_types import Unit
 from pydantic import Discriminator, Field, Tag
 
-from coilset.model.case.entry import Strict, check_entries
-from coilset.model.case.yaml import read_data
+from coilset.model.entries.entry import Strict, check_entries
+from coilset.model.entries.yaml import read_data
 
 Text = Annotated[str, Field(min_length=1)]
 NONE = "its constants, or 'none' if the material has no such function"

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from coilset.meshes.errors import InputError
-from coilset.model.case.entry import Strict
+from coilset.model.entries.entry import Strict
 from coilset.model.material import functions as fn
 from coilset.model.material.file import UNITS, Constants, MaterialFile, Validity
 

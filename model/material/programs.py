@@ -15,8 +15,8 @@ from annotated_types import Unit
 from pydantic import Field
 
 from coilset.meshes.errors import InputError, SolveError
-from coilset.model.case.entry import Strict, Whole, check_entries, shortened
-from coilset.model.case.yaml import read_data
+from coilset.model.entries.entry import Strict, Whole, check_entries, shortened
+from coilset.model.entries.yaml import read_data
 from coilset.model.material.law import Law
 from coilset.model.material.points import initial_state, update
 

@@ -11,9 +11,9 @@ from typing import Any
 from coilset.meshes.errors import InputError
 from coilset.model.case import Case, check, read_case_data
 from coilset.model.case.case import NamedWire
-from coilset.model.case.entry import shown
 from coilset.model.case.settings import located, put
-from coilset.model.case.yaml import read_data
+from coilset.model.entries.entry import shown
+from coilset.model.entries.yaml import read_data
 from coilset.model.material import library
 from coilset.model.standards.wires import wire
 from coilset.model.sweep.design import rows

@@ -8,8 +8,8 @@ from typing import Any
 
 from coilset.meshes.errors import InputError
 from coilset.model.case import Case
-from coilset.model.case.entry import shown
 from coilset.model.case.targets import check_targets
+from coilset.model.entries.entry import shown
 from coilset.model.standards.wires.law import case_law
 from coilset.model.sweep.spec import SweepSpec, Values
 

@@ -9,7 +9,7 @@ from annotated_types import Unit
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 from scipy import stats
 
-from coilset.model.case.entry import Strict, Whole, shortened
+from coilset.model.entries.entry import Strict, Whole, shortened
 
 # numbers of a case's summary, and how long it took
 RESPONSES = (

@@ -6,7 +6,7 @@ import pytest
 import yaml
 
 from coilset.model.case import read_case
-from coilset.model.case.yaml import load_yaml
+from coilset.model.entries.yaml import load_yaml
 from coilset.model.material import library
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from coilset.meshes.errors import InputError
-from coilset.model.case.entry import shortened
+from coilset.model.entries.entry import shortened
 
 COLUMNS = ("eps11", "gamma12", "sigma11", "tau12")
 

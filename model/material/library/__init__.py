@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from coilset.meshes.errors import InputError
-from coilset.model.case.entry import shortened
+from coilset.model.entries.entry import shortened
 from coilset.model.material.file import read
 from coilset.model.material.law import Law
 

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from coilset.meshes.errors import InputError
-from coilset.model.case.entry import check_entries
-from coilset.model.case.yaml import read_data
+from coilset.model.entries.entry import check_entries
+from coilset.model.entries.yaml import read_data
 from coilset.model.standards.wires.file import WireFile, with_common
 from coilset.model.standards.wires.wire import Wire
 

@@ -5,7 +5,7 @@ import time
 import pytest
 
 from coilset.meshes.errors import InputError
-from coilset.model.case.yaml import load_yaml, read_data
+from coilset.model.entries.yaml import load_yaml, read_data
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,7 @@ from typing import Any
 import yaml
 
 from coilset.meshes.errors import InputError
-from coilset.model.case.entry import shortened
+from coilset.model.entries.entry import shortened
 
 MAX_NESTING = 40  # levels of nesting; a case has six
 LARGEST = 1_000_000  # values of a file, those that aliases repeat counted each time
