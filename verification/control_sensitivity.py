@@ -27,11 +27,7 @@ from coilset.model.examples import EXAMPLES
 from coilset.verification.listen import listen
 
 CONTROLS: dict[str, type[NewtonControl] | type[StepControl]] = {"newton": NewtonControl, "steps": StepControl}
-GROWTHS = ("penetration_growth", "growth", "largest", "regrowth")  # at least 1
-COUNTS = (
-    "stagnation", "augmentations", "search_trials", "contact_bisections", "attempts", "spare_attempts", "automatic",
-    "easy", "hard",
-)  # fmt: skip
+GROWTHS = ("penetration_growth", "growth", "largest", "regrowth", "branch_growth")  # at least 1
 FREE_PENETRATION = 0.02  # wire diameters: the contacts' limit, which stands where no number is given
 AUTOMATIC = ("automatic", "easy", "hard", "growth", "shrinkage", "largest")  # of automatic steps only
 COLUMNS = ("spring", "variant", "iterations", "evaluations", "failures", "cuts", "steps", "ended")
@@ -90,7 +86,7 @@ def halved_and_doubled(name: str, value: float | None) -> tuple[float, float]:
     """The two values at which a field is tried."""
     if value is None:
         value = FREE_PENETRATION
-    if name in COUNTS:
+    if isinstance(value, int):
         return max(1, int(value) // 2), int(value) * 2
     if name in GROWTHS:
         return 1.0 + 0.5 * (value - 1.0), 1.0 + 2.0 * (value - 1.0)
