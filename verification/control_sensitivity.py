@@ -28,6 +28,7 @@ from coilset.verification.listen import listen
 
 CONTROLS: dict[str, type[NewtonControl] | type[StepControl]] = {"newton": NewtonControl, "steps": StepControl}
 GROWTHS = ("penetration_growth", "growth", "largest", "regrowth", "branch_growth")  # at least 1
+SWITCHES = ("foreseen_forces",)
 FREE_PENETRATION = 0.02  # wire diameters: the contacts' limit, which stands where no number is given
 AUTOMATIC = ("automatic", "easy", "hard", "growth", "shrinkage", "largest")  # of automatic steps only
 COLUMNS = ("spring", "variant", "iterations", "evaluations", "failures", "cuts", "steps", "ended")
@@ -83,7 +84,9 @@ def count(name: str, settings: Iterable[str]) -> Counts:
 
 
 def halved_and_doubled(name: str, value: float | None) -> tuple[float, float]:
-    """The two values at which a field is tried."""
+    """The two values at which a field is tried; of a switch both ways."""
+    if name in SWITCHES:
+        return False, True
     if value is None:
         value = FREE_PENETRATION
     if isinstance(value, int):
