@@ -1,5 +1,7 @@
 """The line mesh of a spring as a file: gmsh's own format with named groups, and every format that meshio writes."""
 
+import errno
+import os
 from pathlib import Path
 
 import gmsh
@@ -24,6 +26,7 @@ def write_mesh(spring: Spring, turns: np.ndarray, path: str | Path) -> None:
 
     Raises:
         InputError: a suffix that meshio does not know, or a format without line elements.
+        OSError: if the file cannot be written.
     """
     path = Path(path)
     points, data = spring.centre_line(turns), {"turn": turns, WIRE_DIAMETER: spring.wire_diameter(turns)}
@@ -87,7 +90,17 @@ def _write_gmsh(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarray
             gmsh.view.addModelData(view, 0, "spring", "NodeData", tags, values[:, None].tolist())
             gmsh.view.write(view, str(path), append=True)
             gmsh.view.remove(view)
+        _check_end(path)
     finally:
         gmsh.model.remove()
         if not started:
             gmsh.finalize()
+
+
+def _check_end(path: Path) -> None:
+    """Refuse a file that breaks off: gmsh says nothing where a disk is full."""
+    with open(path, "rb") as file:
+        end = file.seek(0, os.SEEK_END)
+        file.seek(max(end - 32, 0))
+        if not file.read().rstrip().endswith(b"$EndNodeData"):
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))

@@ -6,6 +6,7 @@ from importlib import resources
 from pathlib import Path
 
 from coilset.meshes.errors import InputError
+from coilset.model.results.folder import make, whole
 
 EXAMPLES = Path(str(resources.files("coilset.examples")))
 SUFFIXES = (".yaml", ".csv", ".sh")
@@ -53,16 +54,15 @@ def copy(name: str, folder: Path, replace: bool = False) -> list[Path]:
     """Copy an example, and what it needs, to the places below `folder` that it has below the examples.
 
     Raises:
-        InputError: if a file is there already and not to be replaced, or cannot be written; nothing is copied then.
+        InputError: if a file is there already and not to be replaced; nothing is copied then.
+        CoilsetError: if one cannot be written.
     """
     targets = {EXAMPLES / file: folder / file for file in needs(name)}
     for target in targets.values():
         if target.exists() and not replace:
             raise InputError("is there already; give --force to replace it", "", target)
-    try:
-        for source, target in targets.items():
-            target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(source, target)
-    except OSError as error:
-        raise InputError(f"cannot be written: {error.strerror}", "--out", folder) from None
+    for source, target in targets.items():
+        make(target.parent)
+        with whole(target) as partial:
+            shutil.copyfile(source, partial)
     return list(targets.values())

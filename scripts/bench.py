@@ -11,7 +11,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from coilset.model.results.folder import whole
+from coilset.model.results.folder import make, whole
 from coilset.verification.benchmarks.run import bench as measure_all
 from coilset.verification.benchmarks.target import ITERATION, per_element, seconds
 
@@ -31,7 +31,7 @@ def bench(out: str, full: bool, cold: bool) -> None:
         record = measure_all(full, cold, environment, lambda name: status.update(f"measuring: {name}"))
     from coilset.verification.benchmarks.figure import draw
 
-    folder.mkdir(parents=True, exist_ok=True)
+    make(folder)
     with whole(folder / "bench.json") as path:
         path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
     draw(folder / "bench.png", record)

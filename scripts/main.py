@@ -1,5 +1,6 @@
 """The command `coilset`: its sub-commands, and how errors leave it."""
 
+import errno
 import os
 import signal
 import sys
@@ -22,6 +23,7 @@ HELP = """How far does a coil spring set, and what stress stays in it?
 
 It needs DOLFINx >= 0.9: from conda (environment.yml; Miniforge needs no root), from the packages of Debian 13 or
 Ubuntu 25.04, or in a private Debian 13 on older ones (scripts/coilset, as root, does both). See docs/install.md."""
+NO_ROOM = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT, errno.EROFS)
 TOGETHER = 10.0  # seconds in which all ranks meet an error that is all ranks' error
 INTERRUPTED = 128 + signal.SIGINT
 ONE_SIGNAL = 0.5  # seconds in which several count as one: `timeout` sends to a process and to its group
@@ -235,6 +237,12 @@ def run() -> None:
         status = error.exit_code
         _leave_together(error)
         _complain(str(error))
+    except OSError as error:
+        if error.errno not in NO_ROOM:
+            _crash()
+            raise
+        status = 1
+        _complain(f"{error.filename or 'a file'}: cannot be written: {error.strerror}")
     except typer.Exit as error:
         status = error.exit_code
     except (typer.Abort, KeyboardInterrupt):

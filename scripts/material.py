@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from coilset.meshes.errors import InputError
 from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.plain import typer
-from coilset.scripts.target import folder_target
+from coilset.scripts.target import folder_target, results_folder
 
 if TYPE_CHECKING:  # commands load what they need
     from matplotlib.figure import Figure
@@ -54,6 +54,7 @@ def run_program(
     from rich.console import Console
 
     from coilset.model.material import figures, library, points, programs
+    from coilset.model.results.folder import make
 
     announce_compiling()
     if integrator not in points.INTEGRATORS:
@@ -68,7 +69,7 @@ def run_program(
         raise InputError(error.problem, error.place, error.file or program) from None
     console.print(_ends(steps, history))
     _refuse([folder / f"{name}.csv"], force)
-    folder.mkdir(parents=True, exist_ok=True)
+    make(folder)
     _write_csv(folder / f"{name}.csv", history)
     _save(figures.program(law, steps, history), folder / f"{name}.png", force, console)
 
@@ -93,7 +94,7 @@ def fit(
     from coilset.model.material.file import UNITS
     from coilset.model.material.identification import experiments
     from coilset.model.material.identification import fit as fitting
-    from coilset.model.results.folder import whole
+    from coilset.model.results.folder import make, whole
 
     announce_compiling()
     folder = _folder(out, name)
@@ -107,7 +108,7 @@ def fit(
     console.print(table)
     for test, scatter in zip(result.tests, result.scatter, strict=True):
         console.print(f"{test.name} ({test.kind}): rms residual {scatter:.3g} N/mm²")
-    folder.mkdir(parents=True, exist_ok=True)
+    make(folder)
     with whole(folder / f"{name}.yaml") as path:
         path.write_text(yaml.safe_dump(result.material(name), sort_keys=False, allow_unicode=True), encoding="utf-8")
     console.print(f"material file in {folder / name}.yaml")
@@ -115,7 +116,7 @@ def fit(
 
 
 def _folder(out: str | None, name: str) -> Path:
-    return Path(out or Path("results") / "material" / name)
+    return results_folder(out, name, "material")
 
 
 def _refuse(paths: Iterable[Path], force: bool) -> None:
@@ -125,10 +126,10 @@ def _refuse(paths: Iterable[Path], force: bool) -> None:
 
 
 def _save(figure: "Figure", path: Path, force: bool, console: "Console") -> None:
-    from coilset.model.results.folder import whole
+    from coilset.model.results.folder import make, whole
 
     _refuse([path], force)
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make(path.parent)
     with whole(path) as partial:
         figure.savefig(partial, dpi=160)
     console.print(f"picture in {path.parent}{os.sep}{path.name}")

@@ -12,11 +12,12 @@ from rich.table import Table
 from coilset.meshes.errors import InputError
 from coilset.meshes.spring import Spring
 from coilset.model.case import read_case
-from coilset.model.results.folder import whole
+from coilset.model.results.folder import make, whole
 from coilset.model.standards.data import SpringData, spring_data
 from coilset.model.standards.steel import STEEL, Elastic
 from coilset.model.standards.warnings import spring_warnings
 from coilset.model.standards.wires.law import case_law
+from coilset.scripts.target import results_folder
 
 FILES = ("drawing.png", "spring.png")
 
@@ -46,7 +47,7 @@ def mesh(
         return  # nothing here is worth dividing
     console = Console(highlight=False)
     case = read_case(case_file, settings)
-    folder = Path(out or Path("results") / Path(case_file).stem)
+    folder = results_folder(out, Path(case_file).stem)
     _refuse_to_replace([folder / name for name in FILES if pictures] + [Path(path) for path in write], force)
     try:
         spring = case.spring.build()
@@ -60,11 +61,15 @@ def mesh(
     for path in write:
         from coilset.meshes.export import write_mesh
 
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
-        write_mesh(spring, turns, path)
+        make(Path(path).parent)
+        try:
+            with whole(path) as partial:
+                write_mesh(spring, turns, partial)
+        except InputError as error:
+            raise InputError(error.problem, error.place, path) from None
         console.print(f"mesh in {path}")
     if pictures:
-        folder.mkdir(parents=True, exist_ok=True)
+        make(folder)
         _draw(spring, folder, Path(case_file).stem, console)
         console.print(f"pictures in {folder}{os.sep}")
 

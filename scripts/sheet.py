@@ -13,6 +13,7 @@ from coilset.meshes.errors import InputError
 from coilset.meshes.spring import Spring
 from coilset.model.case import Case, read_case
 from coilset.model.results import goodman_figure
+from coilset.model.results.folder import make
 from coilset.model.standards import found, goodman
 from coilset.model.standards.case_warnings import sheet_warnings
 from coilset.model.standards.cylinder import Cylinder
@@ -26,6 +27,7 @@ from coilset.model.standards.wires import names, wire
 from coilset.model.standards.wires.law import case_law
 from coilset.model.standards.working import presetting_warning
 from coilset.model.warning import Warning
+from coilset.scripts.target import results_folder
 
 FIGURE = "goodman.png"
 GRADES: dict[int, Grade] = {grade: grade for grade in get_args(Grade)}
@@ -55,7 +57,7 @@ def sheet(
     if case_file is None:
         raise InputError("name a case file, or give --wires to list the wires", "coilset sheet")
     case = read_case(case_file, settings)
-    folder = Path(out or Path("results") / Path(case_file).stem)
+    folder = results_folder(out, Path(case_file).stem)
     run = found.read(results) if results else None
     try:
         spring = case.spring.build()
@@ -74,7 +76,7 @@ def sheet(
     for warning in _warnings(spring, made):
         console.print(f"[yellow]warning:[/] {warning.message}")
     if diagram is not None:
-        folder.mkdir(parents=True, exist_ok=True)
+        make(folder)
         goodman_figure.draw(folder / FIGURE, *diagram, run.residual if run else None)
         console.print(f"Goodman diagram in {folder}{os.sep}{FIGURE}")
 

@@ -17,6 +17,7 @@ from coilset.model.results.provenance import origin
 from coilset.model.slice.analysis import ACROSS, SliceAnalysis, SliceStep
 from coilset.model.slice.summary import summarise, write_history
 from coilset.model.standards.case_warnings import case_warnings
+from coilset.scripts.target import results_folder
 
 
 def slice_case(
@@ -46,7 +47,7 @@ def slice_case(
         return  # a section is too small to be divided
     console = Console(highlight=False)
     case = read_case(case_file, settings)
-    folder = Path(out or Path("results") / f"{Path(case_file).stem}-slice")
+    folder = results_folder(out, f"{Path(case_file).stem}-slice")
     try:
         outline = parse(section) if section else None
         analysis = SliceAnalysis(case, outline, ACROSS if across is None else across)

@@ -24,6 +24,7 @@ from coilset.model.results.summary import summarise
 from coilset.scripts.interactive import Prompt
 from coilset.scripts.interrupt import Interrupt
 from coilset.scripts.log import run_log
+from coilset.scripts.target import results_folder
 
 log = logging.getLogger("coilset.steps")
 STARTED = float(os.environ.get("COILSET_STARTED", time.time()))
@@ -48,7 +49,7 @@ def solve(
     if interactive and comm.size > 1:
         raise InputError("works on one rank; leave -n out", "--interactive")
     case = read_case(case_file, settings)
-    folder = Path(out or Path("results") / Path(case_file).stem)
+    folder = results_folder(out, Path(case_file).stem)
     try:
         analysis = Analysis(case, comm)
     except InputError as error:

@@ -19,6 +19,7 @@ from coilset.model.sweep.journal import Journal
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.pools import Pool, local_pool, usable_cores
 from coilset.model.sweep.run import finished, missing, run
+from coilset.scripts.target import results_folder
 
 if TYPE_CHECKING:  # at run time not before the environment is kept
     from mpi4py import MPI
@@ -42,7 +43,7 @@ def sweep(
     from mpi4py import MPI
 
     comm = MPI.COMM_WORLD
-    folder = Path(out or Path("results") / Path(sweep_file).stem)
+    folder = results_folder(out, Path(sweep_file).stem)
     plan = _on_first_rank(comm, lambda: _prepare(sweep_file, folder, force, resume or retry))
     console = Console(highlight=False)
     interrupted = False

@@ -1,9 +1,12 @@
 """Where a command will write, looked at before it works: a folder or file that cannot be is said at once."""
 
 import os
+import re
 from pathlib import Path
 
 from coilset.meshes.errors import InputError
+
+UNFIT = re.compile(r"[/\0]|^\.+$")  # in the name of a folder
 
 
 def folder_target(out: str | None) -> str | None:
@@ -15,6 +18,24 @@ def folder_target(out: str | None) -> str | None:
     if out is not None:
         _check(Path(out), "--out")
     return out
+
+
+def results_folder(out: str | Path | None, name: str, *above: str) -> Path:
+    """The folder that the user names, or results/ABOVE/NAME where none is named.
+
+    Args:
+        out: what the user named.
+        name: of the case, the material or whatever the results are of; what is no name of a folder in it becomes `_`.
+        above: folders between.
+
+    Raises:
+        InputError: if the folder cannot be made or written to.
+    """
+    if out is not None:
+        return Path(out)  # `folder_target` has looked at it
+    folder = Path("results", *above, UNFIT.sub("_", name) or "_")
+    _check(folder, "--out")
+    return folder
 
 
 def file_targets(paths: list[str] | None) -> list[str]:

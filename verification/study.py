@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.model.results.figures import save
-from coilset.model.results.folder import whole
+from coilset.model.results.folder import make, whole
 
 KINDS = ("relative", "absolute", "at_most")
 
@@ -77,7 +77,7 @@ class Study:
 
     def __init__(self, folder: str | Path) -> None:
         self.folder = Path(folder)
-        self.folder.mkdir(parents=True, exist_ok=True)
+        make(self.folder)
         self.checks: list[Check] = []
         self.tables: list[dict[str, Any]] = []
         self.notes: list[str] = []

@@ -147,8 +147,8 @@ class Continuation:
         if outcome.converged and (depth := self.system.max_penetration) > self.penetration_limit:
             reason = f"coils or seats would lie {depth:.4g} mm in each other, more than {self.penetration_limit:.4g} mm"
             return replace(outcome, converged=False, reason=reason)
-        if outcome.converged and (refused := self.refusal()) is not None:
-            return replace(outcome, converged=False, reason=refused)
+        if outcome.converged and (refusal := self.refusal()) is not None:
+            return replace(outcome, converged=False, reason=refusal)
         return outcome
 
     # ---- stability -------------------------------------------------------------------------------------------------

@@ -2,6 +2,7 @@
 
 import contextlib
 import csv
+import errno
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -24,6 +25,8 @@ def whole(path: str | Path) -> Iterator[Path]:
     partial = path.with_name(f".{path.stem}.partial{path.suffix}")
     try:
         yield partial
+        if not partial.exists():  # VTK says nothing, and removes what it could not finish
+            raise OSError(errno.EIO, "nothing of it was written; is the disk full?")
         os.replace(partial, path)
     except OSError as error:
         raise CoilsetError(f"{path}: cannot be written: {error.strerror or error}") from None

@@ -57,6 +57,8 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.nda
                                (0, 0, 1)]  # fmt: skip
     plotter.camera.parallel_projection = True
     plotter.camera.parallel_scale = 0.2 * width * len(snapshots)
-    with whole(path) as partial:
-        plotter.screenshot(str(partial))
-    plotter.close()
+    try:
+        with whole(path) as partial:
+            plotter.screenshot(str(partial))
+    finally:
+        plotter.close()

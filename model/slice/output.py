@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from coilset.model.results.figures import STYLE, save
-from coilset.model.results.folder import whole
+from coilset.model.results.folder import make, whole
 from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot
 from coilset.model.slice.watch import equivalent, shear
 
@@ -21,7 +21,7 @@ def write_fields(folder: Path, analysis: SliceAnalysis) -> None:
     upward, MPa), `shear stress` in the section and `von Mises stress` (MPa), `plastic work` (N/mm²).
     """
     folder = Path(folder) / "fields"
-    folder.mkdir(parents=True, exist_ok=True)
+    make(folder)
     for old in folder.glob("*.vtu"):
         old.unlink()
     lattice = analysis.lattice

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from coilset.model.results.folder import whole
+from coilset.model.results.folder import reserve, whole
 from coilset.model.sweep.journal import read_records
 from coilset.model.sweep.plan import Plan
 
@@ -90,4 +90,5 @@ def write(path: str | Path, data: xr.Dataset) -> None:
     """Write the data set as NetCDF 4, compressed."""
     packed = {name: {"zlib": True, "complevel": 1} for name in data.data_vars if data[name].dtype.kind == "f"}
     with whole(path) as partial:
+        reserve(partial, data.nbytes)
         data.to_netcdf(partial, engine="h5netcdf", encoding=packed)

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from coilset.meshes.errors import InputError
+from coilset.meshes.errors import CoilsetError, InputError
 
 SYNC_SECONDS = 1.0
 
@@ -26,7 +26,7 @@ class Journal:
     def __init__(self, path: str | Path) -> None:
         self.path, self._synced = Path(path), time.monotonic()
         try:
-            self._file = open(path, "ab")  # noqa: SIM115 (held open, and locked, until close)
+            self._file = open(path, "ab", buffering=0)  # noqa: SIM115 (held open, and locked, until close)
         except OSError as error:
             raise InputError(f"cannot be written: {error.strerror}", "", path) from None
         try:
@@ -37,9 +37,18 @@ class Journal:
         self._file.truncate(whole_length(self.path))
 
     def append(self, record: dict[str, Any]) -> None:
-        """Write a record; it outlives the process at once, and the machine after a second."""
-        self._file.write(json.dumps(record, allow_nan=False).encode() + b"\n")
-        self._file.flush()
+        """Write a record; it outlives the process at once, and the machine after a second.
+
+        Raises:
+            CoilsetError: if it cannot be written; nothing of it is left then.
+        """
+        length, line = os.fstat(self._file.fileno()).st_size, json.dumps(record, allow_nan=False).encode() + b"\n"
+        try:
+            while line:
+                line = line[self._file.write(line) or 0 :]
+        except OSError as error:
+            self._file.truncate(length)
+            raise CoilsetError(f"{self.path}: cannot be written: {error.strerror}") from None
         if time.monotonic() - self._synced > SYNC_SECONDS:
             self._sync()
 

@@ -173,7 +173,7 @@ def test_a_failure_at_the_first_touch_ends_as_any_other(example, tmp_path, setti
     assert summary["rate_N_per_mm"] is None
 
 
-def test_a_full_disk_at_the_points_gets_one_line(example, tmp_path, monkeypatch):
+def test_a_disk_that_fills_during_a_run_gets_one_line(example, tmp_path, monkeypatch):
     def full(*_):
         raise OSError(28, "No space left on device")
 
