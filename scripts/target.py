@@ -51,11 +51,20 @@ def file_targets(paths: list[str] | None) -> list[str]:
     return list(paths or [])
 
 
+def _is_there(path: Path) -> bool:
+    """Does it exist? Path.exists says no to a name that is too long from Python 3.14 on; here that is an OSError."""
+    try:
+        path.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        return False
+    return True
+
+
 def _check(folder: Path, option: str, target: Path | None = None) -> None:
     target = target or folder
     try:
-        there = next(one for one in (folder, *folder.absolute().parents) if one.exists())
-        target.exists()  # a name that is too long fails here
+        there = next(one for one in (folder, *folder.absolute().parents) if _is_there(one))
+        _is_there(target)
     except OSError as error:
         shown = str(target) if len(str(target)) <= 80 else f"{str(target)[:77]}..."
         raise InputError(f"cannot be made: {error.strerror}", option, shown) from None
