@@ -150,12 +150,18 @@ class Analysis:
 
     # ---- the run ---------------------------------------------------------------------------------------------------
 
-    def run(self, report: Callable[[Step], object] = lambda step: None, save: Save | None = None) -> Result:
+    def run(
+        self,
+        report: Callable[[Step], object] = lambda step: None,
+        save: Save | None = None,
+        touched: Callable[[], object] = lambda: None,
+    ) -> Result:
         """Walk through the load program; a resumed analysis goes on where its checkpoint was; collective.
 
         Args:
             report: called with each converged Step.
             save: keeps the state after each step, see Checkpoint.save.
+            touched: called after the first touch, which gives the initial rate.
 
         Returns:
             Result; it is also `self.result`, with all steps up to there if the run is interrupted.
@@ -170,13 +176,14 @@ class Analysis:
                     problem = "the initial rate is not known: no equilibrium was found at the first touch"
                     unknown = Warning("initial rate", "start", problem)
                     self.result = replace(self.result, warnings=(unknown,))
+            touched()
             for number in range(self.program.number, len(self.case.loading)):
                 phase = self.case.loading[number]
                 for taken in self.program.run(self.stage(phase)):
                     step = self._record(number, taken)
                     self._keep(save)
                     report(step)
-                self._add_snapshot(phase.label)
+                self._add_snapshot(self.program.stage.label)
                 self.program.begin(number + 1)
                 self._keep(save)
         except (SolveError, KeyboardInterrupt):
@@ -185,6 +192,19 @@ class Analysis:
             raise
         self.result = replace(self.result, complete=True)
         return self.result
+
+    def redirect(self, phase: Phase) -> None:
+        """Go to another target from here on, in place of the phase in progress; the case holds it from now on.
+
+        Raises:
+            InputError: if no spring can reach it; nothing is changed then.
+        """
+        number = min(self.program.number, len(self.case.loading) - 1)
+        loading = [phase if k == number else other for k, other in enumerate(self.case.loading)]
+        case = self.case.model_copy(update={"loading": loading})
+        check_targets(case, self.spring, self.law.G)
+        self.case = case
+        self.program.redirect(self.stage(phase))
 
     def resume(self, saved: Saved) -> None:
         """Go back to where a checkpoint was; collective.

@@ -72,7 +72,7 @@ class Prompt:
         elif word == "method":
             self.analysis.use_method(rest)
         elif word == "to":
-            self.analysis.program.redirect(self.analysis.stage(parse_phase(rest)))
+            self.analysis.redirect(parse_phase(rest))
         else:
             self.say(HELP)
 

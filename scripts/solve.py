@@ -124,7 +124,7 @@ def _run(
 
     try:
         with Interrupt(analysis.comm, console.print) as interrupt:
-            analysis.run(report, checkpoint.save)
+            analysis.run(report, checkpoint.save, interrupt.check)
     except (SolveError, KeyboardInterrupt) as error:
         return error
     return None

@@ -234,7 +234,9 @@ class Continuation:
             position = self.position
             size = min(position.size, path.regular - position.done)
             if not path.automatic:
-                size = min(size, int(position.done + 1e-9) + 1 - position.done)
+                # on its way to the next mark, or to a later one if it was made as long as that
+                mark = max(int(position.done + 1e-9) + 1, int(position.done + size + 1e-9))
+                size = min(size, mark - position.done)
             load = path.load(position.done + size)
             outcome = self._attempt(load, self.starts(load, size))
             if outcome.negative_pivots > self.negative_pivots:

@@ -38,12 +38,14 @@ class ProgramPosition:
         stage: number of the stage.
         height, force: where the stage began, mm and N.
         walk: Position in the stage.
+        redirected: where it goes in place of the stage's own target; None: there.
     """
 
     stage: int
     height: float
     force: float
     walk: Position
+    redirected: Stage | None = None
 
 
 @dataclass(frozen=True)
@@ -70,18 +72,19 @@ class LoadProgram:
 
     def begin(self, number: int) -> None:
         """Stand at the start of a stage."""
+        self.redirected: Stage | None = None
         self.number, self._height, self._force = number, self.control.height, self.control.force
         self.continuation.begin()
 
     @property
     def position(self) -> ProgramPosition:
         """Where the spring stands."""
-        return ProgramPosition(self.number, self._height, self._force, self.continuation.position)
+        return ProgramPosition(self.number, self._height, self._force, self.continuation.position, self.redirected)
 
     @position.setter
     def position(self, position: ProgramPosition) -> None:
         self.number, self._height, self._force = position.stage, position.height, position.force
-        self.continuation.position = position.walk
+        self.continuation.position, self.redirected = position.walk, position.redirected
 
     def run(self, stage: Stage) -> Iterator[StepTaken]:
         """Go on to the stage's target, step by step.
@@ -89,7 +92,7 @@ class LoadProgram:
         Raises:
             SolveError: as Continuation.advance.
         """
-        self.stage, walk = stage, self.continuation
+        self.stage, walk = self.redirected or stage, self.continuation
         while walk.position.done < (regular := self._regular(self.stage)):
             outcome, cuts = walk.advance(self._path(self.stage))
             log.info("step %d: %.6g mm, %.6g N, %d iterations, out of balance %.1e; next %.4g of a regular step",
@@ -100,7 +103,7 @@ class LoadProgram:
     def redirect(self, stage: Stage) -> None:
         """Go to another target from here on, in place of the stage in progress."""
         self.begin(self.number)
-        self.stage = stage
+        self.stage = self.redirected = stage
 
     def _regular(self, stage: Stage) -> int:
         return self.continuation.control.automatic if stage.steps == "auto" else stage.steps

@@ -16,7 +16,7 @@ from coilset.meshes.errors import InputError
 from coilset.model.case import Case
 from coilset.model.equilibrium.continuation import Position
 from coilset.model.equilibrium.layout import LineLayout
-from coilset.model.equilibrium.program import ProgramPosition
+from coilset.model.equilibrium.program import ProgramPosition, Stage
 from coilset.model.results.folder import make, whole
 from coilset.model.results.provenance import changed, provenance
 from coilset.model.results.record import Result, Snapshot
@@ -145,13 +145,14 @@ class Checkpoint:
     def _position(self, about: Mapping[str, Any], result: Result) -> ProgramPosition:
         """Where to go on; a changed target begins its phase where the spring stands now."""
         saved = about["position"]
-        position = ProgramPosition(**{**saved, "walk": Position(**saved["walk"])})
+        redirected = saved["redirected"] and Stage(**saved["redirected"])
+        position = ProgramPosition(**{**saved, "walk": Position(**saved["walk"]), "redirected": redirected})
         stage, old, new = position.stage, about["case"]["loading"], self.case["loading"]
         if old[stage : stage + 1] == new[stage : stage + 1]:
             return position
         last = result.steps[-1] if result.steps else None
         height, force = (last.seat_height_mm, last.force_N) if last else (position.height, position.force)
-        return replace(position, height=height, force=force, walk=Position())
+        return replace(position, height=height, force=force, walk=Position(), redirected=None)
 
     def _compare(self, about: Mapping[str, Any]) -> None:
         """Spring, files and program must be the same; the phases behind too, and the rest may have changed."""

@@ -6,6 +6,7 @@ from mpi4py import MPI
 from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
+from coilset.model.results.checkpoint import Checkpoint
 from coilset.scripts.interactive import HELP, Prompt, parse_phase
 
 SETTINGS = ["ends=clamped", "mesh.elements_per_turn=8", "mesh.section={radial: 2, angular: 6}",
@@ -79,6 +80,39 @@ def test_size_is_that_of_the_next_step(typed):
         assert min(abs(travel - mark) for travel in travels(analysis)) < 1e-9
 
 
+def test_size_may_reach_beyond_the_next_mark(typed):
+    analysis, said, _ = typed("size 3", "run")
+    assert said == []
+    assert travels(analysis)[:2] == pytest.approx([1.0, 4.0], abs=1e-9)
+    assert [step.phase for step in analysis.result.steps] == [0, 0, 1, 1]
+
+
+def test_another_target_outlives_a_stop(typed, example, tmp_path):
+    """Stopped on its way to 30 mm, the run goes on to there, and then to the second phase."""
+    case = read_case(example, SETTINGS)
+    analysis, checkpoint = Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case)
+    lines = iter(["to {height: 30}, steps: 2", "", "stop"])
+    with pytest.raises(KeyboardInterrupt):
+        analysis.run(Prompt(analysis, print, lambda prompt: next(lines)), checkpoint.save)
+    resumed = Analysis(case, MPI.COMM_SELF)
+    resumed.resume(Checkpoint(tmp_path, case).load(MPI.COMM_SELF))
+    resumed.run()
+    straight, _, _ = typed("to {height: 30}, steps: 2", "run")
+    assert travels(resumed) == travels(straight)
+    assert forces(resumed) == forces(straight)
+    assert [shot.name for shot in resumed.result.snapshots] == ["start", "height 30 mm", "force 0 N"]
+    other = read_case(example, [*SETTINGS, "loading.0.to={travel: 6}"])  # what the file asks for now is newer
+    renewed = Analysis(other, MPI.COMM_SELF)
+    renewed.resume(Checkpoint(tmp_path, other).load(MPI.COMM_SELF))
+    renewed.run()
+    assert max(travels(renewed)) == pytest.approx(6.0)
+
+
+def test_another_target_is_in_the_case(typed):
+    analysis, _, _ = typed("to {height: 30}, steps: 2", "run")
+    assert analysis.case.loading[0].label == "height 30 mm"
+
+
 def test_another_target_from_here(typed):
     """After 1 mm, at 34 mm: to 30 mm in 2 steps of 2 mm, in place of the first phase; then the second one follows."""
     analysis, said, _ = typed("to {height: 30}, steps: 2", "run")
@@ -112,7 +146,8 @@ def test_stop_keeps_what_was_found(typed, undisturbed):
     [
         ("size 0", "above 0"), ("size -1", "above 0"), ("size nan", "above 0"), ("size much", "much"),
         ("to {travel: fast}", "travel"), ("to {travel: 1, force: 2}", "exactly one"), ("to blok", "block"),
-        ("to {height: 20", "a target is block"), ("to block, steps: 0", "steps"), ("method magic", "magic"),
+        ("to {height: 20", "a target is block"), ("to {height: 2}", "below the block height"),
+        ("to block, steps: 0", "steps"), ("method magic", "magic"),
         ("?", HELP), ("help", HELP),
     ],
 )  # fmt: skip

@@ -1,7 +1,9 @@
 """What a run finds in its folder, and what it leaves there: damaged checkpoints, earlier runs, changed files."""
 
 import json
+import os
 import shutil
+import signal
 from pathlib import Path
 
 import numpy as np
@@ -180,3 +182,21 @@ def test_a_disk_that_fills_during_a_run_gets_one_line(example, tmp_path, monkeyp
     monkeypatch.setattr(folders.os, "posix_fallocate", full)
     with pytest.raises(CoilsetError, match=r"points\.nc: cannot be written: No space"):
         solve(example, tmp_path / "out", False, SMALL, False, comm=COMM)
+
+
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_at_the_first_touch_ends_gently(example, tmp_path, monkeypatch, number):
+    """Before the first step there is nothing to finish: results are written, and no step is taken."""
+    touch = Analysis.initial_rate
+
+    def signalled(analysis):
+        os.kill(os.getpid(), number)
+        return touch(analysis)
+
+    monkeypatch.setattr(Analysis, "initial_rate", signalled)
+    with pytest.raises(KeyboardInterrupt):
+        solve(example, tmp_path / "out", False, SMALL, False, comm=COMM)
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert not summary["complete"]
+    assert summary["steps"] == 0
+    assert summary["rate_N_per_mm"] > 0.0

@@ -240,8 +240,8 @@ def test_wrong_entries_are_refused_before_anything_runs(write_sweep, text, words
 
 
 def test_values_that_fit_in_some_cases_only_are_left_to_them(write_sweep):
-    """A wire of 5.5 mm fits the pitch of 12 mm, but not that of 5 mm: one case of four fails when it runs."""
-    plan = Plan(write_sweep("vary: {spring.wire_diameter: [4.0, 5.5], spring.pitch: [5.0, 12.0]}"))
+    """A wire of 7.5 mm fits the pitch of 12 mm, but not that of 7 mm: one case of four fails when it runs."""
+    plan = Plan(write_sweep("vary: {spring.wire_diameter: [2.5, 7.5], spring.pitch: [7.0, 12.0]}"))
     assert len(plan) == 4
 
 
