@@ -21,10 +21,10 @@ def of_turn(result: dict, steps: int) -> np.ndarray:
 def of_coil(case: PressedSection) -> np.ndarray:
     """The same of the uniform rod."""
     rule, law = polar(FINE["radial"], FINE["angular"]), library.load(case.material)
-    coil = [WIRE, case.mean_diameter, case.pitch, 1.0]
+    coil = np.array([WIRE, case.mean_diameter, case.pitch, 1.0])
     travels = case.travel * np.arange(1, case.steps + 1) / case.steps
     forces, state = uniform.press(coil, law, travels=travels, rule=rule)
-    back, state = uniform.press(state, law, forces=[0.0], rule=rule)
+    back, state = uniform.press(state, law, forces=np.zeros(1), rule=rule)
     places = 0.5 * WIRE * rule.points.T
     end = {"y": places[0], "z": places[1], "stress": state.points[0, :, :3]}
     shear = np.interp(INSIDE, *diameter({"end": end}, "end"))

@@ -59,7 +59,7 @@ class PressedSection:
         return WIRE + 7.0 * self.gap * (self.index / 8.0) ** 2
 
     @property
-    def pitch_angle(self):
+    def pitch_angle(self) -> float:
         """Of the centre line, degrees."""
         return float(np.degrees(np.arctan(self.pitch / (np.pi * self.mean_diameter))))
 
