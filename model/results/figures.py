@@ -55,8 +55,8 @@ ROUND = 96  # points of the rim in a picture
 def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
     """Stress over the cross-section at mid height, to the wire's surface: circumferential shear and normal stress."""
     n = len(setup.turns) - 1
-    inner = setup.rule.points
     angle = 2.0 * np.pi * np.arange(ROUND) / ROUND
+    inner, from_inner = rings(setup.rule.points)
     points = np.concatenate([inner, np.stack([np.cos(angle), np.sin(angle)], axis=-1)])
     radius = setup.wire_radius[n // 2]
     y, z = radius * points.T
@@ -65,7 +65,7 @@ def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
         column = snapshot.components.index(name)
         states = snapshot.point_state, snapshot.surface_state
         at_points, rim = (state[n // 2, ..., column].mean(axis=0) for state in states)
-        return np.concatenate([at_points, refined(rim, ROUND)])
+        return np.concatenate([from_inner @ at_points, refined(rim, ROUND)])
 
     distance = np.hypot(points[:, 0], points[:, 1])
     around = (stress("t13") * points[:, 0] - stress("t12") * points[:, 1]) / np.where(distance > 0, distance, 1.0)
@@ -78,7 +78,7 @@ def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
             limit = max(float(np.abs(values).max()), 1e-9)
             levels = np.linspace(-limit, limit, 25)
             shown = axes.tricontourf(y, z, values, levels=levels, cmap="RdBu_r")
-            axes.plot(*radius * inner.T, "k.", ms=2, alpha=0.5)
+            axes.plot(*radius * setup.rule.points.T, "k.", ms=2, alpha=0.5)
             axes.plot(radius * np.cos([*angle, 0.0]), radius * np.sin([*angle, 0.0]), "k-", lw=0.8)
             direction = "towards" if inwards else "away from"
             axes.set(aspect="equal", xlabel=f"{direction} the coil's axis, mm", ylabel="across, mm", title=name)
@@ -86,6 +86,30 @@ def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
         force = f"F = {abs(snapshot.force):.1f} N"
         figure.suptitle(f"Cross-section at mid height, {snapshot.name} ({force}); dots: section points")
         save(figure, path)
+
+
+def rings(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Rings of a rule's points, shape (n, 2), filled up to `ROUND` points each.
+
+    Returns:
+        The places, shape (m, 2), and the matrix (m, n) that carries values at the points to them: of rings of equal
+        angles by the trigonometric polynomial; other points stay as they are.
+    """
+    radius, angle = np.round(np.hypot(*points.T), 9), np.arctan2(points[:, 1], points[:, 0])
+    places, carried = [], []
+    for one in np.unique(radius):
+        ring = np.flatnonzero(radius == one)
+        ring = ring[np.argsort(angle[ring])]
+        unit = np.eye(len(points))[ring]
+        even = len(ring) > 2 and np.allclose(np.diff(angle[ring]), 2.0 * np.pi / len(ring))
+        if even:
+            around = angle[ring[0]] + 2.0 * np.pi * np.arange(ROUND) / ROUND
+            places.append(one * np.stack([np.cos(around), np.sin(around)], axis=-1))
+            carried.append(np.stack([refined(column, ROUND) for column in unit.T], axis=-1))
+        else:
+            places.append(points[ring])
+            carried.append(unit)
+    return np.concatenate(places), np.concatenate(carried)
 
 
 def refined(values: np.ndarray, points: int) -> np.ndarray:

@@ -27,7 +27,7 @@ def tube(x: np.ndarray, radius: np.ndarray, values: np.ndarray, name: str) -> pv
 
 
 def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.ndarray) -> None:
-    """Draw the snapshots side by side, coloured by the greatest shear stress in each cross-section.
+    """Draw the snapshots side by side, coloured by the greatest shear stress in each cross-section, surface included.
 
     Args:
         path: PNG to write.
@@ -37,11 +37,11 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.nda
     name = "greatest shear stress in the section, MPa"
     radius = 0.5 * (np.append(wire_radius, wire_radius[-1]) + np.append(wire_radius[0], wire_radius))
     width = 1.35 * (np.ptp(snapshots[0].x[:, 0]) + 2.0 * radius.max())
-    greatest = max(float(shot.shear.max()) for shot in snapshots)
+    stresses = [np.maximum(shot.shear.max(axis=(1, 2)), shot.surface_shear.max(axis=(1, 2))) for shot in snapshots]
+    greatest = max(float(stress.max()) for stress in stresses)
     plotter = pv.Plotter(off_screen=True, window_size=(1500, 620))
     plotter.set_background("white")
-    for place, shot in enumerate(snapshots):
-        stress = shot.shear.max(axis=(1, 2))
+    for place, (shot, stress) in enumerate(zip(snapshots, stresses, strict=True)):
         values = 0.5 * (np.append(stress, stress[-1]) + np.append(stress[0], stress))
         mesh = tube(shot.x + np.array([place * width, 0.0, 0.0]), radius, values, name)
         plotter.add_mesh(

@@ -59,6 +59,26 @@ def test_a_stopped_press_with_warping_goes_on_to_the_same_bits(example, tmp_path
         np.testing.assert_array_equal(resumed.rod.state[name].equilibrium, field.equilibrium)
 
 
+@pytest.mark.mpi
+@pytest.mark.parametrize("kind", ["curved", "warping"])
+def test_ranks_agree(example, kind):
+    """All ranks together, and each by itself: forces, section points, surface and warping."""
+    case = read_case(example, [*COARSE, f"mesh.section.kind={kind}"])
+    together, alone = (Analysis(case, comm) for comm in (MPI.COMM_WORLD, MPI.COMM_SELF))
+    a, b = together.run(), alone.run()
+    forces = [np.array([step.force_N for step in run.steps]) for run in (a, b)]
+    np.testing.assert_allclose(forces[0], forces[1], rtol=0, atol=1e-10 * np.abs(forces[1]).max())
+    if MPI.COMM_WORLD.rank == 0:
+        for name in ("point_state", "surface_state"):
+            ours, reference = (getattr(run.snapshots[-1], name) for run in (a, b))
+            np.testing.assert_allclose(ours, reference, rtol=0, atol=1e-9 * np.abs(reference).max())
+    if kind == "warping":
+        ours, reference = (one.rod.state["warping"].equilibrium for one in (together, alone))
+        by_element = reference[np.argsort(alone.rod.line.element)]
+        mine = by_element[together.rod.line.element[: len(ours)]]
+        np.testing.assert_allclose(ours, mine, rtol=0, atol=1e-9 * np.abs(reference).max())
+
+
 @pytest.mark.parametrize(
     ("setting", "place"),
     [

@@ -1,7 +1,7 @@
 """The helical slice against the solid: one clamped turn of Ck 15, pressed nearly to block and released
 
 The solid is one turn between heads that do not turn, wire 5 mm, D/d = 4, 6, 8 and 12 (solid-vs-rod); the slice is a
-coil without ends. What the ends do is told by two rods that have the same plain section, one of a clamped turn and one
+coil without ends. What the ends do is told by two rods that have the same curved section, one of a clamped turn and one
 uniform: the clamped turn bears 0.6, 0.2, 0.0 and −0.1 % more. Their ratio takes the ends out of the solid's numbers.
 The fine solids are the recorded ones of docs/solid.md (14,844 and 33,987 unknowns, minutes to an hour each), whose own
 last refinement changes force by 0.03 and set by 0.001 %; the solid of 4,719 unknowns is run here. The tolerances for
@@ -17,12 +17,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.model import uniform
-from coilset.model.material import library
 from coilset.model.results.figures import STYLE
-from coilset.model.section.rules import polar
-from coilset.verification.slice.runs import WIRE, Pressed, pressed
-from coilset.verification.solid_vs_rod.pressing import PressedSection, run_rod, run_solid
+from coilset.verification.sections.ends import ends as of_ends
+from coilset.verification.slice.runs import Pressed, pressed
+from coilset.verification.solid_vs_rod.pressing import PressedSection, run_solid
 from coilset.verification.solid_vs_rod.store import Store
 from coilset.verification.study import Study
 
@@ -39,7 +37,7 @@ def run(study: Study) -> None:
     for index, (unknowns, force, back) in RECORDED.items():
         case = PressedSection(index)
         slices[index] = ours = pressed(index, case.pitch, case.travel, ACROSS)
-        ends[index] = more_force, more_set = _ends(case, store)
+        ends[index] = more_force, more_set, _ = of_ends(case)
         source = f"solid of {unknowns} unknowns as recorded, without its ends"
         label = f"D/d = {index:g}, {{}} ({ours.unknowns} unknowns)"
         study.check(label.format("force at full travel, N"), ours.force[-1], force / more_force, source, 8e-4)
@@ -59,23 +57,7 @@ def run(study: Study) -> None:
     shutil.rmtree(store.folder)
 
 
-def _ends(case: PressedSection, store: Store) -> tuple[float, float]:
-    """Force at full travel and set of a clamped turn over those of a uniform coil, both rods of plain sections."""
-    turn = store.get(f"rod-{case.name}", lambda: _of_chords(case))
-    rule, law = polar(8, 24), library.load(case.material)
-    coil = np.array([WIRE, case.mean_diameter, case.pitch, 1.0])
-    travels = case.travel * np.arange(1, case.steps + 1) / case.steps
-    forces, state = uniform.press(coil, law, travels=travels, rule=rule, plain=True)
-    back, _ = uniform.press(state, law, forces=np.zeros(1), rule=rule, plain=True)
-    return turn["force"] / forces[0, -1], turn["set"] / back[0, 0]
-
-
-def _of_chords(case: PressedSection) -> dict[str, float]:
-    found = run_rod(case)
-    return {"force": float(found["force"][case.steps]), "set": float(found["set"])}
-
-
-def _figure(slices: dict[float, Pressed], ends: dict[float, tuple[float, float]], solid: dict[str, Any]) -> Figure:
+def _figure(slices: dict[float, Pressed], ends: dict[float, np.ndarray], solid: dict[str, Any]) -> Figure:
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.6, 3.8), layout="constrained")
         left, right = figure.subplots(1, 2)
