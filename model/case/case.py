@@ -180,8 +180,7 @@ class Case(Strict):
     solver: SolverSpec = SolverSpec()
     loading: Annotated[list[Phase], Field(strict=False, min_length=1, description="targets, one after the other")]
     rates_at: Annotated[
-        list[Annotated[float, Field(gt=0)]],
-        Unit("mm"),
+        list[Annotated[float, Unit("mm"), Field(gt=0)]],
         Field(default_factory=list, description="travels, mm, at which the rate of the first compression is given"),
     ]
 
