@@ -6,6 +6,7 @@ from importlib import resources
 from pathlib import Path
 
 from coilset.meshes.errors import InputError
+from coilset.model.entries.entry import shortened
 from coilset.model.results.folder import make, whole
 
 EXAMPLES = Path(str(resources.files("coilset.examples")))
@@ -35,8 +36,10 @@ def find(name: str) -> str:
     found = [path for path in names() if asked in (path, path.rpartition(".")[0], Path(path).name, Path(path).stem)]
     exact = [path for path in found if path == asked]
     if len(exact or found) != 1:
-        known = ", ".join(found or names())
-        raise InputError(f"'{name}' is {'several' if found else 'none'} of the examples ({known})", "examples")
+        problem = (
+            f"several of the examples: {', '.join(found)}" if found else "no example; `coilset examples` lists them"
+        )
+        raise InputError(f"'{shortened(name)}' is {problem}", "examples")
     return (exact or found)[0]
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 
 from coilset.meshes.errors import InputError
+from coilset.model.entries.entry import shortened
 from coilset.verification import cases
 from coilset.verification.study import Study
 
@@ -36,8 +37,8 @@ def load(name: str) -> Case:
     """
     if name not in names():
         near = get_close_matches(name, names(), 1)
-        hint = f"; is {near[0]} meant?" if near else ""
-        raise InputError(f"'{name}' is no case; there are {', '.join(names())}{hint}", "verify")
+        hint = f"is {near[0]} meant?" if near else "coilset verify --list lists them"
+        raise InputError(f"'{shortened(name)}' is no case; {hint}", "verify")
     module = importlib.import_module(f"{cases.__name__}.{name.replace('-', '_')}")
     title, _, text = (inspect.getdoc(module) or "").partition("\n")
     return Case(name, title, text.strip(), getattr(module, "FAST", False), module.run)

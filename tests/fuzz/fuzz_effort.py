@@ -1,4 +1,4 @@
-"""How long the fuzzer looks: COILSET_FUZZ files of all kinds together, and a fortieth of it command lines.
+"""How long the fuzzer looks: COILSET_FUZZ files of all kinds together, and a tenth of it command lines.
 
 Without it a few, the same ones each time; with it others each time, and how to see a finding again is printed.
 """
