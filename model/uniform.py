@@ -113,7 +113,7 @@ def press(
     state = coils.copy() if isinstance(coils, UniformState) else unloaded(coils, law, rule, temperature)
     by_force = travels is None
     targets = np.atleast_1d(np.asarray(forces if by_force else travels, float))
-    targets = np.array(np.broadcast_to(targets, (len(state.coils), targets.shape[-1])))
+    targets = np.ascontiguousarray(np.broadcast_to(targets, (len(state.coils), targets.shape[-1])))
     found = np.empty(targets.shape)
     y, z = np.ascontiguousarray(rule.points.T)
     lost = _press(law.parameters(temperature), y, z, rule.weights, state.coils, targets, by_force, free_ends, plain,

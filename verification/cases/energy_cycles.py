@@ -11,8 +11,9 @@ force is left. F ds is taken by trapezia and dεp by backward Euler, so that the
 volumes are those of the curved wire at rest, the program's those of its rods, as they stand.
 
 Tolerance: 1e-4 between clamped heads and 3e-4 to block at 100 steps each way and 16 rods a turn. Between the heads the
-sum was found off by 6.4e-4, 2.0e-4, 8.8e-5 and 6.0e-5 with 25, 50, 100 and 200 steps, to block by 3.1e-4, 3.0e-4,
-1.6e-4 and 1.3e-4; with 8 rods a turn by 2.0e-4 and 4.2e-4 at 100 steps.
+sum was found off by 2.0e-4 and 8.9e-5 with 50 and 100 steps, to block by 3.4e-4 and 1.7e-4; with plane sections by
+6.4e-4, 2.0e-4, 8.8e-5 and 6.0e-5 with 25, 50, 100 and 200 steps, to block by 3.1e-4, 3.0e-4, 1.6e-4 and 1.3e-4, and
+with 8 rods a turn by 2.0e-4 and 4.2e-4 at 100 steps.
 """
 
 import matplotlib as mpl
