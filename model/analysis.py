@@ -21,11 +21,13 @@ from coilset.model.effort import Effort, machine_memory
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
 from coilset.model.equilibrium.continuation import Continuation
+from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.methods import Method, rod_method
 from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.program import LoadProgram, ProgramPosition, Stage, StepTaken
 from coilset.model.equilibrium.stability import Stability
+from coilset.model.equilibrium.step_error import StepError
 from coilset.model.equilibrium.system import System
 from coilset.model.results.balance import imbalance
 from coilset.model.results.buckling import axis_offset, buckling
@@ -100,7 +102,9 @@ class Analysis:
         )  # fmt: skip
         limit = case.contact.penetration_limit * 2.0 * float(radius.min())
         self.stability = Stability(self.newton)
-        self.continuation = Continuation(self.newton, case.solver.control.steps, limit, stability=self.stability)
+        steps = case.solver.control.steps
+        self.step_error = StepError(self.control, case.accuracy, steps)
+        self.continuation = Continuation(self.newton, steps, limit, None, self.stability, self.step_error)
         self.continuation.refusal = self._passed
         self.program = LoadProgram(self.control, self.continuation)
         records = tuple(
@@ -138,7 +142,8 @@ class Analysis:
         return f"the heads would be {height:.4g} mm apart, less than the wire's {wire:.4g} mm"
 
     def _limits(self, radius: float) -> Limits:
-        return Limits(self.law.validity.plastic_work, case_strength(self.case, self.spring), PENETRATION * 2.0 * radius)
+        return Limits(self.law.validity.plastic_work, case_strength(self.case, self.spring), PENETRATION * 2.0 * radius,
+                      self.case.accuracy)  # fmt: skip
 
     def use_method(self, name: str) -> None:
         """Go on with another iteration method.
@@ -262,7 +267,7 @@ class Analysis:
                     taken.outcome.negative_pivots, int(taken.outcome.left_branch),
                     axis_offset(x, self.rod.line.stations, turns), self._least_eigenvalue(),
                     self._greatest_plastic_work(), clearance(self.system, x) if lifts else 0.0,
-                    least_rise(x, turns, self.spring))  # fmt: skip
+                    least_rise(x, turns, self.spring), *self._errors(taken.outcome))  # fmt: skip
         seats = self._seat_reactions(step.number, greatest)
         known = {warning.name for warning in step_warnings(self.setup, self.result)}
         self.result = replace(self.result, steps=(*self.result.steps, step), seats=(*self.result.seats, seats))
@@ -284,6 +289,14 @@ class Analysis:
         """Greatest b* on the wire's surface at the last equilibrium, N/mm²; collective."""
         work = surface.component(self.rod.surface_state, self.rod.sections.components, "b")
         return float(self.comm.allreduce(work.max(initial=0.0), op=MPI.MAX))
+
+    def _errors(self, outcome: Outcome) -> tuple[float | None, float | None]:
+        """Estimated errors of force and height by the steps' length, N and mm; None where they are not known."""
+        if outcome.estimate is None:
+            return None, None
+        force, height = (value if math.isfinite(value) else None
+                         for value in (outcome.estimate.force, outcome.estimate.height))  # fmt: skip
+        return force, height
 
     def _least_eigenvalue(self) -> float | None:
         """Of the tangent, N/mm, while a spring slender enough to buckle has not done so; else None; collective."""

@@ -100,6 +100,27 @@ class Foresees(Protocol):
 
 
 @runtime_checkable
+class EstimatesErrors(Protocol):
+    """A body that can say what a step's length has left wrong in its inner forces."""
+
+    def estimate_errors(self) -> None:
+        """Be ready for it from now on; adds fields to the state, so before anything is saved."""
+        ...
+
+    def error_works(self, ratio: float) -> tuple[float, float]:
+        """To be called once at a step's end, before it is committed.
+
+        Args:
+            ratio: size of the step over that of the one before it on the same path, 0 if there is none.
+
+        Returns:
+            Work of the error of the inner forces on the step's deformation, and of that share of it which came in with
+            the step, of this rank's cells, N mm; not a number where the error is not known.
+        """
+        ...
+
+
+@runtime_checkable
 class HasRotations(Protocol):
     """A body with rotations among its unknowns.
 

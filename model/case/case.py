@@ -1,6 +1,7 @@
 """The case file: one YAML file that names a spring, its material, its ends, its mesh and its load program."""
 
 import math
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
@@ -161,6 +162,16 @@ Material = Annotated[
 """A material by its name or file, or a wire by its name."""
 
 
+def _fraction(value: Any) -> Any:
+    """0.002 of `0.2 %`; anything else as it is."""
+    number = value.removesuffix("%").strip() if isinstance(value, str) and value.endswith("%") else ""
+    return float(number) / 100.0 if re.fullmatch(r"\d*\.?\d+(e-?\d+)?", number) else value
+
+
+Part = Annotated[float, BeforeValidator(_fraction)]
+"""A part of one, as a number or in per cent."""
+
+
 class Case(Strict):
     """A whole case; units mm, N, MPa, K."""
 
@@ -178,11 +189,26 @@ class Case(Strict):
     mesh: MeshSpec = MeshSpec()
     contact: ContactSpec = ContactSpec()
     solver: SolverSpec = SolverSpec()
+    accuracy: Annotated[
+        Part,
+        Unit("1"),
+        Field(gt=0, lt=1, description="error of force that the length of automatic steps may cause, over the greatest "
+                                      "force, as in 0.2 %"),
+    ] = 0.002  # fmt: skip
     loading: Annotated[list[Phase], Field(strict=False, min_length=1, description="targets, one after the other")]
     rates_at: Annotated[
         list[Annotated[float, Unit("mm"), Field(gt=0)]],
         Field(default_factory=list, description="travels, mm, at which the rate of the first compression is given"),
     ]
+
+    @model_validator(mode="before")
+    @classmethod
+    def _accuracy_of_loading(cls, data: Any) -> Any:
+        """`loading: {accuracy: 0.2 %, program: [...]}` gives both in one group."""
+        loading = data.get("loading") if isinstance(data, dict) else None
+        if not isinstance(loading, dict) or not loading.keys() <= {"accuracy", "program"}:
+            return data
+        return data | {"loading": loading.get("program")} | {k: v for k, v in loading.items() if k == "accuracy"}
 
     @field_validator("material")
     @classmethod

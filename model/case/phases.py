@@ -30,7 +30,7 @@ def _kind(value: Any) -> str:
 
 
 class Phase(Strict):
-    """Go to a target in equal steps."""
+    """Go to a target in steps."""
 
     to: Annotated[
         Annotated[Literal["block"], Tag("(block)")] | Annotated[Target, Tag("(target)")],
@@ -40,8 +40,8 @@ class Phase(Strict):
     steps: Annotated[
         Annotated[Whole, Field(gt=0, le=100_000), Tag("(number)")] | Annotated[Literal["auto"], Tag("(word)")],
         WORD_OR_NUMBER,
-        Field(description="number of equal load steps, or auto: as large as converges with ease"),
-    ] = 12
+        Field(description="auto: as long as the accuracy and the iteration allow; or a number of equal load steps"),
+    ] = "auto"
 
     @property
     def label(self) -> str:

@@ -16,6 +16,7 @@ from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.newton import Newton, Start
 from coilset.model.equilibrium.stability import Stability
+from coilset.model.equilibrium.step_error import StepError
 
 log = logging.getLogger("coilset.steps")
 Reading = TypeVar("Reading")
@@ -29,7 +30,8 @@ class Path:
         load: the load from the last equilibrium to a place on the path, which is counted in regular steps.
         regular: number of regular steps.
         target: in words, for logs and errors.
-        automatic: do steps grow on ease and shrink on trouble? Equal steps end on their marks, also after a cut.
+        automatic: do steps take the size that their error and the iteration allow? Equal steps end on their marks,
+            also after a cut.
         place: where the walk stands, in words.
     """
 
@@ -49,12 +51,14 @@ class Position:
         size: next step, in regular steps.
         cuts: how often the step in progress was cut.
         last: size of the last step, whose increments are the guess for the next one; 0 if there is no guess.
+        before: size of the last step on this path; 0 if there is none.
     """
 
     done: float = 0.0
     size: float = 1.0
     cuts: int = 0
     last: float = 0.0
+    before: float = 0.0
 
 
 class Continuation:
@@ -68,6 +72,7 @@ class Continuation:
             step's increments, scaled, then the last equilibrium.
 
         stability: Stability; None: states are not judged.
+        step_error: StepError; None: the error of steps is not known, and automatic ones grow on ease alone.
 
     Attributes:
         refusal: why the state on trial can be none of a body, in words, although forces balance; None if it can.
@@ -83,10 +88,11 @@ class Continuation:
         penetration_limit: float = math.inf,
         starts: Callable[[Load, float], Iterable[Start]] | None = None,
         stability: Stability | None = None,
+        step_error: StepError | None = None,
     ) -> None:
         self.newton, self.system, self.control = newton, newton.system, control or StepControl()
         self.penetration_limit, self.starts = penetration_limit, starts or self.from_last_step
-        self.stability, self.negative_pivots = stability, 0
+        self.stability, self.negative_pivots, self.step_error = stability, 0, step_error
         self.refusal: Callable[[], str | None] = lambda: None
         self.position, self.number, self._attempts = Position(), 0, 0
         self._spent: list[Outcome] = []  # all solves of the step in progress
@@ -99,8 +105,8 @@ class Continuation:
         self._spent.clear()
         return self._charged(self._attempt(load, starts))
 
-    def _attempt(self, load: Load, starts: Iterable[Start]) -> Outcome:
-        return self._conclude(self._stable(self._solve(load, starts), load))
+    def _attempt(self, load: Load, starts: Iterable[Start], size: float = 0.0, accurately: bool = False) -> Outcome:
+        return self._conclude(self._stable(self._solve(load, starts), load), size, accurately)
 
     def _newton(self, load: Load, start: Start) -> Outcome:
         self._spent.append(self.newton.solve(load, start))
@@ -116,7 +122,15 @@ class Continuation:
             failed_solves=len(spent) - 1 + sum(solve.failed_solves for solve in spent),
         )
 
-    def _conclude(self, outcome: Outcome) -> Outcome:
+    def _conclude(self, outcome: Outcome, size: float, accurately: bool = False) -> Outcome:
+        """Commit or restore.
+
+        Args:
+            size: of the step, in regular steps.
+            accurately: does a step whose error is too large count as failed?
+        """
+        if outcome.converged and self.step_error is not None:
+            outcome = self._estimated(outcome, self.step_error, size, accurately)
         if outcome.converged:
             self.system.commit()
             self.negative_pivots = outcome.negative_pivots
@@ -151,6 +165,15 @@ class Continuation:
             return replace(outcome, converged=False, reason=refusal)
         return outcome
 
+    def _estimated(self, outcome: Outcome, step_error: StepError, size: float, accurately: bool) -> Outcome:
+        before = self.position.before
+        estimate = step_error.estimate(size / before if before else 0.0)
+        outcome = replace(outcome, estimate=estimate)
+        if not accurately or estimate.share <= self.control.tolerated_share or size <= self.control.finest:
+            return outcome
+        reason = f"its error is estimated at {estimate.share:.3g} of what a step may have"
+        return replace(outcome, converged=False, reason=reason, balanced=True)
+
     # ---- stability -------------------------------------------------------------------------------------------------
 
     def _stable(self, outcome: Outcome, load: Load) -> Outcome:
@@ -176,7 +199,7 @@ class Continuation:
         assert self.stability is not None
         unstable = self._solve(load, self.starts(load, size))
         if not unstable.converged:
-            return self._conclude(unstable)
+            return self._conclude(unstable, size)
         unstable = replace(unstable, negative_pivots=self.stability.negative_pivots(load))
         there, (_value, mode) = self.system.increments.copy(), self.stability.weakest_mode(load)
         amplitude = self.control.branch_amplitude * self.system.line.rod.largest_radius
@@ -187,11 +210,11 @@ class Continuation:
                 outcome = self._stable(self._judged(self._newton(load, Start(start))), load)
                 if outcome.converged:
                     log.info("step %d: the unstable path is left by %.3g mm", self.number + 1, sign * amplitude)
-                    return self._conclude(replace(outcome, left_branch=True))
+                    return self._conclude(replace(outcome, left_branch=True), size)
             amplitude *= self.control.branch_growth
         log.info("step %d: no stable state beside the unstable one was found", self.number + 1)
         self._solve(load, (Start(there),))
-        return self._conclude(unstable)
+        return self._conclude(unstable, size)
 
     def from_last_step(self, load: Load, size: float) -> Iterator[Start]:
         """The last step's increments, scaled to a step of this size; then the last equilibrium."""
@@ -238,7 +261,7 @@ class Continuation:
                 mark = max(int(position.done + 1e-9) + 1, int(position.done + size + 1e-9))
                 size = min(size, mark - position.done)
             load = path.load(position.done + size)
-            outcome = self._attempt(load, self.starts(load, size))
+            outcome = self._attempt(load, self.starts(load, size), size, path.automatic)
             if outcome.negative_pivots > self.negative_pivots:
                 self._unstable = size
             if not outcome.converged and self._unstable and self._is_cut_enough(size):
@@ -248,12 +271,15 @@ class Continuation:
                 self._unstable = 0.0  # once a step
             if outcome.converged:
                 self.number, self._unstable = self.number + 1, 0.0
-                self.position = Position(position.done + size, self._following(path, outcome, size), 0, size)
+                self.position = Position(position.done + size, self._following(path, outcome, size), 0, size, size)
                 return self._charged(outcome), position.cuts
             self._cut(path, outcome, size)
 
     def _cut(self, path: Path, outcome: Outcome, size: float) -> None:
-        shorter = self.control.cut * size
+        factor = self.control.cut
+        if outcome.balanced and outcome.estimate is not None:  # only its error was too large
+            factor = outcome.estimate.factor
+        shorter = factor * size
         self.position = replace(self.position, size=shorter, cuts=self.position.cuts + 1, last=0.0)
         log.info("step %d: cut to %.4g of a regular step (%s)", self.number + 1, shorter, outcome.reason)
         if shorter < self.control.smallest:
@@ -265,4 +291,7 @@ class Continuation:
         if not path.automatic:
             return min(1.0, control.regrowth * size)
         easy, hard = outcome.iterations <= control.easy, outcome.iterations >= control.hard
-        return min(control.largest, size * (control.growth if easy else control.shrinkage if hard else 1.0))
+        factor = control.growth if easy else control.shrinkage if hard else 1.0
+        if outcome.estimate is not None:
+            factor = min(outcome.estimate.factor, control.shrinkage if hard else control.growth)
+        return min(control.largest, factor * size)

@@ -75,6 +75,11 @@ class StepControl:
         shrinkage: factor of an automatic step after a hard one.
         largest: size of an automatic step.
         cut: factor of a step that found no equilibrium.
+        step_share: of the accuracy that is asked for, which the error of one automatic step may take.
+        tolerated_share: of that, up to which a step is kept all the same; the next one is shorter.
+        finest: size below which an automatic step is not made shorter for its error.
+        caution: factor of the size that the estimate allows.
+        least_factor: of a step after one with a great error, and of one that is cut for its error.
         regrowth: factor by which an equal step that was cut grows again, up to 1.
         probe: travel by which the initial rate is measured, in free lengths.
         unstable_cuts: how often a step is cut where it ends in an unstable state, before its path is left.
@@ -94,6 +99,11 @@ class StepControl:
     shrinkage: Share = 0.7
     largest: Growth = 2.0
     cut: Share = 0.5
+    step_share: Positive = 0.1
+    tolerated_share: Growth = 1.5
+    finest: Share = 2.0**-6
+    caution: Share = 0.9
+    least_factor: Share = 0.25
     regrowth: Growth = 2.0
     probe: Share = 1e-3
     unstable_cuts: Count = 6

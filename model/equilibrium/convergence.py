@@ -6,6 +6,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.step_error import Estimate
 from coilset.model.equilibrium.system import System
 
 Reason = PETSc.SNES.ConvergedReason
@@ -41,6 +42,8 @@ class Outcome:
         failed_solves: solves that did not lead to it, before this one: other starts, parts of the step, and the whole
             steps that were cut. Their factorisations and evaluations are counted above, their iterations are not.
         stagnated: did it end because the out-of-balance forces no longer fell?
+        estimate: of the error that the steps' length leaves; None where it is not known.
+        balanced: was it an equilibrium, though `converged` says that it does not count because of its error?
     """
 
     converged: bool
@@ -54,6 +57,8 @@ class Outcome:
     left_branch: bool = False
     failed_solves: int = 0
     stagnated: bool = False
+    estimate: Estimate | None = None
+    balanced: bool = False
 
     def __add__(self, following: "Outcome") -> "Outcome":
         """The outcome of two solves, one after the other."""

@@ -1,6 +1,7 @@
 """The load program of a spring: stages to a height or a force, one after the other."""
 
 import logging
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
@@ -95,9 +96,10 @@ class LoadProgram:
         self.stage, walk = self.redirected or stage, self.continuation
         while walk.position.done < (regular := self._regular(self.stage)):
             outcome, cuts = walk.advance(self._path(self.stage))
-            log.info("step %d: %.6g mm, %.6g N, %d iterations, out of balance %.1e; next %.4g of a regular step",
-                     walk.number, self.control.height, self.control.force, outcome.iterations, outcome.ratio,
-                     walk.position.size)  # fmt: skip
+            error = outcome.estimate.force if outcome.estimate is not None else math.nan
+            log.info("step %d: %.6g mm, %.6g N, %d iterations, out of balance %.1e, error about %.2g N; next %.4g of a "
+                     "regular step", walk.number, self.control.height, self.control.force, outcome.iterations,
+                     outcome.ratio, error, walk.position.size)  # fmt: skip
             yield StepTaken(walk.number, walk.position.done / regular, cuts, outcome)
 
     def redirect(self, stage: Stage) -> None:

@@ -1,24 +1,28 @@
 """The local problem of the implicit return mapping, common to the rod and to the three-dimensional law.
 
-Backward Euler for the rate equations of chapter 3: all functions are taken at the end of the plastic part of the
-increment. With e the elastic increment of the active deviator over that part (e = c Δε′; c = 2G, but ⅔E for the rod's
-axial component), n₀ its value when the part starts, p the plastic strain increment and n = T − B at the end,
+The rate equations of chapter 3 are integrated exactly as far as they are linear. With e the elastic increment of the
+active deviator over the plastic part of the increment (e = c Δε′; c = 2G, but ⅔E for the rod's axial component), n₀ its
+value when that part starts, p the plastic strain increment and n = T − B at the end,
 
-    (1 + κζ) p = Λ n + κ ΔT,   ΔT = e − c p,   ΔB = ζ p          (3.1.6, 3.1.8), Λ = 2λΔt
+    (1 + κζ) ḋ = λ n + κ Ṫ,   Ṫ = ė − c ḋ,   Ḃ = ζ ḋ          (3.1.6, 3.1.8)
 
-is solved in closed form: with h = 1 + κ(ζ + c), x = 1/h, s = (c + ζ)/h
+give ṅ = x ė − s λ n with h = 1 + κ(ζ + c), x = 1/h, s = (c + ζ)/h. With ζ and κ at half of the increment's plastic work
+and λ constant, Λ = λΔt, the solution is
 
-    n = q / (1 + sΛ),   q = n₀ + x e,   p = (n₀ + e − n) / (c + ζ).
+    n = φ n₀ + ψ x e,   φ = exp(−sΛ),   ψ = (1 − φ)/(sΛ),   p = (n₀ + e − n) / (c + ζ).
+
+So the error is of second order in the increment, and however long it is n turns into the direction of e and does not
+swing beyond it. Backward Euler has φ = ψ = 1/(1 + sΛ) in its place, and an error of first order, which shows where the
+path of strain turns.
 
 Two scalars are left, the plastic work b* and Λ, and two equations:
 
-    n:n = k²(b*)    (3.1.4)         b* = b*₀ + f n:p,  f = ½(1 + k(b*₀)/k(b*))        (3.1.7)
+    n:n = k²(b*)    (3.1.4)         b* = b*₀ + ½ (n₀ + n):p        (3.1.7)
 
-The factor f puts the mean of |n| at the start and at the end into the work, which makes the classic radial return with
-a yield stress linear in the plastic strain a special case, exact to rounding.
+The classic radial return with a yield stress linear in the plastic strain is a special case, exact to rounding.
 
 Newton's method on both is kept safe in two ways. For a given b* the root Λ of the first comes from a Newton iteration
-that cannot fail, since 1/|n| is a concave, growing function of Λ; and b* stays in a bracket, halved where Newton would
+for 1/|n|, which grows along a curve that is nearly straight; and b* stays in a bracket, halved where Newton would
 leave it: k² is steep at b* = 0, so that Newton alone overshoots there, and the slope of k² jumps at b1*.
 
 Neutral loading. The κ term sets in suddenly with loading. In the rod, where x differs between the axial and the shear
@@ -42,16 +46,20 @@ from coilset.model.material.functions import CHANGE, INLINE, KERNEL, Functions, 
 MAX_ITERATIONS = 60
 FAILED, TOO_HOT = -1, -2  # in the place of a number of iterations; TOO_HOT: heated out of the material's table
 FINE = 1e-6  # relative residual below which one more Newton step ends the iteration
+SMALL = 0.02  # sΛ below which ψ and its slope are summed up as series; the next terms are below 1e-14
 COARSE = 1e-3  # relative error of |n| to which Λ is brought before the two equations are solved together
 
+Products = tuple[float, float, float]
 # What the increment starts from. na, ea: n₀ and e of group a, with the metric's weight 3/2 to be applied; dea = de/db*,
 # the thermal strain's part; nn, ne, ee: inner products of n₀ and e of group c.
 Start = namedtuple("Start", "b temperature heating ca na ea dea cc nn ne ee")
 # s, x of a group and their derivatives with respect to b*.
 Group = namedtuple("Group", "s ds x dx")
-# The solution, and the Jacobian of the two equations (r1: n:n − k², r2: b* − b*₀ − f n:p) in (b*, Λ), or in (b*, κ) if
-# neutral, divided by its determinant; mean is f.
-Local = namedtuple("Local", "iterations neutral b multiplier mean zeta dzeta a c r1b r1l r2b r2l")
+# n = φ n₀ + y e in a group, y = ψ x, and the derivatives of φ and y with respect to b* and Λ (κ if neutral).
+Turn = namedtuple("Turn", "phi y phi_b y_b phi_l y_l")
+# The solution, and the Jacobian of the two equations (r1: n:n − k², r2: b* − b*₀ − ½ (n₀ + n):p) in (b*, Λ), or in
+# (b*, κ) if neutral, divided by its determinant; ζ at half of the increment's plastic work, dζ/db* of its end.
+Local = namedtuple("Local", "iterations neutral b multiplier zeta dzeta a c r1b r1l r2b r2l")
 
 
 @njit(**INLINE)
@@ -89,80 +97,106 @@ def _group(c: float, zeta: float, dzeta: float, kappa: float, dkappa: float) -> 
 
 
 @njit(**INLINE)
-def _multiplier(
-    qa: float, sa: float, qc: float, sc: float, k2: float, start: float, precision: float
-) -> tuple[float, float, float]:
-    """Root Λ of qa/(1 + sa Λ)² + qc/(1 + sc Λ)² = k², and both 1/(1 + s Λ); qa, qc: squared norms."""
-    lowest = -1.0 / max(sa, sc)
-    multiplier = max(start, 0.5 * lowest)
+def _decay(z: float) -> tuple[float, float, float]:
+    """φ = exp(−z), ψ = (1 − φ)/z and dψ/dz."""
+    phi = math.exp(-z)
+    if abs(z) < SMALL:  # Σ (−z)ᵏ/(k + 1)! and its derivative
+        psi = 1.0 - z / 2.0 * (1.0 - z / 3.0 * (1.0 - z / 4.0 * (1.0 - z / 5.0 * (1.0 - z / 6.0 * (1.0 - z / 7.0)))))
+        slope = -0.5 + z / 3.0 - z * z / 8.0 * (1.0 - z * 4.0 / 15.0 * (1.0 - z * 5.0 / 24.0 * (1.0 - z * 6.0 / 35.0)))
+        return phi, psi, slope
+    psi = -math.expm1(-z) / z
+    return phi, psi, (phi - psi) / z
+
+
+@njit(**INLINE)
+def turn(g: Group, multiplier: float, neutral: bool = False) -> Turn:
+    """How a group's n follows from n₀ and e at Λ = `multiplier`; `neutral`: with κ as the unknown in its place."""
+    if neutral:
+        return Turn(1.0, g.x, 0.0, 0.0, 0.0, -g.x * g.s)
+    phi, psi, slope = _decay(g.s * multiplier)
+    phi_b, y_b = -phi * g.ds * multiplier, slope * g.ds * multiplier * g.x + psi * g.dx
+    return Turn(phi, psi * g.x, phi_b, y_b, -phi * g.s, slope * g.s * g.x)
+
+
+@njit(**INLINE)
+def _square(t: Turn, nn: float, ne: float, ee: float) -> tuple[float, float]:
+    """A group's n:n, and its derivative in Λ."""
+    left, right = t.phi * nn + t.y * ne, t.phi * ne + t.y * ee  # n:n₀, n:e
+    return t.phi * left + t.y * right, 2.0 * (left * t.phi_l + right * t.y_l)
+
+
+@njit(**INLINE)
+def _multiplier(ga: Group, gc: Group, a: Products, c: Products, k2: float, start: float, precision: float) -> float:
+    """Root Λ of n:n = k² at given s, x of both groups; a, c: their inner products n₀:n₀, n₀:e, e:e."""
+    unit = 1.0 / max(ga.s, gc.s)
+    multiplier = max(start, -unit)
     for _ in range(MAX_ITERATIONS):
-        ua, uc = 1.0 / (1.0 + sa * multiplier), 1.0 / (1.0 + sc * multiplier)
-        ya, yc = qa * ua * ua, qc * uc * uc
-        y = ya + yc
+        ya, la = _square(turn(ga, multiplier), *a)
+        yc, lc = _square(turn(gc, multiplier), *c)
+        y, slope = ya + yc, la + lc
         if abs(y - k2) < 2.0 * precision * k2:
             break
-        step = y * (math.sqrt(y / k2) - 1.0) / (ya * sa * ua + yc * sc * uc)  # Newton for 1/|n| = 1/k
-        multiplier = max(multiplier + step, 0.5 * (multiplier + lowest))
-    return multiplier, ua, uc
+        step = -2.0 * y * (math.sqrt(y / k2) - 1.0) / slope if slope < 0.0 else unit  # Newton for 1/|n| = 1/k
+        multiplier = max(multiplier + step, 0.5 * (multiplier - unit))
+    return multiplier
 
 
 @njit(**INLINE)
 def _group_terms(
-    g: Group,
-    c: float,
-    zeta: float,
-    dzeta: float,
-    multiplier: float,
-    u: float,
-    qq: float,
-    dqq: float,
-    qt: float,
-    dqt: float,
+    t: Turn, c: float, zeta: float, dzeta: float, products: Products, slopes: tuple[float, float]
 ) -> Functions:
-    """A group's n:n and n:p, each with its derivatives in b* and Λ; qq = q:q, qt = q:(n₀ + e), dqq, dqt = d/db*."""
-    m = 1.0 / (c + zeta)
-    du = -u * u * g.ds * multiplier
-    lu = -u * u * g.s
-    nn = qq * u * u
-    work = (qt * u - nn) * m
-    slope = (qt - 2.0 * qq * u) * m
-    work_b = (dqt * u - dqq * u * u) * m - work * dzeta * m + slope * du
-    return nn, dqq * u * u + 2.0 * qq * u * du, 2.0 * qq * u * lu, work, work_b, slope * lu
+    """A group's n:n and ½ (n₀ + n):p, each with its derivatives in b* and Λ.
+
+    Args:
+        products: n₀:n₀, n₀:e, e:e.
+        slopes: derivatives of the last two in b*, from thermal strain.
+    """
+    nn, ne, ee = products
+    phi, y, m = t.phi, t.y, 1.0 / (c + zeta)
+    left, right = phi * nn + y * ne, phi * ne + y * ee  # n:n₀, n:e
+    square = phi * left + y * right
+    square_b = 2.0 * (left * t.phi_b + right * t.y_b) + y * (2.0 * phi * slopes[0] + y * slopes[1])
+    mixed, along = 1.0 + phi - 2.0 * phi * y, y * (1.0 - y)
+    half = 0.5 * m
+    work = half * ((1.0 - phi * phi) * nn + mixed * ne + along * ee)
+    by_phi = half * ((1.0 - 2.0 * y) * ne - 2.0 * phi * nn)
+    by_y = half * ((1.0 - 2.0 * y) * ee - 2.0 * phi * ne)
+    work_b = by_phi * t.phi_b + by_y * t.y_b - work * dzeta * m + half * (mixed * slopes[0] + along * slopes[1])
+    work_l = by_phi * t.phi_l + by_y * t.y_l
+    return square, square_b, 2.0 * (left * t.phi_l + right * t.y_l), work, work_b, work_l
 
 
 @njit(**INLINE)
 def _equations(
-    start: Start,
-    k_start: float,
-    values: Functions,
-    ga: Group,
-    gc: Group,
-    b: float,
-    multiplier: float,
+    start: Start, values: Functions, middle: Functions, ga: Group, gc: Group, b: float, multiplier: float
 ) -> tuple[float, ...]:
-    """Residuals n:n − k² and b* − b*₀ − f n:p, their Jacobian in (b*, Λ), Λ made coarsely right first, f n:p and f."""
-    k2, dk2, zeta, dzeta, _, _ = values
+    """Residuals n:n − k² and b* − b*₀ − ½ (n₀ + n):p, their Jacobian in (b*, Λ), Λ, and the work ½ (n₀ + n):p.
+
+    Λ is made coarsely right first. `values` are the material functions at the end, `middle` half way, with their slopes
+    in the end's b*.
+    """
+    k2, dk2 = values[0], values[1]
+    zeta, dzeta = middle[2], middle[3]
     na, ea = start.na, start.ea + start.dea * (b - start.b)
-    qa, dqa, ta = na + ga.x * ea, ga.dx * ea + ga.x * start.dea, na + ea
-    qqa = 1.5 * qa * qa
-    qqc = start.nn + gc.x * (2.0 * start.ne + gc.x * start.ee)
-    ua = uc = 1.0
+    a = (1.5 * na * na, 1.5 * na * ea, 1.5 * ea * ea)
+    c = (start.nn, start.ne, start.ee)
     if b > start.b:
-        multiplier, ua, uc = _multiplier(qqa, ga.s, qqc, gc.s, k2, multiplier, COARSE)
-    nna, nnab, nnal, wa, wab, wal = _group_terms(
-        ga, start.ca, zeta, dzeta, multiplier, ua, qqa, 3.0 * qa * dqa, 1.5 * qa * ta, 1.5 * (dqa * ta + qa * start.dea)
-    )
-    nnc, nncb, nncl, wc, wcb, wcl = _group_terms(
-        gc, start.cc, zeta, dzeta, multiplier, uc,
-        qqc, 2.0 * gc.dx * (start.ne + gc.x * start.ee),
-        start.nn + start.ne + gc.x * (start.ne + start.ee), gc.dx * (start.ne + start.ee),
-    )  # fmt: skip
-    ratio = 0.5 * k_start / math.sqrt(k2)
-    mean = 0.5 + ratio
-    work = mean * (wa + wc)
+        multiplier = _multiplier(ga, gc, a, c, k2, multiplier, COARSE)
+    slopes = (1.5 * na * start.dea, 3.0 * ea * start.dea)
+    nna, nnab, nnal, wa, wab, wal = _group_terms(turn(ga, multiplier), start.ca, zeta, dzeta, a, slopes)
+    nnc, nncb, nncl, wc, wcb, wcl = _group_terms(turn(gc, multiplier), start.cc, zeta, dzeta, c, (0.0, 0.0))
+    work = wa + wc
     r1, r2 = nna + nnc - k2, b - start.b - work
-    r2b = 1.0 - mean * (wab + wcb) + ratio * 0.5 * dk2 / k2 * (wa + wc)
-    return r1, r2, nnab + nncb - dk2, nnal + nncl, r2b, -mean * (wal + wcl), multiplier, work, mean
+    return r1, r2, nnab + nncb - dk2, nnal + nncl, 1.0 - wab - wcb, -wal - wcl, multiplier, work
+
+
+@njit(**INLINE)
+def _half_way(p: np.ndarray, start: Start, b: float) -> Functions:
+    """The material functions at half of the plastic work, their slopes those in the end's b*."""
+    half = 0.5 * (b - start.b)
+    temperature = start.temperature - 0.5 * p[CHANGE] + start.heating * half
+    k2, dk2, zeta, dzeta, kappa, dkappa = functions(p, start.b + half, temperature)
+    return k2, 0.5 * dk2, zeta, 0.5 * dzeta, kappa, 0.5 * dkappa
 
 
 @njit(**KERNEL)
@@ -174,24 +208,26 @@ def _neutral(p: np.ndarray, start: Start, values: Functions) -> Local:
     for iteration in range(1, MAX_ITERATIONS):
         xa, xc = 1.0 / (1.0 + kappa * (zeta + start.ca)), 1.0 / (1.0 + kappa * (zeta + start.cc))
         dxa, dxc = -xa * xa * (zeta + start.ca), -xc * xc * (zeta + start.cc)
-        # q:q, q:(x e) and q:(x′ e), (x e):(x′ e); x′ = dx/dκ
-        qq = 1.5 * (na + xa * ea) ** 2 + start.nn + xc * (2.0 * start.ne + xc * start.ee)
-        qxe = 1.5 * (na + xa * ea) * xa * ea + xc * (start.ne + xc * start.ee)
-        qdxe = 1.5 * (na + xa * ea) * dxa * ea + dxc * (start.ne + xc * start.ee)
-        xedxe = 1.5 * xa * dxa * ea * ea + xc * dxc * start.ee
-        # With spin, n:p may come out negative by a trifle of higher order; b* does not fall.
-        b = start.b + max(kappa * qxe, 0.0)
+        # n:n, n:(x′ e), and the work ½ (n₀ + n):p with p = κ x e; x′ = dx/dκ, (κ x)′ = x²
+        nn = 1.5 * (na + xa * ea) ** 2 + start.nn + xc * (2.0 * start.ne + xc * start.ee)
+        ndxe = 1.5 * (na + xa * ea) * dxa * ea + dxc * (start.ne + xc * start.ee)
+        mean_a, mean_c = 1.5 * (na + 0.5 * xa * ea) * ea, start.ne + 0.5 * xc * start.ee
+        work = kappa * (xa * mean_a + xc * mean_c)
+        dwork = xa * xa * mean_a + xc * xc * mean_c
+        dwork += 0.5 * kappa * (1.5 * xa * dxa * ea * ea + xc * dxc * start.ee)
+        # With spin, the work may come out negative by a trifle of higher order; b* does not fall.
+        b = start.b + max(work, 0.0)
         k2, dk2, _, _, _, _ = functions(p, b, start.temperature)
-        r1 = qq - k2
-        db = qxe + kappa * (qdxe + xedxe) if qxe > 0.0 else 0.0
-        slope = 2.0 * qdxe - dk2 * db
+        r1 = nn - k2
+        db = dwork if work > 0.0 else 0.0
+        slope = 2.0 * ndxe - dk2 * db
         if abs(r1) <= 1e-14 * k2_start or high - low <= 1e-15 * high:
             a, c = Group((start.ca + zeta) * xa, 0.0, xa, 0.0), Group((start.cc + zeta) * xc, 0.0, xc, 0.0)
-            inverse = 1.0 / (dk2 * db - 2.0 * qdxe)
+            inverse = 1.0 / (dk2 * db - 2.0 * ndxe)
+            moves = inverse if work > 0.0 else 0.0  # else b* is kept
             return Local(
-                iteration, True, b, 0.0, 1.0, zeta, 0.0, a, c,
-                -dk2 * inverse, 2.0 * qdxe * inverse, inverse, -db * inverse,
-            )  # fmt: skip
+                iteration, True, b, 0.0, zeta, 0.0, a, c, -dk2 * moves, 2.0 * ndxe * moves, inverse, -db * inverse
+            )
         if r1 > 0.0:
             low = kappa
         else:
@@ -207,20 +243,20 @@ def _neutral(p: np.ndarray, start: Start, values: Functions) -> Local:
 
 
 @njit(**KERNEL)
-def _frozen(start: Start, values: Functions, a: Group, c: Group) -> Local:
-    """On the edge of the cone the rod's spin can make n:p negative by a trifle: b* is kept, only n:n = k² solved."""
-    qa = start.na + a.x * start.ea
-    qqa, qqc = 1.5 * qa * qa, start.nn + c.x * (2.0 * start.ne + c.x * start.ee)
-    multiplier, ua, uc = _multiplier(qqa, a.s, qqc, c.s, values[0], 0.0, 1e-15)
-    slope = -2.0 * (qqa * a.s * ua * ua * ua + qqc * c.s * uc * uc * uc)
-    a, c = Group(a.s, 0.0, a.x, 0.0), Group(c.s, 0.0, c.x, 0.0)
-    return Local(1, False, start.b, multiplier, 1.0, values[2], 0.0, a, c, 0.0, 0.0, -1.0 / slope, 0.0)
+def _frozen(start: Start, values: Functions, ga: Group, gc: Group) -> Local:
+    """On the edge of the cone spin can make the work negative by a trifle: b* is kept, only n:n = k² solved."""
+    a = (1.5 * start.na * start.na, 1.5 * start.na * start.ea, 1.5 * start.ea * start.ea)
+    c = (start.nn, start.ne, start.ee)
+    multiplier = _multiplier(ga, gc, a, c, values[0], 0.0, 1e-15)
+    slope = _square(turn(ga, multiplier), *a)[1] + _square(turn(gc, multiplier), *c)[1]
+    ga, gc = Group(ga.s, 0.0, ga.x, 0.0), Group(gc.s, 0.0, gc.x, 0.0)
+    return Local(1, False, start.b, multiplier, values[2], 0.0, ga, gc, 0.0, 0.0, -1.0 / slope, 0.0)
 
 
 @njit(**INLINE)
 def _failed(start: Start, why: int = FAILED) -> Local:
     nothing = Group(0.0, 0.0, 0.0, 0.0)
-    return Local(why, False, start.b, 0.0, 1.0, 0.0, 0.0, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
+    return Local(why, False, start.b, 0.0, 0.0, 0.0, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit(**INLINE)
@@ -236,17 +272,17 @@ def solve(p: np.ndarray, start: Start, values: Functions) -> Local:
         A `Local`; its `iterations` are -1 if there was no convergence, -2 if the temperature left the table.
     """
     low = start.b
-    # max over n of n:(n_trial − n) is |n_trial|²/4; twice that leaves room for thermal strain.
-    high = low + 0.5 * (1.5 * (start.na + start.ea) ** 2 / start.ca + (start.nn + 2.0 * start.ne + start.ee) / start.cc)
-    k_start = math.sqrt(values[0])
+    # max over n of ½ (n₀ + n):(n₀ + e − n) is ½ |n₀ + ½ e|²; twice that leaves room for thermal strain.
+    middle_a, middle_c = start.na + 0.5 * start.ea, start.nn + start.ne + 0.25 * start.ee
+    high = low + 1.5 * middle_a * middle_a / start.ca + middle_c / start.cc
     b, multiplier, last = low, 0.0, math.inf
     for iteration in range(1, MAX_ITERATIONS):
-        k2, _, zeta, dzeta, kappa, dkappa = values
-        if not k2 > 0.0:
+        middle = _half_way(p, start, b)
+        if not (values[0] > 0.0 and middle[0] > 0.0):
             break
-        ga = _group(start.ca, zeta, dzeta, kappa, dkappa)
-        gc = _group(start.cc, zeta, dzeta, kappa, dkappa)
-        r1, r2, r1b, r1l, r2b, r2l, multiplier, work, mean = _equations(start, k_start, values, ga, gc, b, multiplier)
+        ga = _group(start.ca, middle[2], middle[3], middle[4], middle[5])
+        gc = _group(start.cc, middle[2], middle[3], middle[4], middle[5])
+        r1, r2, r1b, r1l, r2b, r2l, multiplier, work = _equations(start, values, middle, ga, gc, b, multiplier)
         g = r2 - r2l * r1 / r1l
         inverse = 1.0 / (r1b * r2l - r1l * r2b)  # positive as r1l < 0 where dg/db* is
         step = (r1l * r2 - r2l * r1) * inverse
@@ -256,17 +292,17 @@ def solve(p: np.ndarray, start: Start, values: Functions) -> Local:
         if iteration == 1 and g > 0.0:
             return _frozen(start, values, ga, gc)
         # The second term is the rounding of b* and of n:(n_trial − n).
-        if abs(g) <= FINE * work + 1e-15 * (b + k2 / start.cc) and abs(r1) <= FINE * k2 and inverse > 0.0:
+        if abs(g) <= FINE * work + 1e-15 * (b + values[0] / start.cc) and abs(r1) <= FINE * values[0] and inverse > 0.0:
             if start.heating > 0.0 and not inside_table(p, start.temperature + start.heating * (b - start.b)):
                 return _failed(start, TOO_HOT)
             # The last Newton step is taken in everything: what it leaves is of the order FINE².
             return Local(
-                iteration, False, b + step, multiplier + follow, mean, zeta + dzeta * step, dzeta,
+                iteration, False, b + step, multiplier + follow, middle[2] + middle[3] * step, middle[3],
                 Group(ga.s + ga.ds * step, ga.ds, ga.x + ga.dx * step, ga.dx),
                 Group(gc.s + gc.ds * step, gc.ds, gc.x + gc.dx * step, gc.dx),
                 r1b * inverse, r1l * inverse, r2b * inverse, r2l * inverse,
             )  # fmt: skip
-        if abs(g) > 10.0 * COARSE * work or abs(r1) <= FINE * k2:  # else Λ is too coarse to be sure of the sign
+        if abs(g) > 10.0 * COARSE * work or abs(r1) <= FINE * values[0]:  # else Λ is too coarse for a sure sign
             if g < 0.0:
                 low = b
             else:

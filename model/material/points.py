@@ -94,10 +94,9 @@ def update(
         law: a `Law`.
         state: the points' states, shape (points, 7 or 8) as in `rod`, or (points, 13 or 14) as in `solid`.
         increments: ε11, γ12, γ13, shape (points, 3), or ε11, ε22, ε33, γ12, γ13, γ23, shape (points, 6).
-        integrator: "return_mapping" (backward Euler, consistent tangent) or "heun" (the thesis's, the rates' tangent).
+        integrator: "return_mapping" (second order, consistent tangent) or "heun" (the thesis's, the rates' tangent).
         temperature: of all points, K, where the state holds none; default is the reference temperature. A pair is the
-            temperature at the start and at the end: thermal strain is then part of `increments`, and the return mapping
-            takes the functions at the end, as it does with b*.
+            temperature at the start and at the end: thermal strain is then part of `increments`.
         tolerance: error of stress, relative to the yield stress, allowed in a sub-step. None: the return mapping makes
             one step of each increment, Heun takes the law's tolerance. With a number the return mapping, too, divides
             the increments where the direction of loading turns; the tangent is then that of the last sub-step.
@@ -170,7 +169,7 @@ def _divided(
     increments: np.ndarray,
     tolerance: float | None,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Sub-steps by step doubling: one step against two half ones estimates the error of the first-order method."""
+    """Sub-steps by step doubling: one step against two half ones estimates the error of the second-order method."""
     points, components = increments.shape
     weight = np.where(np.arange(components) < _normals(components), 1.0, 2.0)
     row, tangent = state.copy(), np.empty((points, components, components))
@@ -192,5 +191,5 @@ def _divided(
         row[accepted], tangent[accepted] = two[good], C[good]
         count[accepted] += second[good] > 0
         done[accepted] = np.where(h[good] >= 1.0 - done[accepted], 1.0, done[accepted] + h[good])
-        size[open_] = h * np.clip(0.9 / np.sqrt(np.maximum(error, 1e-6)), 0.2, 4.0)
+        size[open_] = h * np.clip(0.9 / np.cbrt(np.maximum(error, 1e-6)), 0.2, 4.0)
     return row, tangent, count

@@ -189,9 +189,12 @@ class _Point:
     def advance(self, target: np.ndarray, temperature: float, halvings: int = 0) -> None:
         """One increment to `target` and `temperature`; where Newton does not find it, two of half the size."""
         now = np.where(self.by_strain, self.strain, self.state[: self.n])
+        self.refused: InputError | None = None
         if self._newton(target, temperature):
             return
         if halvings == MAX_HALVINGS:
+            if self.refused is not None:
+                raise self.refused
             raise SolveError("no strain was found that gives the prescribed stress; can the material carry it?")
         self.advance(0.5 * (now + target), 0.5 * (self.temperature + temperature), halvings + 1)
         self.advance(target, temperature, halvings + 1)
@@ -217,6 +220,9 @@ class _Point:
                     self.law, self.state[None], increment[None], self.integrator, self._at(temperature)
                 )
             except SolveError:
+                return False
+            except InputError as error:  # a trial may be hotter than the increment's end
+                self.refused = error
                 return False
             tangent = tangents[0]
             residual = target[free] - new[0, : self.n][free]

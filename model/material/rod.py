@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 
 from coilset.model.material.functions import (
+    CHANGE,
     HEATING,
     INLINE,
     KERNEL,
@@ -20,14 +21,14 @@ from coilset.model.material.functions import (
     elasticity,
     functions,
 )
-from coilset.model.material.local import Start, solve, surface, yield_crossing
+from coilset.model.material.local import Start, solve, surface, turn, yield_crossing
 
 # Tuples of three are the components 11, 12, 13.
 Vector = tuple[float, float, float]
 Point = namedtuple("Point", "stress back spin_stress spin_back")
 # The plastic part of an increment: elastic fraction before it, n₀:e − ½Δk² where it starts, e of the whole increment
-# and of the plastic part, n at its end, p, and by component u = 1/(1 + sΛ), m = 1/(c + ζ), x.
-Plastic = namedtuple("Plastic", "local beta crossing n0 whole e n p u m x heating dea")
+# and of the plastic part, n at its end, p, m = 1/(c + ζ) by component, and the Turns of both groups.
+Plastic = namedtuple("Plastic", "local beta crossing n0 whole e n p m a c heating dea")
 # Derivatives of b* (bn, be) and of Λ (ln, le) by n₀ and e, as factors of the inner product, and ∂n/∂b*, ∂n/∂Λ.
 Gradients = namedtuple("Gradients", "bn be ln le db dl")
 
@@ -76,7 +77,7 @@ def _active(s: Vector, b: Vector) -> Vector:
 def return_map(
     p: np.ndarray, old: np.ndarray, de11: float, dg12: float, dg13: float, new: np.ndarray, C: np.ndarray
 ) -> int:
-    """Backward Euler step of the rod's law with its consistent tangent.
+    """One increment of the rod's law, of second order (see `local`), with its consistent tangent.
 
     Args:
         p: parameter array of the law, `Law.parameters()`.
@@ -91,7 +92,7 @@ def return_map(
     """
     temperature = old[7] if old.shape[0] > 7 else p[TEMPERATURE]
     heating = p[HEATING] if old.shape[0] > 7 else 0.0
-    E, G, alpha = elasticity(p, temperature)
+    E, G, alpha = elasticity(p, temperature - 0.5 * p[CHANGE])
     point = _turned(p, old, dg12, dg13)
     s = (point.stress[0] + E * de11, point.stress[1] + G * dg12, point.stress[2] + G * dg13)
     _elastic(old, s, point, E, G, new, C)
@@ -172,13 +173,12 @@ def _plastic(
         heating, dea = 0.0, 0.0
     whole = e
     e = (rest * e[0] + dea * (local.b - b), rest * e[1], rest * e[2])
-    a, c, multiplier = local.a, local.c, local.multiplier
-    ua, uc = 1.0 / (1.0 + a.s * multiplier), 1.0 / (1.0 + c.s * multiplier)
+    a, c = turn(local.a, local.multiplier, local.neutral), turn(local.c, local.multiplier, local.neutral)
     ma, mc = 1.0 / (ca + local.zeta), 1.0 / (cc + local.zeta)
-    x, u, m = (a.x, c.x, c.x), (ua, uc, uc), (ma, mc, mc)
-    n = _times(u, _add(n0, _times(x, e)))
+    m = (ma, mc, mc)
+    n = _add(_times((a.phi, c.phi, c.phi), n0), _times((a.y, c.y, c.y), e))
     pl = _times(m, (n0[0] + e[0] - n[0], n0[1] + e[1] - n[1], n0[2] + e[2] - n[2]))
-    return Plastic(local, beta, crossing, n0, whole, e, n, pl, u, m, x, heating, dea)
+    return Plastic(local, beta, crossing, n0, whole, e, n, pl, m, a, c, heating, dea)
 
 
 @njit(**INLINE)
@@ -211,28 +211,29 @@ def _tangent(plastic: Plastic, point: Point, E: float, G: float, expansion: floa
 @njit(**INLINE)
 def _gradients(plastic: Plastic) -> Gradients:
     """How b* and Λ follow n₀ and e, so that the two local equations stay true, and how n follows b* and Λ."""
-    local, n, p, u, m, x, e = plastic.local, plastic.n, plastic.p, plastic.u, plastic.m, plastic.x, plastic.e
-    a, c, multiplier = local.a, local.c, local.multiplier
-    dx, s = (a.dx, c.dx, c.dx), (a.s, c.s, c.s)
-    if local.neutral:  # κ is the unknown in the place of Λ
-        db = (x[0] * plastic.dea, 0.0, 0.0)
-        dl = _scaled(_times(_times(x, s), e), -1.0)
-    else:
-        ds = (a.ds * multiplier, c.ds * multiplier, c.ds * multiplier)
-        db = (dx[0] * e[0] + x[0] * plastic.dea, dx[1] * e[1], dx[2] * e[2])
-        db = _times(u, _add(db, _scaled(_times(n, ds), -1.0)))
-        dl = _scaled(_times(_times(u, s), n), -1.0)
-    un, up, ux, mn = _times(u, n), _times(u, p), _times(u, x), _times(m, n)
-    r1n = _scaled(un, 2.0)
-    r1e = _times(x, r1n)
-    r2n = (up[0] + mn[0] * (1.0 - u[0]), up[1] + mn[1] * (1.0 - u[1]), up[2] + mn[2] * (1.0 - u[2]))
-    r2e = _add(_times(x, up), (mn[0] * (1.0 - ux[0]), mn[1] * (1.0 - ux[1]), mn[2] * (1.0 - ux[2])))
-    r2n, r2e = _scaled(r2n, local.mean), _scaled(r2e, local.mean)
+    local, n, p, m, e, n0 = plastic.local, plastic.n, plastic.p, plastic.m, plastic.e, plastic.n0
+    a, c = plastic.a, plastic.c
+    phi, y = _by_component(a.phi, c.phi), _by_component(a.y, c.y)
+    db = _add(_times(_by_component(a.phi_b, c.phi_b), n0), _times(_by_component(a.y_b, c.y_b), e))
+    db = (db[0] + a.y * plastic.dea, db[1], db[2])
+    dl = _add(_times(_by_component(a.phi_l, c.phi_l), n0), _times(_by_component(a.y_l, c.y_l), e))
+    r1n, r1e = _scaled(_times(phi, n), 2.0), _scaled(_times(y, n), 2.0)
+    both = _times(m, _add(n0, n))
+    # ½ (n₀ + n):p by n₀ and by e
+    r2n = _add(_add(p, _times(phi, p)), _times(both, (1.0 - phi[0], 1.0 - phi[1], 1.0 - phi[2])))
+    r2e = _add(_times(y, p), _times(both, (1.0 - y[0], 1.0 - y[1], 1.0 - y[2])))
+    r2n, r2e = _scaled(r2n, 0.5), _scaled(r2e, 0.5)
     bn = _add(_scaled(r2n, -local.r1l), _scaled(r1n, -local.r2l))
     be = _add(_scaled(r2e, -local.r1l), _scaled(r1e, -local.r2l))
     ln = _add(_scaled(r2n, local.r1b), _scaled(r1n, local.r2b))
     le = _add(_scaled(r2e, local.r1b), _scaled(r1e, local.r2b))
     return Gradients(bn, be, ln, le, db, dl)
+
+
+@njit(**INLINE)
+def _by_component(a: float, c: float) -> Vector:
+    """The factors of both groups at the components 11, 12, 13."""
+    return (a, c, c)
 
 
 @njit(**INLINE)
@@ -246,7 +247,8 @@ def _sensitivity(plastic: Plastic, g: Gradients, dn: Vector, de: Vector) -> tupl
         de = _add(trial, _scaled(dn, -1.0))
     b = _inner(g.bn, dn) + _inner(g.be, de)
     multiplier = _inner(g.ln, dn) + _inner(g.le, de)
-    end = _times(plastic.u, _add(dn, _times(plastic.x, de)))
+    phi, y = _by_component(plastic.a.phi, plastic.c.phi), _by_component(plastic.a.y, plastic.c.y)
+    end = _add(_times(phi, dn), _times(y, de))
     end = _add(end, _add(_scaled(g.db, b), _scaled(g.dl, multiplier)))
     rest = _scaled(plastic.p, plastic.local.dzeta * b)
     trial = (trial[0] + plastic.dea * b, trial[1], trial[2])

@@ -12,8 +12,8 @@ Either the caller works in such a frame, or it rotates the point's state by the 
 import numpy as np
 from numba import njit
 
-from coilset.model.material.functions import HEATING, INLINE, KERNEL, TEMPERATURE, elasticity, functions
-from coilset.model.material.local import Local, Start, solve, surface, yield_crossing
+from coilset.model.material.functions import CHANGE, HEATING, INLINE, KERNEL, TEMPERATURE, elasticity, functions
+from coilset.model.material.local import Local, Start, Turn, solve, surface, turn, yield_crossing
 
 Six = tuple[float, float, float, float, float, float]  # components 11, 22, 33, 12, 13, 23
 Pair = tuple[float, float]
@@ -75,7 +75,7 @@ def _elastic(old: np.ndarray, dD: np.ndarray, E: float, G: float, new: np.ndarra
 
 @njit(**KERNEL)
 def return_map(p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
-    """Backward Euler step of the law for the full stress state, with its consistent tangent.
+    """One increment of the law for the full stress state, of second order (see `local`), with its consistent tangent.
 
     Args:
         p: parameter array of the law, `Law.parameters()`.
@@ -91,7 +91,7 @@ def return_map(p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, 
     thermal = old.shape[0] > 13
     temperature = old[13] if thermal else p[TEMPERATURE]
     heating = p[HEATING] if thermal else 0.0
-    E, G, alpha = elasticity(p, temperature)
+    E, G, alpha = elasticity(p, temperature - 0.5 * p[CHANGE])
     e = _elastic(old, dD, E, G, new, C)
     n0 = _active(old)
     trial = _active(new)
@@ -114,8 +114,8 @@ def return_map(p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, 
         return local.iterations
     if local.neutral:
         heating = 0.0
-    u, m = 1.0 / (1.0 + local.c.s * local.multiplier), 1.0 / (c + local.zeta)
-    pl = _combined(m * (1.0 - u), n0, m * rest * (1.0 - u * local.c.x), e)
+    t, m = turn(local.c, local.multiplier, local.neutral), 1.0 / (c + local.zeta)
+    pl = _combined(m * (1.0 - t.phi), n0, m * rest * (1.0 - t.y), e)
     expansion = E * G / (3.0 * G - E) * alpha * heating  # of the stress by thermal strain, per b*: 3Kα dT/db*
     pressure = expansion * (local.b - old[12])
     for i in range(6):
@@ -124,7 +124,7 @@ def return_map(p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, 
     new[12] = local.b
     if thermal:
         new[13] = temperature + heating * (local.b - old[12])
-    _tangent(local, n0, e, beta, (ne, ee, ne - 0.5 * growth), u, m, c, expansion, C)
+    _tangent(local, n0, e, beta, (ne, ee, ne - 0.5 * growth), t, m, c, expansion, C)
     return local.iterations
 
 
@@ -140,7 +140,7 @@ def _tangent(
     e: Six,
     beta: float,
     products: tuple[float, float, float],
-    u: float,
+    t: Turn,
     m: float,
     c: float,
     expansion: float,
@@ -151,12 +151,12 @@ def _tangent(
     Every vector here is a combination of n₀ and of the increment's e and is written as the pair of its two factors.
     """
     ne, ee, crossing = products
-    g, f, rest, x = local.c, local.mean, 1.0 - beta, local.c.x
-    n = (u, u * x * rest)
-    pl = (m * (1.0 - u), m * rest * (1.0 - u * x))
-    # Derivatives of n:n − k² and of b*₀ + f n:p by n₀ and by e; from them those of b* and Λ.
-    r1n, r2n = _pair(2.0 * u, n, 0.0, n), _pair(f * u, pl, f * m * (1.0 - u), n)
-    r1e, r2e = _pair(x, r1n, 0.0, n), _pair(f * u * x, pl, f * m * (1.0 - u * x), n)
+    rest, phi, y = 1.0 - beta, t.phi, t.y
+    n, both = (phi, y * rest), (1.0 + phi, y * rest)
+    pl = (m * (1.0 - phi), m * rest * (1.0 - y))
+    # Derivatives of n:n − k² and of b*₀ + ½ (n₀ + n):p by n₀ and by e; from them those of b* and Λ.
+    r1n, r2n = _pair(2.0 * phi, n, 0.0, n), _pair(0.5 * (1.0 + phi), pl, 0.5 * m * (1.0 - phi), both)
+    r1e, r2e = _pair(2.0 * y, n, 0.0, n), _pair(0.5 * y, pl, 0.5 * m * (1.0 - y), both)
     bn, be = _pair(-local.r1l, r2n, -local.r2l, r1n), _pair(-local.r1l, r2e, -local.r2l, r1e)
     ln, le = _pair(local.r1b, r2n, local.r2b, r1n), _pair(local.r1b, r2e, local.r2b, r1e)
     # The elastic fraction β follows e, too: |n₀ + β e|² = k² + β Δk².
@@ -165,16 +165,11 @@ def _tangent(
         gbeta = (-beta / crossing, 0.0)
         gb = _pair(1.0, gb, (bn[0] - be[0]) * ne + (bn[1] - be[1]) * ee, gbeta)
         gl = _pair(1.0, gl, (ln[0] - le[0]) * ne + (ln[1] - le[1]) * ee, gbeta)
-    if local.neutral:  # κ is the unknown in the place of Λ
-        fb, fl = (0.0, 0.0), (0.0, -x * g.s * rest)
-    else:
-        fb = _pair(local.dzeta, pl, -u * g.ds * local.multiplier, n)
-        fb = (fb[0], fb[1] + u * g.dx * rest)
-        fl = _pair(-u * g.s, n, 0.0, n)
-    # dp = m [(1 − u (β + x (1 − β))) de − u (1 − x) e dβ − fb db* − fl dΛ]
+    fb, fl = _pair(local.dzeta, pl, 1.0, (t.phi_b, t.y_b * rest)), (t.phi_l, t.y_l * rest)
+    # dp = m [(1 − φ β − y (1 − β)) de − (φ − y) e dβ − fb db* − fl dΛ]
     scale = c * c * m
-    identity = scale * (1.0 - u * (beta + x * rest))
-    fbeta = (0.0, u * (1.0 - x))
+    identity = scale * (1.0 - phi * beta - y * rest)
+    fbeta = (0.0, phi - y)
     left_n = -scale * fb[0], -scale * fl[0], -scale * fbeta[0]
     left_e = -scale * fb[1], -scale * fl[1], -scale * fbeta[1]
     for j in range(6):

@@ -30,6 +30,8 @@ class Step:
         lift_off_mm: clearance between the wire and the seat that it has left; 0 while both seats press.
         least_rise: least rise from a coil to the next, over the rise with which it lies on it; None where coils pass
             each other by their shape, or there is only one.
+        estimated_force_error_N: what the length of the steps up to here has left wrong in the force, and
+            estimated_height_error_mm in the height at which this force would be; None where it is not known.
     """
 
     number: int
@@ -51,6 +53,8 @@ class Step:
     plastic_work_max_N_per_mm2: float = 0.0
     lift_off_mm: float = 0.0
     least_rise: float | None = None
+    estimated_force_error_N: float | None = None
+    estimated_height_error_mm: float | None = None
 
 
 @dataclass(frozen=True)
@@ -188,11 +192,13 @@ class Limits:
         plastic_work: b* up to which the material's constants are valid, N/mm².
         strength: least tensile strength of the wire, MPa; None if no wire of a standard is named.
         penetration: usual greatest penetration, mm.
+        accuracy: error by the steps' length that is asked for, over the greatest force and over the set.
     """
 
     plastic_work: float
     strength: float | None
     penetration: float
+    accuracy: float
 
 
 @dataclass(frozen=True)

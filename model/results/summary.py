@@ -11,7 +11,7 @@ from coilset.model.results.buckling import buckling
 from coilset.model.results.rates import rates
 from coilset.model.results.record import Result, Setup, Snapshot
 from coilset.model.results.warnings import released as is_released
-from coilset.model.results.warnings import run_warnings
+from coilset.model.results.warnings import run_warnings, set_error
 from coilset.model.section import surface
 
 
@@ -44,6 +44,7 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         **peaks(setup, "residual_", [last] if released else []),
         **peaks(setup, "", result.snapshots),
         **plastic_work(setup, result),
+        **step_errors(result),
         "steps": len(result.steps),
         "iterations": sum(step.iterations for step in result.steps),
         "evaluations": sum(step.evaluations for step in result.steps),
@@ -60,6 +61,15 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         "section_rule": setup.rule.name,
         "lift_off_max_mm": max((step.lift_off_mm for step in result.steps), default=0.0),
         "warnings": [asdict(warning) for warning in run_warnings(setup, result)],
+    }
+
+
+def step_errors(result: Result) -> dict[str, float | None]:
+    """What the length of the steps has left wrong: in the greatest force, and in the set."""
+    top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
+    return {
+        "estimated_force_error_N": top and top.estimated_force_error_N,
+        "estimated_set_error_mm": set_error(result),
     }
 
 

@@ -140,6 +140,27 @@ def _equivalent(shot: Snapshot) -> float:
     return float(surface.equivalent(shot.surface_state, shot.components).max())
 
 
+def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
+    """The worse of force, at its greatest, and set."""
+    asked = setup.limits.accuracy
+    top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
+    if top is not None and top.estimated_force_error_N is not None and top.force_N:
+        worst, place = abs(top.estimated_force_error_N / top.force_N), _place(top)
+        error = set_error(result)
+        set_mm = setup.spring.free_length - setup.outer_length(result.snapshots[-1].x)
+        if error is not None and set_mm > 0.0 and abs(error) > worst * set_mm:
+            worst, place = abs(error) / set_mm, "set"
+        warning = accuracy_warning(worst, asked, place)
+        if warning is not None:
+            yield warning
+
+
+def set_error(result: Result) -> float | None:
+    """Estimated error of the set by the steps' length, mm; None where there is none, or it is not known."""
+    error = result.steps[-1].estimated_height_error_mm if result.steps and released(result) else None
+    return None if error is None else -error
+
+
 def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
     """Of a program that goes to block and comes back."""
     if "block" in setup.phases and released(result):
@@ -157,4 +178,4 @@ def released(result: Result) -> bool:
 
 
 SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _penetration, _buckled, _unstable)
-FOUND: tuple[Check, ...] = (_strength, _presetting)
+FOUND: tuple[Check, ...] = (_strength, _step_error, _presetting)

@@ -14,6 +14,7 @@ from coilset.meshes.line import LineMesh
 from coilset.meshes.placement import Placement, straight
 from coilset.model.material.law import Law
 from coilset.model.rod import forms
+from coilset.model.rod.finer_path import FinerPath
 from coilset.model.rod.kinematics import GAUSS, chord_triads, section_strains
 from coilset.model.rod.prediction import Frames, Prediction, linear_strains
 from coilset.model.rotations.kernels import rotate_nodes
@@ -116,6 +117,7 @@ class Rod:
         )  # fmt: skip
         self.correction = fem.Function(self.V)
         self._prediction: Prediction | None = None
+        self._finer: FinerPath | None = None
         self.forms = forms.RodForms(mesh, self.V, *(field.function for field in fields))
         self._residual = fem.form(self.forms.residual)
         self._tangent = fem.form(self.forms.material_stiffness + self.forms.frame_stiffness)
@@ -195,6 +197,17 @@ class Rod:
     def follow(self) -> None:
         """Bring the points on the wire's surface to the end of the increment; see Body."""
         self.sections.update_surface(self._strain.trial, self._section_start, self._section_trial)
+
+    def estimate_errors(self) -> None:
+        """Follow each step on a finer path from now on; see EstimatesErrors."""
+        self._finer = FinerPath(self.sections, self.state)
+
+    def error_works(self, ratio: float) -> tuple[float, float]:
+        """Works of what the steps up to here and the last one leave wrong; see EstimatesErrors."""
+        assert self._finer is not None, "estimate_errors comes before"
+        if not self._finer.follow(self.s.values, ratio):
+            return np.nan, np.nan
+        return self._finer.works(np.linalg.norm(self._chord.trial, axis=1))
 
     def predict(self) -> None:
         """Foresee the section forces after `correction`, from the trial state; see Foresees."""

@@ -74,22 +74,27 @@ def test_heun_is_within_a_thousandth(name, spin, exact):
 
 @pytest.mark.parametrize("name", PATHS)
 def test_return_mapping_is_within_a_thousandth(name, exact):
-    """Stated: 0.1 % for increments of 1e-4; with error control where the path turns, measured 0.9e-3 at most."""
+    """Stated: 0.1 % for increments of 1e-4; measured 2.2e-5 at most, 3.3e-3 for increments of 1e-3.
+
+    But 1.8e-4 on a path through the cone of neutral loading, where the κ of `local` is of first order.
+    """
     law = library.load("ck15", spin=False)
-    tolerance = None if name in STRAIGHT else 2e-6
-    assert error(follow(law, PATHS[name], "return_mapping", tolerance=tolerance), *exact(name, False)) < 1e-3
+    assert error(follow(law, PATHS[name], "return_mapping", 1e-3), *exact(name, False)) < 5e-3
+    assert error(follow(law, PATHS[name], "return_mapping"), *exact(name, False)) < (
+        3e-4 if name == "random 3" else 3e-5
+    )
 
 
 @pytest.mark.parametrize("name", ["tension", "reversed torsion", "tension, torsion", "random 0"])
-@pytest.mark.parametrize(("integrator", "order"), [("return_mapping", 1), ("heun", 2)])
-def test_order_of_convergence(name, integrator, order, exact):
-    """One step an increment; halving it divides the error by 2 (backward Euler) or 4 (Heun)."""
+@pytest.mark.parametrize("integrator", points.INTEGRATORS)
+def test_order_of_convergence(name, integrator, exact):
+    """One step an increment; halving it divides the error by 4."""
     law = library.load("ck15", spin=False, heun_tolerance=math.inf)
     errors = [error(follow(law, PATHS[name], integrator, h), *exact(name, False)) for h in (4e-4, 2e-4, 1e-4)]
     slopes = np.log2(errors[:-1]) - np.log2(errors[1:])
-    # The yield point falls anywhere within an increment, which disturbs single slopes of the Heun scheme.
-    assert np.mean(slopes) == pytest.approx(order, abs=0.15 if order == 1 else 0.35)
-    assert errors[-1] < (2e-2 if order == 1 else 5e-4)
+    # The yield point falls anywhere within an increment, which disturbs single slopes.
+    assert np.mean(slopes) == pytest.approx(2, abs=0.15)
+    assert errors[-1] < 5e-4
 
 
 def test_spin_gives_the_axial_stress_of_large_torsion(exact):

@@ -59,27 +59,38 @@ def parts_at_yield(law, row, strain):
     return [strain] if beta < 1e-9 else [beta * (1 - 1e-14) * strain, (1 - beta) * strain]
 
 
+def differences(law, parts):
+    """Rod against the full form with free sides, each increment in so many parts: stress and b* at the paths' ends."""
+    found = []
+    for seed in range(6):
+        rod, full = points.initial_state(law, 1)[0], points.initial_state(law, 1, 6)[0]
+        rng = np.random.default_rng(seed)
+        start = rng.normal(size=3) * (1, 1.5, 1.5)
+        for size in rng.uniform(1e-4, 2e-3, size=6):
+            start += 0.3 * rng.normal(size=3)
+            whole = size * start / np.linalg.norm(start)
+            for strain in parts_at_yield(law, rod, whole):
+                for _ in range(parts):
+                    rod = points.update(law, rod[None], strain[None] / parts)[0][0]
+                    full, _condensed = with_free_sides(law, full, strain / parts)
+        scale = np.sqrt(1.5 * law.k_squared(rod[6]))
+        found.append([np.abs(full[HELD] - rod[:3]).max() / scale, abs(full[12] / rod[6] - 1)])
+        C = points.update(law, rod[None], strain[None] / parts)[1][0]
+        np.testing.assert_allclose(with_free_sides(law, full, strain / parts)[1], C, atol=0.02 * law.E)
+    return np.array(found).T
+
+
 @pytest.mark.parametrize("name", ["ck15", "mixed", "voce"])
 def test_rod_and_full_form_agree(name):
-    """Rod paths, the full form with free sides: stress and b* to 1e-8, condensed tangent to 1e-6 of E."""
+    """In the rod no stress stands across it at any time, in the full form with free sides at the increments' ends.
+
+    So they differ by an error of second order: a quarter with half of the increments.
+    """
     law = library.load(name, spin=False)
-    compared = 0
-    for seed in range(12):
-        rod, full = points.initial_state(law, 1)[0], points.initial_state(law, 1, 6)[0]
-        start = np.random.default_rng(seed).normal(size=3) * (1, 1.5, 1.5)
-        for size in np.random.default_rng(seed + 100).uniform(1e-4, 2e-2, size=6):
-            start += 0.3 * np.random.default_rng(compared).normal(size=3)
-            for strain in parts_at_yield(law, rod, size * start / np.linalg.norm(start)):
-                new, C, count = points.update(law, rod[None], strain[None])
-                full, condensed = with_free_sides(law, full, strain)
-                rod = new[0]
-                scale = np.sqrt(1.5 * law.k_squared(rod[6]))
-                np.testing.assert_allclose(full[HELD], rod[:3], atol=1e-8 * scale)
-                assert full[12] == pytest.approx(rod[6], rel=1e-8)
-                if count[0] > 0:
-                    np.testing.assert_allclose(condensed, C[0], atol=1e-6 * law.E)
-                    compared += 1
-    assert compared > 60
+    coarse, fine = differences(law, 2), differences(law, 4)
+    assert coarse[0].max() < 2e-3
+    assert fine.max() < 1e-3
+    assert np.median(fine / coarse) == pytest.approx(0.25, abs=0.05)
 
 
 @pytest.mark.parametrize("integrator", points.INTEGRATORS)
@@ -134,14 +145,18 @@ def test_plastic_work_never_falls(integrator, components):
 
 
 def test_radial_return_of_linear_hardening():
-    """κ = ζ = 0: σeq = σtrial − 3G Δεp, Δεp = (σtrial − σ0)/(3G + H), along the trial deviator; 200 random states."""
+    """κ = ζ = 0: σeq = σtrial − 3G Δεp, Δεp = (σtrial − σ0)/(3G + H), along the trial deviator; 200 random directions.
+
+    On the straight path of each direction the law has this closed solution, with increments of any size.
+    """
     law = library.load("linear_isotropic")
     G, yield_stress, plastic = law.G, law.yield_stress, np.zeros(200)
     H = 0.75 * 2666.6667  # a1 a2 = 4/3 H in the material file
     state = points.initial_state(law, 200, 6)
     rng = np.random.default_rng(9)
+    direction = rng.normal(size=(200, 6))
     for _ in range(5):
-        D = rng.normal(size=(200, 6)) * 10 ** rng.uniform(-4, -1, size=(200, 1))
+        D = direction * 10 ** rng.uniform(-4, -1, size=(200, 1))
         new, _, count = points.update(law, state, D)
         volume = D[:, :3].sum(axis=1)
         e = D * ([1] * 3 + [0.5] * 3) - np.outer(volume / 3, [1] * 3 + [0] * 3)

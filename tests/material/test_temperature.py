@@ -99,7 +99,10 @@ def test_points_of_a_solid_begin_at_its_temperature(material_file):
 
 @pytest.mark.parametrize("name", [*ROD_PATHS, "full stress state"])
 def test_adiabatic_heating(name, material_file, reference_of):
-    """Heated by 34 to 59 K: stress and temperature; Heun within 1e-4, the return mapping of first order."""
+    """Heated by 34 to 59 K: stress and temperature; Heun within 1e-4, the return mapping of second order in the rod.
+
+    In the full form the bulk modulus of the increment's start makes the pressure one of first order.
+    """
     law = library.load(material_file(heating=HEAT), spin=False)
     path, rod = (ROD_PATHS[name], True) if name in ROD_PATHS else (SOLID_PATH, False)
     reference = reference_of(HEATING, rod=rod)
@@ -111,8 +114,8 @@ def test_adiabatic_heating(name, material_file, reference_of):
     np.testing.assert_allclose(heun[:, -1] - TEMPERATURES[0], HEATING * heun[:, -2], rtol=1e-10)
     mapped = [follow(law, path, "return_mapping", n) for n in (200, 400)]
     coarse, fine = (error(law, states[:, :-1], exact, reference) for states in mapped)
-    assert fine < 3e-3
-    assert coarse / fine == pytest.approx(2, rel=0.05)
+    assert fine < (2e-5 if rod else 2e-4)
+    assert coarse / fine == pytest.approx(4 if rod else 2, rel=0.05)
     np.testing.assert_allclose(mapped[1][:, -1] - TEMPERATURES[0], HEATING * mapped[1][:, -2], rtol=1e-10)
 
 
@@ -128,7 +131,7 @@ def test_heating_matters(material_file):
 
 @pytest.mark.parametrize("name", [*ROD_PATHS, "full stress state"])
 def test_prescribed_temperature(name, material_file, reference_of):
-    """Strain and temperature together, through a knee of the table and down again."""
+    """Strain and temperature together, through a knee of the table and down again: second order, but for the knee."""
     law = library.load(material_file(), spin=False)
     path, rod = (ROD_PATHS[name], True) if name in ROD_PATHS else (SOLID_PATH, False)
     warming = [250.0, -150.0, 60.0][: len(path)]
@@ -136,8 +139,8 @@ def test_prescribed_temperature(name, material_file, reference_of):
     exact = reference.path(path, warming=warming)
     assert error(law, follow(law, path, "heun", 300, warming), exact, reference) < 1e-4
     coarse, fine = (error(law, follow(law, path, "return_mapping", n, warming), exact, reference) for n in (200, 400))
-    assert fine < 3e-3
-    assert coarse / fine == pytest.approx(2, rel=0.05)
+    assert fine < 2e-5
+    assert 3.2 < coarse / fine < 4.4
 
 
 @pytest.mark.parametrize("integrator", points.INTEGRATORS)

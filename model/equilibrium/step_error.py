@@ -1,0 +1,85 @@
+"""What the length of the steps leaves wrong: an estimate after each step, and the size that the next one may have.
+
+A body that EstimatesErrors gives the work ΔW of the error of its inner forces on the step's deformation. By the
+principle of virtual work, with the step's own increments in the place of the deformation that a small travel makes, the
+driven head's force is wrong by
+
+    ΔF = ΔW / Δs   at its height,   and its height by   Δs_F = ΔF / (∂F/∂s)   at its force,
+
+where Δs is the step's travel and ∂F/∂s its secant. The part ΔF' that comes in with one step is of third order in its
+size h, so that h (a/|ΔF'|)^⅓ is the size of a step that brings in a.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from coilset.model.body import EstimatesErrors
+from coilset.model.equilibrium.axial_control import AxialControl
+from coilset.model.equilibrium.control import StepControl
+from coilset.model.state import Where
+
+ORDER = 3
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """What the length of the steps has left wrong.
+
+    Attributes:
+        force: true force at this height, less the one found, N; height: true height at this force, less the one found,
+            mm. Not a number where they are not known.
+        share: what this step has brought in, over what it may.
+        factor: of its size, for a step that brings in what it may.
+    """
+
+    force: float
+    height: float
+    share: float
+    factor: float
+
+
+class StepError:
+    """Estimates for a spring between its heads.
+
+    Args:
+        control: AxialControl of a System whose body EstimatesErrors.
+        accuracy: error of force that is asked for, over the greatest force so far.
+        steps: StepControl.
+    """
+
+    def __init__(self, control: AxialControl, accuracy: float, steps: StepControl) -> None:
+        body = control.system.body
+        assert isinstance(body, EstimatesErrors)
+        self.control, self.accuracy, self.steps, self._body = control, accuracy, steps, body
+        body.estimate_errors()
+        self._greatest = control.system.state.add("greatest_force", np.zeros(1), Where.SHARED)
+
+    def estimate(self, ratio: float) -> Estimate:
+        """Judge the state on trial, once, before it is committed or given up; collective.
+
+        Args:
+            ratio: size of the step over that of the one before it on the same path, 0 if there is none.
+        """
+        control, comm = self.control, self.control.system.comm
+        works = np.array(self._body.error_works(ratio))
+        if comm.size > 1:
+            works = comm.allreduce(works)
+        before, force = control.force, control.trial_force
+        travel = control.height - control.trial_height
+        greatest = max(float(self._greatest.equilibrium[0]), abs(force))
+        self._greatest.trial[0] = greatest
+        if abs(travel) <= 1e-12 * control.free_length or greatest == 0.0:
+            return Estimate(math.nan, math.nan, 0.0, self.steps.growth)
+        error, new = (float(work) / travel for work in works)
+        stiffness = (force - before) / travel
+        share = abs(new) / (self.steps.step_share * self.accuracy * greatest)
+        if math.isnan(share):
+            return Estimate(math.nan, math.nan, 0.0, 1.0)
+        return Estimate(error, error / stiffness if stiffness else math.nan, share, self._factor(share))
+
+    def _factor(self, share: float) -> float:
+        steps = self.steps
+        wanted = steps.growth if share == 0.0 else steps.caution * share ** (-1.0 / ORDER)
+        return float(np.clip(wanted, steps.least_factor, steps.growth))

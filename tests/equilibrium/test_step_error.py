@@ -1,0 +1,112 @@
+"""Steps that know their error: what is asked for, what the estimate says, what the walk makes of it."""
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from coilset.meshes.errors import InputError
+from coilset.model.analysis import Analysis
+from coilset.model.case import check, read_case
+from coilset.model.case.case import read_case_data
+from coilset.model.equilibrium.step_error import Estimate
+from coilset.model.results.summary import summarise
+
+COARSE = ["mesh.elements_per_turn=10", "mesh.section.radial=3", "mesh.section.angular=8"]
+BACK = "{to: {force: 0}, steps: 8}"
+
+
+def run(example, *settings):
+    """Result and summary of the example with other entries."""
+    analysis = Analysis(read_case(example, settings), MPI.COMM_SELF)
+    return analysis.run(), summarise(analysis.setup, analysis.result)
+
+
+@pytest.mark.parametrize(("given", "found"), [("0.2 %", 0.002), ("0.5%", 0.005), (0.01, 0.01)])
+def test_accuracy_in_per_cent_and_as_a_number(example, given, found):
+    data = read_case_data(example)
+    assert check(data | {"accuracy": given}).accuracy == pytest.approx(found, rel=1e-15)
+    grouped = check(data | {"loading": {"accuracy": given, "program": data["loading"]}})
+    assert grouped.accuracy == pytest.approx(found, rel=1e-15)
+    assert grouped.loading == check(data).loading
+    assert check(data).accuracy == 0.002
+
+
+@pytest.mark.parametrize("given", ["little", "%", "2 % of it", 0, 1.5, "-1 %", "nan"])
+def test_an_accuracy_that_is_none(example, given):
+    with pytest.raises(InputError, match="accuracy"):
+        check(read_case_data(example) | {"accuracy": given})
+
+
+def test_steps_take_the_size_that_their_error_allows(example):
+    """Eight times what a step may bring in: cut to 0.9/2 of its size; the next one to 0.9/1.1 by a third of 1.1³."""
+    analysis = Analysis(read_case(example, ["mesh.elements_per_turn=8", "loading=[{to: {travel: 3}}]"]), MPI.COMM_SELF)
+    factor = analysis.step_error._factor
+    assert factor(8.0) == pytest.approx(0.45)
+    assert factor(1.0) == pytest.approx(0.9)
+    assert factor(0.0) == factor(1e-9) == analysis.case.solver.control.steps.growth
+    assert factor(np.inf) == analysis.case.solver.control.steps.least_factor
+    shares, asked = [8.0, 1.331, 1e-9], []
+
+    def estimate(ratio):
+        asked.append(ratio)
+        share = shares.pop(0) if shares else 0.0
+        return Estimate(0.0, 0.0, share, factor(share))
+
+    analysis.step_error.estimate = estimate
+    travels = [step.travel_mm for step in analysis.run().steps]
+    regular = 3.0 / analysis.case.solver.control.steps.automatic
+    assert travels[0] == pytest.approx(0.45 * regular, rel=1e-12)
+    assert np.diff(travels)[0] == pytest.approx(0.45 * 0.9 / 1.1 * regular, rel=1e-12)
+    assert np.diff(travels)[1] == pytest.approx(1.5 * np.diff(travels)[0], rel=1e-12)
+    assert travels[-1] == pytest.approx(3.0, abs=1e-12)
+    assert asked[:2] == [0.0, 0.0]
+    assert asked[2:4] == pytest.approx([0.9 / 1.1, 1.5])
+
+
+@pytest.mark.parametrize(("ends", "to"), [("clamped", "{travel: 15}"), ("seats", "block")])
+def test_equal_steps_tell_their_error_within_a_factor_of_three(example, ends, to):
+    """Eight steps against forty; told over true, force and set: 0.86 and 1.5 clamped, 0.65 and 2.6 with contact."""
+    few, many = 8, 40
+    coarse, told = run(example, *COARSE, f"ends={ends}", f"loading=[{{to: {to}, steps: {few}}}, {BACK}]")
+    fine, _ = run(example, *COARSE, f"ends={ends}", f"loading=[{{to: {to}, steps: {many}}}, {BACK}]")
+    force = fine.steps[many - 1].force_N - coarse.steps[few - 1].force_N
+    assert 1 / 3 < coarse.steps[few - 1].estimated_force_error_N / force < 3
+    set_error = fine.steps[-1].travel_mm - coarse.steps[-1].travel_mm
+    assert 1 / 3 < told["estimated_set_error_mm"] / set_error < 3
+    names = [warning["name"] for warning in told["warnings"]]
+    worst = max(abs(told["estimated_force_error_N"]) / told["force_max_N"],
+                abs(told["estimated_set_error_mm"]) / told["set_mm"])  # fmt: skip
+    assert ("step error" in names) == (worst > 0.002)
+
+
+def test_the_example_is_within_its_accuracy(example):
+    """Against Richardson's limit of 24 and 48 equal steps each way, with the error of second order."""
+    (_, coarse), (_, fine) = (
+        run(example, f"loading.0.steps={steps}", f"loading.1.steps={steps}") for steps in (24, 48)
+    )
+    _, found = run(example)
+    for name, accuracy in (("force_max_N", 0.002), ("set_mm", 0.001)):
+        limit = fine[name] + (fine[name] - coarse[name]) / 3.0
+        assert found[name] == pytest.approx(limit, rel=accuracy)
+    assert "step error" not in [warning["name"] for warning in found["warnings"]]
+
+
+def test_where_the_error_is_not_known_steps_go_on(example):
+    """A finer path on which the law finds no stress, once: no estimate for that step, and one for the next."""
+    analysis = Analysis(read_case(example, ["mesh.elements_per_turn=8", "loading=[{to: {travel: 9}}]"]), MPI.COMM_SELF)
+    finer = analysis.rod._finer._sections
+    update, calls = finer.update, []
+
+    def fail_once(*args):
+        if args[1]["strain"] is analysis.rod.state["strain"].equilibrium and "point_state" in args[1]:
+            calls.append(args[1]["point_state"] is analysis.rod.state["finer_point_state"].equilibrium)
+            if calls.count(True) == 3 and calls[-1]:
+                return False
+        return update(*args)
+
+    finer.update = fail_once
+    result = analysis.run()
+    assert result.complete
+    known = [step.estimated_force_error_N is not None for step in result.steps]
+    assert known[:5] == [True, True, False, True, True]
+    assert np.isfinite(result.steps[-1].estimated_force_error_N)

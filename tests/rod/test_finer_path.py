@@ -1,0 +1,70 @@
+"""What the finer path says about the error of section forces, against the law over the true path in 400 increments."""
+
+import numpy as np
+import pytest
+
+from coilset.meshes.placement import straight
+from coilset.model.material import library
+from coilset.model.rod.finer_path import FinerPath
+from coilset.model.section.kinds import make_sections
+from coilset.model.section.rules import polar
+from coilset.model.state import State, Where
+
+TWIST, BENDING = 3, 4  # of the section strains
+
+
+def strains(time):
+    """Twist to yielding, and bending that sets in smoothly: a path that bends."""
+    e = np.zeros((1, 2, 6))
+    e[..., TWIST], e[..., BENDING] = 2e-3 * time, 1.5e-3 * time**2
+    return e
+
+
+class Walk:
+    """Sections of one element, brought along a path of strains."""
+
+    def __init__(self):
+        law = library.load("ck15", spin=False)
+        self.sections = make_sections("plane", law, law.parameters(), polar(), np.array([2.5]), straight(1))
+        self.state = State()
+        self.strain = self.state.add("strain", np.zeros((1, 2, 6)), Where.ELEMENT)
+        self.points = {
+            name: self.state.add(name, rows, Where.ELEMENT) for name, rows in self.sections.initial_state().items()
+        }
+        self.s, self.D = np.zeros((1, 2, 6)), np.zeros((1, 2, 6, 6))
+
+    def to(self, strain):
+        """On trial."""
+        self.strain.trial[:] = strain
+        start = {name: field.equilibrium for name, field in self.points.items()} | {"strain": self.strain.equilibrium}
+        assert self.sections.update(strain, start, {name: f.trial for name, f in self.points.items()}, self.s, self.D)
+
+
+@pytest.mark.parametrize("steps", [4, 8])
+def test_error_of_section_forces_is_known(steps):
+    """Error of 1.1 % with four steps, 0.29 % with eight: estimated within 0.7 and 0.1 % of itself."""
+    walk = Walk()
+    finer = FinerPath(walk.sections, walk.state)
+    for k in range(1, steps + 1):
+        walk.to(strains(k / steps))
+        assert finer.follow(walk.s, 1.0 if k > 1 else 0.0)
+        walk.state.commit()
+    fine = Walk()
+    for time in np.linspace(0.0, 1.0, 401)[1:]:
+        fine.to(strains(time))
+        fine.state.commit()
+    true, estimated = fine.s - walk.s, walk.state["section_force_error"].equilibrium
+    for column in (TWIST, BENDING):
+        assert abs(true[0, 0, column] / fine.s[0, 0, column]) == pytest.approx(0.16 / steps**2, rel=0.2)
+        assert estimated[0, 0, column] == pytest.approx(true[0, 0, column], rel=0.01)
+
+
+def test_what_stays_elastic_has_no_error():
+    walk = Walk()
+    finer = FinerPath(walk.sections, walk.state)
+    for k in (1, 2):
+        walk.to(0.05 * strains(0.5 * k))
+        finer.follow(walk.s, 1.0 if k > 1 else 0.0)
+        walk.state.commit()
+    assert np.abs(walk.state["section_force_error"].equilibrium).max() < 1e-12 * np.abs(walk.s).max()
+    assert finer.works(np.array([1.0])) == pytest.approx((0.0, 0.0), abs=1e-8)
