@@ -68,7 +68,7 @@ def step_errors(result: Result) -> dict[str, float | None]:
     """What the length of the steps has left wrong: in the greatest force, and in the set."""
     top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
     return {
-        "estimated_force_error_N": top and top.estimated_force_error_N,
+        "estimated_force_error_N": None if top is None else top.estimated_force_error_N,
         "estimated_set_error_mm": set_error(result),
     }
 
