@@ -290,7 +290,7 @@ class Analysis:
         slender, setup = np.isfinite(self.setup.buckling_travel), self.setup
         if not slender or buckling(self.result.steps, setup.mean_diameter) is not None:
             return None
-        return self.stability.weakest_mode(self.newton.load)[0]
+        return self.stability.weakest(self.newton.load).value
 
     def initial_rate(self) -> float:
         """Force over the shortening of the wire from tip to tip, at a thousandth of the free length, N/mm; collective.
