@@ -168,7 +168,7 @@ class Continuation:
     def _ends_here(self, size: float, outcome: Outcome) -> bool:
         """Is a step that failed so short that its path ends, or must be left before it ends unstable?"""
         shortest = self.control.cut * size < self.control.smallest
-        if self.stability is None or not (self._unstable or shortest and not outcome.refused):
+        if self.stability is None or not (self._unstable or (shortest and not outcome.refused)):
             return False
         return shortest or self.position.cuts >= self.control.unstable_cuts
 

@@ -97,7 +97,7 @@ class Stability:
         return factors
 
     def weights(self, load: Load) -> np.ndarray:
-        """Of this rank's unknowns in a mode's norm: 1 for displacements, a tenth of the extent squared for rotations."""
+        """Of this rank's unknowns in a mode's norm: 1 of displacements, a tenth of the extent squared of rotations."""
         assert isinstance(self.layout, LineLayout)
         n, extent = len(self.layout.station_dofs), self.layout.rod.extent
         natural = np.ones(self.layout.size)
