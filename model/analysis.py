@@ -259,7 +259,7 @@ class Analysis:
         step = Step(taken.number, phase, taken.progress, height, self.spring.free_length - height, force,
                     taken.outcome.iterations, taken.outcome.evaluations, taken.outcome.failed_solves, taken.cuts,
                     contacts, self.system.max_penetration,
-                    taken.outcome.negative_pivots, int(taken.outcome.left_branch),
+                    taken.outcome.negative_pivots, int(taken.outcome.left_branch), taken.outcome.released,
                     axis_offset(x, self.rod.line.stations, turns), self._least_eigenvalue(),
                     self._greatest_plastic_work(), clearance(self.system, x) if lifts else 0.0,
                     least_rise(x, turns, self.spring))  # fmt: skip

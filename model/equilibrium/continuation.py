@@ -182,11 +182,14 @@ class Continuation:
         unstable = self._solve(load(), self.starts(load(), size))
         if unstable.converged:
             unstable = replace(unstable, negative_pivots=self.stability.negative_pivots(load()))
+            if unstable.negative_pivots <= self.negative_pivots:
+                return self._conclude(unstable)
         there = self.system.increments.copy() if unstable.converged else None
         self.system.restore()
         snap = Snap(self.stability, self.control, lambda load, start: self._judged(self._newton(load, start)))
         outcome = snap.go(load, there)
         if outcome.converged:
+            log.info("step %d: the spring snapped and set %.3g N mm free", self.number + 1, outcome.released)
             self.negative_pivots = 0
             return outcome
         self.system.state.put_back(before)

@@ -79,8 +79,9 @@ class StepControl:
         probe: travel by which the initial rate is measured, in free lengths.
         unstable_cuts: how often a step is cut where it ends in an unstable state, before its path is left.
         branch_amplitude: greatest displacement of the weakest mode by which a path is left at first, in wire radii.
-        snap_steps: of a spring that has left its path, at most, until it rests.
-        snap_failures: of these that may fail.
+        snap_advance: way of a spring that snaps in one step of it, in wire radii.
+        snap_steps: of these at most, until it rests.
+        snap_failures: of these that may fail, or go more than four times as far, one after the other.
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = STRICT
@@ -98,5 +99,6 @@ class StepControl:
     probe: Share = 1e-3
     unstable_cuts: Count = 6
     branch_amplitude: Positive = 0.2
-    snap_steps: Count = 100
+    snap_advance: Positive = 1.0
+    snap_steps: Count = 200
     snap_failures: Count = 8

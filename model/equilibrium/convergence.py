@@ -38,8 +38,8 @@ class Outcome:
         linear_iterations: inside of iterative linear solvers.
         negative_pivots: negative eigenvalues of the tangent where they were counted; the state is unstable if there
             are.
-        left_branch: was an unstable path left for a stable one on the way to this state?
-        released: potential energy that the spring lost when it left its path, N mm.
+        left_branch: did the body snap from a path that ends or is unstable on the way to this state?
+        released: potential energy that it lost then, N mm.
         failed_solves: solves that did not lead to it, before this one: other starts, parts of the step, and the whole
             steps that were cut. Their factorisations and evaluations are counted above, their iterations are not.
         stagnated: did it end because the out-of-balance forces no longer fell?

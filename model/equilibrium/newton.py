@@ -150,10 +150,11 @@ class Newton:
     def _solve(self, guess: PETSc.Vec | None) -> Outcome:
         system, method, X, first = self.system, self.method, self.system.increments, 0
         self.ratio, self._factorisations, self._failed, evaluations = np.inf, 0, 0, system.evaluations
-        self.load_factor, self._at_step_start = 1.0, True
+        self.load_factor, self._at_step_start, self._corrected = 1.0, True, None
         if guess is None or method.is_arc_length:
             X.set(0.0)
         elif method.searches:
+            self._foresee_start(guess)
             self.limit.limit_start(guess, X)
         else:
             guess.copy(X)
@@ -176,9 +177,19 @@ class Newton:
             system.evaluations - evaluations, linear, self._failed, reason == Reason.DIVERGED_LOCAL_MIN,
         )  # fmt: skip
 
+    def _foresee_start(self, guess: PETSc.Vec) -> None:
+        """Take a start for a correction of the last equilibrium: its finite turns feign forces like any other's."""
+        if not self.foresees or self.system.touches:
+            return
+        correction = guess.duplicate()
+        correction.set(0.0)
+        self.system.evaluate(correction)
+        correction.axpy(-1.0, guess)
+        self.system.predict(correction)
+        self._corrected = 1.0
+
     def _once(self) -> tuple[int, int]:
         """Numbers of iterations, and of linear ones in them."""
-        self._corrected = None
         self.snes.solve(self._arc_load if self.method.is_arc_length else None, self.system.increments)
         return self.snes.getIterationNumber(), self.snes.getLinearSolveIterations()
 
@@ -191,6 +202,7 @@ class Newton:
         good.set(0.0)
         while True:
             counts += self._once()
+            self._corrected = None
             if self.snes.getConvergedReason() > 0:
                 if self.load_factor == 1.0:
                     return int(counts[0]), int(counts[1])

@@ -7,8 +7,8 @@ Loads and prescribed values stay, and a drag holds the spring back: over a step 
 where x₀ is the state before and M weighs displacements and rotations. That is backward Euler for M ẋ = −r(x). Of all
 states it takes the one of least Π(x) + c/2 (x − x₀)·M (x − x₀), so the potential Π falls with each step whatever c is,
 and the way ends only where the spring rests. Where the least eigenvalue λ of the tangent is negative c = 2 |λ|: a drag
-of less than |λ| would not hold, and with this one the weakest mode doubles in a step. From where no eigenvalue is
-negative c shrinks, and when it is below λ the state is solved for without drag.
+of less than |λ| would not hold, and with this one the weakest mode doubles in a step. Else c is such that a step moves
+the wire by about its radius, and when it is below λ > 0 the state is solved for without drag.
 """
 
 import logging
@@ -54,19 +54,20 @@ class Snap:
         weakest, origin = begin
         c, released, failed, before = self._drag(weakest), 0.0, 0, np.zeros(self.system.layout.size_local)
         weights = self.stability.weights(load())
+        advance = self.control.snap_advance * self.system.line.rod.largest_radius
         outcome = Outcome(False, "the spring does not come to rest", np.inf)
         for _step in range(self.control.snap_steps):
             aim = load()
             outcome = self.solve(aim.dragged(Drag(c * weights, origin)), Start())
-            if not outcome.converged:
+            moved = self.stability.greatest_displacement(self.system.increments)
+            if not outcome.converged or moved > 4.0 * advance:
                 failed += 1
                 self.system.restore()
                 if failed > self.control.snap_failures:
                     break
                 c *= 4.0
                 continue
-            way = self.system.increments.getArray(readonly=True).copy()
-            moved = self.stability.greatest_displacement(self.system.increments)
+            failed, way = 0, self.system.increments.getArray(readonly=True).copy()
             now = c * weights * (way - origin)
             released += 0.5 * float(self._sum((before + now) @ way))
             before, origin = now, np.zeros_like(origin)
@@ -74,12 +75,12 @@ class Snap:
             self.system.commit()
             log.info("snap: %.3g mm, drag %.2g, %d negative, least eigenvalue %.3g N/mm, %d iterations",
                      moved, c, weakest.negative, weakest.value, outcome.iterations)  # fmt: skip
+            if weakest.negative == 0 and c <= weakest.value and (rest := self._rest(load(), moved)) is not None:
+                way = self.system.state["increments"].equilibrium
+                return replace(rest, left_branch=True, released=released + 0.5 * float(self._sum(before @ way)))
+            c *= float(np.clip(moved / advance, 0.25, 4.0))
             if weakest.negative:
-                c = self._drag(weakest)
-                continue
-            if c <= weakest.value and (rest := self._rest(load(), moved)) is not None:
-                return replace(rest, left_branch=True, released=released)
-            c *= 0.25
+                c = max(c, self._drag(weakest))
         return replace(outcome, converged=False)
 
     def _drag(self, weakest: Weakest) -> float:
