@@ -90,7 +90,7 @@ def test_what_does_not_come_to_rest_can_be_taken_back():
     state.put_back(saved)
     frame.system.restore()
     assert -frame.moved(1)[2] == before
-    assert all(np.array_equal(field.trial, saved[name]) for name, field in state.items())
+    assert all(np.array_equal(field.equilibrium, saved[name]) for name, field in state.items())
 
 
 def test_drag_resists_and_its_derivative_is_in_the_tangent():
