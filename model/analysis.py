@@ -264,7 +264,7 @@ class Analysis:
         step = Step(taken.number, phase, taken.progress, height, self.spring.free_length - height, force,
                     taken.outcome.iterations, taken.outcome.evaluations, taken.outcome.failed_solves, taken.cuts,
                     contacts, self.system.max_penetration,
-                    taken.outcome.negative_pivots, int(taken.outcome.left_branch),
+                    taken.outcome.negative_pivots, int(taken.outcome.left_branch), taken.outcome.released,
                     axis_offset(x, self.rod.line.stations, turns), self._least_eigenvalue(),
                     self._greatest_plastic_work(), clearance(self.system, x) if lifts else 0.0,
                     least_rise(x, turns, self.spring), *self._errors(taken.outcome))  # fmt: skip
@@ -303,7 +303,7 @@ class Analysis:
         slender, setup = np.isfinite(self.setup.buckling_travel), self.setup
         if not slender or buckling(self.result.steps, setup.mean_diameter) is not None:
             return None
-        return self.stability.weakest_mode(self.newton.load)[0]
+        return self.stability.weakest(self.newton.load).value
 
     def initial_rate(self) -> float:
         """Force over the shortening of the wire from tip to tip, at a thousandth of the free length, N/mm; collective.

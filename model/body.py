@@ -119,6 +119,10 @@ class EstimatesErrors(Protocol):
         """
         ...
 
+    def rejoin_finer_path(self) -> None:
+        """Estimate from the last equilibrium on: it was reached by steps that were not judged."""
+        ...
+
 
 @runtime_checkable
 class HasRotations(Protocol):

@@ -3,7 +3,7 @@
 Body, contacts, seats and solver register their arrays here; a checkpoint needs nothing else.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import Enum
 
@@ -76,3 +76,12 @@ class State:
         """Make the trial arrays those of the last equilibrium again."""
         for field in self._fields.values():
             np.copyto(field.trial, field.equilibrium)
+
+    def copy(self) -> dict[str, np.ndarray]:
+        """The last equilibrium, to be put back later."""
+        return {name: field.equilibrium.copy() for name, field in self._fields.items()}
+
+    def put_back(self, arrays: Mapping[str, np.ndarray]) -> None:
+        """Make what `copy` gave the last equilibrium again; the trial arrays stay as they are until `restore`."""
+        for name, field in self._fields.items():
+            np.copyto(field.equilibrium, arrays[name])

@@ -132,6 +132,7 @@ def _run(
 
 def _row(step: Step) -> str:
     cuts = f"   cut {step.cuts} times" if step.cuts else ""
+    cuts += "   snapped" if step.left_branch else ""
     force = round(step.force_N, 3) + 0.0  # no -0.000
     return f"{step.number:7d}{step.seat_height_mm:17.4f}{force:13.3f}{step.iterations:13d}{step.contacts:11d}{cuts}"
 

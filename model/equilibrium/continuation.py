@@ -15,6 +15,7 @@ from coilset.model.equilibrium.control import StepControl
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.newton import Newton, Start
+from coilset.model.equilibrium.snap import Snap
 from coilset.model.equilibrium.stability import Stability
 from coilset.model.equilibrium.step_error import StepError
 
@@ -160,9 +161,9 @@ class Continuation:
         """An equilibrium in which bodies are pressed deep into each other counts as none."""
         if outcome.converged and (depth := self.system.max_penetration) > self.penetration_limit:
             reason = f"coils or seats would lie {depth:.4g} mm in each other, more than {self.penetration_limit:.4g} mm"
-            return replace(outcome, converged=False, reason=reason)
+            return replace(outcome, converged=False, reason=reason, refused=True)
         if outcome.converged and (refusal := self.refusal()) is not None:
-            return replace(outcome, converged=False, reason=refusal)
+            return replace(outcome, converged=False, reason=refusal, refused=True)
         return outcome
 
     def _estimated(self, outcome: Outcome, step_error: StepError, size: float, accurately: bool) -> Outcome:
@@ -172,7 +173,7 @@ class Continuation:
         if not accurately or estimate.share <= self.control.tolerated_share or size <= self.control.finest:
             return outcome
         reason = f"its error is estimated at {estimate.share:.3g} of what a step may have"
-        return replace(outcome, converged=False, reason=reason, balanced=True)
+        return replace(outcome, converged=False, reason=reason, refused=True)
 
     # ---- stability -------------------------------------------------------------------------------------------------
 
@@ -187,33 +188,40 @@ class Continuation:
         reason = f"the equilibrium is unstable: {negative} of the tangent's eigenvalues are negative"
         return replace(outcome, converged=False, reason=reason)
 
-    def _is_cut_enough(self, size: float) -> bool:
-        """Is the way to an unstable state so short that the path must be left here?"""
-        return self.position.cuts >= self.control.unstable_cuts or self.control.cut * size < self.control.smallest
+    def _ends_here(self, size: float, outcome: Outcome) -> bool:
+        """Is a step that failed so short that its path ends, or must be left before it ends unstable?"""
+        shortest = self.control.cut * size < self.control.smallest
+        if self.stability is None or not (self._unstable or (shortest and not outcome.refused)):
+            return False
+        return shortest or self.position.cuts >= self.control.unstable_cuts
 
-    def _leave_branch(self, load: Load, size: float) -> Outcome:
-        """Solve again a step that ends unstable, and go off along the weakest mode until a stable state is found.
+    def _snap(self, load: Callable[[], Load], size: float) -> Outcome:
+        """Let go of a path that ends, or ends unstable, in a step of this size, until a stable state is found.
 
-        Where none is found the unstable state is kept, with its negative pivots.
+        Where none is found all is as it was; an unstable state is kept then, with its negative pivots.
         """
         assert self.stability is not None
-        unstable = self._solve(load, self.starts(load, size))
-        if not unstable.converged:
-            return self._conclude(unstable, size)
-        unstable = replace(unstable, negative_pivots=self.stability.negative_pivots(load))
-        there, (_value, mode) = self.system.increments.copy(), self.stability.weakest_mode(load)
-        amplitude = self.control.branch_amplitude * self.system.line.rod.largest_radius
-        for _trial in range(self.control.branch_trials):
-            for sign in (1.0, -1.0):
-                start = there.copy()
-                start.axpy(sign * amplitude, mode)
-                outcome = self._stable(self._judged(self._newton(load, Start(start))), load)
-                if outcome.converged:
-                    log.info("step %d: the unstable path is left by %.3g mm", self.number + 1, sign * amplitude)
-                    return self._conclude(replace(outcome, left_branch=True), size)
-            amplitude *= self.control.branch_growth
-        log.info("step %d: no stable state beside the unstable one was found", self.number + 1)
-        self._solve(load, (Start(there),))
+        before = self.system.state.copy()
+        unstable = self._solve(load(), self.starts(load(), size))
+        if unstable.converged:
+            unstable = replace(unstable, negative_pivots=self.stability.negative_pivots(load()))
+            if unstable.negative_pivots <= self.negative_pivots:
+                return self._conclude(unstable, size)
+        there = self.system.increments.copy() if unstable.converged else None
+        self.system.restore()
+        snap = Snap(self.stability, self.control, lambda load, start: self._judged(self._newton(load, start)))
+        outcome = snap.go(load, there)
+        if outcome.converged:
+            log.info("step %d: the spring snapped and set %.3g N mm free", self.number + 1, outcome.released)
+            self.negative_pivots = 0
+            if self.step_error is not None:
+                self.step_error.rejoin()
+            return outcome
+        self.system.state.put_back(before)
+        self.system.restore()
+        log.info("step %d: no stable state beside the path was found", self.number + 1)
+        if there is not None:
+            self._solve(load(), (Start(there),))
         return self._conclude(unstable, size)
 
     def from_last_step(self, load: Load, size: float) -> Iterator[Start]:
@@ -264,20 +272,23 @@ class Continuation:
             outcome = self._attempt(load, self.starts(load, size), size, path.automatic)
             if outcome.negative_pivots > self.negative_pivots:
                 self._unstable = size
-            if not outcome.converged and self._unstable and self._is_cut_enough(size):
-                beside = self._leave_branch(path.load(position.done + self._unstable), self._unstable)
+            if not outcome.converged and self._ends_here(size, outcome):
+                there = self._unstable or size
+                beside = self._snap(lambda to=position.done + there: path.load(to), there)  # type: ignore[misc]
                 if beside.converged:
-                    outcome, size = beside, self._unstable
+                    outcome, size = beside, there
                 self._unstable = 0.0  # once a step
             if outcome.converged:
                 self.number, self._unstable = self.number + 1, 0.0
-                self.position = Position(position.done + size, self._following(path, outcome, size), 0, size, size)
+                last = 0.0 if outcome.left_branch else size
+                following = self._following(path, outcome, size)
+                self.position = Position(position.done + size, following, 0, last, last)
                 return self._charged(outcome), position.cuts
             self._cut(path, outcome, size)
 
     def _cut(self, path: Path, outcome: Outcome, size: float) -> None:
         factor = self.control.cut
-        if outcome.balanced and outcome.estimate is not None:  # only its error was too large
+        if outcome.refused and outcome.estimate is not None:  # only its error was too large
             factor = outcome.estimate.factor
         shorter = factor * size
         self.position = replace(self.position, size=shorter, cuts=self.position.cuts + 1, last=0.0)

@@ -38,7 +38,7 @@ class NewtonControl:
         smallest_contact_step: share of a correction that is gone whatever the contacts say.
         contact_bisections: to find how far a correction may go.
         foreseen_forces: is the stiffness of turning rods built with the forces that the last correction foresees? None:
-            where nothing can touch. A slender rod needs it; pressed springs take some 5 % more evaluations with it.
+            where nothing touches, and after a correction that has only feigned greater forces.
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = STRICT
@@ -84,8 +84,9 @@ class StepControl:
         probe: travel by which the initial rate is measured, in free lengths.
         unstable_cuts: how often a step is cut where it ends in an unstable state, before its path is left.
         branch_amplitude: greatest displacement of the weakest mode by which a path is left at first, in wire radii.
-        branch_trials: amplitudes that are tried, each `branch_growth` times the one before.
-        branch_growth: see `branch_trials`.
+        snap_advance: way of a spring that snaps in one step of it, in wire radii.
+        snap_steps: of these at most, until it rests.
+        snap_failures: of these that may fail, or go more than four times as far, one after the other.
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = STRICT
@@ -108,5 +109,6 @@ class StepControl:
     probe: Share = 1e-3
     unstable_cuts: Count = 6
     branch_amplitude: Positive = 0.2
-    branch_trials: Count = 6
-    branch_growth: Growth = 2.5
+    snap_advance: Positive = 1.0
+    snap_steps: Count = 200
+    snap_failures: Count = 8

@@ -38,12 +38,14 @@ class Outcome:
         evaluations: states evaluated, each with the law at every point; those of line searches among them.
         linear_iterations: inside of iterative linear solvers.
         negative_pivots: negative eigenvalues of the tangent where they were counted; the state is unstable if there
-        are. left_branch: was an unstable path left for a stable one on the way to this state?
+            are.
+        left_branch: did the body snap from a path that ends or is unstable on the way to this state?
+        released: potential energy that it lost then, N mm.
         failed_solves: solves that did not lead to it, before this one: other starts, parts of the step, and the whole
             steps that were cut. Their factorisations and evaluations are counted above, their iterations are not.
         stagnated: did it end because the out-of-balance forces no longer fell?
         estimate: of the error that the steps' length leaves; None where it is not known.
-        balanced: was it an equilibrium, though `converged` says that it does not count because of its error?
+        refused: is it an equilibrium that does not count: bodies lie too deep in each other, or its error is too large?
     """
 
     converged: bool
@@ -55,10 +57,11 @@ class Outcome:
     linear_iterations: int = 0
     negative_pivots: int = 0
     left_branch: bool = False
+    released: float = 0.0
     failed_solves: int = 0
     stagnated: bool = False
     estimate: Estimate | None = None
-    balanced: bool = False
+    refused: bool = False
 
     def __add__(self, following: "Outcome") -> "Outcome":
         """The outcome of two solves, one after the other."""

@@ -28,11 +28,13 @@ class StepLength:
         contact_limit: factor of the correction that contacts allow.
         value: factor of the correction that is left, from the search for the work's zero.
         ends_on_the_way: is the step short of the prescribed increments, which the whole correction would meet?
+        feigns: is it taken because the forces without those that finite turns feign have fallen, and only these?
     """
 
     contact_limit: float
     value: float
     ends_on_the_way: bool
+    feigns: bool
 
 
 class WorkSearch:
@@ -57,7 +59,7 @@ class WorkSearch:
         allowed = self.limit.allowed(system.max_penetration)
         pending = load.misses(x.getArray(readonly=True), load_factor)
         y.copy(self._direction)
-        limit, length = 1.0, 1.0
+        limit, length, feigns = 1.0, 1.0, False
         work, norm = self._at(1.0)
         if system.max_penetration > allowed and (limit := self.limit.step_length(x, y, -1.0)) < 1.0:
             self._direction.scale(limit)
@@ -68,12 +70,13 @@ class WorkSearch:
         if work is not None and not pending:
             start_work, start_norm = F.dot(self._free), self._free_norm(F)
             start = start_work, start_norm
-            if not self._is_right(start, work, norm) and not self._is_right(
-                start, *self._without_turning(limit, length)
-            ):
-                crosses_zero = start_work > 0.0 > work
-                length = self._zero(start_work, length, work) if crosses_zero else self._back(start_norm, length, norm)
-        return StepLength(limit, length, pending and limit * length < 1.0)
+            if not self._is_right(start, work, norm):
+                feigns = self._is_right(start, *self._without_turning(limit, length))
+                if not feigns:
+                    crosses_zero = start_work > 0.0 > work
+                    length = (self._zero(start_work, length, work) if crosses_zero else
+                              self._back(start_norm, length, norm))  # fmt: skip
+        return StepLength(limit, length, pending and limit * length < 1.0, feigns)
 
     def _is_right(self, start: tuple[float, float], work: float, norm: float) -> bool:
         """Have norm or work of the forces fallen?"""

@@ -1,12 +1,29 @@
 """What a step asks for: increments of held unknowns and external forces, whole or a part of them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from mpi4py import MPI
 
 from coilset.model.equilibrium.layout import Layout
+
+
+@dataclass(frozen=True)
+class Drag:
+    """A viscous resistance of the unknowns, over one step of time: the forces c (x − x₀).
+
+    Attributes:
+        stiffness: c by this rank's unknowns, shape (size_local,), N/mm and N mm.
+        origin: increments x₀ without drag, shape (size_local,), mm and rad.
+    """
+
+    stiffness: np.ndarray
+    origin: np.ndarray
+
+    def forces(self, increments: np.ndarray) -> np.ndarray:
+        """At increments, this rank's part, N and N mm."""
+        return self.stiffness * (increments - self.origin)
 
 
 @dataclass(frozen=True)
@@ -19,6 +36,7 @@ class Load:
         increments: shape (h,), mm and rad.
         loaded: places that bear an external force, shape (f,).
         forces: at the end of the step, shape (f,), N and N mm; moments are of the fixed frame.
+        drag: Drag of the free unknowns, or None.
     """
 
     layout: Layout
@@ -26,6 +44,7 @@ class Load:
     increments: np.ndarray
     loaded: np.ndarray
     forces: np.ndarray
+    drag: Drag | None = None
 
     @classmethod
     def of(cls, layout: Layout, fixed: Mapping[int, float], forces: Mapping[int, float]) -> "Load":
@@ -41,6 +60,10 @@ class Load:
         """
         forces = load_factor * self.forces + (1.0 - load_factor) * reactions[self.loaded]
         return load_factor * self.increments, forces
+
+    def dragged(self, drag: Drag | None) -> "Load":
+        """The same load against a drag, or without."""
+        return replace(self, drag=drag)
 
     def prescribed(self) -> float:
         """Norm of the prescribed increments; collective."""

@@ -55,7 +55,7 @@ class Newton:
         InputError: if PETSc refuses an option.
 
     Attributes:
-        foresees: are tangents built with the forces that the last correction foresees?
+        foresees: may tangents be built with the forces that the last correction foresees?
         snes: PETSc's solver.
         matrix: TangentMatrix.
     """
@@ -73,8 +73,7 @@ class Newton:
         self.system, self.control = system, control or NewtonControl()
         self.augmentation_tolerance, self.prepare = augmentation_tolerance, prepare
         self.limit = limit or ContactLimit(system, self.control, np.inf)
-        wanted = self.control.foreseen_forces
-        self.foresees = isinstance(system.body, Foresees) and (not system.contacts if wanted is None else wanted)
+        self.foresees = isinstance(system.body, Foresees) and self.control.foreseen_forces is not False
         self.test = EquilibriumTest(tolerance, self.control.stagnation)
         self.search = WorkSearch(system, self.limit, self.control, self.foresees)
         self.F, self._balance, self._arc_load = (system.layout.vector() for _ in range(3))
@@ -82,6 +81,7 @@ class Newton:
         self.load, self.load_factor = Load.of(system.layout, {}, {}), 1.0
         self.ratio, self._factorisations, self._at_step_start = np.inf, 0, True
         self._failed = 0
+        self._foreseen = False  # have tangents of the present attempt been built with foreseen forces?
         self._corrected: float | None = None  # share of the last correction, where it led to the present state
         me = weakref.proxy(self)
         self._factory = SnesFactory(
@@ -111,8 +111,9 @@ class Newton:
 
     def solve(self, load: Load, start: Start | None = None) -> Outcome:
         """As `_attempt`; where tangents with foreseen forces fail, once more with the true ones; collective."""
+        self._foreseen = False
         outcome = self._attempt(load, start)
-        if outcome.converged or not self.foresees:
+        if outcome.converged or not self._foreseen:
             return outcome
         self.foresees = self.search.foresees = False
         try:
@@ -149,10 +150,11 @@ class Newton:
     def _solve(self, guess: PETSc.Vec | None) -> Outcome:
         system, method, X, first = self.system, self.method, self.system.increments, 0
         self.ratio, self._factorisations, self._failed, evaluations = np.inf, 0, 0, system.evaluations
-        self.load_factor, self._at_step_start = 1.0, True
+        self.load_factor, self._at_step_start, self._corrected = 1.0, True, None
         if guess is None or method.is_arc_length:
             X.set(0.0)
         elif method.searches:
+            self._foresee_start(guess)
             self.limit.limit_start(guess, X)
         else:
             guess.copy(X)
@@ -175,9 +177,19 @@ class Newton:
             system.evaluations - evaluations, linear, self._failed, reason == Reason.DIVERGED_LOCAL_MIN,
         )  # fmt: skip
 
+    def _foresee_start(self, guess: PETSc.Vec) -> None:
+        """Take a start for a correction of the last equilibrium: its finite turns feign forces like any other's."""
+        if not self.foresees or self.system.touches:
+            return
+        correction = guess.duplicate()
+        correction.set(0.0)
+        self.system.evaluate(correction)
+        correction.axpy(-1.0, guess)
+        self.system.predict(correction)
+        self._corrected = 1.0
+
     def _once(self) -> tuple[int, int]:
         """Numbers of iterations, and of linear ones in them."""
-        self._corrected = None
         self.snes.solve(self._arc_load if self.method.is_arc_length else None, self.system.increments)
         return self.snes.getIterationNumber(), self.snes.getLinearSolveIterations()
 
@@ -190,6 +202,7 @@ class Newton:
         good.set(0.0)
         while True:
             counts += self._once()
+            self._corrected = None
             if self.snes.getConvergedReason() > 0:
                 if self.load_factor == 1.0:
                     return int(counts[0]), int(counts[1])
@@ -227,6 +240,7 @@ class Newton:
         self._factorisations += 1
         version = self.matrix.version
         self.system.tangent(X, self.load, self.matrix, self._at_step_start, self._corrected)
+        self._foreseen |= self._corrected is not None
         self._at_step_start, self._corrected = False, None
         self.prepare(P)
         if self.matrix.version != version:  # PETSc may take the new matrix for one with the old pattern
@@ -240,7 +254,8 @@ class Newton:
             self.system.evaluate(x)
             self.system.predict(y)
         step = self.search(x, y, self.F, self.load, self.load_factor)
-        self._corrected = step.contact_limit * step.value if self.foresees else None
+        ahead = self.foresees and (step.feigns or self.control.foreseen_forces or not self.system.touches)
+        self._corrected = step.contact_limit * step.value if ahead else None
         for factor in (step.contact_limit, step.value):
             if factor != 1.0:
                 y.scale(factor)

@@ -8,6 +8,7 @@ and with methods that keep a matrix, the symmetric part is factorised at the sta
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from petsc4py import PETSc
@@ -18,6 +19,21 @@ from coilset.model.equilibrium.newton import Newton
 
 BLOCK = 4  # vectors of the inverse iteration: a double eigenvalue and its neighbours
 ITERATIONS = 12
+
+
+@dataclass(frozen=True)
+class Weakest:
+    """The weakest mode of a state.
+
+    Attributes:
+        negative: number of negative eigenvalues of the symmetric part of the tangent.
+        value: least of the eigenvalues nearest to zero, N/mm, with rotations counted in coil radii.
+        mode: increments whose greatest displacement is 1 mm.
+    """
+
+    negative: int
+    value: float
+    mode: PETSc.Vec
 
 
 class Stability:
@@ -37,15 +53,10 @@ class Stability:
             return 0
         return self._factors(load).getFactorMatrix().getInertia()[0]
 
-    def weakest_mode(self, load: Load) -> tuple[float, PETSc.Vec]:
-        """Least of the eigenvalues nearest to zero at the last evaluation, and its mode; collective.
-
-        Returns:
-            The eigenvalue, N/mm, with rotations counted in coil radii, and increments of the mode whose greatest
-            displacement is 1 mm.
-        """
+    def weakest(self, load: Load) -> Weakest:
+        """The weakest mode at the last evaluation; collective."""
         factors, matrix = self._factors(load), self._matrix
-        scale = self._scale(load)
+        scale = self.layout.vector(self.weights(load))
         block = [vector.copy() for vector in self._parts]
         values = np.zeros(len(block))
         for _iteration in range(ITERATIONS):
@@ -55,8 +66,8 @@ class Stability:
                 factors.apply(right, vector)
             values, block = _rayleigh_ritz(matrix, scale, block)
         mode = block[int(values.argmin())]
-        mode.scale(1.0 / self._greatest_displacement(mode))
-        return float(values.min()), mode
+        mode.scale(1.0 / self.greatest_displacement(mode))
+        return Weakest(factors.getFactorMatrix().getInertia()[0], float(values.min()), mode)
 
     # ---- matrix ----------------------------------------------------------------------------------------------------
 
@@ -85,15 +96,15 @@ class Stability:
         factors.setUp()
         return factors
 
-    def _scale(self, load: Load) -> PETSc.Vec:
-        """Weights of unknowns in a mode's norm: 1 for displacements, a tenth of the extent squared for rotations."""
+    def weights(self, load: Load) -> np.ndarray:
+        """Of this rank's unknowns in a mode's norm: 1 of displacements, a tenth of the extent squared of rotations."""
         assert isinstance(self.layout, LineLayout)
         n, extent = len(self.layout.station_dofs), self.layout.rod.extent
         natural = np.ones(self.layout.size)
         natural[: 6 * n].reshape(n, 6)[:, 3:] = (0.1 * extent) ** 2
         scale = self.layout.from_order(natural)
         scale[load.held] = 0.0
-        return self.layout.vector(scale.copy())
+        return scale.copy()
 
     def _start_block(self) -> list[PETSc.Vec]:
         """Vectors to begin with, the same on any number of ranks."""
@@ -102,7 +113,8 @@ class Stability:
         natural = [rng.normal(size=self.layout.size) for _vector in range(BLOCK)]
         return [self.layout.vector(self.layout.from_order(values).copy()) for values in natural]
 
-    def _greatest_displacement(self, mode: PETSc.Vec) -> float:
+    def greatest_displacement(self, mode: PETSc.Vec) -> float:
+        """Of the stations, mm; collective."""
         assert isinstance(self.layout, LineLayout)
         n = len(self.layout.station_dofs)
         natural = self.layout.to_order(mode.getArray(readonly=True))[: 6 * n].reshape(n, 6)

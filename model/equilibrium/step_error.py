@@ -79,6 +79,10 @@ class StepError:
             return Estimate(math.nan, math.nan, 0.0, 1.0)
         return Estimate(error, error / stiffness if stiffness else math.nan, share, self._factor(share))
 
+    def rejoin(self) -> None:
+        """Go on from the last equilibrium, which was reached by steps that were not judged."""
+        self._body.rejoin_finer_path()
+
     def _factor(self, share: float) -> float:
         steps = self.steps
         wanted = steps.growth if share == 0.0 else steps.caution * share ** (-1.0 / ORDER)

@@ -206,6 +206,8 @@ class System:
             values -= outer
         else:
             values[load.loaded] -= force
+        if load.drag is not None:
+            values += load.drag.forces(x)
         values[load.held] = self.body.constraint_weight * (x[load.held] - target)
 
     def predict(self, correction: PETSc.Vec) -> None:
@@ -261,4 +263,6 @@ class System:
             for dof in self.layout.seat_dofs:  # the diagonal must exist for a fixed or untouched seat
                 matrix.mat.setValue(dof, dof, 0.0, addv=PETSc.InsertMode.ADD_VALUES)
         matrix.mat.assemble()
+        if load.drag is not None:
+            matrix.mat.setDiagonal(self.layout.vector(load.drag.stiffness.copy()), addv=PETSc.InsertMode.ADD_VALUES)
         self.body.hold(matrix.mat, load.held + self.layout.start)

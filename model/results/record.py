@@ -23,7 +23,8 @@ class Step:
 
     Attributes:
         negative_pivots: negative eigenvalues of the tangent; the state is unstable if there are any.
-        left_branch: 1 if an unstable path was left for a stable one on the way to it, else 0.
+        left_branch: 1 if the spring snapped on the way to it, from a path that ends or is unstable, else 0.
+        released_energy_Nmm: potential energy that it lost then.
         axis_offset_mm: greatest distance by which a turn's mean has moved off the spring's axis.
         least_eigenvalue: of the tangent, N/mm; None where it was not asked for.
         plastic_work_max_N_per_mm2: greatest b* on the wire's surface.
@@ -48,6 +49,7 @@ class Step:
     penetration_mm: float
     negative_pivots: int = 0
     left_branch: int = 0
+    released_energy_Nmm: float = 0.0
     axis_offset_mm: float = 0.0
     least_eigenvalue: float | None = None
     plastic_work_max_N_per_mm2: float = 0.0

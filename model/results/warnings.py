@@ -116,6 +116,20 @@ def _unstable(setup: Setup, result: Result) -> Iterator[Warning]:
         yield Warning("unstable", _place(unstable[0]), message, len(unstable), 0.0)
 
 
+def _snapped(setup: Setup, result: Result) -> Iterator[Warning]:
+    before = [0.0, *(step.force_N for step in result.steps)]
+    snaps = [(force, step) for force, step in zip(before, result.steps, strict=False) if step.left_branch]
+    if snaps:
+        force, step = max(snaps, key=lambda snap: snap[1].released_energy_Nmm)
+        times = "" if len(snaps) == 1 else f", {len(snaps)} times in all"
+        message = (
+            f"the spring snapped through at a travel of {step.travel_mm:.5g} mm, from {force:.5g} N to "
+            f"{step.force_N:.5g} N, and set {step.released_energy_Nmm:.2g} N mm free{times}: several branches exist, "
+            "and it came to rest on the one that a slow snap leads to"
+        )
+        yield Warning("snapped", _place(step), message, step.released_energy_Nmm, 0.0, "N mm")
+
+
 def _place(step: Step) -> str:
     return f"step {step.number}, travel {step.travel_mm:.4g} mm"
 
@@ -177,5 +191,5 @@ def released(result: Result) -> bool:
     return bool(result.steps) and abs(result.snapshots[-1].force) <= 1e-6 * greatest
 
 
-SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _penetration, _buckled, _unstable)
+SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _penetration, _buckled, _unstable, _snapped)
 FOUND: tuple[Check, ...] = (_strength, _step_error, _presetting)

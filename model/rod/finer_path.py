@@ -65,6 +65,11 @@ class FinerPath:
                 field.trial[:] = self._state[name].trial
         return bool(good)
 
+    def rejoin(self) -> None:
+        """Go on from the sections' own last equilibrium; the error up to there stays as it was."""
+        for name, field in self._fields.items():
+            field.equilibrium[:] = field.trial[:] = self._state[name].equilibrium
+
     def works(self, length: np.ndarray) -> tuple[float, float]:
         """Works of the error of the section forces, N mm; see EstimatesErrors.
 

@@ -209,6 +209,11 @@ class Rod:
             return np.nan, np.nan
         return self._finer.works(np.linalg.norm(self._chord.trial, axis=1))
 
+    def rejoin_finer_path(self) -> None:
+        """Estimate from the last equilibrium on; see EstimatesErrors."""
+        assert self._finer is not None, "estimate_errors comes before"
+        self._finer.rejoin()
+
     def predict(self) -> None:
         """Foresee the section forces after `correction`, from the trial state; see Foresees."""
         values = self.correction.x.array

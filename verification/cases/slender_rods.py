@@ -1,11 +1,11 @@
-"""Slender rods, r/L = 1e-3 and 1e-4, 8 to 128 elements: elastica and two circles in ten steps, iterations a step
+"""Slender rods, r/L = 1e-2, 1e-3 and 1e-4, 8 to 128 elements: elastica and two circles in ten steps, iterations a step
 
-The same problems as in the cases elastica and two-circles, where the wire's radius is 1e-2 L. After a correction with
-finite rotations the axial and shear forces are wrong by EA ½ w′², which grows with (L/r)²: the tangent is built with
-these forces, and Newton's method creeps or fails. Other elements take these steps in about as many iterations at any
-slenderness (D. Magisano, L. Leonetti, G. Garcea, Int. J. Num. Meth. Eng. 112 (2017) 1685, mixed integration point);
-wanted are at most 8 a step. The values, where they are reached, are judged as in the other two cases; at r/L = 1e-3
-shear counts with 6.5e-6.
+The same problems as in the cases elastica and two-circles, where the wire's radius is 1e-2 L and values are judged.
+After a correction with finite rotations the axial and shear forces are wrong by EA ½ w′², which grows with (L/r)²: the
+tangent is built with these forces, and Newton's method creeps or fails. Other elements take these steps in about as
+many iterations at any slenderness (D. Magisano, L. Leonetti, G. Garcea, Int. J. Num. Meth. Eng. 112 (2017) 1685, mixed
+integration point); wanted are at most 8 a step. The values, where they are reached, are judged as in the other two
+cases; at r/L = 1e-3 shear counts with 6.5e-6.
 """
 
 import matplotlib as mpl
@@ -21,7 +21,8 @@ from coilset.verification.study import Study
 
 FAST = False
 LENGTH, STEPS, WANTED = 100.0, 10, 8
-SLENDERNESS, MESHES = (1e-3, 1e-4), (8, 32, 128)
+SLENDERNESS, MESHES = (1e-2, 1e-3, 1e-4), (8, 32, 128)
+THICK = 1e-2  # r/L whose shear the elliptic integrals would see; its values are judged in the other two cases
 LOAD = 10.0  # PL²/EI of the elastica
 
 
@@ -73,28 +74,28 @@ def run(study: Study) -> None:
                     "wanted",
                     kind="at_most",
                 )
-                if done and name == "elastica":
+                if done and slenderness < THICK and name == "elastica":
                     exact = cantilever(LOAD)[1]
                     study.check(f"v/L, {at}", value, exact, "elliptic integrals", 0.02 * LOAD / n**2 + 1e-5, "absolute")
-                elif done:
+                elif done and slenderness < THICK:
                     study.check(f"tip from the clamp over L, {at}", value, 0.0, "closed circles", 1e-6, "absolute")
                 rows.append([name, slenderness, n, " ".join(map(str, counts)) + ("" if done else " failed")])
     study.table(f"iterations, {STEPS} steps", ["problem", "r/L", "rods", "iterations a step"], rows)
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(5.4, 3.4), layout="constrained")
+        figure = Figure(figsize=(6.6, 3.4), layout="constrained")
         axes, names = (
             figure.add_subplot(),
             [f"{name}\nr/L = {s:g}" for name in ("elastica", "two circles") for s in SLENDERNESS],
         )
-        values = np.array(list(most.values())).reshape(4, len(MESHES))
+        values = np.array(list(most.values())).reshape(-1, len(MESHES))
         top = max(WANTED, values[np.isfinite(values)].max(initial=0.0))
         for k, n in enumerate(MESHES):
             heights = np.where(np.isfinite(values[:, k]), values[:, k], 1.1 * top)
-            axes.bar(np.arange(4) + 0.25 * (k - 1), heights, 0.22, label=f"{n} rods")
+            axes.bar(np.arange(len(names)) + 0.25 * (k - 1), heights, 0.22, label=f"{n} rods")
         for place, k in np.argwhere(~np.isfinite(values)):
             axes.text(place + 0.25 * (k - 1), 1.12 * top, "failed", ha="center", va="bottom", rotation=90, fontsize=7)
         axes.axhline(WANTED, color="0.4", lw=0.8, ls="--", label="wanted")
-        axes.set_xticks(range(4), names)
+        axes.set_xticks(range(len(names)), names)
         axes.set(ylabel="most iterations of a step", ylim=(0, 1.6 * top))
         axes.legend(fontsize=8, ncols=4, loc="upper center")
     study.figure("slender_rods", figure)
