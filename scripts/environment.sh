@@ -7,11 +7,13 @@
 # shellcheck shell=bash
 
 modules="dolfinx petsc4py mpi4py gmsh meshio pyvista numba scipy pydantic typer rich xarray h5netcdf h5py yaml matplotlib pytest"
-ways="No Python with DOLFINx >= 0.9 is found. Ways to get one:
+ways="coilset needs DOLFINx >= 0.9, from conda or pip (no root needed) or as root from Debian; here is none. Ways to get one:
   conda, no root needed      conda env create -f environment.yml; conda activate coilset
+  no conda, no root          install Miniforge into your home folder, then as above
+  pip, no root needed        Linux on x86-64 with Python >= 3.12: wheels into a venv, see docs/install.md
   Debian 13, Ubuntu 25.04    or later, as root: run any command, it installs the distribution's packages
   older Debian and Ubuntu    as root: run any command, it makes a private Debian 13 in $COILSET_CACHE (3 GB)
-  neither root nor conda     install Miniforge into your home folder (no root needed), or wheels: docs/install.md"
+COILSET_PYTHON names a Python that has it but is not the first on the PATH."
 
 say() { printf 'coilset: %s\n' "$*" >&2; }
 fail() { say "$*"; exit 2; }

@@ -9,7 +9,7 @@ from coilset.model.processes import mpi_environment, mpirun
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 # tests that solve springs or solids to their end, or start the command: minutes, where all others take seconds
-SOLVES = ["benchmarks", "commands", "install", "meshes/test_solved_springs.py", "solid", "spring", "sweep",
+SOLVES = ["benchmarks", "commands", "examples", "install", "meshes/test_solved_springs.py", "solid", "spring", "sweep",
           "verification"]  # fmt: skip
 
 

@@ -58,9 +58,24 @@ def test_a_record_of_what_is_gone_is_not_believed(counted):
 def test_without_an_environment_help_names_the_ways_and_makes_none(tmp_path, arguments):
     done = launch(*arguments, COILSET_RELEASE="nowhere", COILSET_CACHE=str(tmp_path))
     assert done.returncode == 0
-    for way in ("conda env create", "Debian 13, Ubuntu 25.04", "older Debian and Ubuntu", "neither root nor conda"):
-        assert way in done.stdout
+    first, *ways = done.stdout.splitlines()
+    assert all(way in first for way in ("conda", "pip", "no root needed", "as root from Debian"))
+    for way in ("conda env create", "Miniforge", "pip", "Debian 13, Ubuntu 25.04", "older Debian and Ubuntu"):
+        assert way in "\n".join(ways)
     assert not list(tmp_path.glob("debian*"))
+
+
+def test_without_root_nothing_is_made_and_the_ways_are_told(tmp_path):
+    """As a user who is not root, which `id` tells the launcher."""
+    (tmp_path / "id").write_text("#!/bin/sh\necho 1000\n")
+    (tmp_path / "id").chmod(0o755)
+    path = f"{tmp_path}{os.pathsep}{os.environ['PATH']}"
+    cache = tmp_path / "cache"
+    done = launch("solve", "case.yaml", COILSET_RELEASE="nowhere", COILSET_CACHE=str(cache), PATH=path)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.startswith("coilset needs DOLFINx >= 0.9, from conda or pip (no root needed)")
+    assert not list(cache.glob("debian*"))
 
 
 def test_version_names_what_the_numbers_rest_on():

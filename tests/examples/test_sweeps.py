@@ -1,0 +1,44 @@
+"""Every shipped sweep has the cases that its file says, and one of them answers as it must."""
+
+from pathlib import Path
+
+import pytest
+from mpi4py import MPI
+
+from coilset.model.analysis import Analysis
+from coilset.model.case import check
+from coilset.model.results.summary import summarise
+from coilset.model.sweep.plan import Plan
+
+SWEEPS = Path(__file__).resolve().parents[2] / "examples" / "sweeps"
+CASES = {
+    "convergence": 8 + 7 + 7 + 6 - 3,  # one input at a time; the base case is among the values of all four
+    "preset_height": 11 * 5 * 3,
+    "thousand": 1000,
+    "tolerances": (4 + 2) * 32,  # Sobol indices: two blocks of samples, and one for each input
+}
+
+
+def test_all_sweeps_are_here():
+    assert {path.stem for path in SWEEPS.glob("*.yaml")} == set(CASES)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_number_of_cases(name):
+    assert len(Plan(SWEEPS / f"{name}.yaml")) == CASES[name]
+
+
+def test_what_is_pressed_farther_sets_by_nearly_as_much_more():
+    """Beyond yield the force hardly grows, and so does the springback.
+
+    From 22 to 20 mm the set grows by 2 mm · (1 − slope/R). The slope of the characteristic is 1.3 N/mm there, R is
+    41 N/mm: 0.97 of the 2 mm.
+    """
+    plan = Plan(SWEEPS / "preset_height.yaml")
+    sets = {}
+    for row in plan.rows:
+        values = dict(zip(plan.names, row, strict=True))
+        if (values["spring.wire_diameter"], values["spring.pitch"]) == (5.0, 12) and values[plan.names[0]] in (20, 22):
+            analysis = Analysis(check(plan.data(row)), MPI.COMM_SELF)
+            sets[values[plan.names[0]]] = summarise(analysis.setup, analysis.run())["set_mm"]
+    assert 0.96 < (sets[20] - sets[22]) / 2.0 < 0.98
