@@ -28,7 +28,6 @@ from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.plane import PlaneSections
 
 WARPING = 3.0 / 7.0  # of the transverse shear strain
-SHEAR_FACTOR = 6.0 / 7.0  # of G A
 LEVEL = 2.0 / 3.0  # ρ² where the warping vanishes
 
 
