@@ -13,6 +13,7 @@ from coilset.model.results.record import Result, Setup, Snapshot
 
 STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False}
 DPI = 160
+NAMED = 6  # targets in a legend, at most
 
 
 def save(figure: Figure, path: str | Path) -> None:
@@ -27,13 +28,20 @@ def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapp
         figure = Figure(figsize=(6.4, 4.2), layout="constrained")
         axes = figure.add_subplot()
         travel, force = [0.0], [0.0]
+        targets = list(dict.fromkeys(setup.phases))  # cycles go to the same ones again
         for index, phase in enumerate(setup.phases):
             steps = [step for step in result.steps if step.phase == index]
             if not steps:
                 continue
             travel = [travel[-1]] + [step.travel_mm for step in steps]
             force = [force[-1]] + [step.force_N for step in steps]
-            axes.plot(travel, force, "o-", ms=3, lw=1.3, label=f"to {phase}")
+            number = targets.index(phase)
+            first = setup.phases.index(phase) == index and number < NAMED
+            axes.plot(
+                travel, force, "o-", ms=3, lw=1.3, color=f"C{number % 10}", label=f"to {phase}" if first else None
+            )
+        if len(targets) > NAMED:
+            axes.plot([], [], " ", label=f"and {len(targets) - NAMED} more")
         greatest = max(abs(summary["force_max_N"]), 1e-300)
         if (rate := summary["rate_N_per_mm"]) is not None:
             axes.plot([0, greatest / rate], [0, greatest], "k:", lw=0.9, label=f"initial rate {rate:.4g} N/mm")

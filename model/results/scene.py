@@ -1,7 +1,10 @@
 """The spring in 3D: its wire as a tube at several moments, coloured by the stress in it."""
 
+import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyvista as pv
@@ -10,10 +13,42 @@ from coilset.model.results.folder import whole
 from coilset.model.results.record import Snapshot
 
 POINTS_PER_ELEMENT = 6
-BAR = {
-    "color": "black", "n_labels": 5, "fmt": "%.0f", "title_font_size": 17, "label_font_size": 16,
-    "position_x": 0.3, "width": 0.4, "position_y": 0.02, "height": 0.13,
-}  # fmt: skip
+WIDTH, LEAST_HEIGHT, MOST_HEIGHT = 1500, 620, 1500  # of the picture, pixels
+LABELS, BAR = 100, 130  # pixels above the springs and below them
+COLUMN = 320  # pixels that a label needs
+ABOVE = 0.22  # tangent of the angle from which the springs are looked down upon
+NICE = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0)  # ends of a scale whose quarters have few digits
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Where springs stand in a picture so that all of them are in it, however tall.
+
+    Attributes:
+        height: of the picture, pixels.
+        scale: pixels of a millimetre.
+        column: distance from spring to spring, mm.
+    """
+
+    height: int
+    scale: float
+    column: float
+
+    @classmethod
+    def of(cls, across: float, tall: float, springs: int) -> "Frame":
+        """The frame for so many springs of a width and a height, mm."""
+        seen = tall + ABOVE * across
+        scale = min(WIDTH / (1.35 * across * springs), (MOST_HEIGHT - LABELS - BAR) / seen)
+        column = max(1.35 * across, min(COLUMN, WIDTH / springs) / scale)
+        return cls(max(LEAST_HEIGHT, round(seen * scale) + LABELS + BAR), scale, column)
+
+
+def scale_end(greatest: float) -> float:
+    """End of a scale from zero that has room for the greatest value."""
+    if greatest <= 0.0:
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(greatest))
+    return next(end * power for end in NICE if end * power >= greatest * (1.0 - 1e-9))
 
 
 def tube(x: np.ndarray, radius: np.ndarray, values: np.ndarray, name: str) -> pv.PolyData:
@@ -36,29 +71,39 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.nda
     """
     name = "greatest shear stress in the section, MPa"
     radius = 0.5 * (np.append(wire_radius, wire_radius[-1]) + np.append(wire_radius[0], wire_radius))
-    width = 1.35 * (np.ptp(snapshots[0].x[:, 0]) + 2.0 * radius.max())
-    stresses = [np.maximum(shot.shear.max(axis=(1, 2)), shot.surface_shear.max(axis=(1, 2))) for shot in snapshots]
-    greatest = max(float(stress.max()) for stress in stresses)
-    plotter = pv.Plotter(off_screen=True, window_size=(1500, 620))
+    x = np.concatenate([shot.x for shot in snapshots])
+    low, high = float(x[:, 2].min() - radius.max()), float(x[:, 2].max() + radius.max())
+    across = float(np.ptp(x[:, :2], axis=0).max()) + 2.0 * float(radius.max())
+    frame, end = Frame.of(across, high - low, len(snapshots)), scale_end(max(float(s.shear.max()) for s in snapshots))
+    force = max(abs(shot.force) for shot in snapshots)
+    plotter = pv.Plotter(off_screen=True, window_size=(WIDTH, frame.height))
     plotter.set_background("white")
-    for place, (shot, stress) in enumerate(zip(snapshots, stresses, strict=True)):
+    for place, shot in enumerate(snapshots):
+        stress = shot.shear.max(axis=(1, 2))
         values = 0.5 * (np.append(stress, stress[-1]) + np.append(stress[0], stress))
-        mesh = tube(shot.x + np.array([place * width, 0.0, 0.0]), radius, values, name)
+        mesh = tube(shot.x + np.array([place * frame.column, 0.0, 0.0]), radius, values, name)
         plotter.add_mesh(
-            mesh, scalars=name, clim=(0.0, max(greatest, 1e-9)), cmap="viridis", smooth_shading=True,
-            scalar_bar_args=BAR,
+            mesh, scalars=name, clim=(0.0, end), cmap="viridis", smooth_shading=True, scalar_bar_args=_bar(frame),
         )  # fmt: skip
-        label = f"{shot.name}\n{shot.height:.2f} mm, {abs(shot.force):.0f} N"
-        foot = [place * width, 0.0, float(snapshots[0].x[:, 2].max()) + 2.2 * radius.max()]
+        bears = abs(shot.force) if abs(shot.force) > 1e-6 * force else 0.0
+        label = f"{shot.name}\n{shot.height:.5g} mm, {bears:.4g} N"
+        foot = [place * frame.column, 0.0, high + (0.5 * ABOVE * across + 15.0 / frame.scale)]
         plotter.add_point_labels([foot], [label], font_size=20, text_color="black", shape=None, show_points=False,
                                  always_visible=True, justification_horizontal="center")  # fmt: skip
-    plotter.camera_position = [(0.5 * width * (len(snapshots) - 1), -10.0 * width, 2.2 * width),
-                               (0.5 * width * (len(snapshots) - 1), 0.0, float(snapshots[0].x[:, 2].mean())),
-                               (0, 0, 1)]  # fmt: skip
+    middle = 0.5 * frame.column * (len(snapshots) - 1)
+    centre, away = 0.5 * (low + high) + 0.5 * (LABELS - BAR) / frame.scale, 10.0 * (high - low + across)
+    plotter.camera_position = [(middle, -away, centre + ABOVE * away), (middle, 0.0, centre), (0, 0, 1)]
     plotter.camera.parallel_projection = True
-    plotter.camera.parallel_scale = 0.2 * width * len(snapshots)
+    plotter.camera.parallel_scale = 0.5 * frame.height / frame.scale
     try:
         with whole(path) as partial:
             plotter.screenshot(str(partial))
     finally:
         plotter.close()
+
+
+def _bar(frame: Frame) -> dict[str, Any]:
+    """The colour bar, of the same size in pictures of all heights."""
+    bar = BAR - 28.0
+    return {"color": "black", "n_labels": 5, "fmt": "%.3g", "title_font_size": 17, "label_font_size": 16,
+            "position_x": 0.3, "width": 0.4, "position_y": 12 / frame.height, "height": bar / frame.height}  # fmt: skip

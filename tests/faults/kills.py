@@ -1,0 +1,156 @@
+"""Kill runs at random moments, go on with --resume, and compare with runs that nobody disturbed, bit by bit.
+
+    scripts/coilset python tests/faults/kills.py --kills 100
+
+A small spring with contact and friction, on one and on two ranks, and a sweep. Each is killed (`kill -9`) again and
+again, at a random moment after something new was kept, until it comes to its end; then it begins anew. Says how often
+each was killed, what differed, and how many processes were left; exits 1 if there is anything of either.
+"""
+
+import argparse
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import uuid
+from pathlib import Path
+
+import numpy as np
+
+CASE = """
+spring: {wire_diameter: 5.0, mean_diameter: 40.0, turns: 2.5, pitch: 12.0}
+mesh: {elements_per_turn: 10, section: {rule: abramowitz9}}
+contact: {friction: {seats: 0.1, coils: 0.1}}
+loading:
+  - {to: block, steps: 40}
+  - {to: {force: 0}, steps: 30}
+"""
+SWEEP = """
+case: case.yaml
+change: {contact: {}, loading.0.steps: 4, loading.1.steps: 3}
+vary: {spring.pitch: {from: 11, to: 13, count: 12}}
+"""
+LONGEST = 0.5  # seconds after something was kept, at most, in which the kill comes
+WAIT = 120.0  # seconds for something to be kept
+COMMANDS = {
+    "solve": ["solve", "case.yaml", "--no-pictures", "--out", "out"],
+    "solve on 2 ranks": ["-n", "2", "solve", "case.yaml", "--no-pictures", "--out", "out"],
+    "sweep": ["sweep", "sweep.yaml", "--no-pictures", "--jobs", "2", "--out", "out"],
+}
+
+
+class Running:
+    """A command under way; all its processes carry a mark."""
+
+    def __init__(self, words: list[str], folder: Path) -> None:
+        self.mark = f"COILSET_MARK={uuid.uuid4()}"
+        name, value = self.mark.split("=")
+        with open(folder / "said.txt", "ab") as said:
+            self.process = subprocess.Popen(
+                [sys.executable, "-m", "coilset.scripts", *words], cwd=folder, stdout=said, stderr=said,
+                stdin=subprocess.DEVNULL, env=os.environ | {name: value}, start_new_session=True,
+            )  # fmt: skip
+
+    def left(self) -> list[int]:
+        """Processes with the mark, those that have ended and wait to be noticed not counted."""
+        found = []
+        for folder in Path("/proc").glob("[0-9]*"):
+            try:
+                if self.mark.encode() in (folder / "environ").read_bytes().split(b"\0"):
+                    found.append(int(folder.name))
+            except OSError:
+                continue
+        return found
+
+    def kill(self) -> list[int]:
+        """Kill the outer process alone; the processes that are there five seconds later, which are killed, too."""
+        os.kill(self.process.pid, signal.SIGKILL)
+        self.process.wait()
+        end = time.monotonic() + 5.0
+        while (found := self.left()) and time.monotonic() < end:
+            time.sleep(0.05)
+        for number in found:
+            os.kill(number, signal.SIGKILL)
+        return found
+
+
+def kept(folder: Path) -> float:
+    """When something was kept last."""
+    files = [folder / "out" / "checkpoint" / "state.npz", folder / "out" / "journal.jsonl"]
+    return max((path.stat().st_mtime for path in files if path.exists()), default=0.0)
+
+
+def to_the_end(name: str, folder: Path, kills: int, left: list[int]) -> int:
+    """Run a command to its end with at most so many kills; how many there were."""
+    begun, count = False, 0
+    while True:
+        before = kept(folder)
+        running = Running([*COMMANDS[name], *(["--resume"] if begun else [])], folder)
+        until = time.monotonic() + WAIT
+        while running.process.poll() is None and kept(folder) == before and time.monotonic() < until:
+            time.sleep(0.005)
+        if count < kills:
+            time.sleep(random.uniform(0.0, LONGEST))
+        else:
+            running.process.wait()
+        if running.process.poll() is not None:
+            if running.process.returncode:
+                raise RuntimeError((folder / "said.txt").read_text()[-2000:])
+            return count
+        left += running.kill()
+        count, begun = count + 1, kept(folder) > 0.0
+
+
+def found(name: str, folder: Path) -> dict[str, object]:
+    """What a run has found, without times and dates."""
+    out = folder / "out"
+    if name == "sweep":
+        records = [json.loads(line) for line in (out / "journal.jsonl").read_text().splitlines()]
+        return {one["key"]: {entry: value for entry, value in one.items() if entry != "seconds"} for one in records}
+    texts = {path: (out / path).read_text() for path in ("history.csv", "seats.csv")}
+    summary = json.loads((out / "summary.json").read_text())
+    with np.load(out / "checkpoint" / "state.npz") as state:
+        arrays = {entry: state[entry].tobytes() for entry in state.files if entry.startswith("state_")}
+    return {**texts, **arrays, **{entry: value for entry, value in summary.items() if entry != "origin"}}
+
+
+def fresh(folder: Path) -> Path:
+    """An empty folder with the input files."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    (folder / "case.yaml").write_text(CASE)
+    (folder / "sweep.yaml").write_text(SWEEP)
+    return folder
+
+
+def main() -> int:
+    """See the module."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--kills", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    random.seed(options.seed)
+    bad, each = False, -(-options.kills // len(COMMANDS))
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as place:
+        for name in COMMANDS:
+            undisturbed = fresh(Path(place) / "undisturbed")
+            to_the_end(name, undisturbed, 0, [])
+            wanted, count, ends, left, differing = found(name, undisturbed), 0, 0, [], set()
+            while count < each:
+                folder = fresh(Path(place) / "killed")
+                count += to_the_end(name, folder, each - count, left)
+                now, ends = found(name, folder), ends + 1
+                differing |= {entry for entry in {*wanted, *now} if wanted.get(entry) != now.get(entry)}
+            bad = bad or bool(differing or left)
+            print(f"{name}: {count} kills, {ends} times to the end; differing: {sorted(differing) or 'nothing'}; "
+                  f"processes left: {len(left)}", flush=True)  # fmt: skip
+    return int(bad)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
