@@ -111,7 +111,7 @@ def bend(method: str, options: Mapping[str, Any], law: Law) -> Bent:
 
 def run(study: Study) -> None:
     """Events, forces and iterations, row by row."""
-    law = library.load("elastic")
+    law = library.load("elastic", spin=True)
     found = {name: bend(method, options, law) for name, method, options in METHODS}
     forces, moved, _ = found["NR"]
     shear = law.E / law.G * (RADIUS / LENGTH) ** 2 / 4.0
