@@ -36,8 +36,11 @@ class SectionSpec(Strict):
     rule: Annotated[Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")] = (
         "polar"
     )
-    radial: Annotated[Whole, Field(ge=1, le=64, description="rings of the polar rule")] = 4
-    angular: Annotated[Whole, Field(ge=3, le=256, description="angles of the polar rule")] = 12
+    radial: Annotated[Whole, Field(ge=1, le=64, description="rings of the polar rule")] = 8
+    angular: Annotated[Whole, Field(ge=3, le=256, description="angles of the polar rule")] = 20
+    staggered: Annotated[
+        bool, Field(description="every second ring of the polar rule is turned by half the angle between its points")
+    ] = True
 
     @model_validator(mode="after")
     def _spin_belongs(self) -> Self:
@@ -61,7 +64,9 @@ class SectionSpec(Strict):
 
     def build(self) -> rules.DiskRule:
         """The quadrature rule."""
-        return rules.abramowitz9() if self.rule == "abramowitz9" else rules.polar(self.radial, self.angular)
+        if self.rule == "abramowitz9":
+            return rules.abramowitz9()
+        return rules.polar(self.radial, self.angular, self.staggered)
 
 
 class MeshSpec(Strict):
