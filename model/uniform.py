@@ -94,7 +94,7 @@ def press(
         law: material; its rod form with σ₁₁, τ₁₂, τ₁₃.
         travels: shortening of all turns since the unloaded coil, shape (steps,) for all or (n, steps), mm.
         forces: axial forces, compression positive, the same shapes, N; give either.
-        rule: points of the wire's disk, the same in all calls; default is the upper half of `polar(6, 16)`, 48 points:
+        rule: points of the wire's disk, the same in all calls; default is the upper half of 6 rings of 16, 48 points:
             the coil's plane mirrors ε₁₁ and γ₁₃, and turns the sign of γ₁₂.
         free_ends: the ends may turn about the coil's axis (no torque); else they keep the turn λ that they have.
         temperature: K; default is the law's reference temperature.
@@ -109,7 +109,7 @@ def press(
     """
     if (travels is None) == (forces is None):
         raise ValueError("give either travels or forces")
-    rule = upper_half(polar(6, 16)) if rule is None else rule
+    rule = upper_half(polar(6, 16, staggered=False)) if rule is None else rule
     state = coils.copy() if isinstance(coils, UniformState) else unloaded(coils, law, rule, temperature)
     by_force = travels is None
     targets = np.atleast_1d(np.asarray(forces if by_force else travels, float))

@@ -21,8 +21,8 @@ if TYPE_CHECKING:  # commands load what they need
 
 HELP = """How far does a coil spring set, and what stress stays in it?
 
-It needs DOLFINx >= 0.9: without root from conda (environment.yml) or pip (wheels), as root from the packages of Debian 13
-or Ubuntu 25.04, or in a private Debian 13 on older ones (scripts/coilset does both). See docs/install.md."""
+It needs DOLFINx >= 0.9: without root from conda (environment.yml) or pip (wheels), as root from the packages of
+Debian 13 or Ubuntu 25.04, or in a private Debian 13 on older ones (scripts/coilset does both). See docs/install.md."""
 NO_ROOM = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT, errno.EROFS)
 TOGETHER = 10.0  # seconds in which all ranks meet an error that is all ranks' error
 INTERRUPTED = 128 + signal.SIGINT

@@ -46,7 +46,7 @@ def run_program(
     material: str = MATERIAL,
     program: str = typer.Argument(help="program file (YAML): targets of strain and stress"),
     integrator: str = typer.Option("return_mapping", help="return_mapping, or heun as in the thesis"),
-    spin: bool = typer.Option(True, help="whether the rod's form has its spin terms (5.2.33)"),
+    spin: bool = typer.Option(False, help="whether the rod's form has its spin terms (5.2.33)"),
     out: str = OUT,
     force: bool = FORCE,
 ) -> None:

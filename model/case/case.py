@@ -29,12 +29,24 @@ class SectionSpec(Strict):
         Field(description="plane as in the thesis; curved: fibres as long as the curved wire makes them, and the shear "
                           "of the transverse force; warping: free to warp, with all six stresses"),
     ] = "curved"  # fmt: skip
+    spin: Annotated[
+        bool, Field(description="whether stress turns with the material against the section, as in the thesis (5.2.33)")
+    ] = False
     degree: Annotated[Whole, Field(ge=1, le=7, description="of the polynomials of a section that warps")] = 3
     rule: Annotated[Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")] = (
         "polar"
     )
-    radial: Annotated[Whole, Field(ge=1, le=64, description="rings of the polar rule")] = 4
-    angular: Annotated[Whole, Field(ge=3, le=256, description="angles of the polar rule")] = 12
+    radial: Annotated[Whole, Field(ge=1, le=64, description="rings of the polar rule")] = 8
+    angular: Annotated[Whole, Field(ge=3, le=256, description="angles of the polar rule")] = 20
+    staggered: Annotated[
+        bool, Field(description="every second ring of the polar rule is turned by half the angle between its points")
+    ] = True
+
+    @model_validator(mode="after")
+    def _spin_belongs(self) -> Self:
+        if self.spin and self.kind == "warping":
+            raise ValueError("spin belongs to three stresses; give kind: plane or curved, or leave spin out")
+        return self
 
     @model_validator(mode="after")
     def _warping_is_integrated(self) -> Self:
@@ -52,7 +64,9 @@ class SectionSpec(Strict):
 
     def build(self) -> rules.DiskRule:
         """The quadrature rule."""
-        return rules.abramowitz9() if self.rule == "abramowitz9" else rules.polar(self.radial, self.angular)
+        if self.rule == "abramowitz9":
+            return rules.abramowitz9()
+        return rules.polar(self.radial, self.angular, self.staggered)
 
 
 class MeshSpec(Strict):

@@ -19,7 +19,7 @@ class Law:
 
     Args:
         data: the validated material file.
-        spin: whether the rod's law contains the spin terms (5.2.33).
+        spin: whether the rod's law contains the spin terms (5.2.33), see `coilset.model.material.spin`.
         heun_tolerance: relative error of stress that the Heun integrator allows in a sub-step.
         file: where the data came from, for messages.
 
@@ -28,7 +28,7 @@ class Law:
     """
 
     def __init__(
-        self, data: MaterialFile, spin: bool = True, heun_tolerance: float = 1e-4, file: str | Path = ""
+        self, data: MaterialFile, spin: bool = False, heun_tolerance: float = 1e-4, file: str | Path = ""
     ) -> None:
         self.data, self.spin, self.heun_tolerance, self.file = data, spin, heun_tolerance, str(file)
         self._temperatures = np.array([at.temperature for at in data.temperatures])

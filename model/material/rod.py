@@ -22,10 +22,11 @@ from coilset.model.material.functions import (
     functions,
 )
 from coilset.model.material.local import Start, solve, surface, turn, yield_crossing
+from coilset.model.material.spin import WHOLE, Crossing, Vector, spun
 
-# Tuples of three are the components 11, 12, 13.
-Vector = tuple[float, float, float]
+# Where the increment starts, and by columns how its spin changes that with ε11, γ12, γ13.
 Point = namedtuple("Point", "stress back spin_stress spin_back")
+NOTHING = (0.0, 0.0, 0.0)
 # The plastic part of an increment: elastic fraction before it, n₀:e − ½Δk² where it starts, e of the whole increment
 # and of the plastic part, n at its end, p, m = 1/(c + ζ) by component, and the Turns of both groups.
 Plastic = namedtuple("Plastic", "local beta crossing n0 whole e n p m a c heating dea")
@@ -40,37 +41,38 @@ def _inner(a: Vector, b: Vector) -> float:
 
 
 @njit(**INLINE)
-def spin_rates(s: Vector, b: float) -> tuple[Vector, Vector]:
-    """Changes of σ (or, for B, of B) per γ12 and per γ13 by the spin w1j = −½γ1j, (5.2.33).
-
-    Args:
-        s: components 11, 12, 13.
-        b: what stands for σ11 in the shear rows: σ11 itself, or B11 − B22 = 3/2 B11.
-    """
-    return (-s[1], 0.5 * b, 0.0), (-s[2], 0.0, 0.5 * b)
-
-
-@njit(**INLINE)
-def _turned(p: np.ndarray, old: np.ndarray, dg12: float, dg13: float) -> Point:
-    """Stress and back stress of `old` after the increment's spin, and what the spin adds per unit of γ12, γ13."""
-    s = (old[0], old[1], old[2])
-    b = (old[3], old[4], old[5])
-    nothing = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    if p[SPIN] == 0.0:
-        return Point(s, b, nothing, nothing)
-    ds = spin_rates(s, s[0])
-    db = spin_rates(b, 1.5 * b[0])
-    return Point(
-        (s[0] + dg12 * ds[0][0] + dg13 * ds[1][0], s[1] + dg12 * ds[0][1], s[2] + dg13 * ds[1][2]),
-        (b[0] + dg12 * db[0][0] + dg13 * db[1][0], b[1] + dg12 * db[0][1], b[2] + dg13 * db[1][2]),
-        ds,
-        db,
-    )
-
-
-@njit(**INLINE)
 def _active(s: Vector, b: Vector) -> Vector:
     return (s[0] / 1.5 - b[0], s[1] - b[1], s[2] - b[2])
+
+
+@njit(**INLINE)
+def _crossing(s: Vector, B: Vector, k2: float, E: float, G: float, e: Vector) -> Crossing:
+    """Where Hooke's law alone leads out of the yield surface; e is the increment of the active deviator."""
+    n = _active(s, B)
+    nn, ne, ee = _inner(n, n), _inner(n, e), _inner(e, e)
+    if nn + 2.0 * ne + ee <= k2 * (1.0 + 1e-12):
+        return WHOLE
+    beta = yield_crossing(nn, ne, ee, k2)
+    at = _add(n, _scaled(e, beta))
+    slope = _inner(at, e)
+    if beta <= 0.0 or beta >= 1.0 or slope <= 0.0:
+        return Crossing(beta, NOTHING)
+    f = -beta / slope
+    return Crossing(beta, (f * E * at[0], 2.0 * f * G * at[1], 2.0 * f * G * at[2]))
+
+
+@njit(**INLINE)
+def _start(
+    p: np.ndarray, old: np.ndarray, k2: float, E: float, G: float, de11: float, dg12: float, dg13: float
+) -> Point:
+    """Stress and back stress from which Hooke's law leads to the elastic answer: those of `old`, or with its spin."""
+    s, B = (old[0], old[1], old[2]), (old[3], old[4], old[5])
+    if p[SPIN] == 0.0:
+        nothing = (NOTHING, NOTHING, NOTHING)
+        return Point(s, B, nothing, nothing)
+    crossing = _crossing(s, B, k2, E, G, (E * de11 / 1.5, G * dg12, G * dg13))
+    turned = spun(s, B, E, G, de11, dg12, dg13, crossing)
+    return Point(turned.stress, turned.back, turned.d_stress, turned.d_back)
 
 
 @njit(**KERNEL)
@@ -93,12 +95,12 @@ def return_map(
     temperature = old[7] if old.shape[0] > 7 else p[TEMPERATURE]
     heating = p[HEATING] if old.shape[0] > 7 else 0.0
     E, G, alpha = elasticity(p, temperature - 0.5 * p[CHANGE])
-    point = _turned(p, old, dg12, dg13)
+    values = functions(p, old[6], temperature)
+    point = _start(p, old, values[0], E, G, de11, dg12, dg13)
     s = (point.stress[0] + E * de11, point.stress[1] + G * dg12, point.stress[2] + G * dg13)
     _elastic(old, s, point, E, G, new, C)
     n0 = _active(point.stress, point.back)
     trial = _active(s, point.back)
-    values = functions(p, old[6], temperature)
     if _inner(trial, trial) <= values[0] * (1.0 + 1e-12):
         return 0
 
@@ -131,9 +133,9 @@ def _elastic(old: np.ndarray, s: Vector, point: Point, E: float, G: float, new: 
     for i in range(6, old.shape[0]):
         new[i] = old[i]
     for i in range(3):
-        C[i, 0] = 0.0
-        C[i, 1] = point.spin_stress[0][i]
-        C[i, 2] = point.spin_stress[1][i]
+        C[i, 0] = point.spin_stress[0][i]
+        C[i, 1] = point.spin_stress[1][i]
+        C[i, 2] = point.spin_stress[2][i]
     C[0, 0] += E
     C[1, 1] += G
     C[2, 2] += G
@@ -200,12 +202,12 @@ def _scaled(a: Vector, f: float) -> Vector:
 def _tangent(plastic: Plastic, point: Point, E: float, G: float, expansion: float, C: np.ndarray) -> None:
     """Subtract from the elastic tangent in C what the plastic strain takes; `expansion` is thermal strain per b*."""
     gradients = _gradients(plastic)
-    zero = (0.0, 0.0, 0.0)
-    start = _active(point.spin_stress[0], point.spin_back[0])
-    end = _active(point.spin_stress[1], point.spin_back[1])
-    _subtract(_sensitivity(plastic, gradients, zero, (E / 1.5, 0.0, 0.0)), 0, E, G, expansion, C)
-    _subtract(_sensitivity(plastic, gradients, start, (0.0, G, 0.0)), 1, E, G, expansion, C)
-    _subtract(_sensitivity(plastic, gradients, end, (0.0, 0.0, G)), 2, E, G, expansion, C)
+    axial = _active(point.spin_stress[0], point.spin_back[0])
+    first = _active(point.spin_stress[1], point.spin_back[1])
+    second = _active(point.spin_stress[2], point.spin_back[2])
+    _subtract(_sensitivity(plastic, gradients, axial, (E / 1.5, 0.0, 0.0)), 0, E, G, expansion, C)
+    _subtract(_sensitivity(plastic, gradients, first, (0.0, G, 0.0)), 1, E, G, expansion, C)
+    _subtract(_sensitivity(plastic, gradients, second, (0.0, 0.0, G)), 2, E, G, expansion, C)
 
 
 @njit(**INLINE)

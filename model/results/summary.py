@@ -37,8 +37,9 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         **rates(setup, result, released),
         "force_max_N": greatest,
         "block_height_mm": setup.spring.block_height,
-        "residual_shear_max_MPa": float(last.shear.max()) if released else None,
-        "shear_max_MPa": max(float(shot.shear.max()) for shot in result.snapshots),
+        "residual_shear_max_MPa": shear_peak(setup, last).value if released else None,
+        "shear_max_MPa": max(shear_peak(setup, shot).value for shot in result.snapshots),
+        **ends_peak(setup, last if released else None),
         "residual_shear_inside_MPa": shear_inside(setup, last) if released else None,
         "shear_inside_max_MPa": max(shear_inside(setup, shot) for shot in result.snapshots),
         **peaks(setup, "residual_", [last] if released else []),
@@ -73,15 +74,40 @@ def step_errors(result: Result) -> dict[str, float | None]:
     }
 
 
+def is_middle(setup: Setup) -> np.ndarray:
+    """Whether sections lie in the middle turns: a turn from the tips, or from the end coils of closed ends."""
+    spring = setup.spring
+    first, last = spring.bottom.end_turns, spring.turns - spring.top.end_turns
+    return surface.is_middle(setup.section_turns, first, last)
+
+
+def shear_peak(setup: Setup, snapshot: Snapshot, ends: bool = False) -> surface.Peak:
+    """The greatest shear stress on the wire's surface in the middle turns or, if asked, on the ends beside them.
+
+    It is a number of the spring: in the core, too, shear remains, and more of it, but what the section points see of
+    that hangs on where they lie.
+    """
+    among = is_middle(setup) != ends
+    stress = surface.shear(snapshot.surface_state, snapshot.components)
+    return surface.peak(stress[among], setup.section_turns[among], setup.inside)
+
+
+def ends_peak(setup: Setup, snapshot: Snapshot | None) -> dict[str, float | None]:
+    """The greatest residual shear on the ends' surface, MPa, its turn and its angle from the coil's inside, degrees."""
+    top = None if snapshot is None else shear_peak(setup, snapshot, ends=True)
+    return {
+        "residual_shear_ends_max_MPa": top and top.value,
+        "residual_shear_ends_max_turn": top and top.turn,
+        "residual_shear_ends_max_angle_deg": top and top.angle,
+    }
+
+
 def shear_inside(setup: Setup, snapshot: Snapshot) -> float:
     """Shear stress on the wire's surface at the inside of the coil, MPa, positive as in a compressed spring.
 
-    That of greatest magnitude in the middle turns: half a turn from the tips, or from the end coils of closed ends.
+    That of greatest magnitude in the middle turns.
     """
-    spring = setup.spring
-    first, last = spring.bottom.end_turns, spring.turns - spring.top.end_turns
-    stress = setup.inside.shear(snapshot.surface_state, snapshot.components)
-    middle = stress[surface.is_middle(setup.section_turns, first, last)]
+    middle = setup.inside.shear(snapshot.surface_state, snapshot.components)[is_middle(setup)]
     return float(middle[np.argmax(np.abs(middle))])
 
 

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+ON_AXIS = 1e-12  # below which a coordinate is the sine of π with its rounding
+
 
 @dataclass(frozen=True)
 class DiskRule:
@@ -25,27 +27,35 @@ def abramowitz9() -> DiskRule:
     return DiskRule(np.array([(0.0, 0.0), *ring, *square]), np.array(weights), "abramowitz9")
 
 
-def polar(radial: int = 4, angular: int = 12) -> DiskRule:
+def polar(radial: int = 8, angular: int = 20, staggered: bool = True) -> DiskRule:
     """Gauss rule in r² times equal angles: no point on the axis, where the stress of torsion vanishes.
 
     Args:
         radial: number of rings, from 1.
         angular: number of equal angles, from 3.
+        staggered: every second ring is turned by half the angle between points, so that the rings together have twice
+            as many angles.
 
     With s = r², dA = ½ ds dφ, so Gauss-Legendre in s is exact for even polynomials of r up to degree 4·radial − 2;
     n equal angles are exact for harmonics below n.
     """
     s, w = np.polynomial.legendre.leggauss(radial)
-    r = np.sqrt(0.5 * (s + 1.0))
-    angle = 2.0 * np.pi * (np.arange(angular) + 0.5) / angular
-    points = np.stack([np.outer(r, np.cos(angle)), np.outer(r, np.sin(angle))], axis=-1).reshape(-1, 2)
-    return DiskRule(points, np.repeat(0.5 * w / angular, angular), f"polar {radial} × {angular}")
+    r = np.sqrt(0.5 * (s + 1.0))[:, None]
+    shift = np.where((np.arange(radial) % 2 == 1) & staggered, 0.0, 0.5)[:, None]
+    angle = 2.0 * np.pi * (np.arange(angular) + shift) / angular
+    points = np.stack([r * np.cos(angle), r * np.sin(angle)], axis=-1).reshape(-1, 2)
+    name = f"polar {radial} × {angular}{', staggered' if staggered else ''}"
+    return DiskRule(points, np.repeat(0.5 * w / angular, angular), name)
 
 
 def upper_half(rule: DiskRule) -> DiskRule:
-    """The points of a symmetric rule with z > 0, weights doubled: for what is the same, or opposite, at z and −z."""
-    above = rule.points[:, 1] > 0.0
-    return DiskRule(rule.points[above], 2.0 * rule.weights[above], f"upper half of {rule.name}")
+    """The points of a symmetric rule with z ≥ 0, the weights of those above doubled: for what is the same, or opposite,
+    at z and −z."""
+    y, z = rule.points.T
+    z = np.where(np.abs(z) > ON_AXIS, z, 0.0)
+    kept = z >= 0.0
+    weights = np.where(z > 0.0, 2.0, 1.0) * rule.weights
+    return DiskRule(np.stack([y, z], axis=1)[kept], weights[kept], f"upper half of {rule.name}")
 
 
 SURFACE_POINTS = 24

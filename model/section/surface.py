@@ -87,8 +87,8 @@ def peak(values: np.ndarray, turns: np.ndarray, inside: Inside) -> Peak:
     """The greatest of the values at the points on the surface.
 
     Args:
-        values: shape (n, 2, surface points).
-        turns: of the sections, shape (n, 2).
+        values: shape (sections, surface points), or (n, 2, surface points).
+        turns: of the sections, shape (sections,), or (n, 2).
         inside: where the angles are counted from.
 
     Returns:
@@ -106,11 +106,11 @@ def peak(values: np.ndarray, turns: np.ndarray, inside: Inside) -> Peak:
 
 
 def is_middle(turns: np.ndarray, first: float, last: float) -> np.ndarray:
-    """Whether turns are half a turn away from the ends of those between `first` and `last`.
+    """Whether turns are a turn away from the ends of those between `first` and `last`.
 
-    Of less than a turn and a half the quarters of a turn on both sides of the middle are left.
+    Of less than two turns and a half the quarters of a turn on both sides of the middle are left.
     """
-    reach = max(0.5 * (last - first) - 0.5, 0.25)
+    reach = max(0.5 * (last - first) - 1.0, 0.25)
     return np.abs(turns - 0.5 * (first + last)) <= reach
 
 

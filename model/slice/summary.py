@@ -3,7 +3,6 @@
 import csv
 from dataclasses import asdict, fields
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -18,7 +17,8 @@ from coilset.model.warning import Warning
 # its stresses at the surface are in `loaded` and `released`.
 UNSEEN = (
     "unstable_steps", "buckled", "buckling_travel_mm", "buckling_force_N", "buckling_travel_EN_13906_1_mm",
-    "residual_shear_inside_MPa", "shear_inside_max_MPa", "residual_shear_surface_max_MPa",
+    "residual_shear_inside_MPa", "shear_inside_max_MPa", "residual_shear_ends_max_MPa",
+    "residual_shear_ends_max_turn", "residual_shear_ends_max_angle_deg", "residual_shear_surface_max_MPa",
     "residual_shear_surface_max_turn", "residual_shear_surface_max_angle_deg",
     "residual_equivalent_surface_max_MPa", "residual_equivalent_surface_max_turn",
     "residual_equivalent_surface_max_angle_deg", "shear_surface_max_MPa", "shear_surface_max_turn",
@@ -46,8 +46,8 @@ def summarise(analysis: SliceAnalysis) -> dict:
         "rate_N_per_mm": result.rate,
         "force_max_N": greatest,
         "block_height_mm": spring.block_height,
-        "residual_shear_max_MPa": _greatest_shear(last) if released else None,
-        "shear_max_MPa": max(map(_greatest_shear, result.snapshots)),
+        "residual_shear_max_MPa": at_surface(analysis, last)["surface_shear_max_MPa"] if released else None,
+        "shear_max_MPa": max(at_surface(analysis, shot)["surface_shear_max_MPa"] for shot in result.snapshots),
         "steps": len(result.steps),
         "iterations": sum(step.iterations for step in result.steps),
         "material": analysis.law.name,
@@ -76,10 +76,6 @@ def slice_warnings(analysis: SliceAnalysis) -> list[Warning]:
         greatest = max(float(shot.work.max()) for shot in beyond)
         found.append(beyond_validity(greatest, limit, analysis.law.name, beyond[0].name))
     return found
-
-
-def _greatest_shear(shot: Any) -> float:
-    return float(shear(np.concatenate([shot.stress, shot.line])).max())
 
 
 def at_surface(analysis: SliceAnalysis, shot: SliceSnapshot) -> dict:

@@ -17,6 +17,7 @@ RESPONSES = (
     "rate_30_70_after_N_per_mm", "force_max_N", "block_height_mm", "plastic_work_max_N_per_mm2",
     "plastic_work_max_turn", "plastic_work_max_angle_deg", "plastic_work_known_to_N_per_mm2", "lift_off_max_mm",
     "residual_shear_max_MPa", "shear_max_MPa", "shear_inside_max_MPa", "residual_shear_inside_MPa",
+    "residual_shear_ends_max_MPa", "residual_shear_ends_max_turn", "residual_shear_ends_max_angle_deg",
     "shear_surface_max_MPa", "shear_surface_max_turn", "shear_surface_max_angle_deg", "equivalent_surface_max_MPa",
     "equivalent_surface_max_turn", "equivalent_surface_max_angle_deg", "residual_shear_surface_max_MPa",
     "residual_shear_surface_max_turn", "residual_shear_surface_max_angle_deg", "residual_equivalent_surface_max_MPa",

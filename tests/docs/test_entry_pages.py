@@ -76,7 +76,7 @@ def test_a_row_says_what_the_entry_takes():
     wire = rows["SpringSpec", "wire_diameter"]
     assert (wire.unit, wire.default, wire.range) == ("mm", "required", "0.001 to 100,000")
     radial = rows["SectionSpec", "radial"]
-    assert (radial.forms[0].kind, radial.default, radial.range) == ("whole number", "`4`", "≥ 1, ≤ 64")
+    assert (radial.forms[0].kind, radial.default, radial.range) == ("whole number", "`8`", "≥ 1, ≤ 64")
     coils = rows["FrictionSpec", "coils"]
     assert (coils.unit, coils.default, coils.range) == ("1", "`0`", "≥ 0, < 2")
     tilt = rows["SeatSpec", "tilt"]

@@ -37,6 +37,20 @@ def test_kinds_differ_as_the_curvature_makes_them(example):
     assert warping == pytest.approx(curved, rel=0.02)
 
 
+def test_greatest_residual_shear_is_a_number_of_the_spring(example):
+    """Between 4 × 12 and 8 × 20 points it changes by less than 1 %; the ends' is named apart, with its place."""
+    rules = ({"radial": 4, "angular": 12}, {"radial": 8, "angular": 20})
+    few, many = (press(example, "curved", f"mesh.section={rule}")[1] for rule in rules)
+    for name in ("residual_shear_max_MPa", "residual_shear_ends_max_MPa", "shear_max_MPa"):
+        assert few[name] == pytest.approx(many[name], rel=0.01), name
+    assert many["residual_shear_surface_max_MPa"] == pytest.approx(
+        max(many["residual_shear_max_MPa"], many["residual_shear_ends_max_MPa"]), rel=1e-12
+    )
+    assert abs(many["residual_shear_inside_MPa"]) <= many["residual_shear_max_MPa"]
+    turn = many["residual_shear_ends_max_turn"]
+    assert turn < 1.0 or turn > 1.5
+
+
 class Stop(Exception):
     pass
 

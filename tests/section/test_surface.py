@@ -54,8 +54,8 @@ def test_of_two_peaks_that_differ_by_rounding_the_first_is_told(rounding):
 
 
 def test_middle_turns():
-    np.testing.assert_array_equal(is_middle(np.array([0.4, 0.6, 1.9, 2.1]), 0.0, 2.5), [False, True, True, False])
-    np.testing.assert_array_equal(is_middle(np.array([1.4, 1.6, 2.9, 3.1]), 1.0, 3.5), [False, True, True, False])
+    np.testing.assert_array_equal(is_middle(np.array([0.9, 1.1, 2.9, 3.1]), 0.0, 4.0), [False, True, True, False])
+    np.testing.assert_array_equal(is_middle(np.array([1.9, 2.1, 3.9, 4.1]), 1.0, 5.0), [False, True, True, False])
     np.testing.assert_array_equal(is_middle(np.array([0.2, 0.3, 0.7, 0.8]), 0.0, 1.0), [False, True, True, False])
 
 

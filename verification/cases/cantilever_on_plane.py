@@ -40,7 +40,7 @@ def press() -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
     seat = Seat("bottom", points, points.radius, nodes, np.zeros(2 * SEAT_DOFS), BEDDING, ONSET)
     held = [(ELEMENTS, range(6)), *((node, (1, 3, 5)) for node in range(ELEMENTS))]
     pairs = [(k, k + 1) for k in range(ELEMENTS)]
-    frame = Frame(nodes, pairs, RADIUS, law, polar(), held, contacts=[seat])
+    frame = Frame(nodes, pairs, RADIUS, law, polar(4, 12, False), held, contacts=[seat])
     heights = np.sin(SLOPE) * LENGTH * np.linspace(1.0, LOWEST, STEPS + 1)
     rows: list[tuple[float, float]] = []
     for step in np.diff(heights):

@@ -54,7 +54,7 @@ def press() -> tuple[np.ndarray, np.ndarray, float, Law]:
     ends = [0, ELEMENTS, count, count + ELEMENTS]
     held = [(node, range(6)) for node in ends]
     pairs = [(first + k, first + k + 1) for first in (0, count) for k in range(ELEMENTS)]
-    frame = Frame(np.vstack(wires), pairs, np.repeat(RADII, ELEMENTS), law, polar(), held, contacts=[coils])
+    frame = Frame(np.vstack(wires), pairs, np.repeat(RADII, ELEMENTS), law, polar(4, 12, False), held, contacts=[coils])
     driven = [frame.dof(node, 2) for node in ends[:2]]
     rows: list[tuple[float, float]] = []
     for step in np.diff(np.append(0.0, TRAVEL)):

@@ -68,7 +68,7 @@ def press() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     sides = [(node, (1, 2, 3, 4, 5)) for node in (0, ELEMENTS)]
     held = [*sides, (ELEMENTS // 2, (0, 1, 3, 5)), *((node, (1, 3, 5)) for node in range(1, ELEMENTS))]
     pairs = [(k, k + 1) for k in range(ELEMENTS)]
-    frame = Frame(nodes, pairs, RADIUS, law, polar(), held, contacts=[seat])
+    frame = Frame(nodes, pairs, RADIUS, law, polar(4, 12, False), held, contacts=[seat])
     level = int(frame.layout.seat_dofs[SEAT_DOFS + LEVEL])
     rows: list[tuple[float, float]] = []
     for step in np.diff(np.append(1.0, HEIGHTS)) * RING:

@@ -81,7 +81,7 @@ def drive(table: list[Row], by_load: bool, way: Way, steps: int) -> tuple[np.nda
     """
     nodes = np.linspace([0, 0, 0], [LENGTH, 0, 0], ELEMENTS + 1)
     pairs = [(k, k + 1) for k in range(ELEMENTS)]
-    clamp, law = [(0, range(6))], library.load("ck15")
+    clamp, law = [(0, range(6))], library.load("ck15", spin=True)
     frame = Frame(nodes, pairs, SLENDERNESS * LENGTH, law, abramowitz9(), clamp, *way)
     tip = frame.dof(ELEMENTS, 1)
     path, begin, last = [(0.0, 0.0)], 0.0, None

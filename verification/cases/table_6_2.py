@@ -59,7 +59,8 @@ def tripod(method: str, options: Mapping[str, Any]) -> Frame:
     """The frame: node 0 is the joint, nodes 1 to 3 the supports of bars 2, 1 and 3."""
     nodes = LENGTH * np.array([[0, 0, 0], [0, 1, 0], [-1, 1, 0], [1, 1, 0]])
     held = [(0, (2, 3, 4)), *((node, (0, 1, 2, 3, 4)) for node in (1, 2, 3))]  # the plane z = 0 is kept
-    return Frame(nodes, [(1, 0), (2, 0), (3, 0)], RADIUS, library.load("ck15"), abramowitz9(), held, method, options)
+    law = library.load("ck15", spin=True)
+    return Frame(nodes, [(1, 0), (2, 0), (3, 0)], RADIUS, law, abramowitz9(), held, method, options)
 
 
 def drive(method: str, options: Mapping[str, Any], steps: int) -> tuple[np.ndarray, list[int | None]]:

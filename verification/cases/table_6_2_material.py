@@ -48,7 +48,7 @@ def release(law: Law, state: np.ndarray, u: float, load: float) -> tuple[np.ndar
 
 def run(study: Study) -> None:
     """Loading at the printed displacements, release at the printed forces."""
-    law = library.load("ck15")
+    law = library.load("ck15", spin=True)
     state, u, rows = points.initial_state(law, 2), 0.0, []
     for end, *_ in PULL:
         state, u = move(law, state, u, end / 100), end / 100

@@ -63,8 +63,8 @@ def beam(method: str, options: Mapping[str, Any], law: Law) -> Frame:
     stiffness = C * rigidity(law) / LENGTH**3
     stops = Stops([1, 2], [0.0, 0.0, 1.0], -GAPS * SCALE * LENGTH, stiffness, 1e-6 * GAPS[0] * SCALE * LENGTH)
     plane = [(node, (1, 3, 5)) for node in (1, 2, 3)]
-    return Frame(nodes, [(0, 1), (1, 2), (2, 3)], RADIUS, law, polar(), [(0, range(6)), *plane], method, options,
-                 [stops])  # fmt: skip
+    pairs, rule = [(0, 1), (1, 2), (2, 3)], polar(4, 12, False)
+    return Frame(nodes, pairs, RADIUS, law, rule, [(0, range(6)), *plane], method, options, [stops])
 
 
 def rigidity(law: Law) -> float:
@@ -111,7 +111,7 @@ def bend(method: str, options: Mapping[str, Any], law: Law) -> Bent:
 
 def run(study: Study) -> None:
     """Events, forces and iterations, row by row."""
-    law = library.load("elastic")
+    law = library.load("elastic", spin=True)
     found = {name: bend(method, options, law) for name, method, options in METHODS}
     forces, moved, _ = found["NR"]
     shear = law.E / law.G * (RADIUS / LENGTH) ** 2 / 4.0

@@ -35,12 +35,13 @@ def poisson_ratio(elastic: Elastic) -> float:
     return elastic.young_modulus / (2 * elastic.shear_modulus) - 1
 
 
-def wire_law(name: str, diameter: float) -> Law:
+def wire_law(name: str, diameter: float, spin: bool = False) -> Law:
     """The law of a wire at a diameter, marked as an estimate.
 
     Args:
         name: name of a wire, as in `coilset.model.standards.wires.names()`.
         diameter: of the wire, mm.
+        spin: see `Law`.
 
     Returns:
         Law at 20 °C; its validity ends at the plastic work of the uniform strain.
@@ -72,7 +73,7 @@ def wire_law(name: str, diameter: float) -> Law:
             "non_normality": "none",
         }],
     }  # fmt: skip
-    return Law(MaterialFile.model_validate(data))
+    return Law(MaterialFile.model_validate(data), spin)
 
 
 def case_law(case: Case, spring: Spring) -> Law:
@@ -81,9 +82,10 @@ def case_law(case: Case, spring: Spring) -> Law:
     Raises:
         InputError: no such material or wire, a file that is wrong, or a wire whose diameter is not one number.
     """
+    spin = case.mesh.section.spin
     if isinstance(case.material, str):
-        return library.load(case.material)
-    return wire_law(case.material.wire, wire_diameter(spring))
+        return library.load(case.material, spin=spin)
+    return wire_law(case.material.wire, wire_diameter(spring), spin)
 
 
 def case_strength(case: Case, spring: Spring) -> float | None:
