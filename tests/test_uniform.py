@@ -58,7 +58,7 @@ def test_elastic_rate_is_that_of_a_straight_wire():
 
 
 def test_near_the_slice():
-    # 185.714 N and 4.47444 mm of the slice with 602 unknowns, as in verification slice-uniform; here 185.676 and 4.47471
+    # the slice with 602 unknowns has 185.714 N and 4.47444 mm, see verification slice-uniform; here 185.676 and 4.47471
     law = library.load("ck15")
     force, state = uniform.press([5.0, 40.0, 12.0, 1.0], law, travels=6.3 * np.arange(1, 13) / 12)
     back, state = uniform.press(state, law, forces=[0.0])
