@@ -95,10 +95,11 @@ def shear_peak(setup: Setup, snapshot: Snapshot, ends: bool = False) -> surface.
 def ends_peak(setup: Setup, snapshot: Snapshot | None) -> dict[str, float | None]:
     """The greatest residual shear on the ends' surface, MPa, its turn and its angle from the coil's inside, degrees."""
     top = None if snapshot is None else shear_peak(setup, snapshot, ends=True)
+    value, turn, angle = (None,) * 3 if top is None else (top.value, top.turn, top.angle)
     return {
-        "residual_shear_ends_max_MPa": top and top.value,
-        "residual_shear_ends_max_turn": top and top.turn,
-        "residual_shear_ends_max_angle_deg": top and top.angle,
+        "residual_shear_ends_max_MPa": value,
+        "residual_shear_ends_max_turn": turn,
+        "residual_shear_ends_max_angle_deg": angle,
     }
 
 

@@ -125,9 +125,8 @@ def test_elastic_curved_section_is_winklers_ring(ck15):
 @pytest.mark.parametrize("kind", KINDS)
 def test_points_on_the_surface_have_the_stress_of_the_section_there(ck15, kind):
     """Elastic, curved: the field of the outermost points of a fine rule, carried on to the rim by its slope."""
-    section = Section(ck15, kind, PLACES["tilted"], polar(16, 24))
+    section = Section(ck15, kind, PLACES["tilted"], rule := polar(16, 24, staggered=False))
     section.commit(np.array([1e-6, 2e-6, 0, 4e-5, 1e-5, -2e-5]))
-    rule = polar(16, 24)
     columns = [section.sections.components.index(name) for name in ("s11", "t12", "t13")]
     rings = section.trial["point_state"][0, 0].reshape(16, 24, -1)[-3:, :, columns]
     radius = np.hypot(*rule.points.T).reshape(16, 24)[-3:, 0]

@@ -33,7 +33,7 @@ PROGRAMS = {  # targets and increments
 
 def clean_tests() -> Iterator[Test]:
     """The tests without noise, after the unloaded start."""
-    law = library.load("ck15", heun_tolerance=1e-6)
+    law = library.load("ck15", spin=True, heun_tolerance=1e-6)
     for name, pieces in PROGRAMS.items():
         steps = [{"to": to, "increments": increments} for to, increments in pieces]
         history = programs.run(law, programs.Program.model_validate({"name": name, "steps": steps}), "heun")
