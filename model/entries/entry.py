@@ -43,6 +43,7 @@ def shown(value: Any) -> str:
 def shortened(text: str, longest: int = LONGEST) -> str:
     """A text of the user's as messages show it, without quotation marks."""
     text = " ".join(str(text).split())
+    text = "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text[: longest + 1])
     return text if len(text) <= longest else text[: longest - 3] + "..."
 
 

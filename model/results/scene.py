@@ -83,7 +83,7 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.nda
         values = 0.5 * (np.append(stress, stress[-1]) + np.append(stress[0], stress))
         mesh = tube(shot.x + np.array([place * frame.column, 0.0, 0.0]), radius, values, name)
         plotter.add_mesh(
-            mesh, scalars=name, clim=(0.0, end), cmap="viridis", smooth_shading=True, scalar_bar_args=_bar(frame),
+            mesh, scalars=name, clim=(0.0, end), cmap="viridis", smooth_shading=True, scalar_bar_args=_bar(frame, name),
         )  # fmt: skip
         bears = abs(shot.force) if abs(shot.force) > 1e-6 * force else 0.0
         label = f"{shot.name}\n{shot.height:.5g} mm, {bears:.4g} N"
@@ -102,8 +102,11 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.nda
         plotter.close()
 
 
-def _bar(frame: Frame) -> dict[str, Any]:
-    """The colour bar, of the same size in pictures of all heights."""
+def _bar(frame: Frame, title: str) -> dict[str, Any]:
+    """The colour bar, of the same size in pictures of all heights; an empty line keeps its title off the numbers."""
     bar = BAR - 28.0
-    return {"color": "black", "n_labels": 5, "fmt": "%.3g", "title_font_size": 17, "label_font_size": 16,
-            "position_x": 0.3, "width": 0.4, "position_y": 12 / frame.height, "height": bar / frame.height}  # fmt: skip
+    return {
+        "title": f"{title}\n", "color": "black", "n_labels": 5, "fmt": "%.3g", "title_font_size": 17,
+        "label_font_size": 16, "position_x": 0.3, "width": 0.4, "position_y": 12 / frame.height,
+        "height": bar / frame.height,
+    }  # fmt: skip

@@ -106,3 +106,11 @@ def test_a_list_takes_no_index_beyond_its_end():
     for part in ("7", "-1", "x", "9" * 5000, "²"):
         with pytest.raises(InputError, match="give a number from 0 to 0"):
             assign(raw(), f"loading.{part}.steps=3")
+
+
+def test_letters_that_no_screen_shows_are_escaped():
+    """Such as a byte order mark in the middle of a file."""
+    for letter in ("\ufeff", "\x85", "\u2028"):
+        with pytest.raises(InputError) as caught:
+            check(raw(**{f"a{letter}b": 1}))
+        assert str(caught.value).isprintable()
