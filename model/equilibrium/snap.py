@@ -25,6 +25,7 @@ from coilset.model.equilibrium.newton import Start
 from coilset.model.equilibrium.stability import Stability, Weakest
 
 log = logging.getLogger("coilset.steps")
+STUCK = 1e-3  # of the way that a step should go: what moves less though it is unstable is held by what it touches
 
 
 class Snap:
@@ -78,6 +79,8 @@ class Snap:
             if weakest.negative == 0 and c <= weakest.value and (rest := self._rest(load(), moved)) is not None:
                 way = self.system.state["increments"].equilibrium
                 return replace(rest, left_branch=True, released=released + 0.5 * float(self._sum(before @ way)))
+            if weakest.negative and moved < STUCK * advance:
+                break
             c *= float(np.clip(moved / advance, 0.25, 4.0))
             if weakest.negative:
                 c = max(c, self._drag(weakest))

@@ -35,7 +35,7 @@ def dense(analysis):
 @pytest.mark.parametrize("travel", [20.0, 60.0])
 def test_negative_pivots_are_negative_eigenvalues(travel):
     """On a path whose states are not judged: none before Haringx's travel, some far beyond it."""
-    analysis = pressed(travel, 1, mesh=6)
+    analysis = pressed(travel, 1, mesh=4)
     analysis.program.continuation = analysis.continuation = Continuation(analysis.newton)
     analysis.program.begin(0)
     analysis.run()
