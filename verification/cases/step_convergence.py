@@ -5,10 +5,10 @@ default, with 0.2 % asked for. The law and the straight path of strains in a ste
 Richardson's limit of the last two values is v + (v − v')/3, where the differences of the sequence fall; the observed
 order is log2 of their ratio. Contacts that close within a step disturb the order.
 
-The example must be within 0.2 % of its limit in force and 0.1 % in set with automatic steps, the others within 0.5 and
-0.2 %; where a sequence does not close in (its last difference is more than 0.6 of the one before it) the limit means
-nothing, and the deviation from its last value is shown and not judged. What equal steps say of their own error
-stands in the second table, and what all of it costs in the third.
+The example as it is shipped must be within 0.2 % of its limit in force and 0.1 % in set with automatic steps, the
+others within 0.5 and 0.2 %; where a sequence does not close in (its last difference is more than 0.6 of the one before
+it) the limit means nothing, and the deviation from its last value is shown and not judged. What steps say of their own
+error stands in the second table, and what all of it costs in the third.
 """
 
 import time
@@ -33,6 +33,7 @@ SPRINGS = {
 }  # fmt: skip
 STEPS = (12, 24, 48, 96)
 QUANTITIES = ("force at block, N", "set, mm")
+FEWER_POINTS = ("mesh.section.radial=4", "mesh.section.angular=12")  # of the larger springs, for time
 CLOSING = 0.6  # ratio of the last differences up to which a sequence closes in
 
 
@@ -51,7 +52,8 @@ LOST = Press((np.nan, np.nan), (np.nan, np.nan), 0, np.nan)
 
 def press(file, steps):
     """A Press; NaN where no equilibrium was found."""
-    analysis = Analysis(read_case(EXAMPLES / file, [f"loading.{k}.steps={steps}" for k in (0, 1)]), MPI.COMM_SELF)
+    settings = [f"loading.{k}.steps={steps}" for k in (0, 1)] + list(FEWER_POINTS if "springs" in file else ())
+    analysis = Analysis(read_case(EXAMPLES / file, settings), MPI.COMM_SELF)
     began = time.process_time()
     try:
         result = analysis.run()
