@@ -107,15 +107,16 @@ class EstimatesErrors(Protocol):
         """Be ready for it from now on; adds fields to the state, so before anything is saved."""
         ...
 
-    def error_works(self, ratio: float) -> tuple[float, float]:
+    def error_works(self, ratio: float) -> tuple[float, float, float]:
         """To be called once at a step's end, before it is committed.
 
         Args:
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
 
         Returns:
-            Work of the error of the inner forces on the step's deformation, and of that share of it which came in with
-            the step, of this rank's cells, N mm; not a number where the error is not known.
+            Work of the error of the inner forces on the step's deformation; of that share of the error which came in
+            with the step, the work on the step's deformation and on that of the first step of all. Of this rank's
+            cells, N mm; not a number where the error is not known.
         """
         ...
 

@@ -100,7 +100,7 @@ class StepControl:
     shrinkage: Share = 0.7
     largest: Growth = 2.0
     cut: Share = 0.5
-    step_share: Positive = 0.1
+    step_share: Positive = 0.2
     tolerated_share: Growth = 1.5
     finest: Share = 2.0**-6
     caution: Share = 0.9

@@ -6,8 +6,10 @@ driven head's force is wrong by
 
     ΔF = ΔW / Δs   at its height,   and its height by   Δs_F = ΔF / (∂F/∂s)   at its force,
 
-where Δs is the step's travel and ∂F/∂s its secant. The part ΔF' that comes in with one step is of third order in its
-size h, so that h (a/|ΔF'|)^⅓ is the size of a step that brings in a.
+where Δs is the step's travel and ∂F/∂s its secant. Of the error that comes in with one step, the work on the first
+step's deformation, which is elastic, gives in the same way what will be wrong when the spring is let go: the set. The
+greater of both, ΔF', is of third order in the step's size h, so that h (a/ΔF')^⅓ is the size of a step that brings in
+a.
 """
 
 import math
@@ -21,6 +23,7 @@ from coilset.model.equilibrium.control import StepControl
 from coilset.model.state import Where
 
 ORDER = 3
+GREATEST, FIRST = range(2)  # what is remembered: greatest force, N, and travel of the first step of all, mm
 
 
 @dataclass(frozen=True)
@@ -54,7 +57,7 @@ class StepError:
         assert isinstance(body, EstimatesErrors)
         self.control, self.accuracy, self.steps, self._body = control, accuracy, steps, body
         body.estimate_errors()
-        self._greatest = control.system.state.add("greatest_force", np.zeros(1), Where.SHARED)
+        self._memory = control.system.state.add("step_error", np.zeros(2), Where.SHARED)
 
     def estimate(self, ratio: float) -> Estimate:
         """Judge the state on trial, once, before it is committed or given up; collective.
@@ -68,13 +71,14 @@ class StepError:
             works = comm.allreduce(works)
         before, force = control.force, control.trial_force
         travel = control.height - control.trial_height
-        greatest = max(float(self._greatest.equilibrium[0]), abs(force))
-        self._greatest.trial[0] = greatest
+        memory, last = self._memory.trial, self._memory.equilibrium
+        memory[GREATEST] = greatest = max(float(last[GREATEST]), abs(force))
         if abs(travel) <= 1e-12 * control.free_length or greatest == 0.0:
             return Estimate(math.nan, math.nan, 0.0, self.steps.growth)
-        error, new = (float(work) / travel for work in works)
+        memory[FIRST] = last[FIRST] or travel
+        error, new, left = (float(work) for work in works / (travel, travel, memory[FIRST]))
         stiffness = (force - before) / travel
-        share = abs(new) / (self.steps.step_share * self.accuracy * greatest)
+        share = max(abs(new), abs(left)) / (self.steps.step_share * self.accuracy * greatest)
         if math.isnan(share):
             return Estimate(math.nan, math.nan, 0.0, 1.0)
         return Estimate(error, error / stiffness if stiffness else math.nan, share, self._factor(share))

@@ -23,14 +23,16 @@ class FinerPath:
 
     Args:
         sections: of the rod.
-        state: the rod's State; the finer path's fields are added to it: the increment of `strain` in the step,
-            the sections' arrays with `finer_` before their names, and the error of the section forces.
+        state: the rod's State; the finer path's fields are added to it: the increments of `strain` in the step
+            and in the first one of all, the sections' arrays with `finer_` before their names, and the error of the
+            section forces.
     """
 
     def __init__(self, sections: Sections, state: State) -> None:
         self._sections, self._state, self._strain = sections, state, state["strain"]
         shape = self._strain.trial.shape
         self._increment = state.add("strain_increment", np.zeros(shape), Where.ELEMENT)
+        self._first = state.add("first_strain_increment", np.zeros(shape), Where.ELEMENT)
         self._error = state.add("section_force_error", np.zeros(shape), Where.ELEMENT)
         self._fields = {name: state.add(f"finer_{name}", rows, Where.ELEMENT)
                         for name, rows in sections.initial_state().items() if name != "surface_state"}  # fmt: skip
@@ -52,6 +54,8 @@ class FinerPath:
         # of the parabola's middle from the chord's
         bend = 0.25 * ratio / (1.0 + ratio) * (ratio * self._increment.equilibrium - change)
         self._increment.trial[:] = change
+        if not self._first.equilibrium.any():
+            self._first.trial[:] = change
         start = {name: field.equilibrium for name, field in self._fields.items()} | {"strain": strain.equilibrium}
         middle = strain.equilibrium + 0.5 * change + bend
         end = {name: field.trial for name, field in self._fields.items()}
@@ -70,11 +74,13 @@ class FinerPath:
         for name, field in self._fields.items():
             field.equilibrium[:] = field.trial[:] = self._state[name].equilibrium
 
-    def works(self, length: np.ndarray) -> tuple[float, float]:
+    def works(self, length: np.ndarray) -> tuple[float, float, float]:
         """Works of the error of the section forces, N mm; see EstimatesErrors.
 
         Args:
             length: of the rank's own elements, shape (cells,), mm.
         """
-        strains, error = 0.5 * length[:, None, None] * self._increment.trial, self._error
-        return float(np.sum(error.trial * strains)), float(np.sum((error.trial - error.equilibrium) * strains))
+        error = 0.5 * length[:, None, None] * self._error.trial
+        new = error - 0.5 * length[:, None, None] * self._error.equilibrium
+        now, first = self._increment.trial, self._first.trial
+        return float(np.sum(error * now)), float(np.sum(new * now)), float(np.sum(new * first))

@@ -120,6 +120,22 @@ def test_every_step_can_be_the_last_one_before_a_crash(example, tmp_path):
     np.testing.assert_array_equal(resumed.rod.point_state, whole.rod.point_state)
 
 
+def test_automatic_steps_go_on_where_they_stopped(example, tmp_path):
+    """What the step control knows belongs to the state: cut, grown and estimated to the same bits."""
+    case = read_case(example, ["mesh.section.rule=abramowitz9", "mesh.elements_per_turn=10"])
+    whole, checkpoint = Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case)
+    whole.run()
+    assert sum(step.cuts for step in whole.result.steps) > 0
+    stopped = Analysis(case, MPI.COMM_SELF)
+    run_until(stopped, checkpoint, next(step.number for step in whole.result.steps if step.cuts) - 1)
+    for step in (len(whole.result.steps) - 3, None):
+        stopped = Analysis(case, MPI.COMM_SELF)
+        stopped.resume(checkpoint.load(stopped.comm))
+        stopped.run() if step is None else run_until(stopped, checkpoint, step)
+    assert stopped.result.steps == whole.result.steps
+    np.testing.assert_array_equal(stopped.rod.point_state, whole.rod.point_state)
+
+
 def test_a_kill_while_writing_leaves_the_checkpoint_before(example, tmp_path, monkeypatch):
     case = read_case(example, SETTINGS)
     analysis, checkpoint = Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case)
