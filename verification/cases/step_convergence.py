@@ -12,6 +12,7 @@ error stands in the second table, and what all of it costs in the third.
 """
 
 import time
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import matplotlib as mpl
@@ -25,6 +26,7 @@ from coilset.model.case import read_case
 from coilset.model.examples import EXAMPLES
 from coilset.model.results.figures import STYLE
 from coilset.model.results.summary import summarise
+from coilset.verification.study import Study
 
 FAST = False
 SPRINGS = {
@@ -42,7 +44,7 @@ class Press:
     """To block and back: force at block, N, and set, mm, their estimated errors, evaluations, seconds of processor."""
 
     found: tuple[float, float]
-    told: tuple[float, float]
+    told: tuple[float | None, float | None]
     evaluations: int
     seconds: float
 
@@ -50,7 +52,7 @@ class Press:
 LOST = Press((np.nan, np.nan), (np.nan, np.nan), 0, np.nan)
 
 
-def press(file, steps):
+def press(file: str, steps: int | str) -> Press:
     """A Press; NaN where no equilibrium was found."""
     settings = [f"loading.{k}.steps={steps}" for k in (0, 1)] + list(FEWER_POINTS if "springs" in file else ())
     analysis = Analysis(read_case(EXAMPLES / file, settings), MPI.COMM_SELF)
@@ -66,13 +68,17 @@ def press(file, steps):
     return Press((block.force_N, summary["set_mm"]), told, summary["evaluations"], seconds)
 
 
-def limit(values):
+def _number(value: float | None) -> float:
+    return np.nan if value is None else value
+
+
+def limit(values: Sequence[float]) -> tuple[float, float]:
     """Richardson's limit of a sequence with halved steps and an error of second order, and the observed order."""
     first, second = values[-2] - values[-3], values[-1] - values[-2]
     return values[-1] + second / 3.0, np.log2(abs(first / second))
 
 
-def run(study):
+def run(study: Study) -> None:
     """All springs, all numbers of steps."""
     presses = {name: [press(file, steps) for steps in (*STEPS, "auto")] for name, (file, _) in SPRINGS.items()}
     rows, told, costs, off = [], [], [], {}
@@ -86,7 +92,9 @@ def run(study):
                 end = values[-1]
             off[name, k] = [100.0 * abs(value / end - 1.0) for value in (*values, automatic)]
             rows.append([name, quantity, *values, automatic, end if closes else np.nan, order])
-            told.append([name, quantity, *(one.told[k] for one in runs), *(end - one.found[k] for one in runs)])
+            told.append(
+                [name, quantity, *(_number(one.told[k]) for one in runs), *(end - one.found[k] for one in runs)]
+            )
             what = f"{name}, {quantity}, automatic steps"
             if closes:
                 study.check(what, automatic, end, "Richardson's limit", tolerance)
@@ -101,7 +109,7 @@ def run(study):
     study.figure("step_convergence", draw(presses, off))
 
 
-def draw(presses, off):
+def draw(presses: Mapping[str, Sequence[Press]], off: Mapping[tuple[str, int], Sequence[float]]) -> Figure:
     """Deviations from the limits over what they cost."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.0, 3.6), layout="constrained")
