@@ -161,7 +161,7 @@ class Analysis:
         save: Save | None = None,
         touched: Callable[[], object] = lambda: None,
     ) -> Result:
-        """Walk through the load program; a resumed analysis goes on where its checkpoint was; collective.
+        """Go through the load program; a resumed analysis goes on where its checkpoint was; collective.
 
         Args:
             report: called with each converged Step.

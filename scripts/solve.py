@@ -113,7 +113,7 @@ def _announce(console: Console, analysis: Analysis, case_file: str | Path, resum
 def _run(
     console: Console, analysis: Analysis, checkpoint: Checkpoint, interactive: bool
 ) -> SolveError | KeyboardInterrupt | None:
-    """Walk through the program; what ended it early is returned, for the results up to there are written first."""
+    """Go through the program; what ended it early is returned, for the results up to there are written first."""
     ask = Prompt(analysis, console.print) if interactive else None
 
     def report(step: Step) -> None:

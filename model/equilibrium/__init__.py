@@ -1,1 +1,1 @@
-"""How equilibrium is found: unknowns, their residual and tangent, Newton's method, and the walk along loads."""
+"""How equilibrium is found: unknowns, residual and tangent, Newton's method, and the way along a path of loads."""

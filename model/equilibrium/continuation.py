@@ -1,4 +1,4 @@
-"""The walk along a path of loads: predict, solve, accept or cut; the one loop for rods, frames, probes and solids.
+"""Along a path of loads: predict, solve, accept or cut; one loop for rods, frames, probes, solids.
 
 A solve ends in one of two ways: its trial state becomes the equilibrium, or all goes back to the last one. That
 transaction is made here and nowhere else.
@@ -33,7 +33,7 @@ class Path:
         target: in words, for logs and errors.
         automatic: do steps take the size that their error and the iteration allow? Equal steps end on their marks,
             also after a cut.
-        place: where the walk stands, in words.
+        place: where on it the body stands, in words.
     """
 
     load: Callable[[float], Load]
@@ -45,7 +45,7 @@ class Path:
 
 @dataclass(frozen=True)
 class Position:
-    """Where on its path the walk stands.
+    """Where on its path the continuation stands.
 
     Attributes:
         done: what is behind, in regular steps.
@@ -63,7 +63,7 @@ class Position:
 
 
 class Continuation:
-    """Walks.
+    """Takes a body along paths of loads.
 
     Args:
         newton: Newton.
@@ -236,7 +236,7 @@ class Continuation:
         guess.scale(factor)
         return Start(guess)
 
-    # ---- the walk --------------------------------------------------------------------------------------------------
+    # ---- along a path -----------------------------------------------------------------------------------------
 
     def begin(self) -> None:
         """Stand at the start of a path."""
@@ -253,7 +253,7 @@ class Continuation:
             The step's Outcome, with the cost of what failed before, and how often it was cut.
 
         Raises:
-            SolveError: if it failed down to the smallest size, or the walk stalls; the state is that of the last
+            SolveError: if it failed down to the smallest size, or the program stalls; the state is that of the last
                 converged step.
         """
         self._spent.clear()

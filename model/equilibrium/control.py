@@ -10,7 +10,7 @@ from annotated_types import Unit
 from pydantic import ConfigDict, Field
 
 Positive = Annotated[float, Unit("1"), Field(gt=0)]
-Share = Annotated[float, Unit("1"), Field(gt=0, lt=1)]
+Fraction = Annotated[float, Unit("1"), Field(gt=0, lt=1)]
 Growth = Annotated[float, Unit("1"), Field(ge=1)]
 Count = Annotated[int, Field(ge=1)]
 STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
@@ -43,19 +43,19 @@ class NewtonControl:
 
     __pydantic_config__: ClassVar[ConfigDict] = STRICT
     stagnation: Count = 24
-    part_tolerance: Share = 0.2
-    smallest_part: Share = 0.1
+    part_tolerance: Fraction = 0.2
+    smallest_part: Fraction = 0.1
     augmentations: Count = 40
-    accepted_work: Share = 0.3
-    sought_work: Share = 0.3
+    accepted_work: Fraction = 0.3
+    sought_work: Fraction = 0.3
     search_trials: Count = 6
-    bracket_margin: Share = 0.1
-    backtrack: Share = 0.4
-    smallest_step_length: Share = 1e-3
-    stress_backtrack: Share = 0.25
+    bracket_margin: Fraction = 0.1
+    backtrack: Fraction = 0.4
+    smallest_step_length: Fraction = 1e-3
+    stress_backtrack: Fraction = 0.25
     free_penetration: Positive | None = None
     penetration_growth: Growth = 1.5
-    smallest_contact_step: Share = 0.02
+    smallest_contact_step: Fraction = 0.02
     contact_bisections: Count = 6
     foreseen_forces: bool | None = None
 
@@ -65,8 +65,8 @@ class StepControl:
     """How steps follow each other; sizes are in regular steps, of which a phase has its `steps`.
 
     Attributes:
-        smallest: size below which the walk is given up.
-        attempts: solves for each regular step, and `spare_attempts` more, before the walk is said to stall.
+        smallest: size below which the path is given up.
+        attempts: solves for each regular step, and `spare_attempts` more, before the program is said to stall.
         spare_attempts: see `attempts`.
         automatic: regular steps of an automatic phase; its first step is one of them.
         easy: iterations up to which an automatic step lets the next one grow.
@@ -90,23 +90,23 @@ class StepControl:
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = STRICT
-    smallest: Share = 2.0**-10
+    smallest: Fraction = 2.0**-10
     attempts: Count = 40
     spare_attempts: Annotated[int, Field(ge=0)] = 200
     automatic: Count = 16
     easy: Count = 5
     hard: Count = 10
     growth: Growth = 1.5
-    shrinkage: Share = 0.7
+    shrinkage: Fraction = 0.7
     largest: Growth = 2.0
-    cut: Share = 0.5
+    cut: Fraction = 0.5
     step_share: Positive = 0.2
     tolerated_share: Growth = 1.5
-    finest: Share = 2.0**-6
-    caution: Share = 0.9
-    least_factor: Share = 0.25
+    finest: Fraction = 2.0**-6
+    caution: Fraction = 0.9
+    least_factor: Fraction = 0.25
     regrowth: Growth = 2.0
-    probe: Share = 1e-3
+    probe: Fraction = 1e-3
     unstable_cuts: Count = 6
     branch_amplitude: Positive = 0.2
     snap_advance: Positive = 1.0

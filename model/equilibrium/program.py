@@ -38,14 +38,14 @@ class ProgramPosition:
     Attributes:
         stage: number of the stage.
         height, force: where the stage began, mm and N.
-        walk: Position in the stage.
+        on_path: Position on the path of the stage.
         redirected: where it goes in place of the stage's own target; None: there.
     """
 
     stage: int
     height: float
     force: float
-    walk: Position
+    on_path: Position
     redirected: Stage | None = None
 
 
@@ -85,7 +85,7 @@ class LoadProgram:
     @position.setter
     def position(self, position: ProgramPosition) -> None:
         self.number, self._height, self._force = position.stage, position.height, position.force
-        self.continuation.position, self.redirected = position.walk, position.redirected
+        self.continuation.position, self.redirected = position.on_path, position.redirected
 
     def run(self, stage: Stage) -> Iterator[StepTaken]:
         """Go on to the stage's target, step by step.
@@ -93,14 +93,14 @@ class LoadProgram:
         Raises:
             SolveError: as Continuation.advance.
         """
-        self.stage, walk = self.redirected or stage, self.continuation
-        while walk.position.done < (regular := self._regular(self.stage)):
-            outcome, cuts = walk.advance(self._path(self.stage))
+        self.stage, continuation = self.redirected or stage, self.continuation
+        while continuation.position.done < (regular := self._regular(self.stage)):
+            outcome, cuts = continuation.advance(self._path(self.stage))
             error = outcome.estimate.force if outcome.estimate is not None else math.nan
             log.info("step %d: %.6g mm, %.6g N, %d iterations, out of balance %.1e, error about %.2g N; next %.4g of a "
-                     "regular step", walk.number, self.control.height, self.control.force, outcome.iterations,
-                     outcome.ratio, error, walk.position.size)  # fmt: skip
-            yield StepTaken(walk.number, walk.position.done / regular, cuts, outcome)
+                     "regular step", continuation.number, self.control.height, self.control.force, outcome.iterations,
+                     outcome.ratio, error, continuation.position.size)  # fmt: skip
+            yield StepTaken(continuation.number, continuation.position.done / regular, cuts, outcome)
 
     def redirect(self, stage: Stage) -> None:
         """Go to another target from here on, in place of the stage in progress."""

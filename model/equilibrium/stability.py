@@ -149,7 +149,7 @@ def vanishing(points: Sequence[tuple[float, float]]) -> float:
     """Where the least eigenvalue vanishes, by a parabola through its last three values; NaN if it does not fall.
 
     Args:
-        points: travel, mm, and eigenvalue of stable states, in the order of the walk.
+        points: travel, mm, and eigenvalue of stable states, in the order of the path.
     """
     if len(points) < 3:
         return math.nan

@@ -146,13 +146,13 @@ class Checkpoint:
         """Where to go on; a changed target begins its phase where the spring stands now."""
         saved = about["position"]
         redirected = saved["redirected"] and Stage(**saved["redirected"])
-        position = ProgramPosition(**{**saved, "walk": Position(**saved["walk"]), "redirected": redirected})
+        position = ProgramPosition(**{**saved, "on_path": Position(**saved["on_path"]), "redirected": redirected})
         stage, old, new = position.stage, about["case"]["loading"], self.case["loading"]
         if old[stage : stage + 1] == new[stage : stage + 1]:
             return position
         last = result.steps[-1] if result.steps else None
         height, force = (last.seat_height_mm, last.force_N) if last else (position.height, position.force)
-        return replace(position, height=height, force=force, walk=Position(), redirected=None)
+        return replace(position, height=height, force=force, on_path=Position(), redirected=None)
 
     def _compare(self, about: Mapping[str, Any]) -> None:
         """Spring, files and program must be the same; the phases behind too, and the rest may have changed."""

@@ -124,7 +124,7 @@ class SliceAnalysis:
         return self.spring.free_length - self.travel
 
     def run(self, report: Callable[[SliceStep], None] = lambda step: None) -> SliceResult:
-        """Walk through the load program.
+        """Go through the load program.
 
         Args:
             report: called with each converged SliceStep.

@@ -86,14 +86,14 @@ class SolidProblem:
             SolveError: if there is no equilibrium down to the smallest step; the last equilibrium is kept.
         """
         targets = (self.bottom.motion if bottom is None else bottom, top)
-        origin, walk = (self.bottom.motion, self.top.motion), self.continuation
+        origin, continuation = (self.bottom.motion, self.top.motion), self.continuation
         path = Path(lambda done: self.load(*self._between(origin, targets, done)), target=str(top),
                     place=lambda: f"{self.top.motion}")  # fmt: skip
-        walk.begin()
+        continuation.begin()
         total, cuts = None, 0
-        while walk.position.done < 1.0:
-            outcome, more = walk.advance(path)
-            self.bottom.motion, self.top.motion = self._between(origin, targets, walk.position.done)
+        while continuation.position.done < 1.0:
+            outcome, more = continuation.advance(path)
+            self.bottom.motion, self.top.motion = self._between(origin, targets, continuation.position.done)
             total, cuts = outcome if total is None else total + outcome, cuts + more
         assert total is not None
         return total, cuts

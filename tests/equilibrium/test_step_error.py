@@ -1,4 +1,4 @@
-"""Steps that know their error: what is asked for, what the estimate says, what the walk makes of it."""
+"""Steps that know their error: what is asked for, what the estimate says, what the steps make of it."""
 
 import numpy as np
 import pytest

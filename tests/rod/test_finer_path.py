@@ -20,7 +20,7 @@ def strains(time):
     return e
 
 
-class Walk:
+class Path:
     """Sections of one element, brought along a path of strains."""
 
     def __init__(self):
@@ -43,28 +43,28 @@ class Walk:
 @pytest.mark.parametrize("steps", [4, 8])
 def test_error_of_section_forces_is_known(steps):
     """Error of 1.1 % with four steps, 0.29 % with eight: estimated within 0.7 and 0.1 % of itself."""
-    walk = Walk()
-    finer = FinerPath(walk.sections, walk.state)
+    path = Path()
+    finer = FinerPath(path.sections, path.state)
     for k in range(1, steps + 1):
-        walk.to(strains(k / steps))
-        assert finer.follow(walk.s, 1.0 if k > 1 else 0.0)
-        walk.state.commit()
-    fine = Walk()
+        path.to(strains(k / steps))
+        assert finer.follow(path.s, 1.0 if k > 1 else 0.0)
+        path.state.commit()
+    fine = Path()
     for time in np.linspace(0.0, 1.0, 401)[1:]:
         fine.to(strains(time))
         fine.state.commit()
-    true, estimated = fine.s - walk.s, walk.state["section_force_error"].equilibrium
+    true, estimated = fine.s - path.s, path.state["section_force_error"].equilibrium
     for column in (TWIST, BENDING):
         assert abs(true[0, 0, column] / fine.s[0, 0, column]) == pytest.approx(0.16 / steps**2, rel=0.2)
         assert estimated[0, 0, column] == pytest.approx(true[0, 0, column], rel=0.01)
 
 
 def test_what_stays_elastic_has_no_error():
-    walk = Walk()
-    finer = FinerPath(walk.sections, walk.state)
+    path = Path()
+    finer = FinerPath(path.sections, path.state)
     for k in (1, 2):
-        walk.to(0.05 * strains(0.5 * k))
-        finer.follow(walk.s, 1.0 if k > 1 else 0.0)
-        walk.state.commit()
-    assert np.abs(walk.state["section_force_error"].equilibrium).max() < 1e-12 * np.abs(walk.s).max()
+        path.to(0.05 * strains(0.5 * k))
+        finer.follow(path.s, 1.0 if k > 1 else 0.0)
+        path.state.commit()
+    assert np.abs(path.state["section_force_error"].equilibrium).max() < 1e-12 * np.abs(path.s).max()
     assert finer.works(np.array([1.0])) == pytest.approx((0.0, 0.0, 0.0), abs=1e-8)

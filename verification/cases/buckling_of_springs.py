@@ -3,7 +3,7 @@
 Wire 5, D 40, 40 turns of pitch 12 between clamped heads, elastic. Haringx's column (`references/stability.py`) buckles
 at 39.16 mm and 96.51 N. Here the tangent of the free unknowns is looked at after each step: its least eigenvalue falls
 almost in proportion to the travel and no pivot is negative up to 38 mm; a parabola through its last three values gives
-the travel where it is zero, and the force there. It is not walked up to: the ends of a helix push to one side, and the
+the travel where it is zero, and the force there. No path leads up to it: the ends of a helix push to one side, and the
 axis goes off to that side near the critical travel. The section is plane, as Haringx's stiffnesses are those of
 straight wire.
 

@@ -4,7 +4,7 @@
 seats, in 10 steps down and 12 up and in 60 each. Counted are iterations, factorisations, evaluations of the residual
 (one brings all section points up to date, their tangents too) and time, failed solves included.
 
-A method that must cut a step walks other steps than the rest, and backward Euler then ends elsewhere (by some 0.05 mm
+A method that must cut a step takes other steps than the rest, and backward Euler then ends elsewhere (by some 0.05 mm
 with 10 steps). So each method's final state is compared with Newton's along the very same steps: positions up to 1e-6
 of the travel and stresses up to 1e-6 of the greatest. To see that and not the tolerance of (6.3.1), ε is 1e-9 here.
 
@@ -46,7 +46,7 @@ COUNTS = ("iterations", "factorisations", "evaluations")
 
 @dataclass
 class Run:
-    """One walk through the program: its Analysis and Result, counts over all solves, failed ones included, seconds."""
+    """One run of the program: its Analysis and Result, counts over all solves, failed ones included, seconds."""
 
     analysis: Analysis
     complete: bool
@@ -70,7 +70,7 @@ def example(ends: str, method: str, down: int = 1, up: int = 1) -> Case:
     return read_case(EXAMPLE, [*settings, f"loading.0.steps={down}", f"loading.1.steps={up}"])
 
 
-def walk(ends: str, down: int, up: int, method: str) -> Run:
+def drive(ends: str, down: int, up: int, method: str) -> Run:
     """Run the example to block and back to zero force."""
     case = example(ends, method, down, up)
     analysis, counts = Analysis(case, MPI.COMM_SELF), dict.fromkeys(COUNTS, 0)
@@ -130,13 +130,13 @@ def apart(run: Run, reference: Snapshot | None) -> float:
 
 def run(study: Study) -> None:
     """All methods, both kinds of ends, 10 and 60 steps."""
-    walk("clamped", 2, 2, "newton")  # compiles what is to be timed
+    drive("clamped", 2, 2, "newton")  # compiles what is to be timed
     found = {}
     for ends in ("clamped", "seats"):
         for down, up in STEPS:
             rows, group = [], {}
             for method in METHODS:
-                group[method] = one = walk(ends, down, up, method)
+                group[method] = one = drive(ends, down, up, method)
                 cuts = sum(step.cuts for step in one.steps)
                 place = f"{method}, {ends}, {down} steps down"
                 if method == "newton":

@@ -26,7 +26,7 @@ THICK = 1e-2  # r/L whose shear the elliptic integrals would see; its values are
 LOAD = 10.0  # PL²/EI of the elastica
 
 
-def walk(
+def take_steps(
     frame: Frame, forces: dict[int, float] | None = None, moves: dict[int, float] | None = None
 ) -> tuple[list[int], bool]:
     """Iterations of ten equal steps, as many as converge, and whether all did."""
@@ -46,7 +46,7 @@ def elastica(slenderness: float, elements: int) -> tuple[list[int], bool, float]
     law, radius = library.load("elastic"), slenderness * LENGTH
     frame = chain(straight(LENGTH, elements), radius, law)
     force = LOAD * law.E * np.pi * radius**4 / 4.0 / LENGTH**2
-    counts, done = walk(frame, forces={frame.dof(elements, Y): force})
+    counts, done = take_steps(frame, forces={frame.dof(elements, Y): force})
     return counts, done, frame.moved(elements)[1] / LENGTH
 
 
@@ -54,7 +54,7 @@ def circles(slenderness: float, elements: int) -> tuple[list[int], bool, float]:
     """Iterations, whether all steps converged, and the distance of the tip from the clamp over L."""
     plane = [(node, (Z, ROTATION_X, ROTATION_Y)) for node in range(1, elements + 1)]
     frame = chain(straight(LENGTH, elements), slenderness * LENGTH, library.load("elastic"), held=[(0, ALL), *plane])
-    counts, done = walk(frame, moves={frame.dof(elements, ROTATION_Z): 4.0 * np.pi})
+    counts, done = take_steps(frame, moves={frame.dof(elements, ROTATION_Z): 4.0 * np.pi})
     return counts, done, float(np.linalg.norm(np.add(frame.moved(elements), [LENGTH, 0.0, 0.0]))) / LENGTH
 
 

@@ -73,7 +73,7 @@ METHODS_OF = {"displacement": METHODS, "load": METHODS | {"NR": Way("newton", CP
 
 
 def drive(table: list[Row], by_load: bool, way: Way, steps: int) -> tuple[np.ndarray, Counts]:
-    """Walk through a table's rows in `steps` steps a row.
+    """Go through a table's rows in `steps` steps a row.
 
     Returns:
         w/l and F/(σF A0) after each step, shape (n, 2), the start included; greatest number of iterations of a step of

@@ -65,10 +65,10 @@ def rate(spring: Spring, turns: np.ndarray, representation: str, law: Law) -> fl
     rod = Rod(line, radius, law, polar(2, 8), placement)
     system = System(rod, LineLayout(rod), (), np.zeros(SEATS))
     control = AxialControl(system, spring.free_length, clamped=True)
-    walk = Continuation(Newton(system, rod_method("newton", 1), 1e-7))
+    continuation = Continuation(Newton(system, rod_method("newton", 1), 1e-7))
     forces = []
     for travel in (TRAVEL * spring.free_length, -TRAVEL * spring.free_length):
-        outcome, force = walk.probe(control.to_height(spring.free_length - travel), lambda: control.trial_force)
+        outcome, force = continuation.probe(control.to_height(spring.free_length - travel), lambda: control.trial_force)
         if not outcome.converged:
             raise RuntimeError(f"no equilibrium at a travel of {travel:g} mm")
         forces.append(force)
