@@ -20,9 +20,9 @@ class Solid:
         shear: τ at the inside of the coil after release, at 0.9 of the wire's radius, MPa.
         elastic: force after the first step, which is elastic, N; None where it is not, or was not kept.
         gap: of `PressedSection`.
-        carried: factors of force, set and shear from the law's integration by backward Euler, by which these solids were
-            pressed, to the present one of second order: those by which the slice's numbers have changed. The uniform
-            rod's have changed by the same within 1e-5.
+        carried: factors of force, set and shear from the law's integration by backward Euler, by which these solids
+            were pressed, to the present one of second order: those by which the slice's numbers have changed. The
+            uniform rod's have changed by the same within 1e-5.
     """
 
     material: str
