@@ -43,7 +43,7 @@ def test_tangent_in_a_plastic_state():
     q = q + np.array([0.01, -0.005, -0.1, 0.002])
     f, K, _, _ = forces(case, q, E, points)
     direction = np.array([0.05, 0.01, 0.2, 0.01])
-    steps = np.array([4e-2, 2e-2, 1e-2])
+    steps = np.array([2e-2, 1e-2, 5e-3])
     rest = [np.linalg.norm(forces(case, q + s * direction, E, points)[0] - f - s * K @ direction) for s in steps]
     assert np.polyfit(np.log(steps), np.log(rest), 1)[0] == pytest.approx(2.0, abs=0.1)
     assert rest[-1] < 0.05 * steps[-1] * np.linalg.norm(K @ direction)
@@ -58,12 +58,12 @@ def test_elastic_rate_is_that_of_a_straight_wire():
 
 
 def test_near_the_slice():
-    # the slice with 602 unknowns has 185.714 N and 4.47444 mm, see verification slice-uniform; here 185.676 and 4.47471
+    # the slice with 602 unknowns has 185.879 N and 4.47286 mm, see verification slice-uniform; here −0.02 % and 0.01 %
     law = library.load("ck15")
     force, state = uniform.press([5.0, 40.0, 12.0, 1.0], law, travels=6.3 * np.arange(1, 13) / 12)
     back, state = uniform.press(state, law, forces=[0.0])
-    assert force[0, -1] == pytest.approx(185.714, rel=5e-4)
-    assert back[0, 0] == pytest.approx(4.47444, rel=3e-4)
+    assert force[0, -1] == pytest.approx(185.879, rel=5e-4)
+    assert back[0, 0] == pytest.approx(4.47286, rel=3e-4)
     assert abs(state.force[0]) < 1e-6
     assert state.travel[0] == pytest.approx(back[0, 0], rel=1e-12)
 

@@ -2,8 +2,8 @@
 
 One turn between clamped heads is pressed in 12 steps to nine tenths of the way to block, far beyond yield, and
 released: force at full travel, set, and the shear stress that stays at the inside of the coil, at 0.9 of the wire's
-radius. D/d is 4 to 12 with the pitch that makes the nominal shear strain the same; D/d = 8 has half and double that gap
-between the coils, too. Ck 15, and a material with linear hardening, which bears most of its load elastically.
+radius. D/d is 4 to 12 with the pitch that makes the nominal shear strain the same; D/d = 8 has twice that gap between
+the coils, too. Ck 15, and a material with linear hardening, which bears most of its load elastically.
 
 The solid's numbers are recorded (its runs take minutes each), with what its last refinement changed. The rods' are
 computed here, with 8 × 24 section points. The slice is a coil without ends; what clamped ends do is told by two rods of

@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from mpi4py import MPI
 
 from coilset.model.results.figures import STYLE
+from coilset.verification.sections import solid as solids
 from coilset.verification.sections.ends import ends as of_ends
 from coilset.verification.slice.runs import Pressed, pressed
 from coilset.verification.solid_vs_rod.pressing import PressedSection, run_solid
@@ -25,8 +26,11 @@ from coilset.verification.solid_vs_rod.store import Store
 from coilset.verification.study import Study
 
 # D/d: unknowns, force (N) and set (mm) of the solid, docs/solid.md
-RECORDED = {4.0: (14844, 368.78, 1.1323), 6.0: (14844, 247.20, 2.5263), 8.0: (33987, 185.68, 4.4760),
-            12.0: (14844, 123.63, 10.0377)}  # fmt: skip
+RECORDED = {
+    solid.index: (solid.unknowns, *solid.numbers[:2])
+    for solid in solids.RECORDED
+    if solid.material == "ck15" and solid.gap == 1.0
+}
 ACROSS = 9.0
 
 
