@@ -27,8 +27,8 @@ spring: {wire_diameter: 5.0, mean_diameter: 40.0, turns: 2.5, pitch: 12.0}
 mesh: {elements_per_turn: 10, section: {rule: abramowitz9}}
 contact: {friction: {seats: 0.1, coils: 0.1}}
 loading:
-  - {to: block, steps: 40}
-  - {to: {force: 0}, steps: 30}
+  - {to: block, steps: 24}
+  - {to: {force: 0}, steps: 12}
 """
 SWEEP = """
 case: case.yaml
