@@ -10,6 +10,10 @@ from coilset.model.equilibrium.stability import vanishing
 from coilset.model.results.record import Step
 
 SIDEWAYS = 0.05  # of the mean diameter: an axis that has gone off so far has buckled, however gently
+NEAR = (
+    0.95  # of the critical travel: what goes off before is pushed by the ends of a helix that are no whole turns apart
+)
+WELL_ABOVE = 0.15  # of the first eigenvalue
 
 
 @dataclass(frozen=True)
@@ -33,12 +37,12 @@ def buckling(steps: Sequence[Step], diameter: float) -> Buckling | None:
         steps: Steps up to now.
         diameter: mean diameter of the coil, mm.
     """
-    seen = next((k for k, step in enumerate(steps) if _has_buckled(step, diameter)), None)
+    critical = critical_travel(steps)
+    seen = next((k for k, step in enumerate(steps) if _has_buckled(step, diameter, critical)), None)
     if seen is None:
         return None
-    values = [(step.travel_mm, least) for step in steps[:seen] if (least := step.least_eigenvalue) is not None]
     before = steps[seen - 1].travel_mm if seen else 0.0
-    travel = vanishing([point for point in values if point[1] > 0.0])
+    travel = critical
     if not isfinite(travel) or not before <= travel <= steps[seen].travel_mm + (steps[seen].travel_mm - before):
         travel = steps[seen].travel_mm
     place = np.array([[0.0, 0.0], *((step.travel_mm, step.force_N) for step in steps[: seen + 1])])
@@ -46,8 +50,23 @@ def buckling(steps: Sequence[Step], diameter: float) -> Buckling | None:
     return Buckling(travel, force, max(step.axis_offset_mm for step in steps[seen:]))
 
 
-def _has_buckled(step: Step, diameter: float) -> bool:
-    return step.negative_pivots > 0 or step.left_branch > 0 or step.axis_offset_mm > SIDEWAYS * diameter
+def critical_travel(steps: Sequence[Step]) -> float:
+    """Travel at which the least eigenvalue of the straight spring vanishes, mm; NaN if its values do not tell.
+
+    A spring whose axis goes off gently stays stable: its eigenvalue turns away from zero. So values are taken while
+    they are well above zero, where there are enough of these.
+    """
+    values = [(step.travel_mm, value) for step in steps if (value := step.least_eigenvalue) is not None and value > 0.0]
+    first = values[0][1] if values else 0.0
+    falling = [point for point, last in zip(values, [(0.0, np.inf), *values], strict=False) if point[1] < last[1]]
+    well_above = [point for point in falling if point[1] > WELL_ABOVE * first]
+    return vanishing(well_above if len(well_above) >= 3 else falling)
+
+
+def _has_buckled(step: Step, diameter: float, critical: float) -> bool:
+    """Is it unstable, has it snapped, or has its axis gone off far, and not by the push of its ends long before?"""
+    gone = step.axis_offset_mm > SIDEWAYS * diameter and not step.travel_mm < NEAR * critical
+    return step.negative_pivots > 0 or step.left_branch > 0 or gone
 
 
 def axis_offset(x: np.ndarray, start: np.ndarray, turns: np.ndarray) -> float:

@@ -1,5 +1,7 @@
 """Unstable equilibria are no answer: pivots against eigenvalues, long springs with few and many steps, what is said."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -8,7 +10,8 @@ from coilset.model.analysis import Analysis
 from coilset.model.case import Case
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.stability import vanishing
-from coilset.model.results.buckling import axis_offset, buckling
+from coilset.model.results.buckling import axis_offset, buckling, critical_travel
+from coilset.model.results.record import Step
 from coilset.model.results.summary import summarise
 
 LONG = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 40, "pitch": 12.0}
@@ -80,6 +83,21 @@ def test_vanishing_of_a_parabola():
     assert vanishing(points) == pytest.approx(10.0, rel=1e-12)
     assert np.isnan(vanishing(points[:2]))
     assert np.isnan(vanishing([(1.0, 1.0), (2.0, 2.0), (3.0, 3.0)]))  # rises
+
+
+def test_an_axis_pushed_off_long_before_has_not_buckled():
+    """Eigenvalues that vanish at 10 mm: 3 mm off at 6 mm is a push of the ends, at 9.8 mm it is buckling."""
+    step = Step(1, 0, 1.0, 90.0, 0.0, 0.0, 3, 4, 0, 0, 2, 0.0)
+    travels = (2.0, 4.0, 6.0, 8.0)
+    steps = [replace(step, travel_mm=s, force_N=10.0 * s, least_eigenvalue=10.0 - s, axis_offset_mm=0.5 * s)
+             for s in travels]  # fmt: skip
+    assert critical_travel(steps) == pytest.approx(10.0, rel=1e-9)
+    assert buckling(steps, 40.0) is None
+    late = replace(step, travel_mm=9.8, force_N=98.0, least_eigenvalue=1.0, axis_offset_mm=5.0)  # it turns away from 0
+    found = buckling([*steps, late], 40.0)
+    assert found.travel_mm == pytest.approx(10.0, rel=1e-9)
+    assert found.offset_mm == 5.0
+    assert buckling([replace(late, least_eigenvalue=None)], 40.0).travel_mm == 9.8  # nothing tells better
 
 
 def test_offset_of_the_axis_is_the_mean_of_a_turn():
