@@ -98,17 +98,14 @@ def test_order_of_convergence(name, integrator, exact):
 
 
 def test_spin_gives_the_axial_stress_of_large_torsion(exact):
-    """With the spin terms torsion at fixed length stretches: σ11 as in the reference, and none without them.
-
-    The return mapping's error is that of its steps: 4.3, 2.1, 1.0 % with increments of 2e-4, 1e-4, 5e-5.
-    """
+    """With the spin terms torsion at fixed length stretches: σ11 as in the reference, and none without them."""
     path = STRAIGHT["torsion"]
-    with_spin = follow(library.load("ck15", spin=True), path, "return_mapping", 5e-5)[-1]
+    with_spin = follow(library.load("ck15", spin=True), path, "return_mapping")[-1]
     without = follow(library.load("ck15", spin=False), path, "return_mapping")[-1]
     states, _ = exact("torsion", True)
     assert without[0] == 0.0
     assert abs(states[-1, 0]) > 0.1
-    assert with_spin[0] == pytest.approx(states[-1, 0], rel=1.5e-2)
+    assert with_spin[0] == pytest.approx(states[-1, 0], rel=3e-3)
 
 
 @pytest.mark.parametrize("integrator", points.INTEGRATORS)

@@ -7,13 +7,12 @@ A spring of Ck 15 (wire 5, D 40, 2.5 turns of pitch 12) is pressed and let go to
 
 the elastic energy of the stress that stays, the work against the back stress, and the plastic work measure. With Ḃ = ζ
 ε̇p the second part is ∫ d(¾ B11² + B12² + B13²)/ζ, taken step by step. Contacts have given back what they stored: no
-force is left. F ds is taken by trapezia and dεp by backward Euler, so that the sum hangs on the steps; the points'
-volumes are those of the curved wire at rest, the program's those of its rods, as they stand.
+force is left. F ds is taken by trapezia and ζ at the middle of a step's plastic work, as the law takes it, so that
+the sum hangs on the steps; the points' volumes are those of the curved wire at rest, the program's those of its rods,
+as they stand.
 
-Tolerance: 1e-4 between clamped heads and 3e-4 to block at 100 steps each way and 16 rods a turn. Between the heads the
-sum was found off by 2.0e-4 and 8.9e-5 with 50 and 100 steps, to block by 3.4e-4 and 1.7e-4; with plane sections by
-6.4e-4, 2.0e-4, 8.8e-5 and 6.0e-5 with 25, 50, 100 and 200 steps, to block by 3.1e-4, 3.0e-4, 1.6e-4 and 1.3e-4, and
-with 8 rods a turn by 2.0e-4 and 4.2e-4 at 100 steps.
+Tolerance: 1e-4 between clamped heads and 3e-4 to block at 100 steps each way and 16 rods a turn. With 50 and 100 steps
+the sum was found off by 2.0e-4 and 9.4e-5 between the heads, by 2.3e-4 and 1.4e-4 to block.
 """
 
 import matplotlib as mpl
@@ -55,7 +54,7 @@ class Ledger:
     def keep(self, step: Step) -> None:
         """After a step: travel, work, elastic energy, work against the back stress, plastic work."""
         law, history = self.analysis.law, self.analysis.snapshot("step").point_state
-        ζ = law.functions(history[..., 6])[2]
+        ζ = law.functions(0.5 * (self.history[..., 6] + history[..., 6]))[2]  # that of the law's step, ΔB = ζ Δεp
         self.back += (self.volume * (squares(history) - squares(self.history)) / ζ).sum()
         self.work += 0.5 * (self.force + step.force_N) * (step.travel_mm - self.travel)
         self.travel, self.force, self.history = step.travel_mm, step.force_N, history.copy()
