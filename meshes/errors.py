@@ -20,7 +20,9 @@ class InputError(CoilsetError):
 
     def __init__(self, problem: object, place: str = "", file: object = "") -> None:
         self.problem, self.place, self.file = problem, place, file
-        super().__init__(": ".join(str(part) for part in (file, place, problem) if part))
+        text = ": ".join(str(part) for part in (file, place, problem) if part)
+        # a name of a file may hold letters that no screen shows, or that are orders to it
+        super().__init__("".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text))
 
 
 class SolveError(CoilsetError):

@@ -11,6 +11,7 @@ from scipy import stats
 
 from coilset.model.entries.entry import Strict, Whole, shortened
 
+LISTED = 8  # names in a message, at most
 # numbers of a case's summary, and how long it took
 RESPONSES = (
     "free_length_before_mm", "free_length_after_mm", "set_mm", "rate_N_per_mm", "rate_30_70_N_per_mm",
@@ -228,7 +229,8 @@ class SweepSpec(Strict):
                     if name not in known:
                         what = "no response of a case" if role == "of" or either else "none of the varied inputs"
                         near = get_close_matches(name, known, 1)
-                        hint = f"is {near[0]} meant?" if near else f"there are {', '.join(known)}"
+                        there = f"there are {', '.join(known)}" if len(known) <= LISTED else f"one is {known[0]}"
+                        hint = f"is {near[0]} meant?" if near else there
                         raise ValueError(f"figures.{number}.{role}: '{shortened(name)}' is {what}; {hint}")
         return self
 

@@ -114,3 +114,10 @@ def test_letters_that_no_screen_shows_are_escaped():
         with pytest.raises(InputError) as caught:
             check(raw(**{f"a{letter}b": 1}))
         assert str(caught.value).isprintable()
+
+
+def test_a_name_of_a_file_gives_no_orders_to_the_screen(tmp_path):
+    with pytest.raises(InputError) as caught:
+        read_case(tmp_path / "red\x1b[31m\nline.yaml")
+    assert str(caught.value).isprintable()
+    assert "red\\x1b[31m\\nline.yaml" in str(caught.value)

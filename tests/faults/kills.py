@@ -133,11 +133,13 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--kills", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", choices=COMMANDS, help="of the commands")
     options = parser.parse_args()
     random.seed(options.seed)
-    bad, each = False, -(-options.kills // len(COMMANDS))
+    chosen = [options.only] if options.only else list(COMMANDS)
+    bad, each = False, -(-options.kills // len(chosen))
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as place:
-        for name in COMMANDS:
+        for name in chosen:
             undisturbed = fresh(Path(place) / "undisturbed")
             to_the_end(name, undisturbed, 0, [])
             wanted, count, ends, left, differing = found(name, undisturbed), 0, 0, [], set()

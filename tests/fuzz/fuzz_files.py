@@ -1,6 +1,7 @@
 """Input files that are nearly right: the shipped ones with an entry or a piece of their text spoilt."""
 
 import copy
+from functools import cache
 from pathlib import Path
 
 import yaml
@@ -63,10 +64,16 @@ def at(data, path):
     return data
 
 
+@cache
+def shipped(path):
+    """Text of a shipped file, read once."""
+    return path.read_text(encoding="utf-8")
+
+
 @st.composite
 def spoilt_data(draw, kind):
     """The data of a shipped file, perhaps with entries that it leaves out, and one to three of its entries spoilt."""
-    data = yaml.safe_load(draw(st.sampled_from(KINDS[kind])).read_text(encoding="utf-8"))
+    data = yaml.safe_load(shipped(draw(st.sampled_from(KINDS[kind]))))
     if kind in ENTRIES and draw(st.booleans()):
         data |= copy.deepcopy(draw(st.sampled_from(ENTRIES[kind])))
     for _change in range(draw(st.integers(0, 3))):
@@ -91,7 +98,7 @@ def spoilt_data(draw, kind):
 @st.composite
 def spoilt_text(draw, kind):
     """The text of a file, with pieces cut out, put in, or doubled."""
-    text = draw(st.sampled_from(KINDS[kind])).read_text(encoding="utf-8")
+    text = shipped(draw(st.sampled_from(KINDS[kind])))
     for _change in range(draw(st.integers(1, 3))):
         start = draw(st.integers(0, len(text)))
         end = draw(st.integers(start, min(len(text), start + 40)))

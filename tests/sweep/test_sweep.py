@@ -224,7 +224,7 @@ def test_figures_of_each_kind_and_one_without_a_response(write_sweep, tmp_path):
         ),
         (
             "vary: {spring.wire_diameter: [5.0]}\nfigures: [{kind: sensitivity, of: [set_mm, weight_kg]}]",
-            "figures.0.of: 'weight_kg' is no response of a case; there are free_length_before_mm, ",
+            "figures.0.of: 'weight_kg' is no response of a case; one is free_length_before_mm",
         ),
         (
             "vary: {spring.wire_diameter: [5.0]}\nfigures: [{kind: characteristics, colour: pitch}]",
