@@ -2,6 +2,7 @@
 
 import math
 import re
+from operator import ge, gt, le, lt
 from typing import Any
 
 IN_SHORT = {"EndCoils": (str, "form"), "Values": (list, "values")}  # groups that one of their entries may stand for
@@ -50,11 +51,12 @@ KINDS = {
 }
 
 
+BOUNDS = {"minimum": ge, "maximum": le, "exclusiveMinimum": gt, "exclusiveMaximum": lt}
+
+
 def _number(data: float, schema: dict, place: str) -> list[str]:
-    bounds = {"minimum": data.__ge__, "maximum": data.__le__, "exclusiveMinimum": data.__gt__,
-              "exclusiveMaximum": data.__lt__}  # fmt: skip
-    return [f"{place}: {data!r} breaks {name} {schema[name]}" for name, keeps in bounds.items()
-            if name in schema and keeps(type(data)(schema[name])) is not True]  # fmt: skip
+    return [f"{place}: {data!r} breaks {name} {schema[name]}" for name, keeps in BOUNDS.items()
+            if name in schema and not keeps(data, schema[name])]  # fmt: skip
 
 
 def _group(data: dict, schema: dict, defs: dict, place: str) -> list[str]:
