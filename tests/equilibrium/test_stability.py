@@ -20,7 +20,8 @@ HARINGX = 39.16  # mm, of this spring between clamped heads; coilset.verificatio
 
 def pressed(travel, steps, comm=MPI.COMM_SELF, mesh=8, **more):
     """The long elastic spring between clamped heads."""
-    data = {"spring": LONG, "material": "elastic", "ends": "clamped", "mesh": {"elements_per_turn": mesh},
+    data = {"spring": LONG, "material": "elastic", "ends": "clamped",
+            "mesh": {"elements_per_turn": mesh, "section": {"kind": "plane"}},
             "loading": [{"to": {"travel": travel}, "steps": steps}], **more}  # fmt: skip
     return Analysis(Case.model_validate(data), comm)
 

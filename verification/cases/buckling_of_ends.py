@@ -17,11 +17,13 @@ from mpi4py import MPI
 
 from coilset.meshes.errors import SolveError
 from coilset.model.analysis import Analysis
-from coilset.model.case import check
+from coilset.model.case import Case, check
 from coilset.model.material import library
 from coilset.model.results.buckling import critical_travel
 from coilset.model.results.figures import STYLE
+from coilset.model.results.record import Step
 from coilset.verification.references.stability import clamped_spring
+from coilset.verification.study import Study
 
 FAST = False
 WIRE, DIAMETER, PITCH = 5.0, 40.0, 12.0  # mm
@@ -30,18 +32,19 @@ BEYOND, STEPS = 1.1, 16  # of Haringx's travel
 TOLERANCE = 0.02
 
 
-def press(length, ends, travel):
+def press(length: float, ends: str, travel: float) -> tuple[Step, ...]:
     """Steps of a run that must end stable."""
     spring = {"wire_diameter": WIRE, "mean_diameter": DIAMETER, "turns": length / PITCH, "pitch": PITCH}
-    case = check({"spring": spring, "material": "elastic", "ends": ends, "mesh": {"elements_per_turn": 8},
-                  "loading": [{"to": {"travel": travel}, "steps": STEPS}]})  # fmt: skip
+    mesh = {"elements_per_turn": 8, "section": {"kind": "plane"}}
+    case: Case = check({"spring": spring, "material": "elastic", "ends": ends, "mesh": mesh,
+                        "loading": [{"to": {"travel": travel}, "steps": STEPS}]})  # fmt: skip
     steps = Analysis(case, MPI.COMM_SELF).run().steps
     if any(step.negative_pivots for step in steps):
         raise SolveError(f"L0 = {length:g} mm, {ends}: an unstable state was kept")
     return steps
 
 
-def run(study):
+def run(study: Study) -> None:
     """Critical travels, and the branches that are stable."""
     law, found, exact = library.load("elastic"), {}, {}
     for ratio in RATIOS:
@@ -56,7 +59,7 @@ def run(study):
     draw(study, found, exact)
 
 
-def draw(study, found, exact):
+def draw(study: Study, found: dict[tuple[int, str], tuple[Step, ...]], exact: dict[int, tuple[float, float]]) -> None:
     """Force over travel: clamped as lines, seats as marks, Haringx's points."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(5.6, 3.6), layout="constrained")
