@@ -29,7 +29,7 @@ def make(example):
 def test_a_step_twenty_times_too_large_is_survived(make, caplog):
     """From first touch to block in one step, where twenty need no cut: found at once, or with five iterations by cuts.
 
-    One increment of backward Euler over 6 % of strain misses the force at block by 10 %: its size alone is tested.
+    One increment over 6 % of strain misses the force at block by some per cent: its size alone is tested.
     """
     caplog.set_level(logging.INFO, logger="coilset.steps")
     fine = make("[{to: block, steps: 20}]").run().steps

@@ -29,7 +29,7 @@ def program(*steps, **more):
 @pytest.mark.parametrize("name", PATHS)
 @pytest.mark.parametrize("integrator", points.INTEGRATORS)
 def test_shipped_programs(name, integrator, reference):
-    """Stress at the end of each step; backward Euler with the programs' increments is within 1.5 %, Heun 0.01 %."""
+    """Stress at the end of each step; the return mapping with the programs' increments is within 1.5 %, Heun 0.01 %."""
     history = programs.run(library.load("ck15", spin=False), programs.read(EXAMPLES / f"{name}.yaml"), integrator)
     material = reference.ck15()
     exact = reference.Reference(material).path(PATHS[name])

@@ -5,9 +5,9 @@ joint is moved by u, then the load is taken off in three steps. Ck 15, σF = 181
 are joined stiffly at the joint and hinged at the supports; their radius is 1e-4 l, so that bending (0.03 N/mm²) counts
 for nothing.
 
-Values: every row is reached in 20 equal steps; with 100 of them they change by up to 0.1 %. In one step a row, the
-return mapping's backward Euler costs up to 2.3 %. Iterations: one step a row, as in the thesis; 1 means that the first
-linear solve is in equilibrium. As in coilset's load program a step starts from the last one's increments in proportion,
+Values: every row is reached in 20 equal steps; with 100 of them they change by up to 0.1 %. Iterations: one step a row,
+as in the thesis; 1 means that the first linear solve is in equilibrium. As in coilset's load program a step starts from
+the last one's increments in proportion,
 the first of the release from rest; 0 means that this start is in equilibrium already. NR and BFGS are coilset's
 `newton` and `bfgs`, MNR keeps its matrix over the step and has no line search. The thesis's MNR diverged on release;
 here the release starts with the elastic tangent, since from rest no point yields, and MNR converges.
