@@ -14,7 +14,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PICTURES = REPOSITORY / "docs" / "pictures" / "gallery"
-SPRINGS = ("closed_and_ground", "cone", "hourglass", "variable_pitch")
+SPRINGS = ("closed_and_ground", "cone")
 KEPT = ("springs", "characteristic")
 
 
