@@ -26,7 +26,7 @@ EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
 FILES = [EXAMPLES / "ck15_presetting.yaml", *sorted((EXAMPLES / "springs").glob("*.yaml"))]
 SPRINGS = {path.stem: path for path in FILES}
 HALF_WAY = ("barrel", "funnel", "measured")  # to block they take 3 to 10 s of the processor
-COARSE = ["mesh.elements_per_turn=8", "mesh.section.kind=plane"]
+COARSE = ["mesh.elements_per_turn=8", "mesh.section.kind=plane", "loading.0.steps=12"]
 
 
 class StraightWires:
