@@ -123,6 +123,7 @@ def test_an_impossible_target_keeps_the_results_and_ends_with_3(example, tmp_pat
     data = yaml.safe_load(example.read_text())
     data["ends"], data["loading"] = "clamped", [{"to": {"travel": 3}, "steps": 2}, {"to": {"force": 1e3}, "steps": 1}]
     data["contact"] = {"penetration_limit": 1e-4}
+    data["mesh"] = {"elements_per_turn": 8, "section": {"rule": "abramowitz9"}}
     (tmp_path / "case.yaml").write_text(yaml.safe_dump(data))
     done = coilset("solve", "case.yaml", "--no-pictures", cwd=tmp_path)
     assert done.returncode == 3

@@ -7,22 +7,31 @@ from coilset.model.material import library
 from coilset.model.solid.points import MaterialPoints
 
 
-def test_ideal_plastic_is_radial_return():
+def test_ideal_plastic_is_where_radial_return_goes():
+    """Against radial return in 5000 parts of each increment, which is as close as 1e-4 of the flow stress.
+
+    Found at whole increments of two to six yield strains that turn abruptly are 4 % of the flow stress (radial return:
+    13 %), at a quarter of them 0.3 % and at a sixteenth 0.024 %: second order.
+    """
     law = library.load("ideal_plastic")
     mine = IdealPlastic(law.G, law.nu, shear_yield=law.yield_stress / np.sqrt(3))
     theirs = MaterialPoints(law)
     rng = np.random.default_rng(8)
-    a, b = mine.initial_state(50), theirs.initial_state(50)
-    assert np.array_equal(a, b)
-    for _ in range(4):
-        strain = 2e-3 * rng.normal(size=(50, 6))
-        results = []
-        for points, old in ((mine, a), (theirs, b)):
-            new, C = np.empty_like(old), np.empty((50, 6, 6))
-            assert points.update(old, strain, new, C)
-            results.append((new, C))
-        (a, Ca), (b, Cb) = results
-        # the library splits off the elastic part of an increment, which ideal plasticity does not notice
-        assert np.allclose(a[:, :6], b[:, :6], rtol=1e-9, atol=1e-7 * law.yield_stress)
-        assert np.allclose(Ca, Cb, rtol=1e-8, atol=1e-8 * law.G)
-    assert np.all(b[:, 12] > 0)
+    strains = 2e-3 * rng.normal(size=(4, 50, 6))
+    exact = follow(mine, strains, 5000)
+    errors = [np.abs(follow(theirs, strains, n) - exact)[:, :6].max() / law.yield_stress for n in (1, 4, 16)]
+    assert errors[0] < 0.05
+    assert errors[0] / errors[1] > 10
+    assert errors[1] / errors[2] > 10
+    assert np.all(follow(theirs, strains, 1)[:, 12] > 0)
+
+
+def follow(points, strains, parts):
+    """Point states after all increments, each in equal parts."""
+    state = points.initial_state(strains.shape[1])
+    for strain in strains:
+        for _ in range(parts):
+            new, C = np.empty_like(state), np.empty((len(state), 6, 6))
+            assert points.update(state, strain / parts, new, C)
+            state = new
+    return state

@@ -1,4 +1,7 @@
-"""Every shipped spring is pressed to block and released, and stands against what can be worked out by hand."""
+"""Every shipped spring is pressed to block and released, and stands against what can be worked out by hand.
+
+In twelve equal steps each way and with few section points: what is asked for here are per cents.
+"""
 
 from pathlib import Path
 
@@ -9,12 +12,15 @@ from mpi4py import MPI
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.results.summary import summarise
+from coilset.verification.springs.curved_rod import clamped_rate
 from coilset.verification.springs.torsion import CoilByCoil
 
+SETTINGS = ["loading.0.steps=12", "loading.1.steps=12", "mesh.section.radial=4", "mesh.section.angular=12"]
 BALANCE = 1e-7  # of the greatest force, and of it times the greatest diameter; (6.3.1) is solved to 1e-9
 # The formula leaves out bending, direct shear, and what seats do to the end coils. Found are 4 % of force, 8 % in the
-# first step of the closed and ground spring, whose end coils still lie down, and 8 % of what springs back.
-FORCE, FIRST, BACK = 0.05, 0.1, 0.1
+# first step of the closed and ground spring, whose end coils still lie down, and 11 % of what springs back, in the funnel,
+# whose coils slip past each other.
+FORCE, FIRST, BACK = 0.05, 0.1, 0.13
 # Part of the way to block over which forces are judged: later the last coils lie down, one against the other. In the
 # tapered wire the thin coils do so early, and force rises at once.
 EARLY, TAPERED = 0.8, 0.5
@@ -30,7 +36,7 @@ def test_there_are_eleven():
 @pytest.mark.parametrize("file", SHIPPED, ids=lambda file: file.stem)
 def test_pressed_to_block_and_released(file):
     """To the end, in balance, with the forces and the set of coils that twist one by one."""
-    analysis, lacks = Analysis(read_case(file), MPI.COMM_SELF), []
+    analysis, lacks = Analysis(read_case(file, SETTINGS), MPI.COMM_SELF), []
     result = analysis.run(lambda step: lacks.append(analysis.imbalance()))
     spring, summary = analysis.spring, summarise(analysis.setup, result)
     pressed = [step for step in result.steps if step.phase == 0]
@@ -42,6 +48,11 @@ def test_pressed_to_block_and_released(file):
     lack_of_force, lack_of_moment = np.max(lacks, axis=0)
     assert lack_of_force < BALANCE * force.max()
     assert lack_of_moment < BALANCE * force.max() * 2 * spring.mean_radius(analysis.setup.turns).max()
+
+    if file.stem == "closed_and_ground":  # EN 13906-1 counts two dead turns of 7.5; found are 5.54
+        assert result.seats[0].active_turns == pytest.approx(5.5, rel=0.015)
+    else:  # Castigliano's integral of the straight wire's rod, which the true, curved section exceeds by 1 %
+        assert result.rate == pytest.approx(clamped_rate(spring, analysis.law.E, analysis.law.G), rel=0.015)
 
     by_hand, way = CoilByCoil(spring, analysis.law), spring.free_length - spring.block_height
     early = travel < way * (TAPERED if np.ptp(analysis.setup.wire_radius) > 0.1 else EARLY)

@@ -133,7 +133,9 @@ def gone(pid):
 def begun(path, out, records, stdout):
     """A sweep on one worker that has so many records behind it: its process, its workers' numbers, its journal."""
     journal = out / "journal.jsonl"
-    leader = subprocess.Popen(command(path, out, "--jobs", "1"), stdout=stdout)
+    # what a shell starts in the background ignores SIGINT, and hands that on to all that it starts
+    hear = lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)  # noqa: E731
+    leader = subprocess.Popen(command(path, out, "--jobs", "1"), stdout=stdout, preexec_fn=hear)
     wait_until(lambda: journal.exists() and journal.read_bytes().count(b"\n") >= records)
     return leader, workers_of(leader.pid), journal
 
