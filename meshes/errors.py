@@ -2,7 +2,7 @@
 
 
 def printable(text: str) -> str:
-    """A line in which letters are escaped that no screen shows or that are orders to it; names of files may hold any."""
+    """A line with those letters escaped that no screen shows, or that are orders to it; names of files may hold any."""
     return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text)
 
 
