@@ -1,6 +1,11 @@
 """What can go wrong, in words: every error that a user may see is one of these, and its text is one line."""
 
 
+def printable(text: str) -> str:
+    """A line with those letters escaped that no screen shows, or that are orders to it; names of files may hold any."""
+    return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text)
+
+
 class CoilsetError(Exception):
     """Base of the errors that end a run with one clear line; `exit_code` is that of the command."""
 
@@ -21,8 +26,7 @@ class InputError(CoilsetError):
     def __init__(self, problem: object, place: str = "", file: object = "") -> None:
         self.problem, self.place, self.file = problem, place, file
         text = ": ".join(str(part) for part in (file, place, problem) if part)
-        # a name of a file may hold letters that no screen shows, or that are orders to it
-        super().__init__("".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text))
+        super().__init__(printable(text))
 
 
 class SolveError(CoilsetError):

@@ -8,7 +8,7 @@ import time
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from coilset.meshes.errors import CoilsetError
+from coilset.meshes.errors import CoilsetError, printable
 from coilset.model.processes import first_rank
 from coilset.scripts.compiling import announce_compiling, announce_if_cold
 from coilset.scripts.material import app as material
@@ -313,4 +313,4 @@ def _several_ranks() -> "MPI.Comm | None":
 
 def _complain(line: str) -> None:
     if first_rank():
-        print(f"coilset: {line}", file=sys.stderr)
+        print(f"coilset: {printable(line)}", file=sys.stderr)

@@ -79,10 +79,10 @@ class Running:
         return found
 
 
-def kept(folder: Path) -> float:
-    """When something was kept last."""
-    files = [folder / "out" / "checkpoint" / "state.npz", folder / "out" / "journal.jsonl"]
-    return max((path.stat().st_mtime for path in files if path.exists()), default=0.0)
+def kept(folder: Path) -> tuple[float, int]:
+    """When the state was kept last, and how long the journal is; zeros if nothing was kept."""
+    state, journal = folder / "out" / "checkpoint" / "state.npz", folder / "out" / "journal.jsonl"
+    return (state.stat().st_mtime if state.exists() else 0.0, journal.stat().st_size if journal.exists() else 0)
 
 
 def to_the_end(name: str, folder: Path, kills: int, left: list[int]) -> int:
@@ -103,7 +103,7 @@ def to_the_end(name: str, folder: Path, kills: int, left: list[int]) -> int:
                 raise RuntimeError((folder / "said.txt").read_text()[-2000:])
             return count
         left += running.kill()
-        count, begun = count + 1, kept(folder) > 0.0
+        count, begun = count + 1, any(kept(folder))
 
 
 def found(name: str, folder: Path) -> dict[str, object]:

@@ -15,7 +15,7 @@ from fuzz_judge import SLOWEST, check_line
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coilset.meshes.errors import CoilsetError
+from coilset.meshes.errors import CoilsetError, printable
 from coilset.model import analysis
 from coilset.model.slice import analysis as slices
 from coilset.scripts import main, material, mesh, ranks, solve, sweep, verify
@@ -105,7 +105,7 @@ def run(words):
     except Exception as error:
         if not hasattr(error, "format_message"):  # of click
             raise
-        return "refused", error.format_message()
+        return "refused", printable(error.format_message())
 
 
 def test_spoilt_command_lines(place, monkeypatch):

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from coilset.meshes.errors import InputError
-from coilset.model.entries.entry import check_entries
+from coilset.model.entries.entry import check_entries, shortened
 from coilset.model.entries.yaml import read_data
 from coilset.model.standards.wires.file import WireFile, with_common
 from coilset.model.standards.wires.wire import Wire
@@ -43,8 +43,8 @@ def wire(name: str) -> Wire:
     by_key = {_key(known): known for known in names()}
     if _key(name) not in by_key:
         near = [by_key[key] for key in get_close_matches(_key(name), by_key, 1, 0.7)]
-        known = f"is {near[0]} meant?" if near else f"known are {', '.join(names())}"
-        raise InputError(f"'{name}' is no wire; {known}", "material.wire")
+        known = f"is {near[0]} meant?" if near else "`coilset sheet --wires` lists them"
+        raise InputError(f"'{shortened(name)}' is no wire; {known}", "material.wire")
     name = by_key[_key(name)]
     file, entry = _wires()[name]
     return Wire(name, entry, file.sources)
