@@ -18,7 +18,7 @@ from coilset.verification.springs.torsion import CoilByCoil
 SETTINGS = ["loading.0.steps=12", "loading.1.steps=12", "mesh.section.radial=4", "mesh.section.angular=12"]
 BALANCE = 1e-7  # of the greatest force, and of it times the greatest diameter; (6.3.1) is solved to 1e-9
 # The formula leaves out bending, direct shear, and what seats do to the end coils. Found are 4 % of force, 8 % in the
-# first step of the closed and ground spring, whose end coils still lie down, and 11 % of what springs back, in the funnel,
+# first step of the closed and ground spring, whose end coils still lie down; 11 % of what springs back in the funnel,
 # whose coils slip past each other.
 FORCE, FIRST, BACK = 0.05, 0.1, 0.13
 # Part of the way to block over which forces are judged: later the last coils lie down, one against the other. In the
