@@ -7,6 +7,7 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from coilset.model.results.folder import whole
 from coilset.model.results.record import Result, Setup, Snapshot
@@ -84,7 +85,7 @@ def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
         for place, (values, name) in enumerate(panels):
             axes = figure.add_subplot(1, 2, place + 1)
             limit = max(float(np.abs(values).max()), 1e-9)
-            levels = np.linspace(-limit, limit, 25)
+            levels = MaxNLocator(20, steps=[1, 2, 2.5, 5, 10], symmetric=True).tick_values(-limit, limit)
             shown = axes.tricontourf(y, z, values, levels=levels, cmap="RdBu_r")
             axes.plot(*radius * setup.rule.points.T, "k.", ms=2, alpha=0.5)
             axes.plot(radius * np.cos([*angle, 0.0]), radius * np.sin([*angle, 0.0]), "k-", lw=0.8)
