@@ -1,11 +1,15 @@
-"""`coilset test`: the whole test suite, what is quick first, and the tests marked mpi again on 2 and 3 ranks."""
+"""`coilset test`: the whole test suite, and the tests marked mpi again on 2 and 3 ranks."""
 
+import contextlib
 import subprocess
 import sys
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 from coilset.meshes.errors import InputError
 from coilset.model.processes import mpi_environment, mpirun
+from coilset.model.sweep.pools import usable_cores
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 # tests that solve springs or solids to their end, or start the command: minutes, where all others take seconds
@@ -16,6 +20,8 @@ SOLVES = ["benchmarks", "commands", "examples", "install", "meshes/test_solved_s
 def test(arguments: list[str]) -> int:
     """Run pytest, with arguments once, else stage by stage; returns the exit code of the first that fails, else 0.
 
+    Where there are two cores, the tests of parts and those of whole solves, which take a core each, run side by side.
+
     Raises:
         InputError: in an installation, which has no tests.
     """
@@ -25,12 +31,35 @@ def test(arguments: list[str]) -> int:
     if arguments:
         return run("tests on one rank", pytest)
     solves = [f"tests/{name}" for name in SOLVES]
-    status = run("tests of parts", [*pytest, *(f"--ignore={path}" for path in solves)])
-    status = status or run("tests of whole solves", [*pytest, *solves])
+    parts = [*pytest, *(f"--ignore={path}" for path in solves)]
+    if usable_cores() > 1:
+        with beside("tests of parts", parts) as found:
+            status = run("tests of whole solves", [*pytest, *solves])
+        status = found[0] or status
+    else:
+        status = run("tests of parts", parts) or run("tests of whole solves", [*pytest, *solves])
     for ranks in (2, 3):
         command = [*mpirun(ranks), *pytest, "-m", "mpi"]
         status = status or run(f"tests on {ranks} ranks", command, mpi_environment())
     return status
+
+
+@contextlib.contextmanager
+def beside(title: str, command: list[str]) -> Iterator[list[int]]:
+    """Run a command while the block runs; what it says comes after the block, and its exit code into the list."""
+    status: list[int] = []
+    with tempfile.TemporaryFile() as said:
+        process = subprocess.Popen(command, cwd=REPOSITORY, stdout=said, stderr=subprocess.STDOUT)
+        try:
+            yield status
+            status.append(process.wait())
+        finally:
+            process.kill()
+            process.wait()
+        said.seek(0)
+        print(f"coilset: {title}", flush=True)
+        sys.stdout.buffer.write(said.read())
+        sys.stdout.flush()
 
 
 def run(title: str, command: list[str], environment: dict[str, str] | None = None) -> int:
