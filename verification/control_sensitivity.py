@@ -14,23 +14,27 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import TextIO
+from typing import TextIO, get_type_hints
 
 from mpi4py import MPI
 
 from coilset.meshes.errors import SolveError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.equilibrium.control import NewtonControl, StepControl
+from coilset.model.equilibrium.control import Growth, NewtonControl, StepControl
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.examples import EXAMPLES
 from coilset.verification.listen import listen
 
 CONTROLS: dict[str, type[NewtonControl] | type[StepControl]] = {"newton": NewtonControl, "steps": StepControl}
-GROWTHS = ("penetration_growth", "growth", "largest", "regrowth", "branch_growth")  # at least 1
+GROWTHS = {name for control in CONTROLS.values() for name, kind in get_type_hints(control, include_extras=True).items()
+           if kind is Growth}  # fmt: skip
 SWITCHES = ("foreseen_forces",)
 FREE_PENETRATION = 0.02  # wire diameters: the contacts' limit, which stands where no number is given
-AUTOMATIC = ("automatic", "easy", "hard", "growth", "shrinkage", "largest")  # of automatic steps only
+AUTOMATIC = (  # of automatic steps only
+    "automatic", "easy", "hard", "growth", "shrinkage", "largest", "step_share", "tolerated_share", "finest", "caution",
+    "least_factor",
+)  # fmt: skip
 COLUMNS = ("spring", "variant", "iterations", "evaluations", "failures", "cuts", "steps", "ended")
 PETSC_SEARCH = "cp"
 
