@@ -65,9 +65,9 @@ def _check(folder: Path, option: str, target: Path | None = None) -> None:
     try:
         there = next(one for one in (folder, *folder.absolute().parents) if _is_there(one))
         _is_there(target)
-    except OSError as error:
+    except (OSError, ValueError) as error:  # a ValueError: there is a null character in the name
         shown = str(target) if len(str(target)) <= 80 else f"{str(target)[:77]}..."
-        raise InputError(f"cannot be made: {error.strerror}", option, shown) from None
+        raise InputError(f"cannot be made: {getattr(error, 'strerror', error)}", option, shown) from None
     if not there.is_dir():
         raise InputError(f"{there} is a file; give a folder" if there != folder else "is a file; give a folder", option,
                          target)  # fmt: skip

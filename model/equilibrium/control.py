@@ -9,10 +9,12 @@ from typing import Annotated, ClassVar
 from annotated_types import Unit
 from pydantic import ConfigDict, Field
 
-Positive = Annotated[float, Unit("1"), Field(gt=0)]
-Fraction = Annotated[float, Unit("1"), Field(gt=0, lt=1)]
-Growth = Annotated[float, Unit("1"), Field(ge=1)]
-Count = Annotated[int, Field(ge=1)]
+from coilset.meshes.entry import Whole
+
+Positive = Annotated[float, Unit("1"), Field(gt=0, strict=True)]
+Fraction = Annotated[float, Unit("1"), Field(gt=0, lt=1, strict=True)]
+Growth = Annotated[float, Unit("1"), Field(ge=1, strict=True)]
+Count = Annotated[Whole, Field(ge=1, strict=True)]
 STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
@@ -57,7 +59,7 @@ class NewtonControl:
     penetration_growth: Growth = 1.5
     smallest_contact_step: Fraction = 0.02
     contact_bisections: Count = 6
-    foreseen_forces: bool | None = None
+    foreseen_forces: Annotated[bool | None, Field(strict=True)] = None
 
 
 @dataclass(frozen=True)
@@ -92,7 +94,7 @@ class StepControl:
     __pydantic_config__: ClassVar[ConfigDict] = STRICT
     smallest: Fraction = 2.0**-10
     attempts: Count = 40
-    spare_attempts: Annotated[int, Field(ge=0)] = 200
+    spare_attempts: Annotated[Whole, Field(ge=0, strict=True)] = 200
     automatic: Count = 16
     easy: Count = 5
     hard: Count = 10

@@ -73,6 +73,12 @@ def test_long_values_are_shortened():
 def test_whole_numbers_may_come_as_floats():
     """A range of a sweep makes 4.0."""
     assert check(raw(mesh={"section": {"radial": 4.0}})).mesh.section.radial == 4
+    assert check(raw(solver={"control": {"steps": {"automatic": 4.0}}})).solver.control.steps.automatic == 4
+
+
+@pytest.mark.parametrize(("name", "value"), [("automatic", True), ("automatic", 4.5), ("cut", True), ("cut", "0.5")])
+def test_numbers_of_the_control_are_numbers(name, value):
+    assert problem(raw(solver={"control": {"steps": {name: value}}})).startswith(f"solver.control.steps.{name}: ")
 
 
 def test_a_material_file_counts_from_the_folder_of_the_case(tmp_path, monkeypatch):

@@ -10,7 +10,7 @@ COMMANDS = ["solve CASE", "slice CASE", "mesh CASE", "sheet CASE", "sweep CASE",
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-@pytest.mark.parametrize("target", ["taken", "taken/below", "n" * 300])
+@pytest.mark.parametrize("target", ["taken", "taken/below", "n" * 300, "a\0b"])
 def test_a_target_that_cannot_be_gets_one_line(example, tmp_path, monkeypatch, command, target):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "taken").write_text("mine")
