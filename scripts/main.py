@@ -6,7 +6,7 @@ import signal
 import sys
 import time
 from types import FrameType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from coilset.meshes.errors import CoilsetError, printable
 from coilset.model.processes import first_rank
@@ -25,6 +25,7 @@ It needs DOLFINx >= 0.9: without root from conda (environment.yml) or pip (wheel
 Debian 13 or Ubuntu 25.04, or in a private Debian 13 on older ones (scripts/coilset does both). See docs/install.md."""
 NO_ROOM = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT, errno.EROFS)
 TOGETHER = 10.0  # seconds in which all ranks meet an error that is all ranks' error
+LONGEST_MESSAGE = 400  # letters that are said of a wrong command line
 INTERRUPTED = 128 + signal.SIGINT
 ONE_SIGNAL = 0.5  # seconds in which several count as one: `timeout` sends to a process and to its group
 
@@ -224,6 +225,12 @@ def python(context: typer.Context) -> None:
     os.execv(sys.executable, [sys.executable, *context.args])
 
 
+def command_line_message(error: Any) -> str:
+    """What click says of a command line, with the user's words in it, in one line that is not too long."""
+    said = printable(error.format_message())
+    return said if len(said) <= LONGEST_MESSAGE else f"{said[: LONGEST_MESSAGE - 3]}..."
+
+
 def run() -> None:
     """Entry of the command: one line and an exit code for every error that can be foreseen."""
     sys.stdout = Output(sys.stdout)
@@ -252,7 +259,7 @@ def run() -> None:
             _crash()
             raise
         status = getattr(error, "exit_code", 1)
-        _complain(error.format_message())
+        _complain(command_line_message(error))
     if status == INTERRUPTED and output_closed():
         status = 128 + signal.SIGPIPE  # as every program whose reader has gone
     elif status == INTERRUPTED:  # typer may have made an exit code of the exception

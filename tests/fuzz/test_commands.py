@@ -15,7 +15,7 @@ from fuzz_judge import SLOWEST, check_line
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coilset.meshes.errors import CoilsetError, printable
+from coilset.meshes.errors import CoilsetError
 from coilset.model import analysis
 from coilset.model.slice import analysis as slices
 from coilset.scripts import main, material, mesh, ranks, solve, sweep, verify
@@ -40,7 +40,7 @@ SETTINGS = ["spring.wire_diameter=4", "spring.pitch=5", "loading.0.steps=x", "lo
             "material=nowhere.yaml", "ends=clamped", "contact.friction.seats=0.1", "loading=[{to: {force: 1e9}}]",
             "seats.top.tilt=free", "spring.turns=[", "mesh.elements_per_turn=1e6", "rates_at=[1]"]  # fmt: skip
 WORDS = ["", "-", "--", "-x", "--help", "-h", "--version", "-n", "0", "-1", "1e9", "nan", "nowhere.yaml", "taken",
-         "taken/x", "x" * 300, "../..", "/dev/null", "/proc/x", "\0", "ä", "case.yaml", "solve", "--out", "--set",
+         "taken/x", "x" * 300, "../..", "/dev/null", "/proc/x", "ä", "case.yaml", "solve", "--out", "--set",
          "--write"]  # fmt: skip
 
 
@@ -105,7 +105,7 @@ def run(words):
     except Exception as error:
         if not hasattr(error, "format_message"):  # of click
             raise
-        return "refused", printable(error.format_message())
+        return "refused", main.command_line_message(error)
 
 
 def test_spoilt_command_lines(place, monkeypatch):
