@@ -4,8 +4,8 @@
 
 A small spring with contact and friction, on one and on two ranks, and a sweep. Each is killed (`kill -9`) again and
 again, at a random moment after something new was kept, until it comes to its end; then it begins anew. Says how often
-each was killed, what differed, and how many processes were left; exits 1 if there is anything of either. On two ranks runs that
-nobody disturbs differ, too, by some 1e-12: MUMPS adds what arrives first.
+each was killed, what differed, and how many processes were left; exits 1 if there is anything of either. On two ranks
+runs that nobody disturbs differ, too, by some 1e-12: MUMPS adds what arrives first.
 """
 
 import argparse
