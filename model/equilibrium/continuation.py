@@ -1,4 +1,4 @@
-"""Along a path of loads: predict, solve, accept or cut; one loop for rods, frames, probes, solids.
+"""The way along a path of loads: predict, solve, accept or cut; one loop for rods, frames, probes, solids.
 
 A solve ends in one of two ways: its trial state becomes the equilibrium, or all goes back to the last one. That
 transaction is made here and nowhere else.

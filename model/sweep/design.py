@@ -1,7 +1,7 @@
 """How inputs are combined: grids of their values, or samples of the unit cube carried to their distributions."""
 
 import itertools
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.stats import qmc
@@ -9,11 +9,10 @@ from scipy.stats import qmc
 from coilset.meshes.errors import InputError
 from coilset.model.sweep.spec import SweepSpec
 
-if TYPE_CHECKING:
-    from coilset.model.sweep.plan import Row
+Row = tuple[Any, ...]  # the inputs of a case
 
 
-def rows(spec: SweepSpec, base: Any) -> list["Row"]:
+def rows(spec: SweepSpec, base: Any) -> list[Row]:
     """The inputs of all cases.
 
     Args:
@@ -40,7 +39,7 @@ def _grid(name: str, vary: Any) -> list[Any]:
         raise InputError(str(error), f"vary.{name}") from None
 
 
-def _combine(spec: SweepSpec, columns: Any, base: Any) -> list["Row"]:
+def _combine(spec: SweepSpec, columns: Any, base: Any) -> list[Row]:
     names = list(spec.vary)
     if spec.design == "grid":
         return list(itertools.product(*columns))

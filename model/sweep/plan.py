@@ -16,13 +16,12 @@ from coilset.model.entries.entry import shown
 from coilset.model.entries.yaml import read_data
 from coilset.model.material import library
 from coilset.model.standards.wires import wire
-from coilset.model.sweep.design import rows
+from coilset.model.sweep.design import Row, rows
 from coilset.model.sweep.rehearsal import Rehearsal
 from coilset.model.sweep.spec import SweepSpec
 from coilset.model.version import __version__
 
 KEY_BYTES = 12
-Row = tuple[Any, ...]
 
 
 class Plan:

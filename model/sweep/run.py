@@ -5,8 +5,9 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from pathlib import Path
 from typing import Any
 
+from coilset.model.sweep.design import Row
 from coilset.model.sweep.journal import Journal, read_records
-from coilset.model.sweep.plan import Plan, Row
+from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.pools import Pool
 
 AHEAD = 2  # tasks handed out for each worker, so that none waits
