@@ -68,7 +68,7 @@ class Prompt:
             size = float(rest)
             if not 0.0 < size <= 1000.0:
                 raise ValueError("a size is a number above 0, in regular steps")
-            self.analysis.continuation.resize(size)
+            self.analysis.continuation.steps.resize(size)
         elif word == "method":
             self.analysis.use_method(rest)
         elif word == "to":

@@ -21,8 +21,8 @@ from mpi4py import MPI
 from coilset.meshes.errors import SolveError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.equilibrium.control import Growth, NewtonControl, StepControl
 from coilset.model.equilibrium.convergence import Outcome
+from coilset.model.equilibrium.settings import Growth, NewtonControl, StepControl
 from coilset.model.examples import EXAMPLES
 from coilset.verification.listen import listen
 

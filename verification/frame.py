@@ -12,12 +12,12 @@ from coilset.meshes.placement import Placement
 from coilset.model.contact.base import Contact
 from coilset.model.equilibrium.contact_limit import ContactLimit
 from coilset.model.equilibrium.continuation import Continuation
-from coilset.model.equilibrium.control import NewtonControl
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.layout import SEATS, LineLayout
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.methods import rod_method
 from coilset.model.equilibrium.newton import Newton, Start
+from coilset.model.equilibrium.settings import NewtonControl
 from coilset.model.equilibrium.system import System
 from coilset.model.material.law import Law
 from coilset.model.rod.rod import Rod

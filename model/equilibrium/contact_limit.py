@@ -7,8 +7,8 @@ penetrations up to some hundredths of the wire's diameter are free, and a deeper
 from petsc4py import PETSc
 
 from coilset.model.contact.base import LimitsStep, TrialPositions
-from coilset.model.equilibrium.control import NewtonControl
 from coilset.model.equilibrium.layout import SEATS, LineLayout
+from coilset.model.equilibrium.settings import NewtonControl
 from coilset.model.equilibrium.system import System
 
 

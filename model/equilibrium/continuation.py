@@ -7,59 +7,21 @@ transaction is made here and nowhere else.
 import logging
 import math
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeVar
 
 from coilset.meshes.errors import SolveError
-from coilset.model.equilibrium.control import StepControl
+from coilset.model.equilibrium.branch_switching import Snap
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.newton import Newton, Start
-from coilset.model.equilibrium.snap import Snap
+from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.stability import Stability
+from coilset.model.equilibrium.step_control import Path, StepSizes
 from coilset.model.equilibrium.step_error import StepError
 
 log = logging.getLogger("coilset.steps")
 Reading = TypeVar("Reading")
-
-
-@dataclass(frozen=True)
-class Path:
-    """Loads along the way to a target.
-
-    Attributes:
-        load: the load from the last equilibrium to a place on the path, which is counted in regular steps.
-        regular: number of regular steps.
-        target: in words, for logs and errors.
-        automatic: do steps take the size that their error and the iteration allow? Equal steps end on their marks,
-            also after a cut.
-        place: where on it the body stands, in words.
-    """
-
-    load: Callable[[float], Load]
-    regular: int = 1
-    target: str = "the target"
-    automatic: bool = False
-    place: Callable[[], str] = lambda: "here"
-
-
-@dataclass(frozen=True)
-class Position:
-    """Where on its path the continuation stands.
-
-    Attributes:
-        done: what is behind, in regular steps.
-        size: next step, in regular steps.
-        cuts: how often the step in progress was cut.
-        last: size of the last step, whose increments are the guess for the next one; 0 if there is no guess.
-        before: size of the last step on this path; 0 if there is none.
-    """
-
-    done: float = 0.0
-    size: float = 1.0
-    cuts: int = 0
-    last: float = 0.0
-    before: float = 0.0
 
 
 class Continuation:
@@ -77,7 +39,7 @@ class Continuation:
 
     Attributes:
         refusal: why the state on trial can be none of a body, in words, although forces balance; None if it can.
-        position: Position.
+        steps: StepSizes, which also know where on its path the continuation stands.
         number: steps so far.
         negative_pivots: of the tangent at the last equilibrium; 0 if it is stable.
     """
@@ -95,7 +57,7 @@ class Continuation:
         self.penetration_limit, self.starts = penetration_limit, starts or self.from_last_step
         self.stability, self.negative_pivots, self.step_error = stability, 0, step_error
         self.refusal: Callable[[], str | None] = lambda: None
-        self.position, self.number, self._attempts = Position(), 0, 0
+        self.steps, self.number = StepSizes(self.control), 0
         self._spent: list[Outcome] = []  # all solves of the step in progress
         self._unstable = 0.0  # size of the step in progress at which it ended unstable
 
@@ -167,7 +129,7 @@ class Continuation:
         return outcome
 
     def _estimated(self, outcome: Outcome, step_error: StepError, size: float, accurately: bool) -> Outcome:
-        before = self.position.before
+        before = self.steps.position.before
         estimate = step_error.estimate(size / before if before else 0.0)
         outcome = replace(outcome, estimate=estimate)
         if not accurately or estimate.share <= self.control.tolerated_share or size <= self.control.finest:
@@ -193,7 +155,7 @@ class Continuation:
         shortest = self.control.cut * size < self.control.smallest
         if self.stability is None or not (self._unstable or (shortest and not outcome.refused)):
             return False
-        return shortest or self.position.cuts >= self.control.unstable_cuts
+        return shortest or self.steps.position.cuts >= self.control.unstable_cuts
 
     def _snap(self, load: Callable[[], Load], size: float) -> Outcome:
         """Let go of a path that ends, or ends unstable, in a step of this size, until a stable state is found.
@@ -226,8 +188,8 @@ class Continuation:
 
     def from_last_step(self, load: Load, size: float) -> Iterator[Start]:
         """The last step's increments, scaled to a step of this size; then the last equilibrium."""
-        if self.position.last:
-            yield self.scaled_last(size / self.position.last)
+        if self.steps.position.last:
+            yield self.scaled_last(size / self.steps.position.last)
         yield Start()
 
     def scaled_last(self, factor: float) -> Start:
@@ -240,11 +202,8 @@ class Continuation:
 
     def begin(self) -> None:
         """Stand at the start of a path."""
-        self.position, self._attempts, self._unstable = Position(), 0, 0.0
-
-    def resize(self, size: float) -> None:
-        """Make the next step as large as `size` regular steps."""
-        self.position = replace(self.position, size=size)
+        self.steps.begin()
+        self._unstable = 0.0
 
     def advance(self, path: Path) -> tuple[Outcome, int]:
         """Take one step along a path, cut as often as need be; collective.
@@ -258,51 +217,28 @@ class Continuation:
         """
         self._spent.clear()
         while True:
-            self._attempts += 1
-            if self._attempts > self.control.attempts * path.regular + self.control.spare_attempts:
-                stalls = f"the program stalls, {self._attempts} solves on the way to {path.target}"
-                raise SolveError(f"no equilibrium beyond {path.place()}: {stalls}")
-            position = self.position
-            size = min(position.size, path.regular - position.done)
-            if not path.automatic:
-                # on its way to the next mark, or to a later one if it was made as long as that
-                mark = max(int(position.done + 1e-9) + 1, int(position.done + size + 1e-9))
-                size = min(size, mark - position.done)
-            load = path.load(position.done + size)
+            begun = self.steps.position
+            size = self.steps.size(path)
+            load = path.load(begun.done + size)
             outcome = self._attempt(load, self.starts(load, size), size, path.automatic)
             if outcome.negative_pivots > self.negative_pivots:
                 self._unstable = size
             if not outcome.converged and self._ends_here(size, outcome):
                 there = self._unstable or size
-                beside = self._snap(lambda to=position.done + there: path.load(to), there)  # type: ignore[misc]
+                beside = self._snap(lambda to=begun.done + there: path.load(to), there)  # type: ignore[misc]
                 if beside.converged:
                     outcome, size = beside, there
                 self._unstable = 0.0  # once a step
             if outcome.converged:
                 self.number, self._unstable = self.number + 1, 0.0
-                last = 0.0 if outcome.left_branch else size
-                following = self._following(path, outcome, size)
-                self.position = Position(position.done + size, following, 0, last, last)
-                return self._charged(outcome), position.cuts
+                self.steps.accept(path, outcome, size)
+                return self._charged(outcome), begun.cuts
             self._cut(path, outcome, size)
 
     def _cut(self, path: Path, outcome: Outcome, size: float) -> None:
-        factor = self.control.cut
-        if outcome.refused and outcome.estimate is not None:  # only its error was too large
-            factor = outcome.estimate.factor
-        shorter = factor * size
-        self.position = replace(self.position, size=shorter, cuts=self.position.cuts + 1, last=0.0)
-        log.info("step %d: cut to %.4g of a regular step (%s)", self.number + 1, shorter, outcome.reason)
-        if shorter < self.control.smallest:
+        if self.steps.cut(outcome, size):
+            log.info(
+                "step %d: cut to %.4g of a regular step (%s)", self.number + 1, self.steps.position.size, outcome.reason
+            )
+        else:
             raise SolveError(f"no equilibrium beyond {path.place()} on the way to {path.target}: {outcome.reason}")
-
-    def _following(self, path: Path, outcome: Outcome, size: float) -> float:
-        """Size of the step after one of this size."""
-        control = self.control
-        if not path.automatic:
-            return min(1.0, control.regrowth * size)
-        easy, hard = outcome.iterations <= control.easy, outcome.iterations >= control.hard
-        factor = control.growth if easy else control.shrinkage if hard else 1.0
-        if outcome.estimate is not None:
-            factor = min(outcome.estimate.factor, control.shrinkage if hard else control.growth)
-        return min(control.largest, factor * size)

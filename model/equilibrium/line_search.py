@@ -15,8 +15,8 @@ import numpy as np
 from petsc4py import PETSc
 
 from coilset.model.equilibrium.contact_limit import ContactLimit
-from coilset.model.equilibrium.control import NewtonControl
 from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.settings import NewtonControl
 from coilset.model.equilibrium.system import System
 
 

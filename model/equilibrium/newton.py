@@ -17,12 +17,12 @@ from petsc4py import PETSc
 from coilset.meshes.compat import NOT_A_NUMBER
 from coilset.model.body import Foresees
 from coilset.model.equilibrium.contact_limit import ContactLimit
-from coilset.model.equilibrium.control import NewtonControl
 from coilset.model.equilibrium.convergence import EquilibriumTest, Outcome, Reason, imbalance, reason_in_words
 from coilset.model.equilibrium.line_search import WorkSearch
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import TangentMatrix
 from coilset.model.equilibrium.methods import ARC_LENGTH, FIRST, Method
+from coilset.model.equilibrium.settings import NewtonControl
 from coilset.model.equilibrium.snes import SnesFactory
 from coilset.model.equilibrium.system import System
 

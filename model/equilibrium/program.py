@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 from coilset.model.equilibrium.axial_control import AxialControl
-from coilset.model.equilibrium.continuation import Continuation, Path, Position
+from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.step_control import Path, Position
 
 log = logging.getLogger("coilset.steps")
 
@@ -80,12 +81,14 @@ class LoadProgram:
     @property
     def position(self) -> ProgramPosition:
         """Where the spring stands."""
-        return ProgramPosition(self.number, self._height, self._force, self.continuation.position, self.redirected)
+        return ProgramPosition(
+            self.number, self._height, self._force, self.continuation.steps.position, self.redirected
+        )
 
     @position.setter
     def position(self, position: ProgramPosition) -> None:
         self.number, self._height, self._force = position.stage, position.height, position.force
-        self.continuation.position, self.redirected = position.on_path, position.redirected
+        self.continuation.steps.position, self.redirected = position.on_path, position.redirected
 
     def run(self, stage: Stage) -> Iterator[StepTaken]:
         """Go on to the stage's target, step by step.
@@ -94,13 +97,13 @@ class LoadProgram:
             SolveError: as Continuation.advance.
         """
         self.stage, continuation = self.redirected or stage, self.continuation
-        while continuation.position.done < (regular := self._regular(self.stage)):
+        while continuation.steps.position.done < (regular := self._regular(self.stage)):
             outcome, cuts = continuation.advance(self._path(self.stage))
             error = outcome.estimate.force if outcome.estimate is not None else math.nan
             log.info("step %d: %.6g mm, %.6g N, %d iterations, out of balance %.1e, error about %.2g N; next %.4g of a "
                      "regular step", continuation.number, self.control.height, self.control.force, outcome.iterations,
-                     outcome.ratio, error, continuation.position.size)  # fmt: skip
-            yield StepTaken(continuation.number, continuation.position.done / regular, cuts, outcome)
+                     outcome.ratio, error, continuation.steps.position.size)  # fmt: skip
+            yield StepTaken(continuation.number, continuation.steps.position.done / regular, cuts, outcome)
 
     def redirect(self, stage: Stage) -> None:
         """Go to another target from here on, in place of the stage in progress."""

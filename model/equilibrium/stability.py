@@ -1,4 +1,4 @@
-"""Is an equilibrium stable? The sign of the tangent, its weakest mode, and the way off an unstable path.
+"""Is an equilibrium stable? The sign of the tangent and its weakest mode; `branch_switching` leaves what is unstable.
 
 A state of equilibrium is stable where the symmetric part of the tangent of the free unknowns is positive definite. By
 Sylvester's law it has as many negative eigenvalues as its factors L D Lᵀ have negative pivots. On one rank Newton's own

@@ -19,7 +19,7 @@ import numpy as np
 
 from coilset.model.body import EstimatesErrors
 from coilset.model.equilibrium.axial_control import AxialControl
-from coilset.model.equilibrium.control import StepControl
+from coilset.model.equilibrium.settings import StepControl
 from coilset.model.state import Where
 
 ORDER = 3

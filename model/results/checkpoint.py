@@ -14,9 +14,9 @@ from mpi4py import MPI
 
 from coilset.meshes.errors import InputError
 from coilset.model.case import Case
-from coilset.model.equilibrium.continuation import Position
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.program import ProgramPosition, Stage
+from coilset.model.equilibrium.step_control import Position
 from coilset.model.results.folder import make, whole
 from coilset.model.results.provenance import changed, provenance
 from coilset.model.results.record import Result, Snapshot

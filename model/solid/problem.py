@@ -8,13 +8,14 @@ from dolfinx import fem, la
 from petsc4py import PETSc
 
 from coilset.meshes.solid import SolidMesh
-from coilset.model.equilibrium.continuation import Continuation, Path
-from coilset.model.equilibrium.control import NewtonControl, StepControl
+from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.layout import Layout
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.methods import SYMMETRIC, solid_method
 from coilset.model.equilibrium.newton import Newton, Start
+from coilset.model.equilibrium.settings import NewtonControl, StepControl
+from coilset.model.equilibrium.step_control import Path
 from coilset.model.equilibrium.system import System
 from coilset.model.solid.heads import Head, Motion, Reaction
 from coilset.model.solid.multigrid import VertexMultigrid
@@ -91,9 +92,9 @@ class SolidProblem:
                     place=lambda: f"{self.top.motion}")  # fmt: skip
         continuation.begin()
         total, cuts = None, 0
-        while continuation.position.done < 1.0:
+        while continuation.steps.position.done < 1.0:
             outcome, more = continuation.advance(path)
-            self.bottom.motion, self.top.motion = self._between(origin, targets, continuation.position.done)
+            self.bottom.motion, self.top.motion = self._between(origin, targets, continuation.steps.position.done)
             total, cuts = outcome if total is None else total + outcome, cuts + more
         assert total is not None
         return total, cuts

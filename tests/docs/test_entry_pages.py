@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from coilset.model.case import reference
-from coilset.model.equilibrium.control import NewtonControl, StepControl
+from coilset.model.equilibrium.settings import NewtonControl, StepControl
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from coilset.model.equilibrium.control import NewtonControl
 from coilset.model.equilibrium.convergence import EquilibriumTest, Reason, reason_in_words
 from coilset.model.equilibrium.methods import METHODS
+from coilset.model.equilibrium.settings import NewtonControl
 
 DIVERGENCE = 1e4
 

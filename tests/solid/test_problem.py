@@ -7,7 +7,7 @@ from solid_laws import Elastic, IdealPlastic
 
 from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.solid import SectionGrid, coil_section, straight_wire
-from coilset.model.equilibrium.control import StepControl
+from coilset.model.equilibrium.settings import StepControl
 from coilset.model.material import library
 from coilset.model.solid.heads import Motion
 from coilset.model.solid.points import MaterialPoints

@@ -5,9 +5,9 @@ import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from coilset.model.equilibrium.control import StepControl
+from coilset.model.equilibrium.branch_switching import Snap
 from coilset.model.equilibrium.load import Drag, Load
-from coilset.model.equilibrium.snap import Snap
+from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.stability import Stability
 from coilset.model.material import library
 from coilset.model.section.rules import abramowitz9

@@ -18,10 +18,10 @@ from dataclasses import replace
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.model.equilibrium.control import StepControl
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.load import Drag, Load
 from coilset.model.equilibrium.newton import Start
+from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.stability import Stability, Weakest
 
 log = logging.getLogger("coilset.steps")

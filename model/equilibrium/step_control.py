@@ -1,0 +1,118 @@
+"""How long steps are: where they end, when they are cut, how they grow again.
+
+Equal steps end on their marks, also after a cut. Automatic ones take the size that their error and the iteration allow.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from coilset.meshes.errors import SolveError
+from coilset.model.equilibrium.convergence import Outcome
+from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.settings import StepControl
+
+ON_MARK = 1e-9  # of a regular step: what is nearer to a mark stands on it
+
+
+@dataclass(frozen=True)
+class Path:
+    """Loads along the way to a target.
+
+    Attributes:
+        load: the load from the last equilibrium to a place on the path, which is counted in regular steps.
+        regular: number of regular steps.
+        target: in words, for logs and errors.
+        automatic: do steps take the size that their error and the iteration allow? Equal steps end on their marks,
+            also after a cut.
+        place: where on it the body stands, in words.
+    """
+
+    load: Callable[[float], Load]
+    regular: int = 1
+    target: str = "the target"
+    automatic: bool = False
+    place: Callable[[], str] = lambda: "here"
+
+
+@dataclass(frozen=True)
+class Position:
+    """Where on its path the continuation stands.
+
+    Attributes:
+        done: what is behind, in regular steps.
+        size: next step, in regular steps.
+        cuts: how often the step in progress was cut.
+        last: size of the last step, whose increments are the guess for the next one; 0 if there is no guess.
+        before: size of the last step on this path; 0 if there is none.
+    """
+
+    done: float = 0.0
+    size: float = 1.0
+    cuts: int = 0
+    last: float = 0.0
+    before: float = 0.0
+
+
+class StepSizes:
+    """Sizes of the steps along a path.
+
+    Args:
+        control: StepControl.
+
+    Attributes:
+        position: Position.
+    """
+
+    def __init__(self, control: StepControl) -> None:
+        self.control, self.position, self._attempts = control, Position(), 0
+
+    def begin(self) -> None:
+        """Stand at the start of a path."""
+        self.position, self._attempts = Position(), 0
+
+    def resize(self, size: float) -> None:
+        """Make the next step as large as `size` regular steps."""
+        self.position = replace(self.position, size=size)
+
+    def size(self, path: Path) -> float:
+        """Size of the step to try now, in regular steps.
+
+        Raises:
+            SolveError: if the program stalls: more has been tried than its steps allow.
+        """
+        self._attempts += 1
+        if self._attempts > self.control.attempts * path.regular + self.control.spare_attempts:
+            stalls = f"the program stalls, {self._attempts} solves on the way to {path.target}"
+            raise SolveError(f"no equilibrium beyond {path.place()}: {stalls}")
+        position = self.position
+        size = min(position.size, path.regular - position.done)
+        if path.automatic:
+            return size
+        # on its way to the next mark, or to a later one if it was made as long as that
+        mark = max(int(position.done + ON_MARK) + 1, int(position.done + size + ON_MARK))
+        return min(size, mark - position.done)
+
+    def accept(self, path: Path, outcome: Outcome, size: float) -> None:
+        """Stand at the end of a step of this size."""
+        last = 0.0 if outcome.left_branch else size
+        self.position = Position(self.position.done + size, self._following(path, outcome, size), 0, last, last)
+
+    def cut(self, outcome: Outcome, size: float) -> bool:
+        """Make a step of this size, which failed, shorter; is it still as long as a step must be?"""
+        factor = self.control.cut
+        if outcome.refused and outcome.estimate is not None:  # only its error was too large
+            factor = outcome.estimate.factor
+        shorter = factor * size
+        self.position = replace(self.position, size=shorter, cuts=self.position.cuts + 1, last=0.0)
+        return shorter >= self.control.smallest
+
+    def _following(self, path: Path, outcome: Outcome, size: float) -> float:
+        """Size of the step after one of this size."""
+        control = self.control
+        if not path.automatic:
+            return min(1.0, control.regrowth * size)
+        easy, hard = outcome.iterations <= control.easy, outcome.iterations >= control.hard
+        factor = control.growth if easy else control.shrinkage if hard else 1.0
+        if outcome.estimate is not None:
+            factor = min(outcome.estimate.factor, control.shrinkage if hard else control.growth)
+        return min(control.largest, factor * size)
