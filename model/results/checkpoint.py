@@ -126,6 +126,9 @@ class Checkpoint:
             return Saved(arrays, self._position(about, result), result)
         except InputError:
             raise
+        except (KeyError, TypeError):  # an entry that is missing, or one that nobody knows
+            raise InputError(f"the checkpoint was written by another version of coilset, or is damaged; {ANEW}", "",
+                             path) from None  # fmt: skip
         except Exception as error:
             reason = str(error).partition("\n")[0] or type(error).__name__
             raise InputError(f"the checkpoint is not readable: {reason}; {ANEW}", "", path) from None
