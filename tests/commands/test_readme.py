@@ -1,13 +1,36 @@
 """What README.md shows is what comes out: its Python snippet, run, prints the numbers under "What comes out"."""
 
+import itertools
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-README = (Path(__file__).resolve().parents[2] / "README.md").read_text(encoding="utf-8")
+from coilset.model.case import read_case
+from coilset.model.sweep.rehearsal import build_input
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+README = (REPOSITORY / "README.md").read_text(encoding="utf-8")
+
+
+def test_commands_follow_each_other():
+    """None meets the results of one before it, unless it says what is to be done with them, and each can be built."""
+    lines = re.findall(r"^    scripts/coilset (.*?)(?: +#.*)?$", README, re.MULTILINE)
+    solves = [words for words in map(shlex.split, lines) if "solve" in words]
+    assert len(solves) >= 5
+    taken = set()
+    for words in solves:
+        option = dict(itertools.pairwise(words))
+        case = REPOSITORY / option["solve"]
+        folder = option.get("--out", f"results/{case.stem}")
+        assert folder not in taken or {"--force", "--resume"} & set(words), words
+        assert folder in taken or not {"--force", "--resume"} & set(words), words
+        taken.add(folder)
+        settings = [value for word, value in itertools.pairwise(words) if word == "--set"]
+        build_input(read_case(case, settings))
 
 
 def stated(words):
