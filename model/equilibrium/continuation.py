@@ -34,6 +34,7 @@ class Path:
         automatic: do steps take the size that their error and the iteration allow? Equal steps end on their marks,
             also after a cut.
         place: where on it the body stands, in words.
+        length: of the path up to a place that is counted in regular steps, in their mean length; None: they are equal.
     """
 
     load: Callable[[float], Load]
@@ -41,6 +42,11 @@ class Path:
     target: str = "the target"
     automatic: bool = False
     place: Callable[[], str] = lambda: "here"
+    length: Callable[[float], float] | None = None
+
+    def step_length(self, done: float, size: float) -> float:
+        """Of a step of a size from a place on the path, both in regular steps; in their mean length."""
+        return size if self.length is None else self.length(done + size) - self.length(done)
 
 
 @dataclass(frozen=True)
@@ -51,8 +57,8 @@ class Position:
         done: what is behind, in regular steps.
         size: next step, in regular steps.
         cuts: how often the step in progress was cut.
-        last: size of the last step, whose increments are the guess for the next one; 0 if there is no guess.
-        before: size of the last step on this path; 0 if there is none.
+        last: length of the last step, whose increments are the guess for the next one; 0 if there is no guess.
+        before: length of the last step on this path; 0 if there is none.
     """
 
     done: float = 0.0
@@ -69,8 +75,8 @@ class Continuation:
         newton: Newton.
         control: StepControl.
         penetration_limit: penetration beyond which a state is no equilibrium, mm.
-        starts: where to begin solving a load for a step of the given size, one start after the other; default: the last
-            step's increments, scaled, then the last equilibrium.
+        starts: where to begin solving a load for a step of the given length, one start after the other; default: the
+            last step's increments, scaled, then the last equilibrium.
 
         stability: Stability; None: states are not judged.
         step_error: StepError; None: the error of steps is not known, and automatic ones grow on ease alone.
@@ -127,7 +133,7 @@ class Continuation:
         """Commit or restore.
 
         Args:
-            size: of the step, in regular steps.
+            size: length of the step, in regular steps.
             accurately: does a step whose error is too large count as failed?
         """
         if outcome.converged and self.step_error is not None:
@@ -268,19 +274,20 @@ class Continuation:
                 # on its way to the next mark, or to a later one if it was made as long as that
                 mark = max(int(position.done + 1e-9) + 1, int(position.done + size + 1e-9))
                 size = min(size, mark - position.done)
-            load = path.load(position.done + size)
-            outcome = self._attempt(load, self.starts(load, size), size, path.automatic)
+            load, length = path.load(position.done + size), path.step_length(position.done, size)
+            outcome = self._attempt(load, self.starts(load, length), length, path.automatic)
             if outcome.negative_pivots > self.negative_pivots:
                 self._unstable = size
             if not outcome.converged and self._ends_here(size, outcome):
                 there = self._unstable or size
-                beside = self._snap(lambda to=position.done + there: path.load(to), there)  # type: ignore[misc]
+                length = path.step_length(position.done, there)
+                beside = self._snap(lambda to=position.done + there: path.load(to), length)  # type: ignore[misc]
                 if beside.converged:
                     outcome, size = beside, there
                 self._unstable = 0.0  # once a step
             if outcome.converged:
                 self.number, self._unstable = self.number + 1, 0.0
-                last = 0.0 if outcome.left_branch else size
+                last = 0.0 if outcome.left_branch else path.step_length(position.done, size)
                 following = self._following(path, outcome, size)
                 self.position = Position(position.done + size, following, 0, last, last)
                 return self._charged(outcome), position.cuts
