@@ -133,7 +133,7 @@ class Analysis:
 
     def _planned_steps(self) -> int:
         automatic = self.case.solver.control.steps.automatic
-        return sum(automatic if phase.steps == "auto" else phase.steps for phase in self.case.loading)
+        return sum(phase.count(automatic) for phase in self.case.loading)
 
     def _passed(self) -> str | None:
         """Why the state on trial is none of a spring: its heads have passed each other; collective."""
@@ -243,14 +243,15 @@ class Analysis:
     def stage(self, phase: Phase) -> Stage:
         """A phase of the case as the load program takes it."""
         to, free_length = phase.to, self.spring.free_length
+        steps = tuple(phase.steps) if isinstance(phase.steps, list) else phase.steps
         if to == "block":
-            return Stage("height", self.spring.block_height, phase.steps, phase.label)
+            return Stage("height", self.spring.block_height, steps, phase.label)
         if to.force is not None:
-            return Stage("force", to.force, phase.steps, phase.label)
+            return Stage("force", to.force, steps, phase.label)
         if to.height is not None:
-            return Stage("height", to.height, phase.steps, phase.label)
+            return Stage("height", to.height, steps, phase.label)
         assert to.travel is not None
-        return Stage("height", free_length - to.travel, phase.steps, phase.label)
+        return Stage("height", free_length - to.travel, steps, phase.label)
 
     def _keep(self, save: Save | None) -> None:
         if save is not None:
@@ -341,6 +342,4 @@ class Analysis:
         cells = [rod.line.in_order(values) for values in parts]
         x, components = self.layout.gather(rod.x), rod.sections.components
         triads, resultants, state, surface = cells
-        return Snapshot(
-            name, self.control.height, force, x, triads, resultants, state, surface, components
-        )
+        return Snapshot(name, self.control.height, force, x, triads, resultants, state, surface, components)

@@ -149,6 +149,8 @@ class Checkpoint:
         """Where to go on; a changed target begins its phase where the spring stands now."""
         saved = about["position"]
         redirected = saved["redirected"] and Stage(**saved["redirected"])
+        if redirected and isinstance(redirected.steps, list):  # JSON has no tuples
+            redirected = replace(redirected, steps=tuple(redirected.steps))
         position = ProgramPosition(**{**saved, "on_path": Position(**saved["on_path"]), "redirected": redirected})
         stage, old, new = position.stage, about["case"]["loading"], self.case["loading"]
         if old[stage : stage + 1] == new[stage : stage + 1]:
