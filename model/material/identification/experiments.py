@@ -63,7 +63,8 @@ def read_test(path: str | Path, nominal: bool = False) -> Test:
             sheared = any(name in given for name in SHEAR)
             missing = [name for name in COLUMNS if name not in given and (sheared or name not in SHEAR)]
             if missing:
-                raise InputError(f"is missing; the columns are {', '.join(COLUMNS)}", f"column {missing[0]}", str(path))
+                needed = f"{', '.join(COLUMNS)}; of a tension test eps11 and sigma11"
+                raise InputError(f"is missing; the columns are {needed}", f"column {missing[0]}", str(path))
             rows = [
                 [
                     _number(row[name], name, remarks + reader.line_num, path) if name in given else 0.0
