@@ -177,9 +177,9 @@ def _conclude(console: Console, summary: dict[str, Any], out: Path, analysed: fl
     table.add_row("rate between 30 and 70 % of the travel", number(summary["rate_30_70_N_per_mm"], "N/mm"))
     for rate in summary["rates"]:
         table.add_row(f"rate at {rate['travel_mm']:g} mm", number(rate["rate_N_per_mm"], "N/mm"))
-    table.add_row("greatest force", number(summary["force_max_N"], "N", 2))
+    table.add_row("maximum force", number(summary["force_max_N"], "N", 2))
     table.add_row("block height", number(summary["block_height_mm"], "mm"))
-    table.add_row("greatest residual shear stress", number(summary["residual_shear_max_MPa"], "MPa", 2))
+    table.add_row("maximum residual shear stress", number(summary["residual_shear_max_MPa"], "MPa", 2))
     table.add_row("residual shear stress, coil's inside", number(summary["residual_shear_inside_MPa"], "MPa", 2))
     table.add_row("results in", f"{out}{os.sep}")
     console.print(table)
