@@ -341,6 +341,4 @@ class Analysis:
         cells = [rod.line.in_order(values) for values in parts]
         x, components = self.layout.gather(rod.x), rod.sections.components
         triads, resultants, state, surface = cells
-        return Snapshot(
-            name, self.control.height, force, x, triads, resultants, state, surface, components
-        )
+        return Snapshot(name, self.control.height, force, x, triads, resultants, state, surface, components)

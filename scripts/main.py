@@ -213,7 +213,7 @@ def examples(
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
 def test(context: typer.Context) -> None:
-    """Run the tests, in serial and under MPI, some ten minutes on two cores; arguments go to pytest, once, as they are."""
+    """Run the tests, in serial and under MPI: some ten minutes on two cores. Further arguments go to pytest."""
     from coilset.scripts.test import test as run_tests
 
     raise typer.Exit(run_tests(context.args))
