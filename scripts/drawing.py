@@ -96,10 +96,8 @@ class Drawings:
 
 def _give(process: subprocess.Popen[bytes], task: bytes) -> None:
     assert process.stdin is not None
-    try:
+    with contextlib.suppress(BrokenPipeError):  # it has died, which its answer will say
         process.stdin.write(task)
-    except BrokenPipeError:
-        pass  # it has died, which its answer will say
     _close(process.stdin)
 
 
