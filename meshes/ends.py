@@ -9,6 +9,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from coilset.meshes import functions
 from coilset.meshes.entry import Strict
+from coilset.meshes.piecewise import PiecewisePolynomial
 
 CLOSED_TURNS, CLOSED_TRANSITION, GROUND_TIP = 1.0, 0.5, 0.25
 
@@ -112,8 +113,8 @@ def touching_pitch(diameter: np.ndarray, slope: np.ndarray) -> np.ndarray:
 
 
 def pitch_with_ends(
-    body: functions.PPoly, bottom: EndCoils, top: EndCoils, touching: Callable[[float, float], float]
-) -> functions.PPoly:
+    body: PiecewisePolynomial, bottom: EndCoils, top: EndCoils, touching: Callable[[float, float], float]
+) -> PiecewisePolynomial:
     """The pitch over the turns: end turns, transitions (cubic, with continuous slope) and body.
 
     Args:

@@ -36,7 +36,7 @@ class Strict(BaseModel):
         RENAMED: earlier names of entries and their names now; both are taken, but not both at once.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True, defer_build=True)
     RENAMED: ClassVar[dict[str, str]] = {}
     _earlier: tuple[str, ...] = PrivateAttr(())
 

@@ -4,14 +4,15 @@ from collections.abc import Callable, Iterable, Sequence
 from math import factorial
 
 import numpy as np
-from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly, splrep
+
+from coilset.meshes.piecewise import PiecewisePolynomial
 
 DEGREE = 3
 
 INTERPOLATIONS = ("linear", "monotone", "spline")
 
 
-def polynomial(coefficients: Sequence[float] | np.ndarray, start: float, end: float) -> PPoly:
+def polynomial(coefficients: Sequence[float] | np.ndarray, start: float, end: float) -> PiecewisePolynomial:
     """One polynomial on an interval.
 
     Args:
@@ -20,19 +21,19 @@ def polynomial(coefficients: Sequence[float] | np.ndarray, start: float, end: fl
         end: where it ends, turns.
 
     Returns:
-        The function as a `scipy.interpolate.PPoly`.
+        The function.
     """
     padded = np.zeros((DEGREE + 1, 1))
     padded[DEGREE - np.arange(len(coefficients)), 0] = coefficients
-    return PPoly(padded, [start, end])
+    return PiecewisePolynomial(padded, [start, end])
 
 
-def constant(value: float, turns: float) -> PPoly:
+def constant(value: float, turns: float) -> PiecewisePolynomial:
     """The same value at every turn from 0 to `turns`."""
     return polynomial([value], 0.0, turns)
 
 
-def tabulated(turn: np.ndarray, value: np.ndarray, interpolation: str) -> PPoly:
+def tabulated(turn: np.ndarray, value: np.ndarray, interpolation: str) -> PiecewisePolynomial:
     """A function through the points of a table.
 
     Args:
@@ -42,21 +43,23 @@ def tabulated(turn: np.ndarray, value: np.ndarray, interpolation: str) -> PPoly:
             ``spline``, the cubic spline (continuous curvature).
 
     Returns:
-        The function as a `scipy.interpolate.PPoly`.
+        The function.
     """
     if interpolation == "linear" or len(turn) == 2:
         slope = np.diff(value) / np.diff(turn)
-        return PPoly(np.vstack([np.zeros((DEGREE - 1, len(slope))), slope, value[:-1]]), turn)
+        return PiecewisePolynomial(np.vstack([np.zeros((DEGREE - 1, len(slope))), slope, value[:-1]]), turn)
+    from scipy.interpolate import CubicSpline, PchipInterpolator  # a quarter of a second, where they are needed
+
     if interpolation == "monotone":
         pieces = PchipInterpolator(turn, value)
     elif interpolation == "spline":
         pieces = CubicSpline(turn, value)
     else:
         raise ValueError(f"interpolation must be one of {', '.join(INTERPOLATIONS)}, not {interpolation!r}")
-    return PPoly(pieces.c, pieces.x)
+    return PiecewisePolynomial(pieces.c, pieces.x)
 
 
-def smoothed(turn: np.ndarray, value: np.ndarray, noise: float) -> PPoly:
+def smoothed(turn: np.ndarray, value: np.ndarray, noise: float) -> PiecewisePolynomial:
     """A cubic spline with as few pieces as the noise of the values allows (FITPACK's smoothing spline).
 
     Args:
@@ -65,32 +68,34 @@ def smoothed(turn: np.ndarray, value: np.ndarray, noise: float) -> PPoly:
         noise: their standard deviation; the mean square of the residuals becomes its square.
 
     Returns:
-        The function as a `scipy.interpolate.PPoly`.
+        The function.
     """
+    from scipy.interpolate import PPoly, splrep
+
     pieces = PPoly.from_spline(splrep(turn, value, w=np.full(len(turn), 1 / noise), s=len(turn)))
     real = np.diff(pieces.x) > 0  # the end knots are repeated
-    return PPoly(pieces.c[:, real], np.append(pieces.x[:-1][real], pieces.x[-1]))
+    return PiecewisePolynomial(pieces.c[:, real], np.append(pieces.x[:-1][real], pieces.x[-1]))
 
 
-def added(left: PPoly, right: PPoly, factor: float = 1.0) -> PPoly:
+def added(left: PiecewisePolynomial, right: PiecewisePolynomial, factor: float = 1.0) -> PiecewisePolynomial:
     """The function `left` + `factor` · `right`; both begin and end at the same turns."""
     breaks = np.union1d(left.x, right.x)
-    return PPoly(_coefficients(left, breaks) + factor * _coefficients(right, breaks), breaks)
+    return PiecewisePolynomial(_coefficients(left, breaks) + factor * _coefficients(right, breaks), breaks)
 
 
-def restricted(function: PPoly, start: float, end: float) -> PPoly:
+def restricted(function: PiecewisePolynomial, start: float, end: float) -> PiecewisePolynomial:
     """The part of a function between two turns."""
     breaks = np.array([start, *function.x[(function.x > start) & (function.x < end)], end])
-    return PPoly(_coefficients(function, breaks), breaks)
+    return PiecewisePolynomial(_coefficients(function, breaks), breaks)
 
 
-def _coefficients(function: PPoly, breaks: np.ndarray) -> np.ndarray:
+def _coefficients(function: PiecewisePolynomial, breaks: np.ndarray) -> np.ndarray:
     """Of a function between breaks, its own among them, by Taylor's expansion at the left of every piece."""
     terms = [function.derivative(k)(breaks[:-1]) / factorial(k) for k in range(DEGREE, 0, -1)]
     return np.array([*terms, function(breaks[:-1])])
 
 
-def blended(left: PPoly, right: PPoly, start: float, end: float) -> PPoly:
+def blended(left: PiecewisePolynomial, right: PiecewisePolynomial, start: float, end: float) -> PiecewisePolynomial:
     """A cubic from one function to another, with the values and slopes of both at the two ends."""
     length = end - start
     y0, s0 = left(start), left.derivative()(start) * length
@@ -99,11 +104,11 @@ def blended(left: PPoly, right: PPoly, start: float, end: float) -> PPoly:
     return polynomial(in_unit / length ** np.arange(DEGREE + 1), start, end)
 
 
-def joined(parts: Iterable[PPoly]) -> PPoly:
+def joined(parts: Iterable[PiecewisePolynomial]) -> PiecewisePolynomial:
     """Functions that follow each other, as one; parts of no length are left out."""
     parts = [part for part in parts if part.x[-1] > part.x[0]]
     breaks = np.concatenate([parts[0].x[:1], *(part.x[1:] for part in parts)])
-    return PPoly(np.hstack([part.c for part in parts]), breaks)
+    return PiecewisePolynomial(np.hstack([part.c for part in parts]), breaks)
 
 
 def integral(integrand: Callable[[np.ndarray], np.ndarray], breaks: np.ndarray, points: int = 6) -> np.ndarray:

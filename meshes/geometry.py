@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import PPoly
 
 from coilset.meshes import functions
 from coilset.meshes.ends import OPEN, EndCoils, touching_pitch
+from coilset.meshes.piecewise import PiecewisePolynomial
 from coilset.meshes.stations import ElementsPerTurn, stations
 
 INTERVALS_PER_TURN = 64
@@ -22,7 +22,7 @@ class Spring:
     `c(t) = (r cos θ, r sin θ, z)` with `θ = phase + hand 2π t`. All lengths are in mm.
 
     Args:
-        radius: mean radius over the turn, a `scipy.interpolate.PPoly` from 0 to the number of turns.
+        radius: mean radius over the turn, a `PiecewisePolynomial` from 0 to the number of turns.
         height: rise of the centre line over the turn, from any level.
         wire: wire diameter over the turn.
         hand: +1 right, −1 left.
@@ -31,9 +31,9 @@ class Spring:
         phase: polar angle of the first point, rad.
     """
 
-    radius: PPoly
-    height: PPoly
-    wire: PPoly
+    radius: PiecewisePolynomial
+    height: PiecewisePolynomial
+    wire: PiecewisePolynomial
     hand: int = 1
     bottom: EndCoils = OPEN
     top: EndCoils = OPEN
@@ -45,12 +45,12 @@ class Spring:
         return float(self.height.x[-1])
 
     @cached_property
-    def slope(self) -> PPoly:
-        """Change of the mean radius over the turn, mm per turn, a `scipy.interpolate.PPoly`."""
+    def slope(self) -> PiecewisePolynomial:
+        """Change of the mean radius over the turn, mm per turn."""
         return self.radius.derivative()
 
     @cached_property
-    def _pitch(self) -> PPoly:
+    def _pitch(self) -> PiecewisePolynomial:
         return self.height.derivative()
 
     @cached_property

@@ -1,14 +1,13 @@
-"""The line mesh of a rod: a gmsh model of straight elements through given stations, distributed by DOLFINx."""
+"""The line mesh of a rod: straight elements through given stations, distributed by DOLFINx."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
-import gmsh
+import basix.ufl
 import numpy as np
 from dolfinx import mesh as dmesh
 from mpi4py import MPI
 
-from coilset.meshes.compat import geometry_dofs, mesh_from_gmsh
+from coilset.meshes.compat import geometry_dofs
 
 
 @dataclass
@@ -47,32 +46,10 @@ class LineMesh:
         return np.concatenate([part[1] for part in parts])[order]
 
 
-def gmsh_line(stations: np.ndarray, groups: Mapping[str, int] | None = None, name: str = "wire") -> None:
-    """Put the polygon through the stations into the current gmsh model; the caller initialises and finalises gmsh.
-
-    Args:
-        stations: node positions in their order along the wire, shape (n + 1, 3), mm.
-        groups: name → station number of the points that get a physical group; default: both ends.
-        name: physical group of the line.
-
-    The nodes lie exactly where they are given (a discrete entity), not where a mesher would put them.
-    """
-    gmsh.model.add("coilset line")
-    groups = {"bottom end": 0, "top end": len(stations) - 1} if groups is None else groups
-    line = gmsh.model.addDiscreteEntity(1)
-    tags = np.arange(1, len(stations) + 1)
-    gmsh.model.mesh.addNodes(1, line, tags, np.asarray(stations, float).ravel())
-    pairs = np.stack([tags[:-1], tags[1:]], axis=1)
-    gmsh.model.mesh.addElementsByType(line, 1, tags[:-1], pairs.ravel())
-    gmsh.model.addPhysicalGroup(1, [line], name=name)
-    for number, (group, station) in enumerate(groups.items()):
-        point = gmsh.model.addDiscreteEntity(0)
-        gmsh.model.mesh.addElementsByType(point, 15, [len(stations) + number], [int(tags[station])])
-        gmsh.model.addPhysicalGroup(0, [point], name=group)
-
-
 def line_mesh(stations: np.ndarray, comm: MPI.Comm) -> LineMesh:
-    """Mesh the polygon through the stations with gmsh and distribute it over the ranks of `comm`.
+    """Distribute the polygon through the stations over the ranks of `comm`.
+
+    Nobody has to find such a mesh: DOLFINx takes the stations and the pairs of neighbours as they are.
 
     Args:
         stations: shape (n + 1, 3), mm; the same on every rank.
@@ -82,16 +59,10 @@ def line_mesh(stations: np.ndarray, comm: MPI.Comm) -> LineMesh:
         LineMesh.
     """
     stations = np.ascontiguousarray(stations, dtype=float)
-    gmsh.initialize(["coilset", "-v", "1"], readConfigFiles=False, interruptible=False)
-    try:
-        if comm.rank == 0:
-            gmsh_line(stations)
-        mesh = mesh_from_gmsh(gmsh.model, comm)[0]
-    finally:
-        gmsh.finalize()
+    first = np.arange(len(stations) - 1 if comm.rank == 0 else 0, dtype=np.int64)
+    nodes = stations if comm.rank == 0 else stations[:0]
+    element = basix.ufl.element("Lagrange", "interval", 1, shape=(3,))
+    mesh = dmesh.create_mesh(comm=comm, cells=np.stack([first, first + 1], axis=1), x=nodes, e=element)
     node = np.asarray(mesh.geometry.input_global_indices, dtype=np.int64)
-    cells = geometry_dofs(mesh)
-    element = node[cells].min(axis=1)
-    # gmsh may hand the stations over with rounding of its own; take them as they were given
-    mesh.geometry.x[:] = stations[node]
-    return LineMesh(mesh, stations, node, element, mesh.topology.index_map(1).size_local)
+    elements = node[geometry_dofs(mesh)].min(axis=1)
+    return LineMesh(mesh, stations, node, elements, mesh.topology.index_map(1).size_local)

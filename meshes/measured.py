@@ -1,9 +1,8 @@
 """A spring from a measured centre line: points along the wire, from a table or a mesh."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-import meshio
 import numpy as np
 from annotated_types import Unit
 from pydantic import Field, ValidationInfo, field_validator
@@ -15,6 +14,9 @@ from coilset.meshes.entry import Strict
 from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
 from coilset.meshes.shapes import Length
+
+if TYPE_CHECKING:  # at run time only where a mesh is read
+    import meshio
 
 LEAST_POINTS = 5
 WIDEST_STEP = 1 / 3  # of a turn between neighbouring points
@@ -130,6 +132,8 @@ def _read_csv(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
 
 def _read_mesh(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
     """The only chain of line elements in a mesh; points of other elements and loose points do not count."""
+    import meshio
+
     try:
         mesh = meshio.read(path)
     except (meshio.ReadError, KeyError, ValueError, IndexError, OSError, SystemExit) as error:
@@ -145,7 +149,7 @@ def _read_mesh(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
     return points, None if wire is None else np.asarray(wire, dtype=float).reshape(-1)[order]
 
 
-def _straight(block: meshio.CellBlock) -> np.ndarray:
+def _straight(block: "meshio.CellBlock") -> np.ndarray:
     """Line elements of two nodes; those of three are halved at their middle node."""
     return block.data if block.type == "line" else np.concatenate([block.data[:, [0, 2]], block.data[:, [2, 1]]])
 

@@ -8,6 +8,7 @@ from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from coilset.meshes import functions
 from coilset.meshes.entry import Strict
+from coilset.meshes.piecewise import PiecewisePolynomial
 
 SHORTEST, LONGEST = 1e-3, 1e5  # mm
 CLOSEST = 1e-3  # turns
@@ -49,7 +50,7 @@ class Table(Strict):
             raise ValueError(f"must begin at turn 0, not at {self.turns[0]:g}")
         return self
 
-    def function(self, turns: float) -> functions.PPoly:
+    def function(self, turns: float) -> PiecewisePolynomial:
         """The table as a function of the turn; raises ValueError if it does not end at the last turn."""
         if abs(self.turns[-1] - turns) > 1e-9 * turns:
             raise ValueError(f"ends at turn {self.turns[-1]:g}, but the spring has {turns:g} turns")
@@ -62,7 +63,7 @@ class Cylinder(Strict):
     shape: Literal["cylinder"]
     diameter: Annotated[Length, Field(description="mean coil diameter, mm")]
 
-    def function(self, turns: float) -> functions.PPoly:
+    def function(self, turns: float) -> PiecewisePolynomial:
         """The diameter as a function of the turn, mm."""
         return functions.constant(self.diameter, turns)
 
@@ -74,7 +75,7 @@ class Cone(Strict):
     bottom: Annotated[Length, Field(description="mean coil diameter at the bottom end, mm")]
     top: Annotated[Length, Field(description="mean coil diameter at the top end, mm")]
 
-    def function(self, turns: float) -> functions.PPoly:
+    def function(self, turns: float) -> PiecewisePolynomial:
         """The diameter as a function of the turn, mm."""
         return functions.polynomial([self.bottom, (self.top - self.bottom) / turns], 0.0, turns)
 
@@ -89,7 +90,7 @@ class Funnel(Strict):
         float, Unit("turns"), Field(ge=0.1, allow_inf_nan=False, strict=True, description="turns of the cone")
     ]
 
-    def function(self, turns: float) -> functions.PPoly:
+    def function(self, turns: float) -> PiecewisePolynomial:
         """The diameter as a function of the turn, mm; raises ValueError if the cone has too many turns."""
         if self.cone_turns >= turns:
             raise ValueError(
@@ -111,7 +112,7 @@ class DoubleCone(_Waisted):
 
     shape: Literal["double cone"]
 
-    def function(self, turns: float) -> functions.PPoly:
+    def function(self, turns: float) -> PiecewisePolynomial:
         """The diameter as a function of the turn, mm."""
         return functions.tabulated(
             np.array([0, turns / 2, turns]), np.array([self.ends, self.middle, self.ends]), "linear"
@@ -119,7 +120,7 @@ class DoubleCone(_Waisted):
 
 
 class _Parabola(_Waisted):
-    def function(self, turns: float) -> functions.PPoly:
+    def function(self, turns: float) -> PiecewisePolynomial:
         """The diameter as a function of the turn, mm: a parabola with its vertex in the middle."""
         rise = self.middle - self.ends
         return functions.polynomial([self.ends, 4 * rise / turns, -4 * rise / turns**2], 0.0, turns)
@@ -198,6 +199,6 @@ DiameterProfile = Annotated[
 """The mean coil diameter over the turns: a number in mm, a table, or a shape."""
 
 
-def profile_function(profile: Any, turns: float) -> functions.PPoly:
+def profile_function(profile: Any, turns: float) -> PiecewisePolynomial:
     """A number, table or shape as a function of the turn."""
     return functions.constant(profile, turns) if isinstance(profile, float | int) else profile.function(turns)

@@ -6,7 +6,6 @@ from typing import Annotated, Any, Literal, Self
 import numpy as np
 from annotated_types import Unit
 from pydantic import Discriminator, Field, Tag, model_validator
-from scipy.optimize import brentq
 
 from coilset.meshes import functions
 from coilset.meshes.checks import refuse
@@ -15,6 +14,7 @@ from coilset.meshes.entry import Strict
 from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
 from coilset.meshes.measured import MeasuredSpec
+from coilset.meshes.piecewise import PiecewisePolynomial
 from coilset.meshes.shapes import DiameterProfile, Length, Profile, profile_function
 
 DIAMETERS = {"mean_diameter": 0, "outer_diameter": -1, "inner_diameter": 1}  # wires to add for the mean diameter
@@ -79,7 +79,7 @@ class SpringSpec(Strict):
         """
         wire = self._function("wire_diameter")
         mean = self._mean_diameter(wire)
-        radius = functions.PPoly(0.5 * mean.c, mean.x)
+        radius = PiecewisePolynomial(0.5 * mean.c, mean.x)
         ends_and_transitions = sum(end.end_turns + end.transition_turns for end in bottom_and_top(self.end_coils))
         if ends_and_transitions >= self.turns:
             raise InputError(
@@ -87,7 +87,7 @@ class SpringSpec(Strict):
                 "spring.turns",
             )
 
-        def spring(pitch: functions.PPoly) -> Spring:
+        def spring(pitch: PiecewisePolynomial) -> Spring:
             height = self._pitch_with_ends(pitch, wire, radius).antiderivative()
             return Spring(radius, height, wire, 1 if self.hand == "right" else -1, *bottom_and_top(self.end_coils))
 
@@ -110,7 +110,7 @@ class SpringSpec(Strict):
             place = error.place.replace("mean_diameter", self.diameter_entry)
             raise InputError(error.problem, place, error.file) from None
 
-    def _mean_diameter(self, wire: functions.PPoly) -> functions.PPoly:
+    def _mean_diameter(self, wire: PiecewisePolynomial) -> PiecewisePolynomial:
         """D = De − d = Di + d as a function of the turn, mm."""
         given = self._function(self.diameter_entry)
         factor = DIAMETERS[self.diameter_entry]
@@ -121,15 +121,15 @@ class SpringSpec(Strict):
             raise InputError("the coil is no wider than its wire", f"spring.{self.diameter_entry}")
         return mean
 
-    def _function(self, entry: str) -> functions.PPoly:
+    def _function(self, entry: str) -> PiecewisePolynomial:
         try:
             return profile_function(getattr(self, entry), self.turns)
         except ValueError as error:
             raise InputError(str(error), f"spring.{entry}") from error
 
     def _pitch_with_ends(
-        self, pitch: functions.PPoly, wire: functions.PPoly, radius: functions.PPoly
-    ) -> functions.PPoly:
+        self, pitch: PiecewisePolynomial, wire: PiecewisePolynomial, radius: PiecewisePolynomial
+    ) -> PiecewisePolynomial:
         slope = radius.derivative()
 
         def touching(start: float, end: float) -> float:
@@ -138,7 +138,7 @@ class SpringSpec(Strict):
 
         return pitch_with_ends(pitch, *bottom_and_top(self.end_coils), touching)
 
-    def _with_free_length(self, spring: Callable[[functions.PPoly], Spring], body_turns: float) -> Spring:
+    def _with_free_length(self, spring: Callable[[PiecewisePolynomial], Spring], body_turns: float) -> Spring:
         """The spring whose body has the pitch that makes the free length; this grows with the pitch."""
 
         free_length = self.free_length
@@ -153,6 +153,8 @@ class SpringSpec(Strict):
                 f"{free_length:g} mm leave no pitch: end coils and wire alone need {least:.4g} mm",
                 "spring.free_length",
             )
+        from scipy.optimize import brentq
+
         # the body alone rises by the greatest pitch times its turns
         pitch = brentq(too_long, 0.0, free_length / body_turns, xtol=1e-12, rtol=1e-14)
         return spring(functions.constant(pitch, self.turns))

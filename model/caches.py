@@ -1,9 +1,10 @@
-"""Where compiled functions are kept between runs."""
+"""Where compiled functions are kept between runs, and how they are loaded."""
 
 import hashlib
 import os
 import sys
 from pathlib import Path
+from typing import Any
 
 SOURCES = Path(__file__).resolve().parent
 
@@ -25,3 +26,32 @@ def keep_by_content() -> None:
         os.environ["NUMBA_CACHE_DIR"] = str(Path(root) / version)
     if "numba" in sys.modules:  # it has read its environment
         sys.modules["numba"].config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
+
+
+def load_without_compiler() -> None:
+    """Have numba load what it has compiled without setting up its compiler first, which takes longer than all else.
+
+    Compiled functions need numba's runtime, which is set up here. The compiler is set up when it is used: by numba
+    itself, before it compiles anything.
+    """
+    measures_coverage = "coverage" in sys.modules
+    if not measures_coverage:
+        sys.modules["coverage"] = None  # type: ignore[assignment]  # numba loads it wherever it is installed
+    try:
+        from numba.core import caching
+        from numba.core.runtime import rtsys
+    finally:
+        if not measures_coverage:
+            del sys.modules["coverage"]
+
+    def load_overload(cache: Any, signature: Any, target: Any) -> Any:
+        """As numba's own, but for the compiler."""
+        if not ready:
+            rtsys.initialize(target)
+            ready.append(True)
+        with cache._guard_against_spurious_io_errors():
+            return cache._load_overload(signature, target)
+
+    ready: list[bool] = []
+    if all(hasattr(caching.Cache, name) for name in ("load_overload", "_load_overload")):
+        caching.Cache.load_overload = load_overload

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+from coilset.model.caches import load_without_compiler
 from coilset.model.processes import first_rank
 
 NOTICE = "coilset: compiling forms and kernels, once, about 20 s ..."
@@ -50,6 +51,7 @@ def announce_if_cold(say: Callable[[str], None] = _to_stderr) -> None:
 
 def announce_compiling(say: Callable[[str], None] = _to_stderr) -> Announcement:
     """Have the first compilation of this process announced."""
+    load_without_compiler()
     from numba.core import event
 
     announcement = Announcement(say)

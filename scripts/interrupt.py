@@ -40,6 +40,10 @@ class Interrupt:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self.over()
+
+    def over(self) -> None:
+        """STOPS are again what they were before."""
         for number, handler in self.before.items():
             signal.signal(number, handler)
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from coilset.meshes.errors import CoilsetError, printable
 from coilset.model.processes import first_rank
+from coilset.scripts.beginning import announce_begin
 from coilset.scripts.compiling import announce_compiling, announce_if_cold
 from coilset.scripts.material import app as material
 from coilset.scripts.output import Output, output_closed
@@ -81,11 +82,17 @@ def solve(
     method: str = typer.Option(None, help="iteration method; newton, modified-newton, bfgs, broyden, arc-length, ..."),
 ) -> None:
     """Run a spring through its load program and write what it found."""
-    announce_compiling()
-    from coilset.scripts.solve import solve as run_case
+    from coilset.scripts.drawing import Drawings
 
-    settings = [*settings, f"solver.method={method}"] if method else settings
-    run_case(case, out, force, settings, pictures, resume, interactive)
+    announce_begin("solves", case, out)
+    with Drawings(os.environ) as drawings:
+        if pictures:
+            drawings.start_if_free()
+        announce_compiling()
+        from coilset.scripts.solve import solve as run_case
+
+        settings = [*settings, f"solver.method={method}"] if method else settings
+        run_case(case, out, force, settings, pictures, resume, interactive, drawings=drawings)
 
 
 @app.command(name="slice")
@@ -159,6 +166,7 @@ def sweep(
     pictures: bool = typer.Option(True, help="draw the figures"),
 ) -> None:
     """Run a case many times with some of its entries varied."""
+    announce_begin("sweeps", sweep_file, out)
     announce_if_cold()
     from coilset.scripts.sweep import sweep as run_sweep
 

@@ -12,15 +12,17 @@ from mpi4py import MPI
 from rich.console import Console
 from rich.table import Table
 
-from coilset.meshes.errors import InputError, SolveError
+from coilset.meshes.errors import CoilsetError, InputError, SolveError
 from coilset.model.agreement import on_first_rank
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.folder import clear, prepare, write_history, write_seats, write_summary
+from coilset.model.results.pictures import Run
 from coilset.model.results.provenance import origin
 from coilset.model.results.record import Result, Setup, Step
 from coilset.model.results.summary import summarise
+from coilset.scripts.drawing import Drawings
 from coilset.scripts.interactive import Prompt
 from coilset.scripts.interrupt import Interrupt
 from coilset.scripts.log import run_log
@@ -39,8 +41,9 @@ def solve(
     resume: bool = False,
     interactive: bool = False,
     comm: MPI.Comm = MPI.COMM_WORLD,
+    drawings: Drawings | None = None,
 ) -> None:
-    """Run one case; see `coilset solve --help`.
+    """Run one case; see `coilset solve --help`, and Drawings for who draws the pictures.
 
     Raises:
         InputError, SolveError: after the results up to there are written.
@@ -58,7 +61,8 @@ def solve(
             raise InputError(error.problem, error.place, error.file or case_file) from None
         on_first_rank(comm, lambda: prepare(folder, force or resume))
         on_first_rank(comm, lambda: _begin(stack.enter_context(run_log(folder)), folder, resume))
-        _solve(console, analysis, case_file, folder, pictures, resume, interactive, interrupt)
+        drawings = (drawings or stack.enter_context(Drawings(os.environ))) if pictures else None
+        _solve(console, analysis, case_file, folder, drawings, resume, interactive, interrupt)
 
 
 def _begin(log: logging.FileHandler, out: Path, resume: bool) -> None:
@@ -74,7 +78,7 @@ def _solve(
     analysis: Analysis,
     case_file: str | Path,
     out: Path,
-    pictures: bool,
+    drawings: Drawings | None,
     resume: bool,
     interactive: bool,
     interrupt: Interrupt,
@@ -85,16 +89,20 @@ def _solve(
     _announce(console, analysis, case_file, resume)
     began = time.perf_counter()
     failure = _run(console, analysis, checkpoint, interactive, interrupt)
+    interrupt.over()
     analysed = time.perf_counter() - began
     summary = comm.bcast(summarise(analysis.setup, analysis.result) if comm.rank == 0 else None)
-
-    def write() -> None:
-        _write(out, analysis.setup, analysis.result, summary, origin(analysis.case))
-        if pictures:
-            _draw(out, analysis.setup, analysis.result, summary, console)
-
-    on_first_rank(comm, write)
-    _conclude(console, summary, out, analysed)
+    on_first_rank(comm, lambda: _write(out, analysis.setup, analysis.result, summary, origin(analysis.case)))
+    _conclude(console, summary, out)
+    if drawings:
+        run = Run(analysis.setup, analysis.result, summary)
+        try:
+            on_first_rank(comm, lambda: _draw(drawings, out, run, console))
+        except CoilsetError as error:
+            if failure is None:
+                raise
+            console.print(f"[yellow]warning:[/] {error}")
+    console.print(f"analysis {analysed:.2f} s, all {time.time() - STARTED:.2f} s")
     if failure is not None:
         if analysis.result.steps:
             console.print("go on from the last step with --resume")
@@ -149,23 +157,12 @@ def _write(out: Path, setup: Setup, result: Result, summary: dict[str, Any], mad
     write_summary(out, {**summary, "origin": made_with})
 
 
-def _draw(out: Path, setup: Setup, result: Result, summary: dict[str, Any], console: Console) -> None:
-    from coilset.model.results import display, figures, scene, seat_figures
-
-    last = result.snapshots[-1]
-    figures.characteristic(out / "characteristic.png", setup, result, summary)
-    figures.cross_section(out / "cross_section.png", setup, last)
-    if result.steps:
-        seat_figures.force_centre(out / "force_centre.png", setup, result)
-        seat_figures.seat_pressure(out / "seat_pressure.png", setup, result)
-    if display.ensure():
-        shots = result.snapshots if len(result.snapshots) <= 4 else [result.snapshots[0], *result.snapshots[-3:]]
-        scene.springs(out / "springs.png", shots, setup.wire_radius)
-    else:
-        console.print("[yellow]warning:[/] springs.png is not drawn: there is no display and no Xvfb")
+def _draw(drawings: Drawings, out: Path, run: Run, console: Console) -> None:
+    for warning in drawings.draw(out, run):
+        console.print(f"[yellow]warning:[/] {warning}")
 
 
-def _conclude(console: Console, summary: dict[str, Any], out: Path, analysed: float) -> None:
+def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
     def number(value: float | None, unit: str, digits: int = 4) -> str:
         return "not reached" if value is None else f"{round(value, digits) + 0.0:.{digits}f} {unit}"  # no -0.0
 
@@ -186,4 +183,3 @@ def _conclude(console: Console, summary: dict[str, Any], out: Path, analysed: fl
     for warning in summary["warnings"]:
         console.print(f"[yellow]warning:[/] {warning['message']}")
         log.warning("warning: %s: %s", warning["name"], warning["message"])
-    console.print(f"analysis {analysed:.2f} s, all {time.time() - STARTED:.2f} s")

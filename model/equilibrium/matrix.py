@@ -9,7 +9,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from petsc4py import PETSc
-from scipy import sparse
 
 from coilset.model.body import Body
 from coilset.model.contact.base import Contribution
@@ -61,11 +60,10 @@ class TangentMatrix:
         entries[: layout.owned] = self._entries
         for part in contributions:
             assert isinstance(layout, LineLayout)
-            dofs = layout.contact_dofs[part.dofs]
-            rows, columns = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
-            places = rows.ravel(), columns.ravel()
-            pattern = sparse.coo_array((np.ones(rows.size, np.int8), places), (layout.size, layout.size))
-            entries += np.diff(pattern.tocsr().indptr)[layout.start : layout.stop].astype(PETSc.IntType)
+            dofs = layout.contact_dofs[part.dofs].astype(np.int64)
+            places = np.unique(dofs[:, :, None] * layout.size + dofs[:, None, :])  # row by row, each once
+            in_rows = np.bincount(places // layout.size, minlength=layout.size)
+            entries += in_rows[layout.start : layout.stop].astype(PETSc.IntType)
         here = np.minimum(entries, layout.size_local)  # in columns of this rank
         there = np.minimum(entries, layout.size - layout.size_local)
         self.mat.setPreallocationNNZ((here, there) if layout.comm.size > 1 else here)

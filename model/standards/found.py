@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, TextIO, TypeVar
 
 import numpy as np
-import xarray as xr
 
 from coilset.meshes.errors import InputError
 
@@ -92,6 +91,8 @@ def _residual(path: Path) -> tuple[float | None, float | None]:
     """Residual shear about the wire's axis, signed by the load's, and the radius of its ring over the wire's."""
     if not path.exists():
         return None, None
+    import xarray as xr
+
     with xr.open_dataset(path, engine="h5netcdf") as data:
         force = data["force"].values
         loaded = int(np.argmax(np.abs(force)))

@@ -48,7 +48,7 @@ def test_summary(run):
 
 
 def test_points(run):
-    data = point_state(*run)
+    data = point_state(*run).to_xarray()
     assert sorted(rows("points.nc")) == sorted(data.data_vars)
     assert sorted(rows("points.nc", "coordinate")) == sorted(data.coords)
 

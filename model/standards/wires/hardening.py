@@ -15,8 +15,6 @@ s = σ exp(−εp − 2ν σ/E): plastic strain keeps the volume, elastic strain
 from dataclasses import dataclass
 from math import atanh, exp, log, tanh
 
-from scipy.optimize import brentq
-
 PROOF_STRAIN = 0.002
 
 
@@ -64,6 +62,8 @@ class Curve:
         def excess(σ: float) -> float:
             return 0.5 * self.rate * (self.saturation**2 - σ**2) * (1 - self.contraction * σ) - σ
 
+        from scipy.optimize import brentq
+
         return self.start if excess(self.start) <= 0 else brentq(excess, self.start, self.saturation, xtol=1e-9)
 
     @property
@@ -95,6 +95,8 @@ def curve(elastic_limit: float, proof_stress: float, strength: float, young_modu
         return Curve(start, saturation, 2 * reach / (saturation * PROOF_STRAIN), contraction)
 
     # with σ∞ just above the proof stress the strength is little above it, too, and it grows with σ∞
+    from scipy.optimize import brentq
+
     saturation = brentq(lambda σ: through_both(σ).strength - strength, proof * (1 + 1e-9), 5 * strength, xtol=1e-9)
     return through_both(saturation)
 

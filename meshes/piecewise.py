@@ -1,0 +1,61 @@
+"""Piecewise polynomials. `scipy.interpolate.PPoly` is the same, to the last bit, but takes long to load."""
+
+from collections.abc import Sequence
+from functools import cached_property
+from math import prod
+
+import numpy as np
+
+
+class PiecewisePolynomial:
+    """Polynomials that follow each other; the first and the last go on beyond the ends.
+
+    Args:
+        coefficients: of the powers of (x − left end of the piece), the highest first, shape (degree + 1, pieces).
+        breaks: increasing ends of the pieces, shape (pieces + 1,).
+
+    Attributes:
+        c, x: the coefficients and the breaks.
+    """
+
+    def __init__(self, coefficients: np.ndarray, breaks: Sequence[float] | np.ndarray) -> None:
+        self.c = np.array(coefficients, dtype=float)
+        self.x = np.array(breaks, dtype=float)
+
+    def __call__(self, x: np.ndarray | float) -> np.ndarray:
+        """Values, in the shape of `x`."""
+        x = np.asarray(x, dtype=float)
+        piece = np.clip(np.searchsorted(self.x, x, side="right") - 1, 0, self.c.shape[1] - 1)
+        return np.asarray(_values(self.c[:, piece], x - self.x[piece]))
+
+    def derivative(self, order: int = 1) -> "PiecewisePolynomial":
+        """The derivative of some order; each is found once."""
+        if order not in self._derivatives:
+            kept = self.c[:-order] if order else self.c
+            powers = range(len(kept), 0, -1)  # of the derivative, and 1
+            factors = np.array([prod(range(power, power + order)) for power in powers], dtype=float)
+            c = kept * factors[:, None] if len(kept) else np.zeros((1, self.c.shape[1]))
+            self._derivatives[order] = PiecewisePolynomial(c, self.x)
+        return self._derivatives[order]
+
+    @cached_property
+    def _derivatives(self) -> dict[int, "PiecewisePolynomial"]:
+        return {}
+
+    def antiderivative(self) -> "PiecewisePolynomial":
+        """The integral from the first break on."""
+        powers = np.arange(len(self.c), 0, -1)
+        c = np.vstack([self.c / powers[:, None], np.zeros(self.c.shape[1])])
+        length = np.diff(self.x)
+        for piece in range(1, c.shape[1]):
+            c[-1, piece] = _values(c[:, piece - 1], length[piece - 1])
+        return PiecewisePolynomial(c, self.x)
+
+
+def _values(c: np.ndarray, s: np.ndarray) -> np.ndarray:
+    """Σ c sᵏ, the lowest power first, as PPoly adds them."""
+    value, power = c[-1].copy(), s
+    for term in c[-2::-1]:
+        value += term * power
+        power = power * s
+    return value

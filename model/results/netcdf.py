@@ -1,0 +1,93 @@
+"""Labelled arrays and their NetCDF file, without the libraries that read such files and take a while to load."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coilset.model.results.folder import reserve, whole
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class Variable:
+    """An array with names for its dimensions.
+
+    Attributes:
+        dims: a name for each dimension.
+        values: numbers, or words.
+        attrs: texts, such as its `units`.
+    """
+
+    dims: tuple[str, ...]
+    values: np.ndarray
+    attrs: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class LabelledData:
+    """What `xarray.Dataset` is: variables, coordinates along their dimensions, and texts about all of it."""
+
+    variables: Mapping[str, Variable]
+    coordinates: Mapping[str, Variable]
+    attrs: Mapping[str, str] = field(default_factory=dict)
+
+    def merged(self, other: "LabelledData") -> "LabelledData":
+        """With the variables and coordinates of another one, too."""
+        return replace(self, variables={**self.variables, **other.variables},
+                       coordinates={**self.coordinates, **other.coordinates})  # fmt: skip
+
+    def with_attrs(self, attrs: Mapping[str, str]) -> "LabelledData":
+        """With more texts."""
+        return replace(self, attrs={**self.attrs, **attrs})
+
+    def to_xarray(self) -> "xr.Dataset":
+        """The same as an `xarray.Dataset`, which is also what `xarray.open_dataset` gives of the file."""
+        import xarray as xr
+
+        def parts(variables: Mapping[str, Variable]) -> dict[str, tuple]:
+            return {name: (one.dims, one.values, dict(one.attrs)) for name, one in variables.items()}
+
+        return xr.Dataset(parts(self.variables), parts(self.coordinates), dict(self.attrs))
+
+    def all(self) -> Iterator[tuple[str, Variable]]:
+        """Names and variables, the coordinates last."""
+        yield from self.variables.items()
+        yield from self.coordinates.items()
+
+    def beside(self, name: str) -> str:
+        """Names of the coordinates of a variable that no dimension of it is named after, as CF has them in a text."""
+        dims = set(self.variables[name].dims)
+        return " ".join(one for one, coordinate in self.coordinates.items()
+                        if coordinate.dims != (one,) and dims.issuperset(coordinate.dims))  # fmt: skip
+
+
+def write_netcdf(target: str | Path, data: LabelledData) -> None:
+    """Write a NetCDF 4 file by the conventions of CF, which xarray follows too.
+
+    Raises:
+        CoilsetError: if it cannot be written.
+    """
+    import h5netcdf
+    import h5py
+
+    with whole(target) as path:
+        reserve(path, sum(one.values.nbytes for _, one in data.all()))
+        with h5netcdf.File(path, "w") as file:
+            for _, one in data.all():
+                for dim, size in zip(one.dims, one.values.shape, strict=True):
+                    if dim not in file.dimensions:
+                        file.dimensions[dim] = size
+            for name, one in data.all():
+                words = one.values.dtype.kind in "UO"
+                values: Any = one.values.astype(object) if words else one.values
+                made = file.create_variable(name, one.dims, h5py.string_dtype() if words else values.dtype, data=values,
+                                            fillvalue=np.nan if values.dtype.kind == "f" else None)  # fmt: skip
+                made.attrs.update(one.attrs)
+                if name in data.variables and (beside := data.beside(name)):
+                    made.attrs["coordinates"] = beside
+            file.attrs.update(data.attrs)

@@ -1,0 +1,64 @@
+"""All pictures of a run, in parts that can be drawn side by side; their libraries are loaded when they are needed."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from coilset.model.results.record import Result, Setup
+
+MOST_SPRINGS = 4  # side by side in springs.png
+
+
+@dataclass(frozen=True)
+class Run:
+    """What the pictures show.
+
+    Attributes:
+        setup, result: records of the run.
+        summary: see coilset.model.results.summary.
+    """
+
+    setup: Setup
+    result: Result
+    summary: Mapping[str, Any]
+
+
+Draw = Callable[[Path, Run], list[str]]
+
+
+def load_figures() -> Draw:
+    """Load what draws characteristic.png, cross_section.png, force_centre.png and seat_pressure.png."""
+    from coilset.model.results import figures, seat_figures
+
+    def draw(out: Path, run: Run) -> list[str]:
+        figures.characteristic(out / "characteristic.png", run.setup, run.result, run.summary)
+        figures.cross_section(out / "cross_section.png", run.setup, run.result.snapshots[-1])
+        if run.result.steps:
+            seat_figures.force_centre(out / "force_centre.png", run.setup, run.result)
+            seat_figures.seat_pressure(out / "seat_pressure.png", run.setup, run.result)
+        return []
+
+    return draw
+
+
+def load_scene() -> Draw:
+    """Load what draws springs.png, and start the virtual display that it may need."""
+    from coilset.model.results import display, scene
+
+    there = display.ensure()
+
+    def draw(out: Path, run: Run) -> list[str]:
+        if not there:
+            return ["springs.png is not drawn: there is no display and no Xvfb"]
+        shots = run.result.snapshots
+        if len(shots) > MOST_SPRINGS:
+            shots = (shots[0], *shots[1 - MOST_SPRINGS :])
+        scene.springs(out / "springs.png", shots, run.setup.wire_radius)
+        return []
+
+    return draw
+
+
+PARTS: dict[str, Callable[[], Draw]] = {"figures": load_figures, "scene": load_scene}
+"""Names of the parts; each gives a function that draws into a folder and returns warnings, one line each."""

@@ -1,0 +1,19 @@
+"""The first line of a command that will take a while, before it loads what it needs."""
+
+import os
+from pathlib import Path
+
+from coilset.model.processes import first_rank
+from coilset.model.version import __version__
+from coilset.scripts.target import results_folder
+
+
+def announce_begin(does: str, file: str, out: str | None) -> None:
+    """Say what is done with a file that is there; of one that is not, whoever reads it will complain.
+
+    Raises:
+        InputError: if the results folder cannot be made or written to.
+    """
+    if os.path.isfile(file) and first_rank():
+        folder = results_folder(out, Path(file).stem)
+        print(f"coilset {__version__} {does} {Path(file).name} into {folder}{os.sep}", flush=True)

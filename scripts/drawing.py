@@ -1,0 +1,148 @@
+"""Pictures are drawn by processes of their own, after the answer is printed.
+
+    python -m coilset.scripts.drawing PART
+
+Where a core is free they are started first of all and load their libraries while the spring is being solved. They end
+with the process that started them, however it ends.
+"""
+
+import contextlib
+import json
+import os
+import pickle
+import signal
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+from coilset.meshes.errors import CoilsetError
+from coilset.model.processes import end_with_parent, first_rank, number_of_ranks
+
+if TYPE_CHECKING:  # at run time in the process that draws
+    from coilset.model.results.pictures import Run
+
+PARTS = ("figures", "scene")  # of coilset.model.results.pictures
+MODEST = 5  # by how much the processes stand back behind the one that solves
+PATIENCE = 5.0  # seconds in which a process that is asked to end tidies up
+
+
+class Drawings:
+    """The processes that draw the pictures of a run; leaving this context ends them.
+
+    Args:
+        environment: of the processes; from before MPI, which changes the one of a process that has started it.
+    """
+
+    def __init__(self, environment: Mapping[str, str]) -> None:
+        self.environment, self.processes = dict(environment), dict[str, subprocess.Popen[bytes]]()
+
+    def start_if_free(self) -> None:
+        """Start the processes now if there is a core for them, beside those of the ranks."""
+        if first_rank() and len(os.sched_getaffinity(0)) > number_of_ranks():
+            self._start()
+
+    def _start(self) -> None:
+        for part in PARTS:
+            if part not in self.processes:
+                self.processes[part] = subprocess.Popen(
+                    [sys.executable, "-m", "coilset.scripts.drawing", part], stdin=subprocess.PIPE,
+                    stdout=subprocess.PIPE, env=self.environment, start_new_session=True, preexec_fn=end_with_parent,
+                )  # fmt: skip
+
+    def draw(self, out: Path, run: "Run") -> list[str]:
+        """Draw, and wait for it; SIGTERM is a KeyboardInterrupt meanwhile, as SIGINT is.
+
+        Returns:
+            Warnings, one line each.
+
+        Raises:
+            CoilsetError: with the first reason why not all is drawn; the other processes have come to their end.
+        """
+        before = signal.signal(signal.SIGTERM, signal.getsignal(signal.SIGINT))
+        try:
+            self._start()
+            task = pickle.dumps((out, run), pickle.HIGHEST_PROTOCOL)
+            for process in self.processes.values():
+                _give(process, task)
+            answers = [_answer(process) for process in self.processes.values()]
+        finally:
+            signal.signal(signal.SIGTERM, before)
+        problem = next((answer["problem"] for answer in answers if answer["problem"]), None)
+        if problem:
+            raise CoilsetError(problem)
+        return [warning for answer in answers for warning in answer["warnings"]]
+
+    def __enter__(self) -> "Drawings":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for process in self.processes.values():
+            process.terminate()
+        for process in self.processes.values():
+            try:
+                process.wait(PATIENCE)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+            for pipe in (process.stdin, process.stdout):
+                if pipe is not None and not pipe.closed:
+                    _close(pipe)
+
+
+def _give(process: subprocess.Popen[bytes], task: bytes) -> None:
+    assert process.stdin is not None
+    with contextlib.suppress(BrokenPipeError):  # it has died, which its answer will say
+        process.stdin.write(task)
+    _close(process.stdin)
+
+
+def _close(pipe: Any) -> None:
+    with contextlib.suppress(BrokenPipeError):
+        pipe.close()
+
+
+def _answer(process: subprocess.Popen[bytes]) -> dict[str, Any]:
+    assert process.stdout is not None
+    line = process.stdout.readline()
+    if line.endswith(b"\n"):
+        return json.loads(line)
+    status = process.wait()
+    how = f"signal {-status}" if status < 0 else f"exit code {status}"
+    return {"problem": f"not all pictures are drawn: the process that draws them ended with {how}", "warnings": []}
+
+
+def draw_part(part: str, tasks: BinaryIO) -> dict[str, Any] | None:
+    """Load what a part needs, wait for its task, and draw it; None if no task came."""
+    from coilset.model.results import pictures
+
+    draw = pictures.PARTS[part]()
+    try:
+        out, run = pickle.load(tasks)
+    except EOFError:
+        return None
+    try:
+        return {"problem": None, "warnings": draw(out, run)}
+    except CoilsetError as error:
+        return {"problem": str(error), "warnings": []}
+
+
+def main(part: str) -> None:
+    """The process that draws a part; SIGTERM ends it as an error would, so that nothing half written is left."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that solves
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
+    os.nice(MODEST)
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # what libraries print must not get between the answers
+    answer = draw_part(part, sys.stdin.buffer)
+    if answer is not None:
+        answers.write(json.dumps(answer) + "\n")
+        answers.close()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
