@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import TypeVar
 
+from petsc4py import PETSc
+
 from coilset.meshes.errors import SolveError
 from coilset.model.equilibrium.control import StepControl
 from coilset.model.equilibrium.convergence import Outcome
@@ -62,6 +64,14 @@ class Position:
     before: float = 0.0
 
 
+@dataclass(frozen=True)
+class Unstable:
+    """An equilibrium that is less stable than the last one: the size of its step, in regular ones, and increments."""
+
+    size: float
+    increments: PETSc.Vec
+
+
 class Continuation:
     """Takes a body along paths of loads.
 
@@ -97,7 +107,7 @@ class Continuation:
         self.refusal: Callable[[], str | None] = lambda: None
         self.position, self.number, self._attempts = Position(), 0, 0
         self._spent: list[Outcome] = []  # all solves of the step in progress
-        self._unstable = 0.0  # size of the step in progress at which it ended unstable
+        self._unstable: Unstable | None = None  # where the step in progress ended unstable, the last time
 
     # ---- one solve -------------------------------------------------------------------------------------------------
 
@@ -107,7 +117,7 @@ class Continuation:
         return self._charged(self._attempt(load, starts))
 
     def _attempt(self, load: Load, starts: Iterable[Start], size: float = 0.0, accurately: bool = False) -> Outcome:
-        return self._conclude(self._stable(self._solve(load, starts), load), size, accurately)
+        return self._conclude(self._stable(self._solve(load, starts), load, size), size, accurately)
 
     def _newton(self, load: Load, start: Start) -> Outcome:
         self._spent.append(self.newton.solve(load, start))
@@ -177,7 +187,7 @@ class Continuation:
 
     # ---- stability -------------------------------------------------------------------------------------------------
 
-    def _stable(self, outcome: Outcome, load: Load) -> Outcome:
+    def _stable(self, outcome: Outcome, load: Load, size: float) -> Outcome:
         """A state that is less stable than the last equilibrium counts as none: another path goes on from there."""
         if not outcome.converged or self.stability is None:
             return outcome
@@ -185,32 +195,29 @@ class Continuation:
         outcome = replace(outcome, negative_pivots=negative)
         if negative <= self.negative_pivots:
             return outcome
+        self._unstable = Unstable(size, self.system.increments.copy())
         reason = f"the equilibrium is unstable: {negative} of the tangent's eigenvalues are negative"
         return replace(outcome, converged=False, reason=reason)
 
     def _ends_here(self, size: float, outcome: Outcome) -> bool:
         """Is a step that failed so short that its path ends, or must be left before it ends unstable?"""
         shortest = self.control.cut * size < self.control.smallest
-        if self.stability is None or not (self._unstable or (shortest and not outcome.refused)):
+        if self.stability is None or (self._unstable is None and (not shortest or outcome.refused)):
             return False
         return shortest or self.position.cuts >= self.control.unstable_cuts
 
-    def _snap(self, load: Callable[[], Load], size: float) -> Outcome:
-        """Let go of a path that ends, or ends unstable, in a step of this size, until a stable state is found.
+    def _snap(self, load: Callable[[], Load]) -> Outcome:
+        """Let go of a path that ends, or ends unstable, until a stable state is found.
 
         Where none is found all is as it was; an unstable state is kept then, with its negative pivots.
+
+        Args:
+            load: the load of the step from the last equilibrium, whichever that is.
         """
         assert self.stability is not None
+        there = self._unstable.increments if self._unstable is not None else None
         before = self.system.state.copy()
-        unstable = self._solve(load(), self.starts(load(), size))
-        if unstable.converged:
-            unstable = replace(unstable, negative_pivots=self.stability.negative_pivots(load()))
-            if unstable.negative_pivots <= self.negative_pivots:
-                return self._conclude(unstable, size)
-        there = self.system.increments.copy() if unstable.converged else None
-        self.system.restore()
-        snap = Snap(self.stability, self.control, lambda load, start: self._judged(self._newton(load, start)))
-        outcome = snap.go(load, there)
+        outcome = Snap(self.stability, self.control, self._solve_once).go(load, there)
         if outcome.converged:
             log.info("step %d: the spring snapped and set %.3g N mm free", self.number + 1, outcome.released)
             self.negative_pivots = 0
@@ -220,9 +227,16 @@ class Continuation:
         self.system.state.put_back(before)
         self.system.restore()
         log.info("step %d: no stable state beside the path was found", self.number + 1)
-        if there is not None:
-            self._solve(load(), (Start(there),))
-        return self._conclude(unstable, size)
+        return outcome if there is None else self._keep_unstable(load(), there)
+
+    def _keep_unstable(self, load: Load, increments: PETSc.Vec) -> Outcome:
+        outcome = self._solve(load, (Start(increments),))
+        if outcome.converged and self.stability is not None:
+            outcome = replace(outcome, negative_pivots=self.stability.negative_pivots(load))
+        return self._conclude(outcome, 0.0)
+
+    def _solve_once(self, load: Load, start: Start) -> Outcome:
+        return self._judged(self._newton(load, start))
 
     def from_last_step(self, load: Load, size: float) -> Iterator[Start]:
         """The last step's increments, scaled to a step of this size; then the last equilibrium."""
@@ -240,7 +254,7 @@ class Continuation:
 
     def begin(self) -> None:
         """Stand at the start of a path."""
-        self.position, self._attempts, self._unstable = Position(), 0, 0.0
+        self.position, self._attempts = Position(), 0
 
     def resize(self, size: float) -> None:
         """Make the next step as large as `size` regular steps."""
@@ -257,6 +271,7 @@ class Continuation:
                 converged step.
         """
         self._spent.clear()
+        self._unstable = None
         while True:
             self._attempts += 1
             if self._attempts > self.control.attempts * path.regular + self.control.spare_attempts:
@@ -270,16 +285,14 @@ class Continuation:
                 size = min(size, mark - position.done)
             load = path.load(position.done + size)
             outcome = self._attempt(load, self.starts(load, size), size, path.automatic)
-            if outcome.negative_pivots > self.negative_pivots:
-                self._unstable = size
             if not outcome.converged and self._ends_here(size, outcome):
-                there = self._unstable or size
-                beside = self._snap(lambda to=position.done + there: path.load(to), there)  # type: ignore[misc]
+                there = self._unstable.size if self._unstable is not None else size
+                beside = self._snap(lambda to=position.done + there: path.load(to))  # type: ignore[misc]
                 if beside.converged:
                     outcome, size = beside, there
-                self._unstable = 0.0  # once a step
+                self._unstable = None  # once a step
             if outcome.converged:
-                self.number, self._unstable = self.number + 1, 0.0
+                self.number += 1
                 last = 0.0 if outcome.left_branch else size
                 following = self._following(path, outcome, size)
                 self.position = Position(position.done + size, following, 0, last, last)

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterator
 from math import isfinite
 
-from coilset.model.results.buckling import buckling
+from coilset.model.results.buckling import buckling, snapped
 from coilset.model.results.record import Result, Setup, Snapshot, Step
 from coilset.model.section import surface
 from coilset.model.standards.working import presetting_warning
@@ -118,7 +118,8 @@ def _unstable(setup: Setup, result: Result) -> Iterator[Warning]:
 
 def _snapped(setup: Setup, result: Result) -> Iterator[Warning]:
     before = [0.0, *(step.force_N for step in result.steps)]
-    snaps = [(force, step) for force, step in zip(before, result.steps, strict=False) if step.left_branch]
+    snaps = [(force, step) for force, step in zip(before, result.steps, strict=False)
+             if snapped(step, setup.mean_diameter)]  # fmt: skip
     if snaps:
         force, step = max(snaps, key=lambda snap: snap[1].released_energy_Nmm)
         times = "" if len(snaps) == 1 else f", {len(snaps)} times in all"

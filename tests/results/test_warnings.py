@@ -62,7 +62,7 @@ def test_warnings_of_steps(lifted):
         ("coils slipped", {"least_rise": 0.7}, 0.999),
         ("lift-off", {"lift_off_mm": 0.0}, None),
         ("unstable", {"negative_pivots": 0}, None),
-        ("snapped", {"left_branch": 0}, None),
+        ("snapped", {"left_branch": 0, "released_energy_Nmm": 0.0}, None),
     ]
     for name, right, factor in bounds:
         wrong = {key: value * factor if factor else 1 for key, value in right.items()}
