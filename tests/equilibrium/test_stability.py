@@ -1,6 +1,7 @@
 """Unstable equilibria are no answer: pivots against eigenvalues, long springs with few and many steps, what is said."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -132,13 +133,12 @@ def test_ranks_snap_alike():
     for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
         analysis = pressed(44.0, 1, comm, mesh=4)
         newton, stability, control = analysis.newton, analysis.stability, analysis.control
-        height = analysis.spring.free_length - 44.0
-        assert newton.solve(control.to_height(height)).converged
+        load = partial(control.to_height, analysis.spring.free_length - 44.0)
+        assert newton.solve(load()).converged
         assert stability.negative_pivots(newton.load) > 0
         straight, unstable = control.trial_force, analysis.system.increments.copy()
         analysis.system.restore()
-        outcome = Snap(stability, StepControl(), newton.solve).go(lambda control=control: control.to_height(height),
-                                                                  unstable)  # fmt: skip
+        outcome = Snap(stability, StepControl(), newton.solve).go(load, unstable)
         assert outcome.converged
         assert outcome.left_branch
         assert control.force < 0.99 * straight
