@@ -107,11 +107,12 @@ class EstimatesErrors(Protocol):
         """Be ready for it from now on; adds fields to the state, so before anything is saved."""
         ...
 
-    def error_works(self, ratio: float) -> tuple[float, float, float]:
+    def error_works(self, ratio: float, kinked: bool) -> tuple[float, float, float]:
         """To be called once at a step's end, before it is committed.
 
         Args:
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
+            kinked: did contacts close or open within the step?
 
         Returns:
             Work of the error of the inner forces on the step's deformation; of that share of the error which came in

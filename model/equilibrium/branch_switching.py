@@ -13,7 +13,7 @@ the wire by about its radius, and when it is below λ > 0 the state is solved fo
 
 import logging
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from petsc4py import PETSc
@@ -25,7 +25,51 @@ from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.stability import Stability, Weakest
 
 log = logging.getLogger("coilset.steps")
+FASTER = 4.0  # factor by which drag changes at most, and times its way that a step may go
 STUCK = 1e-3  # of the way that a step should go: what moves less though it is unstable is held by what it touches
+
+
+@dataclass
+class Descent:
+    """How far a snap has come.
+
+    Attributes:
+        drag: c of the next step, N/mm.
+        origin: x₀ of the next step, over the last equilibrium, of this rank's unknowns.
+        weights: M of this rank's unknowns.
+        advance: way that a step should go, mm.
+        weakest: mode of the last state.
+        released: energy that the drag has taken up, N mm.
+        drag_force: c M (x − x₀) at the last state.
+        moved: way of the last step, mm.
+        failed: steps that failed, one after the other.
+    """
+
+    drag: float
+    origin: np.ndarray
+    weights: np.ndarray
+    advance: float
+    weakest: Weakest
+    drag_force: np.ndarray
+    released: float = 0.0
+    moved: float = 0.0
+    failed: int = 0
+
+    @property
+    def is_stuck(self) -> bool:
+        """Does it hardly move, though it is unstable?"""
+        return self.weakest.negative > 0 and self.moved < STUCK * self.advance
+
+    def adapt(self) -> None:
+        """Set the drag for a next step of the right length."""
+        self.drag *= float(np.clip(self.moved / self.advance, 1.0 / FASTER, FASTER))
+        if self.weakest.negative:
+            self.drag = max(self.drag, holding(self.weakest))
+
+
+def holding(weakest: Weakest) -> float:
+    """The drag against which the weakest mode doubles in a step, N/mm."""
+    return 2.0 * abs(weakest.value)
 
 
 class Snap:
@@ -51,70 +95,73 @@ class Snap:
         Returns:
             Outcome of the last solve; its `released` is what the drag took up, N mm.
         """
-        begin = self._leave(load(), unstable) if unstable is not None else self._hold()
-        weakest, origin = begin
-        c, released, failed, before = self._drag(weakest), 0.0, 0, np.zeros(self.system.layout.size_local)
-        weights = self.stability.weights(load())
-        advance = self.control.snap_advance * self.system.line.rod.largest_radius
+        descent = self._begin(load(), unstable)
         outcome = Outcome(False, "the spring does not come to rest", np.inf)
         for _step in range(self.control.snap_steps):
-            aim = load()
-            outcome = self.solve(aim.dragged(Drag(c * weights, origin)), Start())
-            moved = self.stability.greatest_displacement(self.system.increments)
-            if not outcome.converged or moved > 4.0 * advance:
-                failed += 1
-                self.system.restore()
-                if failed > self.control.snap_failures:
+            outcome = self._descend(load(), descent)
+            if outcome.converged:
+                if (rest := self._rest(load, descent)) is not None:
+                    return rest
+                if descent.is_stuck:
                     break
-                c *= 4.0
-                continue
-            failed, way = 0, self.system.increments.getArray(readonly=True).copy()
-            now = c * weights * (way - origin)
-            released += 0.5 * float(self._sum((before + now) @ way))
-            before, origin = now, np.zeros_like(origin)
-            weakest = self.stability.weakest(aim)
-            self.system.commit()
-            log.info("snap: %.3g mm, drag %.2g, %d negative, least eigenvalue %.3g N/mm, %d iterations",
-                     moved, c, weakest.negative, weakest.value, outcome.iterations)  # fmt: skip
-            if weakest.negative == 0 and c <= weakest.value and (rest := self._rest(load(), moved)) is not None:
-                way = self.system.state["increments"].equilibrium
-                return replace(rest, left_branch=True, released=released + 0.5 * float(self._sum(before @ way)))
-            if weakest.negative and moved < STUCK * advance:
+                descent.adapt()
+            elif descent.failed > self.control.snap_failures:
                 break
-            c *= float(np.clip(moved / advance, 0.25, 4.0))
-            if weakest.negative:
-                c = max(c, self._drag(weakest))
         return replace(outcome, converged=False)
 
-    def _drag(self, weakest: Weakest) -> float:
-        return 2.0 * abs(weakest.value)
-
-    def _hold(self) -> tuple[Weakest, np.ndarray]:
-        """Begin at the last equilibrium."""
-        self.system.restore()
-        return self.stability.weakest(self.stability.newton.load), np.zeros(self.system.layout.size_local)
-
-    def _leave(self, load: Load, unstable: PETSc.Vec) -> tuple[Weakest, np.ndarray]:
-        """Begin at an unstable equilibrium, pushed along its weakest mode to the side from which the spring came."""
-        self.solve(load, Start(unstable))
-        weakest = self.stability.weakest(load)
+    def _begin(self, load: Load, unstable: PETSc.Vec | None) -> Descent:
+        """At an unstable equilibrium, pushed along its weakest mode to the side from which the spring came; or, where
+        there is none, at the last equilibrium."""
+        radius, origin = self.system.line.rod.largest_radius, np.zeros(self.system.layout.size_local)
         weights = self.stability.weights(load)
-        came = self.system.increments.getArray(readonly=True)
-        mode = weakest.mode.getArray(readonly=True)
-        side = -1.0 if self._sum((weights * came) @ mode) > 0.0 else 1.0
-        amplitude = self.control.branch_amplitude * self.system.line.rod.largest_radius
-        self.system.commit()
-        return weakest, side * amplitude * mode
-
-    def _rest(self, load: Load, moved: float) -> Outcome | None:
-        """The stable equilibrium near by, or None."""
-        outcome = self.solve(load, Start())
-        near = outcome.converged and self.stability.greatest_displacement(self.system.increments) <= 2.0 * moved
-        if near and self.stability.negative_pivots(load) == 0:
+        if unstable is not None and self.solve(load, Start(unstable)).converged:
+            weakest = self.stability.weakest(load)
+            came, mode = self.system.increments.getArray(readonly=True), weakest.mode.getArray(readonly=True)
+            side = -1.0 if self._sum((weights * came) @ mode) > 0.0 else 1.0
+            origin = side * self.control.branch_amplitude * radius * mode
             self.system.commit()
-            return outcome
-        self.system.restore()
-        return None
+        else:
+            self.system.restore()
+            weakest = self.stability.weakest(self.stability.newton.load)
+        advance = self.control.snap_advance * radius
+        return Descent(holding(weakest), origin, weights, advance, weakest, np.zeros_like(origin))
+
+    def _descend(self, load: Load, descent: Descent) -> Outcome:
+        """One step against the drag, which is committed; where it fails, or goes too far, the drag grows instead."""
+        drag = Drag(descent.drag * descent.weights, descent.origin)
+        outcome = self.solve(load.dragged(drag), Start())
+        moved = self.stability.greatest_displacement(self.system.increments)
+        if not outcome.converged or moved > FASTER * descent.advance:
+            self.system.restore()
+            descent.failed += 1
+            descent.drag *= FASTER
+            return replace(outcome, converged=False)
+        way = self.system.increments.getArray(readonly=True).copy()
+        force = drag.forces(way)
+        descent.released += 0.5 * float(self._sum((descent.drag_force + force) @ way))
+        descent.drag_force, descent.origin = force, np.zeros_like(way)
+        descent.moved, descent.failed = moved, 0
+        descent.weakest = weakest = self.stability.weakest(load)
+        self.system.commit()
+        log.info("snap: %.3g mm, drag %.2g, %d negative, least eigenvalue %.3g N/mm, %d iterations",
+                 moved, descent.drag, weakest.negative, weakest.value, outcome.iterations)  # fmt: skip
+        return outcome
+
+    def _rest(self, load: Callable[[], Load], descent: Descent) -> Outcome | None:
+        """The stable equilibrium near by, where the drag is small beside what holds the spring; else None."""
+        if descent.weakest.negative or descent.drag > descent.weakest.value:
+            return None
+        aim = load()
+        outcome = self.solve(aim, Start())
+        near = outcome.converged
+        near = near and self.stability.greatest_displacement(self.system.increments) <= 2.0 * descent.moved
+        if not near or self.stability.negative_pivots(aim) > 0:
+            self.system.restore()
+            return None
+        self.system.commit()
+        way = self.system.state["increments"].equilibrium
+        released = descent.released + 0.5 * float(self._sum(descent.drag_force @ way))
+        return replace(outcome, left_branch=True, released=released)
 
     def _sum(self, value: float) -> float:
         comm = self.system.comm

@@ -10,6 +10,8 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from typing import TypeVar
 
+from petsc4py import PETSc
+
 from coilset.meshes.errors import SolveError
 from coilset.model.equilibrium.branch_switching import Snap
 from coilset.model.equilibrium.convergence import Outcome
@@ -59,7 +61,7 @@ class Continuation:
         self.refusal: Callable[[], str | None] = lambda: None
         self.steps, self.number = StepSizes(self.control), 0
         self._spent: list[Outcome] = []  # all solves of the step in progress
-        self._unstable = 0.0  # size of the step in progress at which it ended unstable
+        self._unstable: PETSc.Vec | None = None  # increments with which a try at the step ended unstable
 
     # ---- one solve -------------------------------------------------------------------------------------------------
 
@@ -147,32 +149,29 @@ class Continuation:
         outcome = replace(outcome, negative_pivots=negative)
         if negative <= self.negative_pivots:
             return outcome
+        self._unstable = self.system.increments.copy()
         reason = f"the equilibrium is unstable: {negative} of the tangent's eigenvalues are negative"
         return replace(outcome, converged=False, reason=reason)
 
     def _ends_here(self, size: float, outcome: Outcome) -> bool:
         """Is a step that failed so short that its path ends, or must be left before it ends unstable?"""
         shortest = self.control.cut * size < self.control.smallest
-        if self.stability is None or not (self._unstable or (shortest and not outcome.refused)):
+        if self.stability is None or (self._unstable is None and (not shortest or outcome.refused)):
             return False
         return shortest or self.steps.position.cuts >= self.control.unstable_cuts
 
-    def _snap(self, load: Callable[[], Load], size: float) -> Outcome:
-        """Let go of a path that ends, or ends unstable, in a step of this size, until a stable state is found.
+    def _snap(self, load: Callable[[], Load]) -> Outcome:
+        """Let go of a path that ends, or ends unstable, until a stable state is found.
 
         Where none is found all is as it was; an unstable state is kept then, with its negative pivots.
+
+        Args:
+            load: the load of the step from the last equilibrium, whichever that is.
         """
         assert self.stability is not None
+        there = self._unstable
         before = self.system.state.copy()
-        unstable = self._solve(load(), self.starts(load(), size))
-        if unstable.converged:
-            unstable = replace(unstable, negative_pivots=self.stability.negative_pivots(load()))
-            if unstable.negative_pivots <= self.negative_pivots:
-                return self._conclude(unstable, size)
-        there = self.system.increments.copy() if unstable.converged else None
-        self.system.restore()
-        snap = Snap(self.stability, self.control, lambda load, start: self._judged(self._newton(load, start)))
-        outcome = snap.go(load, there)
+        outcome = Snap(self.stability, self.control, self._solve_once).go(load, there)
         if outcome.converged:
             log.info("step %d: the spring snapped and set %.3g N mm free", self.number + 1, outcome.released)
             self.negative_pivots = 0
@@ -182,9 +181,16 @@ class Continuation:
         self.system.state.put_back(before)
         self.system.restore()
         log.info("step %d: no stable state beside the path was found", self.number + 1)
-        if there is not None:
-            self._solve(load(), (Start(there),))
-        return self._conclude(unstable, size)
+        return outcome if there is None else self._keep_unstable(load(), there)
+
+    def _keep_unstable(self, load: Load, increments: PETSc.Vec) -> Outcome:
+        outcome = self._solve(load, (Start(increments),))
+        if outcome.converged and self.stability is not None:
+            outcome = replace(outcome, negative_pivots=self.stability.negative_pivots(load))
+        return self._conclude(outcome, 0.0)
+
+    def _solve_once(self, load: Load, start: Start) -> Outcome:
+        return self._judged(self._newton(load, start))
 
     def from_last_step(self, load: Load, size: float) -> Iterator[Start]:
         """The last step's increments, scaled to a step of this size; then the last equilibrium."""
@@ -203,7 +209,6 @@ class Continuation:
     def begin(self) -> None:
         """Stand at the start of a path."""
         self.steps.begin()
-        self._unstable = 0.0
 
     def advance(self, path: Path) -> tuple[Outcome, int]:
         """Take one step along a path, cut as often as need be; collective.
@@ -216,22 +221,22 @@ class Continuation:
                 converged step.
         """
         self._spent.clear()
+        self._unstable, unstable_at = None, 0.0
         while True:
             begun = self.steps.position
             size = self.steps.size(path)
             load, length = path.load(begun.done + size), path.step_length(begun.done, size)
             outcome = self._attempt(load, self.starts(load, length), length, path.automatic)
             if outcome.negative_pivots > self.negative_pivots:
-                self._unstable = size
+                unstable_at = size
             if not outcome.converged and self._ends_here(size, outcome):
-                there = self._unstable or size
-                length = path.step_length(begun.done, there)
-                beside = self._snap(lambda to=begun.done + there: path.load(to), length)  # type: ignore[misc]
+                there = size if self._unstable is None else unstable_at
+                beside = self._snap(lambda to=begun.done + there: path.load(to))  # type: ignore[misc]
                 if beside.converged:
                     outcome, size = beside, there
-                self._unstable = 0.0  # once a step
+                self._unstable = None  # once a step
             if outcome.converged:
-                self.number, self._unstable = self.number + 1, 0.0
+                self.number += 1
                 self.steps.accept(path, outcome, size)
                 return self._charged(outcome), begun.cuts
             self._cut(path, outcome, size)

@@ -9,7 +9,7 @@ driven head's force is wrong by
 where Δs is the step's travel and ∂F/∂s its secant. Of the error that comes in with one step, the work on the first
 step's deformation, which is elastic, gives in the same way what will be wrong when the spring is let go: the set. The
 greater of both, ΔF', is of third order in the step's size h, so that h (a/ΔF')^⅓ is the size of a step that brings in
-a.
+a. Over a step in which contacts close or open the path of strains is kinked, which the body is told.
 """
 
 import math
@@ -23,7 +23,8 @@ from coilset.model.equilibrium.settings import StepControl
 from coilset.model.state import Where
 
 ORDER = 3
-GREATEST, FIRST = range(2)  # what is remembered: greatest force, N, and travel of the first step of all, mm
+# what is remembered: greatest force, N, travel of the first step of all, mm, and how many contact elements are closed
+GREATEST, FIRST, CLOSED = range(3)
 
 
 @dataclass(frozen=True)
@@ -57,7 +58,7 @@ class StepError:
         assert isinstance(body, EstimatesErrors)
         self.control, self.accuracy, self.steps, self._body = control, accuracy, steps, body
         body.estimate_errors()
-        self._memory = control.system.state.add("step_error", np.zeros(2), Where.SHARED)
+        self._memory = control.system.state.add("step_error", np.zeros(3), Where.SHARED)
 
     def estimate(self, ratio: float) -> Estimate:
         """Judge the state on trial, once, before it is committed or given up; collective.
@@ -66,12 +67,13 @@ class StepError:
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
         """
         control, comm = self.control, self.control.system.comm
-        works = np.array(self._body.error_works(ratio))
+        memory, last = self._memory.trial, self._memory.equilibrium
+        memory[CLOSED] = sum(part.closed for part in control.system.last.contributions)
+        works = np.array(self._body.error_works(ratio, bool(memory[CLOSED] != last[CLOSED])))
         if comm.size > 1:
             works = comm.allreduce(works)
         before, force = control.force, control.trial_force
         travel = control.height - control.trial_height
-        memory, last = self._memory.trial, self._memory.equilibrium
         memory[GREATEST] = greatest = max(float(last[GREATEST]), abs(force))
         if abs(travel) <= 1e-12 * control.free_length or greatest == 0.0:
             return Estimate(math.nan, math.nan, 0.0, self.steps.growth)

@@ -14,6 +14,9 @@ NEAR = (
     0.95  # of the critical travel: what goes off before is pushed by the ends of a helix that are no whole turns apart
 )
 WELL_ABOVE = 0.15  # of the first eigenvalue
+# Of force times mean diameter. Springs that snapped set 3e-6 and more free; coils that slide over each other set 2e-10
+# free and less where they pass from one cubic of the wire's curve to the next, whose curvature jumps there.
+SNAPPED = 1e-8
 
 
 @dataclass(frozen=True)
@@ -68,7 +71,12 @@ def critical_travel(steps: Sequence[Step]) -> float:
 def _has_buckled(step: Step, diameter: float, critical: float) -> bool:
     """Is it unstable, has it snapped, or has its axis gone off far, and not by the push of its ends long before?"""
     gone = step.axis_offset_mm > SIDEWAYS * diameter and not step.travel_mm < NEAR * critical
-    return step.negative_pivots > 0 or step.left_branch > 0 or gone
+    return step.negative_pivots > 0 or snapped(step, diameter) or gone
+
+
+def snapped(step: Step, diameter: float) -> bool:
+    """Did the spring leave its path on the way to this step, and set energy free that counts?"""
+    return step.left_branch > 0 and step.released_energy_Nmm > SNAPPED * abs(step.force_N) * diameter
 
 
 def axis_offset(x: np.ndarray, start: np.ndarray, turns: np.ndarray) -> float:

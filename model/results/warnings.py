@@ -1,15 +1,19 @@
 """What a run has to say about itself, read from its records, so that a resumed run says the same."""
 
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from math import isfinite
 
-from coilset.model.results.buckling import buckling
+from coilset.model.results.buckling import buckling, snapped
 from coilset.model.results.record import Result, Setup, Snapshot, Step
 from coilset.model.section import surface
 from coilset.model.standards.working import presetting_warning
 from coilset.model.warning import Warning
 
 SLIPPED = 0.7  # of the rise to touch: coils of one wire that lie so are shifted sideways by 0.71 of their diameter
+# Percent of the force for one of the travel at the end of a way, from which the spring stands on a wall there: a spring
+# of constant rate has 1, the example at block 1.1, the cone 160.
+WALL = 20.0
 Check = Callable[[Setup, Result], Iterator[Warning]]
 
 
@@ -82,6 +86,24 @@ def _slipped(setup: Setup, result: Result) -> Iterator[Warning]:
         yield Warning("coils slipped", place, message, least, SLIPPED)
 
 
+def _wall(setup: Setup, result: Result) -> Iterator[Warning]:
+    """At the end of a way on which the spring is pressed."""
+    accuracy = setup.limits.accuracy
+    for before, step in pairwise(result.steps):
+        travel = step.travel_mm - before.travel_mm
+        if step.phase != before.phase or step.progress < 1.0 or travel <= 0.0 or step.force_N <= 0.0:
+            continue
+        rate = (step.force_N - before.force_N) / travel
+        percent = abs(rate) * step.travel_mm / step.force_N
+        if percent > WALL:
+            height = accuracy * step.force_N / abs(rate)
+            message = (
+                f"at {_place(step)} the force changes by {rate:.3g} N/mm: the spring stands on a wall, as its coils "
+                f"lie on each other or slip, and {100 * accuracy:.2g} % of the force are {height:.2g} mm of height"
+            )
+            yield Warning("wall", _place(step), message, percent, WALL)
+
+
 def _rise(step: Step) -> float:
     return 1.0 if step.least_rise is None else step.least_rise
 
@@ -118,7 +140,8 @@ def _unstable(setup: Setup, result: Result) -> Iterator[Warning]:
 
 def _snapped(setup: Setup, result: Result) -> Iterator[Warning]:
     before = [0.0, *(step.force_N for step in result.steps)]
-    snaps = [(force, step) for force, step in zip(before, result.steps, strict=False) if step.left_branch]
+    snaps = [(force, step) for force, step in zip(before, result.steps, strict=False)
+             if snapped(step, setup.mean_diameter)]  # fmt: skip
     if snaps:
         force, step = max(snaps, key=lambda snap: snap[1].released_energy_Nmm)
         times = "" if len(snaps) == 1 else f", {len(snaps)} times in all"
@@ -193,5 +216,5 @@ def released(result: Result) -> bool:
     return abs(result.snapshots[-1].force) <= 1e-6 * greatest
 
 
-SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _penetration, _buckled, _unstable, _snapped)
+SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _wall, _penetration, _buckled, _unstable, _snapped)
 FOUND: tuple[Check, ...] = (_strength, _step_error, _presetting)

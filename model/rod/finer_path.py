@@ -3,7 +3,9 @@
 A step integrates the law along a straight path of strains. Both errors of that are of second order: the law's own, and
 that of the path, which is bent in truth. So after each step the sections follow the step's strains a second time, from
 where they came so, in two halves that meet beside the straight path, where a parabola through the strains at the last
-three equilibria says. That divides the law's error and the area between path and chord by 4, so that
+three equilibria says. Where coils or seats close or open the path is kinked within the step: at worst in its middle,
+and there it lies off the chord by four times as much. That divides the law's error and the area between path and chord
+by 4, so that
 
     s* − s ≈ 4/3 (s_finer − s)
 
@@ -16,6 +18,7 @@ from coilset.model.section.kinds import Sections
 from coilset.model.state import State, Where
 
 RICHARDSON = 4.0 / 3.0
+KINK = 4.0  # of the parabola's height over the chord: after steps of one size, that of a kink in the middle of this one
 
 
 class FinerPath:
@@ -39,20 +42,21 @@ class FinerPath:
         self._half = {name: field.trial.copy() for name, field in self._fields.items()}
         self._s, self._D = np.empty(shape), np.empty((*shape, 6))
 
-    def follow(self, s: np.ndarray, ratio: float) -> bool:
+    def follow(self, s: np.ndarray, ratio: float, kinked: bool = False) -> bool:
         """Bring the finer path to the strains on trial.
 
         Args:
             s: section forces on trial, shape (cells, 2, 6), N and N mm.
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
+            kinked: did contacts close or open within the step?
 
         Returns:
             False if the law found no solution on this rank: the finer path then goes on from the step's own end, and
             the error is left as it was.
         """
         strain, change = self._strain, self._strain.trial - self._strain.equilibrium
-        # of the parabola's middle from the chord's
-        bend = 0.25 * ratio / (1.0 + ratio) * (ratio * self._increment.equilibrium - change)
+        # of the path's middle from the chord's
+        bend = 0.25 * ratio / (1.0 + ratio) * (ratio * self._increment.equilibrium - change) * (KINK if kinked else 1.0)
         self._increment.trial[:] = change
         if not self._first.equilibrium.any():
             self._first.trial[:] = change

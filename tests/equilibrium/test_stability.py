@@ -1,6 +1,7 @@
 """Unstable equilibria are no answer: pivots against eigenvalues, long springs with few and many steps, what is said."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -9,6 +10,8 @@ from mpi4py import MPI
 from coilset.model.analysis import Analysis
 from coilset.model.case import Case
 from coilset.model.equilibrium.continuation import Continuation
+from coilset.model.equilibrium.control import StepControl
+from coilset.model.equilibrium.snap import Snap
 from coilset.model.equilibrium.stability import vanishing
 from coilset.model.results.buckling import axis_offset, buckling, critical_travel
 from coilset.model.results.record import Step
@@ -129,3 +132,27 @@ def test_ranks_count_and_weigh_alike():
         found.append((negative, analysis.stability.weakest(load).value))
     assert found[0][0] == found[1][0] == 0
     assert found[0][1] == pytest.approx(found[1][1], rel=1e-6)
+
+
+@pytest.mark.mpi
+def test_ranks_snap_alike():
+    """Let go from the straight spring beyond the critical travel: the same bent one, stable, and the same energy."""
+    found = []
+    for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
+        analysis = pressed(44.0, 1, comm, mesh=4)
+        newton, stability, control = analysis.newton, analysis.stability, analysis.control
+        load = partial(control.to_height, analysis.spring.free_length - 44.0)
+        assert newton.solve(load()).converged
+        assert stability.negative_pivots(newton.load) > 0
+        straight, unstable = control.trial_force, analysis.system.increments.copy()
+        analysis.system.restore()
+        outcome = Snap(stability, StepControl(), newton.solve).go(load, unstable)
+        assert outcome.converged
+        assert outcome.left_branch
+        assert control.force < 0.99 * straight
+        x = analysis.layout.gather(analysis.rod.x)
+        assert axis_offset(x, analysis.rod.line.stations, analysis.setup.turns) > 5.0
+        found.append((control.force, outcome.released))
+    assert found[0][0] == pytest.approx(found[1][0], rel=1e-6)
+    assert found[0][1] == pytest.approx(found[1][1], rel=1e-6)
+    assert found[0][1] > 0.0

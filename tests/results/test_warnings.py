@@ -74,7 +74,7 @@ def test_warnings_of_steps(lifted):
         ("coils slipped", {"least_rise": 0.7}, 0.999),
         ("lift-off", {"lift_off_mm": 0.0}, None),
         ("unstable", {"negative_pivots": 0}, None),
-        ("snapped", {"left_branch": 0}, None),
+        ("snapped", {"left_branch": 0, "released_energy_Nmm": 0.0}, None),
     ]
     for name, right, factor in bounds:
         wrong = {key: value * factor if factor else 1 for key, value in right.items()}
@@ -82,6 +82,20 @@ def test_warnings_of_steps(lifted):
         found = step_warnings(setup, Result(steps=(step, replace(step, number=2, **wrong))))
         assert name in names(found)
         assert next(one for one in found if one.name == name).place.startswith("step 2, ") or name == "buckled"
+
+
+def test_a_force_on_a_wall_is_told(lifted):
+    """From 100 N at 10 mm to 120 N at 10.1 mm: 200 N/mm are 16.8 % of it for 1 % of the travel, 400 N/mm 29 %."""
+    first = Step(1, 0, 0.9, 25.0, 10.0, 100.0, 3, 4, 0, 0, 2, 0.0)
+    for force, phase, progress, found in ((120.0, 0, 1.0, 0), (140.0, 0, 1.0, 1), (140.0, 0, 0.95, 0),
+                                          (140.0, 1, 1.0, 0), (60.0, 0, 1.0, 1)):  # fmt: skip
+        last = replace(first, number=2, travel_mm=10.1, force_N=force, phase=phase, progress=progress)
+        walls = [one for one in step_warnings(lifted.setup, Result(steps=(first, last))) if one.name == "wall"]
+        assert len(walls) == found
+        if found:
+            assert walls[0].value == pytest.approx(abs(force - 100.0) / 0.1 * 10.1 / force, rel=1e-9)
+    back = replace(first, number=2, travel_mm=9.9, force_N=60.0, progress=1.0)
+    assert "wall" not in names(step_warnings(lifted.setup, Result(steps=(first, back))))
 
 
 def test_the_steps_error_is_held_against_the_accuracy_asked_for():

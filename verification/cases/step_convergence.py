@@ -1,14 +1,17 @@
-"""Shipped springs to block and back in 12, 24, 48 and 96 steps and in automatic ones: force at block and set
+"""Shipped springs to block and back in more and more equal steps and in automatic ones: force at block and set
 
-Each spring is pressed to block in so many equal steps and let go in as many, and once in automatic steps, which is the
-default, with 0.2 % asked for. The law and the straight path of strains in a step have errors of second order, so that
-Richardson's limit of the last two values is v + (v − v')/3, where the differences of the sequence fall; the observed
-order is log2 of their ratio. Contacts that close within a step disturb the order.
+Each spring is pressed to block in so many equal steps and let go in as many, 48 at most, and once in automatic steps,
+which is the default, with 0.2 % asked for. The law and the straight path of strains in a step have errors of second
+order, so that Richardson's limit of the last two values is v + (v − v')/3, where the differences of the sequence fall;
+the observed order is log2 of their ratio. Contacts that close within a step disturb the order: those of cone, barrel
+and funnel close point by point over half of the way, and only steps shorter than the way from one point to the next
+close in. So the cone is pressed in up to 768 steps.
 
 The example as it is shipped must be within 0.2 % of its limit in force and 0.1 % in set with automatic steps, the
-others within 0.5 and 0.2 %; where a sequence does not close in (its last difference is more than 0.6 of the one before
-it) the limit means nothing, and the deviation from its last value is shown and not judged. What steps say of their own
-error stands in the second table, and what all of it costs in the third.
+others within 0.5 and 0.2 %. Where a sequence does not close in (its last difference is more than 0.6 of the one before
+it) its limit is not taken; the last value stands for it if the two last ones are within a third of the tolerance, else
+the deviation is shown and not judged. How steep the wall is that a spring stands on at block, and by how much height
+the tolerance is, says the first table; what steps say of their own error the second, and what it costs the third.
 """
 
 import time
@@ -29,11 +32,14 @@ from coilset.model.results.summary import summarise
 from coilset.verification.study import Study
 
 FAST = False
+LOOSE = (0.005, 0.002)
 SPRINGS = {
-    "example": ("ck15_presetting.yaml", (0.002, 0.001)), "cone": ("springs/cone.yaml", (0.005, 0.002)),
-    "barrel": ("springs/barrel.yaml", (0.005, 0.002)), "funnel": ("springs/funnel.yaml", (0.005, 0.002)),
-}  # fmt: skip
-STEPS = (12, 24, 48, 96)
+    "example": ("ck15_presetting.yaml", (0.002, 0.001), (12, 24, 48, 96)),
+    "cone": ("springs/cone.yaml", LOOSE, (96, 192, 384, 768)),
+    "barrel": ("springs/barrel.yaml", LOOSE, (24, 48, 96, 192)),
+    "funnel": ("springs/funnel.yaml", LOOSE, (48, 96, 192, 384)),
+}
+BACK = 48  # steps of the release, at most
 QUANTITIES = ("force at block, N", "set, mm")
 FEWER_POINTS = ("mesh.section.radial=4", "mesh.section.angular=12")  # of the larger springs, for time
 CLOSING = 0.6  # ratio of the last differences up to which a sequence closes in
@@ -41,20 +47,25 @@ CLOSING = 0.6  # ratio of the last differences up to which a sequence closes in
 
 @dataclass(frozen=True)
 class Press:
-    """To block and back: force at block, N, and set, mm, their estimated errors, evaluations, seconds of processor."""
+    """To block and back: force at block, N, and set, mm, rate there, their estimated errors, evaluations, seconds.
+
+    The rate is that over the last step, N/mm; seconds are those of the processor.
+    """
 
     found: tuple[float, float]
+    rate: float
     told: tuple[float | None, float | None]
     evaluations: int
     seconds: float
 
 
-LOST = Press((np.nan, np.nan), (np.nan, np.nan), 0, np.nan)
+LOST = Press((np.nan, np.nan), np.nan, (np.nan, np.nan), 0, np.nan)
 
 
 def press(file: str, steps: int | str) -> Press:
     """A Press; NaN where no equilibrium was found."""
-    settings = [f"loading.{k}.steps={steps}" for k in (0, 1)] + list(FEWER_POINTS if "springs" in file else ())
+    back = steps if isinstance(steps, str) else min(steps, BACK if "springs" in file else steps)
+    settings = [f"loading.0.steps={steps}", f"loading.1.steps={back}", *(FEWER_POINTS if "springs" in file else ())]
     analysis = Analysis(read_case(EXAMPLES / file, settings), MPI.COMM_SELF)
     began = time.process_time()
     try:
@@ -62,10 +73,11 @@ def press(file: str, steps: int | str) -> Press:
     except SolveError:
         return LOST
     seconds = time.process_time() - began
-    block = [step for step in result.steps if step.phase == 0][-1]
+    before, block = [step for step in result.steps if step.phase == 0][-2:]
+    rate = (block.force_N - before.force_N) / (block.travel_mm - before.travel_mm)
     summary = summarise(analysis.setup, result)
     told = block.estimated_force_error_N, summary["estimated_set_error_mm"]
-    return Press((block.force_N, summary["set_mm"]), told, summary["evaluations"], seconds)
+    return Press((block.force_N, summary["set_mm"]), rate, told, summary["evaluations"], seconds)
 
 
 def _number(value: float | None) -> float:
@@ -80,29 +92,41 @@ def limit(values: Sequence[float]) -> tuple[float, float]:
 
 def run(study: Study) -> None:
     """All springs, all numbers of steps."""
-    presses = {name: [press(file, steps) for steps in (*STEPS, "auto")] for name, (file, _) in SPRINGS.items()}
+    presses = {name: [press(file, number) for number in (*steps, "auto")] for name, (file, _, steps) in SPRINGS.items()}
+    report(study, presses)
+
+
+def report(study: Study, presses: Mapping[str, Sequence[Press]]) -> None:
+    """Judge what the runs of each of SPRINGS have found, equal steps first, automatic ones last."""
     rows, told, costs, off = [], [], [], {}
-    for name, (_, tolerances) in SPRINGS.items():
+    for name, (_, tolerances, steps) in SPRINGS.items():
         runs = presses[name]
         for k, (quantity, tolerance) in enumerate(zip(QUANTITIES, tolerances, strict=True)):
             *values, automatic = (one.found[k] for one in runs)
-            closes = abs(values[-1] - values[-2]) <= CLOSING * abs(values[-2] - values[-3])
+            last, before = abs(values[-1] - values[-2]), abs(values[-2] - values[-3])
+            closes = last <= CLOSING * before
             end, order = limit(values)
             if not closes:
                 end = values[-1]
             off[name, k] = [100.0 * abs(value / end - 1.0) for value in (*values, automatic)]
-            rows.append([name, quantity, *values, automatic, end if closes else np.nan, order])
+            wall = runs[-2].rate  # over the last of many small steps
             told.append(
                 [name, quantity, *(_number(one.told[k]) for one in runs), *(end - one.found[k] for one in runs)]
             )
+            rows.append([name, quantity, ", ".join(map(str, steps)), *values, automatic, end if closes else np.nan,
+                         order, off[name, k][-1], wall, tolerance * end / wall if k == 0 else np.nan])  # fmt: skip
             what = f"{name}, {quantity}, automatic steps"
             if closes:
                 study.check(what, automatic, end, "Richardson's limit", tolerance)
+            elif last <= tolerance * end / 3.0:
+                study.check(what, automatic, end, f"{steps[-1]} steps", tolerance)
             else:
-                study.shown(what, automatic, end, f"{STEPS[-1]} steps", "its steps do not close in yet")
+                study.shown(what, automatic, end, f"{steps[-1]} steps", "its steps do not close in")
         costs.append([name, *(one.evaluations for one in runs), *(one.seconds for one in runs)])
-    names = [*(f"{steps} steps" for steps in STEPS), "automatic"]
-    study.table("to block and back", ["spring", "quantity", *names, "limit", "order"], rows)
+    names = [*(f"steps {number}" for number in range(1, 5)), "automatic"]
+    columns = ["spring", "quantity", "steps", *names, "limit", "order", "automatic off, %", "rate at block, N/mm",
+               "tolerance, mm"]  # fmt: skip
+    study.table("to block and back", columns, rows)
     study.table("error that steps tell, and true one", ["spring", "quantity", *(f"told, {name}" for name in names),
                                                         *(f"true, {name}" for name in names)], told)  # fmt: skip
     study.table("states evaluated, seconds of processor", ["spring", *names, *(f"{name}, s" for name in names)], costs)
