@@ -1,12 +1,19 @@
 """What equilibrium asks of a body: stresses for an increment, internal forces, a tangent."""
 
-from typing import Protocol, runtime_checkable
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from dolfinx import fem
 from petsc4py import PETSc
 
 from coilset.model.state import State
+
+
+class Moment(NamedTuple):
+    """When: hours since the start, and the temperature, K."""
+
+    hours: float
+    temperature: float
 
 
 class Body(Protocol):
@@ -137,4 +144,24 @@ class HasRotations(Protocol):
 
     def to_charts(self, values: np.ndarray) -> None:
         """Make of moments of the fixed frame, at the owned rotations of `values`, those of the trial state's charts."""
+        ...
+
+
+@runtime_checkable
+class PassesTime(Protocol):
+    """A body whose material knows time."""
+
+    @property
+    def clock(self) -> np.ndarray:
+        """At the last equilibrium: hours since the start, temperature (K), hours at the constants' temperature."""
+        ...
+
+    def pass_time(self, middle: Moment, end: Moment) -> None:
+        """Let a step take time, from the last equilibrium to `end`, by `middle` half way; before it is solved.
+
+        It is forgotten when the step is committed or given up.
+
+        Raises:
+            ValueError: if the material does not know time.
+        """
         ...

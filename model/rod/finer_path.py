@@ -57,10 +57,14 @@ class FinerPath:
         if not self._first.equilibrium.any():
             self._first.trial[:] = change
         start = {name: field.equilibrium for name, field in self._fields.items()} | {"strain": strain.equilibrium}
+        half, end = self._half, {name: field.trial for name, field in self._fields.items()}
+        if "clock" in self._state:
+            clock = self._state["clock"]
+            start, end = start | {"clock": clock.equilibrium}, end | {"clock": clock.trial}
+            half = half | {"clock": self._state["halfway_clock"].trial}
         middle = strain.equilibrium + 0.5 * change + bend
-        end = {name: field.trial for name, field in self._fields.items()}
-        good = self._sections.update(middle, start, self._half, self._s, self._D)
-        good = good and self._sections.update(strain.trial, self._half | {"strain": middle}, end, self._s, self._D)
+        good = self._sections.update(middle, start, half, self._s, self._D)
+        good = good and self._sections.update(strain.trial, half | {"strain": middle}, end, self._s, self._D)
         if good:
             self._error.trial[:] = RICHARDSON * (self._s - s)
         else:
