@@ -114,7 +114,7 @@ class EstimatesErrors(Protocol):
         """Be ready for it from now on; adds fields to the state, so before anything is saved."""
         ...
 
-    def error_works(self, ratio: float) -> tuple[float, float, float]:
+    def error_works(self, ratio: float) -> tuple[float, float, float, float]:
         """To be called once at a step's end, before it is committed.
 
         Args:
@@ -122,8 +122,8 @@ class EstimatesErrors(Protocol):
 
         Returns:
             Work of the error of the inner forces on the step's deformation; of that share of the error which came in
-            with the step, the work on the step's deformation and on that of the first step of all. Of this rank's
-            cells, N mm; not a number where the error is not known.
+            with the step, the work on the step's deformation and on that of the first step of all; the work of the
+            whole error on the latter. Of this rank's cells, N mm; not a number where the error is not known.
         """
         ...
 

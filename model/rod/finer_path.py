@@ -78,7 +78,7 @@ class FinerPath:
         for name, field in self._fields.items():
             field.equilibrium[:] = field.trial[:] = self._state[name].equilibrium
 
-    def works(self, length: np.ndarray) -> tuple[float, float, float]:
+    def works(self, length: np.ndarray) -> tuple[float, float, float, float]:
         """Works of the error of the section forces, N mm; see EstimatesErrors.
 
         Args:
@@ -87,4 +87,6 @@ class FinerPath:
         error = 0.5 * length[:, None, None] * self._error.trial
         new = error - 0.5 * length[:, None, None] * self._error.equilibrium
         now, first = self._increment.trial, self._first.trial
-        return float(np.sum(error * now)), float(np.sum(new * now)), float(np.sum(new * first))
+        pairs = (error, now), (new, now), (new, first), (error, first)
+        own, new_own, left, error_left = (float(np.sum(force * strain)) for force, strain in pairs)
+        return own, new_own, left, error_left

@@ -226,11 +226,11 @@ class Rod:
         """Follow each step on a finer path from now on; see EstimatesErrors."""
         self._finer = FinerPath(self.sections, self.state)
 
-    def error_works(self, ratio: float) -> tuple[float, float, float]:
+    def error_works(self, ratio: float) -> tuple[float, float, float, float]:
         """Works of what the steps up to here and the last one leave wrong; see EstimatesErrors."""
         assert self._finer is not None, "estimate_errors comes before"
         if not self._finer.follow(self.s.values, ratio):
-            return np.nan, np.nan, np.nan
+            return np.nan, np.nan, np.nan, np.nan
         return self._finer.works(np.linalg.norm(self._chord.trial, axis=1))
 
     def rejoin_finer_path(self) -> None:
