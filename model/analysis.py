@@ -13,8 +13,8 @@ from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.line import line_mesh
 from coilset.meshes.placement import refuse_sharp_bends, section_placement, straight
 from coilset.model.case import Case
-from coilset.model.case.phases import Phase
-from coilset.model.case.targets import check_targets
+from coilset.model.case.phases import AnyPhase, Phase, TimePhase
+from coilset.model.case.targets import check_targets, check_times
 from coilset.model.contact.base import BearsOnWire
 from coilset.model.contact.build import build_contacts, seats_at
 from coilset.model.effort import Effort, machine_memory
@@ -78,6 +78,7 @@ class Analysis:
         self.spring = spring = case.spring.build()
         self.law = case_law(case, spring)
         check_targets(case, spring, self.law.G)
+        check_times(case, self.law)
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
         effort = Effort.of(len(turns) - 1, self.case.mesh.section.points, self._planned_steps())
         effort.check_memory(machine_memory())
@@ -240,10 +241,13 @@ class Analysis:
             raise InputError("the checkpoint's array is missing or not of this spring; give --force instead of "
                              "--resume to begin anew", problem)  # fmt: skip
 
-    def stage(self, phase: Phase) -> Stage:
+    def stage(self, phase: AnyPhase) -> Stage:
         """A phase of the case as the load program takes it."""
-        to, free_length = phase.to, self.spring.free_length
         steps = tuple(phase.steps) if isinstance(phase.steps, list) else phase.steps
+        if isinstance(phase, TimePhase):
+            time = phase.duration
+            return Stage(time.keep, None, steps, phase.label, time.length, phase.temperature)
+        to, free_length = phase.to, self.spring.free_length
         if to == "block":
             return Stage("height", self.spring.block_height, steps, phase.label)
         if to.force is not None:
@@ -271,7 +275,8 @@ class Analysis:
                     taken.outcome.negative_pivots, int(taken.outcome.left_branch), taken.outcome.released,
                     axis_offset(x, self.rod.line.stations, turns), self._least_eigenvalue(),
                     self._greatest_plastic_work(), lift_off,
-                    least_rise(x, turns, self.spring), *self._errors(taken.outcome))  # fmt: skip
+                    least_rise(x, turns, self.spring), *self._errors(taken.outcome),
+                    *self._time(phase, force))  # fmt: skip
         seats = self._seat_reactions(step.number, greatest)
         known = {warning.name for warning in step_warnings(self.setup, self.result)}
         self.result = replace(self.result, steps=(*self.result.steps, step), seats=(*self.result.seats, seats))
@@ -294,6 +299,18 @@ class Analysis:
         """Greatest b* on the wire's surface at the last equilibrium, N/mm²; collective."""
         work = surface.component(self.rod.surface_state, self.rod.sections.components, "b")
         return float(self.comm.allreduce(work.max(initial=0.0), op=MPI.MAX))
+
+    def _time(self, phase: int, force: float) -> tuple[float, float, float | None]:
+        """Hours, temperature (K), and per cent of the force lost since time began to pass, at the last equilibrium."""
+        loading, first = self.case.loading, phase
+        while first >= 0 and isinstance(one := loading[first], TimePhase) and one.duration.keep == "height":
+            first -= 1
+        before = next((step.force_N for step in reversed(self.result.steps) if step.phase <= first), 0.0)
+        loss = None
+        if first < phase and abs(before) > faint_force(self.rod, self.result.greatest_force):
+            loss = 100.0 * (1.0 - force / before)
+        hours, temperature, _ = self.rod.clock
+        return float(hours), float(temperature), loss
 
     def _errors(self, outcome: Outcome) -> tuple[float | None, float | None]:
         """Estimated errors of force and height by the steps' length, N and mm; None where they are not known."""

@@ -1,12 +1,19 @@
 """What equilibrium asks of a body: stresses for an increment, internal forces, a tangent."""
 
-from typing import Protocol, runtime_checkable
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 from dolfinx import fem
 from petsc4py import PETSc
 
 from coilset.model.state import State
+
+
+class Moment(NamedTuple):
+    """When: hours since the start, and the temperature, K."""
+
+    hours: float
+    temperature: float
 
 
 class Body(Protocol):
@@ -107,7 +114,7 @@ class EstimatesErrors(Protocol):
         """Be ready for it from now on; adds fields to the state, so before anything is saved."""
         ...
 
-    def error_works(self, ratio: float, kinked: bool) -> tuple[float, float, float]:
+    def error_works(self, ratio: float, kinked: bool) -> tuple[float, float, float, float]:
         """To be called once at a step's end, before it is committed.
 
         Args:
@@ -116,8 +123,8 @@ class EstimatesErrors(Protocol):
 
         Returns:
             Work of the error of the inner forces on the step's deformation; of that share of the error which came in
-            with the step, the work on the step's deformation and on that of the first step of all. Of this rank's
-            cells, N mm; not a number where the error is not known.
+            with the step, the work on the step's deformation and on that of the first step of all; the work of the
+            whole error on the latter. Of this rank's cells, N mm; not a number where the error is not known.
         """
         ...
 
@@ -138,4 +145,24 @@ class HasRotations(Protocol):
 
     def to_charts(self, values: np.ndarray) -> None:
         """Make of moments of the fixed frame, at the owned rotations of `values`, those of the trial state's charts."""
+        ...
+
+
+@runtime_checkable
+class PassesTime(Protocol):
+    """A body whose material knows time."""
+
+    @property
+    def clock(self) -> np.ndarray:
+        """At the last equilibrium: hours since the start, temperature (K), hours at the constants' temperature."""
+        ...
+
+    def pass_time(self, middle: Moment, end: Moment) -> None:
+        """Let a step take time, from the last equilibrium to `end`, by `middle` half way; before it is solved.
+
+        It is forgotten when the step is committed or given up.
+
+        Raises:
+            ValueError: if the material does not know time.
+        """
         ...

@@ -114,7 +114,7 @@ def _sheet(
                  case.ends == "clamped", law.yield_stress)  # fmt: skip
     if lengths:
         return made
-    planned = working_lengths(case.loading, cylinder.length, made.rate, cylinder.solid)
+    planned = working_lengths(case.targets, cylinder.length, made.rate, cylinder.solid)
     return replace(made, lengths=tuple(planned))
 
 

@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo,
 
 from coilset.meshes.spring import SpringEntry
 from coilset.meshes.stations import ElementsPerTurn
-from coilset.model.case.phases import Phase
+from coilset.model.case.phases import AnyPhase, Phase
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.case.settings import assign, located
 from coilset.model.entries.entry import Strict, Whole, check_entries
@@ -209,7 +209,9 @@ class Case(Strict):
         Field(gt=0, lt=1, description="error of force that the length of automatic steps may cause, over the greatest "
                                       "force, as in 0.2 %"),
     ] = 0.002  # fmt: skip
-    loading: Annotated[list[Phase], Field(strict=False, min_length=1, description="targets, one after the other")]
+    loading: Annotated[
+        list[AnyPhase], Field(strict=False, min_length=1, description="targets and times, one after the other")
+    ]
     rates_at: Annotated[
         list[Annotated[float, Unit("mm"), Field(gt=0)]],
         Field(default_factory=list, description="travels, mm, at which the rate of the first compression is given"),
@@ -238,9 +240,14 @@ class Case(Strict):
         if self.ends != "seats" and self.contact.friction.seats:
             raise ValueError("there are no seats between clamped ends; leave contact.friction.seats out")
         shapes = {self.seats.bottom.shape, self.seats.top.shape} - {"flat"}
-        if shapes and any(phase.to == "block" for phase in self.loading):
+        if shapes and any(phase.to == "block" for phase in self.targets):
             raise ValueError(f"block is known for flat seats; with {shapes.pop()} ones give height, travel or force")
         return self
+
+    @property
+    def targets(self) -> list[Phase]:
+        """The phases of `loading` that go to a target."""
+        return [phase for phase in self.loading if isinstance(phase, Phase)]
 
 
 Group = TypeVar("Group", bound=Strict)

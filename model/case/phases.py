@@ -1,4 +1,4 @@
-"""The `loading` section of a case: a list of targets, each reached in a number of steps."""
+"""The `loading` section of a case: a list of targets and times, each reached in a number of steps."""
 
 from typing import Annotated, Any, Literal, Self
 
@@ -47,14 +47,9 @@ Marks = Annotated[
 """Parts of a phase at which its steps end."""
 
 
-class Phase(Strict):
-    """Go to a target in steps."""
+class Stepped(Strict):
+    """What is done in steps."""
 
-    to: Annotated[
-        Annotated[Literal["block"], Tag("(block)")] | Annotated[Target, Tag("(target)")],
-        Discriminator(_kind),
-        Field(description="block, {travel: mm}, {height: mm} or {force: N}"),
-    ]
     steps: Annotated[
         Annotated[Whole, Field(gt=0, le=100_000), Tag("(number)")]
         | Annotated[Literal["auto"], Tag("(word)")]
@@ -70,6 +65,16 @@ class Phase(Strict):
             return automatic
         return len(self.steps) if isinstance(self.steps, list) else self.steps
 
+
+class Phase(Stepped):
+    """Go to a target in steps."""
+
+    to: Annotated[
+        Annotated[Literal["block"], Tag("(block)")] | Annotated[Target, Tag("(target)")],
+        Discriminator(_kind),
+        Field(description="block, {travel: mm}, {height: mm} or {force: N}"),
+    ]
+
     @property
     def label(self) -> str:
         """The target in words, for progress and logs."""
@@ -77,3 +82,82 @@ class Phase(Strict):
             return "block"
         name, value = next((name, value) for name, value in self.to.model_dump().items() if value is not None)
         return f"{name} {value:g} {'N' if name == 'force' else 'mm'}"
+
+
+class Duration(Strict):
+    """How long, and what stays as it was meanwhile."""
+
+    hours: Annotated[float | None, Unit("h"), Field(gt=0, le=1e7, description="its length in hours")] = None
+    minutes: Annotated[float | None, Unit("min"), Field(gt=0, le=1e9, description="its length in minutes")] = None
+    keep: Annotated[Literal["height", "force"], Field(description="what stays as it was: the height or the force")] = (
+        "height"
+    )
+
+    @model_validator(mode="after")
+    def _one_length(self) -> Self:
+        if (self.hours is None) == (self.minutes is None):
+            raise ValueError("give exactly one of hours or minutes, as in {hours: 48}")
+        return self
+
+    @property
+    def length(self) -> float:
+        """Hours."""
+        return self.hours if self.hours is not None else (self.minutes or 0.0) / 60.0
+
+    @property
+    def words(self) -> str:
+        """The length as it was given."""
+        return f"{self.hours:g} h" if self.hours is not None else f"{self.minutes:g} min"
+
+
+class Hold(Duration):
+    """Let time pass at the present temperature; equal steps are equal ones of the time's logarithm."""
+
+
+class Heat(Duration):
+    """Heat or cool the whole spring, its temperature going linearly in time."""
+
+    to: Annotated[float, Unit("K"), Field(gt=0, description="temperature at the end, K")]
+
+
+class TimePhase(Stepped):
+    """Let time pass; the material must creep."""
+
+    hold: Annotated[Hold | None, Field(description="time at the present temperature, as in {hours: 48}")] = None
+    heat: Annotated[Heat | None, Field(description="another temperature, as in {to: 393, minutes: 20}")] = None
+
+    @model_validator(mode="after")
+    def _one(self) -> Self:
+        if (self.hold is None) == (self.heat is None):
+            raise ValueError("give exactly one of hold or heat, as in {hold: {hours: 48}}")
+        return self
+
+    @property
+    def duration(self) -> Duration:
+        """How long, and what is kept."""
+        duration = self.hold or self.heat
+        assert duration is not None
+        return duration
+
+    @property
+    def temperature(self) -> float | None:
+        """At its end, K; None if it stays."""
+        return self.heat.to if self.heat else None
+
+    @property
+    def label(self) -> str:
+        """In words, for progress and logs."""
+        doing = f"heat to {self.heat.to:g} K in" if self.heat else "hold"
+        return f"{doing} {self.duration.words} at constant {self.duration.keep}"
+
+
+def _passes_time(value: Any) -> str:
+    """An entry of time, or a target."""
+    timed = isinstance(value, TimePhase) or (isinstance(value, dict) and bool({"hold", "heat"} & value.keys()))
+    return "(time)" if timed else "(target)"
+
+
+AnyPhase = Annotated[
+    Annotated[Phase, Tag("(target)")] | Annotated[TimePhase, Tag("(time)")], Discriminator(_passes_time)
+]
+"""A phase of a load program."""

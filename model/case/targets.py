@@ -6,7 +6,8 @@ from coilset.meshes.ends import touching_pitch
 from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
 from coilset.model.case.case import Case
-from coilset.model.case.phases import Target
+from coilset.model.case.phases import Phase, Target, TimePhase
+from coilset.model.material.law import Law
 
 SLACK = 1e-9  # of the free length: rounding of a height that was computed
 BORNE = 2.0  # times the elastic force at which all coils lie on each other: beyond it a target is no spring's any more
@@ -28,7 +29,7 @@ def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
     lowest = spring.block_height if flat else 0.0  # with other seats the block is not known
     greatest = BORNE * closing_force(spring, shear_modulus)
     for number, phase in enumerate(case.loading):
-        if isinstance(phase.to, Target):
+        if isinstance(phase, Phase) and isinstance(phase.to, Target):
             place = f"loading.{number}.to"
             if case.ends == "seats":
                 _only_press(phase.to, spring.free_length, place)
@@ -37,6 +38,26 @@ def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
                 raise InputError(f"is {phase.to.force:g} N, but all coils of this spring lie on each other at about "
                                  f"{greatest / BORNE:.4g} N, or less if it yields; give block, or a smaller force",
                                  f"{place}.force")  # fmt: skip
+
+
+def check_times(case: Case, law: Law) -> None:
+    """Refuse phases in time of a material that knows no time, or not the temperature.
+
+    Raises:
+        InputError: with the phase.
+    """
+    for number, phase in enumerate(case.loading):
+        if not isinstance(phase, TimePhase):
+            continue
+        word = "heat" if phase.heat else "hold"
+        if law.creep is None:
+            raise InputError(f"'{law.name}' does not creep, so that time changes nothing; give a material with creep",
+                             f"loading.{number}.{word}")  # fmt: skip
+        if phase.heat:
+            try:
+                law.known(phase.heat.to)
+            except InputError as error:
+                raise InputError(error.problem, f"loading.{number}.heat.to") from None
 
 
 def closing_force(spring: Spring, shear_modulus: float) -> float:

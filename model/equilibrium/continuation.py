@@ -226,10 +226,13 @@ class Continuation:
             begun = self.steps.position
             size = self.steps.size(path)
             load, length = path.load(begun.done + size), path.step_length(begun.done, size)
+            if path.moment is not None:
+                self.system.pass_time(path.moment(begun.done + 0.5 * size), path.moment(begun.done + size))
             outcome = self._attempt(load, self.starts(load, length), length, path.automatic)
             if outcome.negative_pivots > self.negative_pivots:
                 unstable_at = size
-            if not outcome.converged and self._ends_here(size, outcome):
+            # where time passes nothing snaps: a path that ends there ends the run
+            if not outcome.converged and path.moment is None and self._ends_here(size, outcome):
                 there = size if self._unstable is None else unstable_at
                 beside = self._snap(lambda to=begun.done + there: path.load(to))  # type: ignore[misc]
                 if beside.converged:

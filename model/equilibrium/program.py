@@ -2,12 +2,13 @@
 
 import logging
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 
+from coilset.model.body import Moment, PassesTime
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.convergence import Outcome
@@ -15,23 +16,29 @@ from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.step_control import Path, Position
 
 log = logging.getLogger("coilset.steps")
+START = Moment(0.0, 0.0)
+FIRST_TIME = 1e-6  # of a hold: below it equal steps are equal times, above it equal factors of time
 
 
 @dataclass(frozen=True)
 class Stage:
-    """Go to a height or to a force.
+    """Go to a height or to a force, or let time pass.
 
     Attributes:
         kind: what is driven.
-        value: at the end, mm or N.
+        value: at the end, mm or N; None: as at the start.
         steps: number of equal steps, or auto, or the parts of the stage at which they end, ascending to 1.
         label: in words.
+        hours: how long it takes; 0: no time.
+        temperature: at the end, K; None: as at the start.
     """
 
     kind: Literal["height", "force"]
-    value: float
+    value: float | None
     steps: int | Literal["auto"] | tuple[float, ...]
     label: str
+    hours: float = 0.0
+    temperature: float | None = None
 
 
 @dataclass(frozen=True)
@@ -43,6 +50,7 @@ class ProgramPosition:
         height, force: where the stage began, mm and N.
         on_path: Position on the path of the stage.
         redirected: where it goes in place of the stage's own target; None: there.
+        begun: Moment when the stage began.
     """
 
     stage: int
@@ -50,6 +58,7 @@ class ProgramPosition:
     force: float
     on_path: Position
     redirected: Stage | None = None
+    begun: Moment = START
 
 
 @dataclass(frozen=True)
@@ -78,18 +87,26 @@ class LoadProgram:
         """Stand at the start of a stage."""
         self.redirected: Stage | None = None
         self.number, self._height, self._force = number, self.control.height, self.control.force
+        self._begun = self.now
         self.continuation.begin()
+
+    @property
+    def now(self) -> Moment:
+        """Time and temperature at the last equilibrium."""
+        body = self.control.system.body
+        return Moment(*(float(value) for value in body.clock[:2])) if isinstance(body, PassesTime) else START
 
     @property
     def position(self) -> ProgramPosition:
         """Where the spring stands."""
         return ProgramPosition(
-            self.number, self._height, self._force, self.continuation.steps.position, self.redirected
+            self.number, self._height, self._force, self.continuation.steps.position, self.redirected, self._begun
         )
 
     @position.setter
     def position(self, position: ProgramPosition) -> None:
         self.number, self._height, self._force = position.stage, position.height, position.force
+        self._begun = position.begun
         self.continuation.steps.position, self.redirected = position.on_path, position.redirected
 
     def run(self, stage: Stage) -> Iterator[StepTaken]:
@@ -122,16 +139,33 @@ class LoadProgram:
 
     def _path(self, stage: Stage) -> Path:
         regular, begin = self._regular(stage), self._force if stage.kind == "force" else self._height
-
+        end = begin if stage.value is None else stage.value
         marks = np.array([0.0, *stage.steps]) if isinstance(stage.steps, tuple) else None
 
         def part(done: float) -> float:
             return done / regular if marks is None else float(np.interp(done, np.arange(regular + 1), marks))
 
         def load(done: float) -> Load:
-            value = stage.value if done >= regular else begin + part(done) * (stage.value - begin)
+            value = end if done >= regular else begin + part(done) * (end - begin)
             return self.control.to_force(value) if stage.kind == "force" else self.control.to_height(value)
 
         return Path(load, regular, stage.label, stage.steps == "auto",
                     lambda: f"{self.control.height:.6g} mm and {self.control.force:.6g} N",
-                    None if marks is None else lambda done: regular * part(done))  # fmt: skip
+                    None if marks is None else lambda done: regular * part(done),
+                    self._moments(stage, part) if stage.hours else None)  # fmt: skip
+
+    def _moments(self, stage: Stage, part: Callable[[float], float]) -> Callable[[float], Moment]:
+        """Time and temperature along a stage, by places on its path.
+
+        A temperature goes linearly in time, with equal times in equal steps. At constant temperature creep slows down:
+        equal steps then are equal ones of log(1 + t/t₁), with t₁ = `FIRST_TIME` of the whole.
+        """
+        begun, last = self._begun, self._begun.temperature if stage.temperature is None else stage.temperature
+
+        def moment(done: float) -> Moment:
+            time = min(part(done), 1.0)
+            if stage.temperature is None and time < 1.0:
+                time = FIRST_TIME * math.expm1(time * math.log1p(1.0 / FIRST_TIME))
+            return Moment(begun.hours + time * stage.hours, begun.temperature + time * (last - begun.temperature))
+
+        return moment

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from coilset.meshes.errors import SolveError
+from coilset.model.body import Moment
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.settings import StepControl
@@ -25,6 +26,7 @@ class Path:
         automatic: do steps take the size that their error and the iteration allow? Equal steps end on their marks,
             also after a cut.
         place: where on it the body stands, in words.
+        moment: time and temperature at a place on the path; None where no time passes.
         length: of the path up to a place that is counted in regular steps, in their mean length; None: they are equal.
     """
 
@@ -34,6 +36,7 @@ class Path:
     automatic: bool = False
     place: Callable[[], str] = lambda: "here"
     length: Callable[[float], float] | None = None
+    moment: Callable[[float], Moment] | None = None
 
     def step_length(self, done: float, size: float) -> float:
         """Of a step of a size from a place on the path, both in regular steps; in their mean length."""

@@ -75,15 +75,29 @@ class StepError:
         before, force = control.force, control.trial_force
         travel = control.height - control.trial_height
         memory[GREATEST] = greatest = max(float(last[GREATEST]), abs(force))
-        if abs(travel) <= 1e-12 * control.free_length or greatest == 0.0:
-            return Estimate(math.nan, math.nan, 0.0, self.steps.growth)
+        if abs(travel) <= 1e-12 * control.free_length or greatest == 0.0 or self._takes_time():
+            return self._in_time(works, greatest, float(last[FIRST]))
         memory[FIRST] = last[FIRST] or travel
-        error, new, left = (float(work) for work in works / (travel, travel, memory[FIRST]))
+        error, new, left = (float(work) for work in works[:3] / (travel, travel, memory[FIRST]))
         stiffness = (force - before) / travel
         share = max(abs(new), abs(left)) / (self.steps.step_share * self.accuracy * greatest)
         if math.isnan(share):
             return Estimate(math.nan, math.nan, 0.0, 1.0)
         return Estimate(error, error / stiffness if stiffness else math.nan, share, self._factor(share))
+
+    def _takes_time(self) -> bool:
+        """Does time pass in the step on trial?"""
+        state = self.control.system.state
+        return "clock" in state and not np.array_equal(state["clock"].trial, state["clock"].equilibrium)
+
+    def _in_time(self, works: np.ndarray, greatest: float, first: float) -> Estimate:
+        """A step in time deforms the spring by no travel of its own; the first step of all shows what a travel does."""
+        if greatest == 0.0 or first == 0.0 or not self._takes_time():
+            return Estimate(math.nan, math.nan, 0.0, self.steps.growth)
+        share = abs(float(works[2]) / first) / (self.steps.step_share * self.accuracy * greatest)
+        if math.isnan(share):
+            return Estimate(math.nan, math.nan, 0.0, 1.0)
+        return Estimate(float(works[3]) / first, math.nan, share, self._factor(share))
 
     def rejoin(self) -> None:
         """Go on from the last equilibrium, which was reached by steps that were not judged."""

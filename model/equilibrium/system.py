@@ -7,7 +7,7 @@ import numpy as np
 from dolfinx import la
 from petsc4py import PETSc
 
-from coilset.model.body import Body, Foresees, HasRotations
+from coilset.model.body import Body, Foresees, HasRotations, Moment, PassesTime
 from coilset.model.contact.base import Augmented, Contact, Contribution, HasMemory, LimitsStep, TrialPositions
 from coilset.model.equilibrium.layout import Layout, LineLayout
 from coilset.model.equilibrium.load import Load
@@ -140,6 +140,12 @@ class System:
     def expire(self) -> None:
         """The next evaluation is to be made, wherever it is: something else than the increments has changed."""
         self.last = Evaluation(np.full(self.layout.size_local, np.nan), self.last.has_stress, self.last.contributions)
+
+    def pass_time(self, middle: Moment, end: Moment) -> None:
+        """Let the step that begins take time; see PassesTime."""
+        assert isinstance(self.body, PassesTime), "this body knows no time"
+        self.body.pass_time(middle, end)
+        self.expire()
 
     @property
     def max_penetration(self) -> float:

@@ -100,6 +100,37 @@ class Heating(Strict):
     ]
 
 
+class Creep(Strict):
+    """Creep: c = strain · (σ/stress)^exponent · (t/1 h)^time_exponent, or with sinh(σ/stress); equivalent values."""
+
+    form: Annotated[
+        Literal["norton_bailey", "garofalo"],
+        Field(description="norton_bailey: a power of the stress; garofalo: a power of its hyperbolic sine"),
+    ]
+    strain: Annotated[
+        float,
+        Unit("1"),
+        Field(gt=0, le=1, description="equivalent creep strain after 1 h, where the stress's part is 1"),
+    ]
+    stress: Annotated[
+        float, Unit("N/mm²"), Field(gt=0, description="the equivalent stress to which the stress is related, N/mm²")
+    ]
+    exponent: Annotated[float, Unit("1"), Field(ge=1, le=50, description="the exponent of stress, N")]
+    time_exponent: Annotated[
+        float, Unit("1"), Field(ge=0.05, le=1, description="the exponent of time, p; 1: steady creep")
+    ] = 1.0
+    hardening: Annotated[
+        Literal["strain", "time"],
+        Field(
+            description="on what the rate hangs where the stress changes: the creep strain, or the time since the start"
+        ),
+    ] = "strain"
+    activation_energy: Annotated[
+        float, Unit("J/mol"), Field(ge=0, description="by which time counts faster where it is warmer, J/mol")
+    ] = 0.0
+    temperature: Annotated[float, Unit("K"), Field(gt=0, description="the temperature of these constants, K")] = 293.15
+
+
 class Validity(Strict):
     """Where the constants may be trusted; the checks of the functions go up to the greatest plastic work."""
 
@@ -124,6 +155,7 @@ class MaterialFile(Strict):
         Field(strict=False, min_length=1, description="a list with the constants at one temperature at least"),
     ]
     heating: Heating | None = None
+    creep: Annotated[Creep | None, Field(description="creep; left out: none")] = None
 
 
 UNITS = {

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from coilset.meshes.errors import InputError
 from coilset.model.entries.entry import Strict
 from coilset.model.material import functions as fn
-from coilset.model.material.file import UNITS, Constants, MaterialFile, Validity
+from coilset.model.material.file import UNITS, Constants, Creep, MaterialFile, Validity
 
 
 class Law:
@@ -39,6 +39,10 @@ class Law:
             self._fail("heating", "plastic work warms the material; give its constants at two temperatures at least")
         if len({at.isotropic == "none" for at in data.temperatures}) == 2:
             self._fail("temperatures", "isotropic is 'none' at some temperatures only; give it at all or at none")
+        if data.heating and data.creep:
+            self._fail("creep", "there is none where plastic work heats the points, which takes no time; leave one out")
+        if spin and data.creep:
+            self._fail("creep", "there is none with spin; leave out creep, or the spin")
         self._check_functions()
 
     @property
@@ -112,6 +116,11 @@ class Law:
         h = self.data.heating
         return h.dissipated / (h.density * h.specific_heat) if h else 0.0
 
+    @property
+    def creep(self) -> Creep | None:
+        """Creep's constants, if it creeps."""
+        return self.data.creep
+
     def constants(self, temperature: float) -> Iterator[tuple[str, tuple[float, str]]]:
         """Names, values and units of the constants that the file gives at one of its temperatures."""
         at = self.data.temperatures[self.temperatures.index(temperature)]
@@ -139,6 +148,11 @@ class Law:
         head[fn.TOLERANCE] = self.heun_tolerance
         head[fn.N_ROWS] = len(self._rows)
         return np.concatenate([head, self._rows.ravel()])
+
+    def content(self) -> bytes:
+        """All constants, for a digest."""
+        creep = self.data.creep
+        return self.parameters().tobytes() + (creep.model_dump_json().encode() if creep else b"")
 
     def known(self, temperature: float) -> float:
         """The temperature, K, as a number.

@@ -13,6 +13,7 @@ import numpy as np
 from mpi4py import MPI
 
 from coilset.meshes.errors import InputError
+from coilset.model.body import Moment
 from coilset.model.case import Case
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.program import ProgramPosition, Stage
@@ -151,13 +152,16 @@ class Checkpoint:
         redirected = saved["redirected"] and Stage(**saved["redirected"])
         if redirected and isinstance(redirected.steps, list):  # JSON has no tuples
             redirected = replace(redirected, steps=tuple(redirected.steps))
-        position = ProgramPosition(**{**saved, "on_path": Position(**saved["on_path"]), "redirected": redirected})
+        begun = Moment(*saved["begun"])
+        parts = {"on_path": Position(**saved["on_path"]), "redirected": redirected, "begun": begun}
+        position = ProgramPosition(**{**saved, **parts})
         stage, old, new = position.stage, about["case"]["loading"], self.case["loading"]
         if old[stage : stage + 1] == new[stage : stage + 1]:
             return position
         last = result.steps[-1] if result.steps else None
         height, force = (last.seat_height_mm, last.force_N) if last else (position.height, position.force)
-        return replace(position, height=height, force=force, on_path=Position(), redirected=None)
+        now = Moment(last.hours, last.temperature_K) if last else begun
+        return replace(position, height=height, force=force, on_path=Position(), redirected=None, begun=now)
 
     def _compare(self, about: Mapping[str, Any]) -> None:
         """Spring, files and program must be the same; the phases behind too, and the rest may have changed."""

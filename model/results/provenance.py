@@ -21,7 +21,7 @@ def contents(case: Case) -> dict[str, str]:
         InputError: if a file cannot be read or is wrong.
     """
     law = case_law(case, case.spring.build())
-    found = {"material": _digest(law.parameters().tobytes())}
+    found = {"material": _digest(law.content())}
     file = getattr(case.spring, "file", None)
     if file is not None:
         try:

@@ -34,6 +34,9 @@ class Step:
             each other by their shape, or there is only one.
         estimated_force_error_N: what the length of the steps up to here has left wrong in the force, and
             estimated_height_error_mm in the height at which this force would be; None where it is not known.
+        hours: since the start, of a material that creeps.
+        temperature_K: of the spring; at its start where plastic work heats it.
+        load_loss_percent: of the force with which time began to pass, at constant height; None where no time passes.
     """
 
     number: int
@@ -58,6 +61,9 @@ class Step:
     least_rise: float | None = None
     estimated_force_error_N: float | None = None
     estimated_height_error_mm: float | None = None
+    hours: float = 0.0
+    temperature_K: float = 0.0
+    load_loss_percent: float | None = None
 
 
 @dataclass(frozen=True)

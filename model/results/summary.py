@@ -46,6 +46,7 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         **peaks(setup, "", result.snapshots),
         **plastic_work(setup, result),
         **step_errors(result),
+        "load_loss_percent": load_loss(result),
         "steps": len(result.steps),
         "iterations": sum(step.iterations for step in result.steps),
         "evaluations": sum(step.evaluations for step in result.steps),
@@ -63,6 +64,12 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         "lift_off_max_mm": max((step.lift_off_mm for step in result.steps), default=0.0),
         "warnings": [asdict(warning) for warning in run_warnings(setup, result)],
     }
+
+
+def load_loss(result: Result) -> float | None:
+    """Part of its force that the spring had lost when time last passed at constant height, per cent."""
+    losses = [step.load_loss_percent for step in result.steps if step.load_loss_percent is not None]
+    return losses[-1] if losses else None
 
 
 def step_errors(result: Result) -> dict[str, float | None]:

@@ -61,10 +61,14 @@ class FinerPath:
         if not self._first.equilibrium.any():
             self._first.trial[:] = change
         start = {name: field.equilibrium for name, field in self._fields.items()} | {"strain": strain.equilibrium}
+        half, end = self._half, {name: field.trial for name, field in self._fields.items()}
+        if "clock" in self._state:
+            clock = self._state["clock"]
+            start, end = start | {"clock": clock.equilibrium}, end | {"clock": clock.trial}
+            half = half | {"clock": self._state["halfway_clock"].trial}
         middle = strain.equilibrium + 0.5 * change + bend
-        end = {name: field.trial for name, field in self._fields.items()}
-        good = self._sections.update(middle, start, self._half, self._s, self._D)
-        good = good and self._sections.update(strain.trial, self._half | {"strain": middle}, end, self._s, self._D)
+        good = self._sections.update(middle, start, half, self._s, self._D)
+        good = good and self._sections.update(strain.trial, half | {"strain": middle}, end, self._s, self._D)
         if good:
             self._error.trial[:] = RICHARDSON * (self._s - s)
         else:
@@ -78,7 +82,7 @@ class FinerPath:
         for name, field in self._fields.items():
             field.equilibrium[:] = field.trial[:] = self._state[name].equilibrium
 
-    def works(self, length: np.ndarray) -> tuple[float, float, float]:
+    def works(self, length: np.ndarray) -> tuple[float, float, float, float]:
         """Works of the error of the section forces, N mm; see EstimatesErrors.
 
         Args:
@@ -87,4 +91,6 @@ class FinerPath:
         error = 0.5 * length[:, None, None] * self._error.trial
         new = error - 0.5 * length[:, None, None] * self._error.equilibrium
         now, first = self._increment.trial, self._first.trial
-        return float(np.sum(error * now)), float(np.sum(new * now)), float(np.sum(new * first))
+        pairs = (error, now), (new, now), (new, first), (error, first)
+        own, new_own, left, error_left = (float(np.sum(force * strain)) for force, strain in pairs)
+        return own, new_own, left, error_left

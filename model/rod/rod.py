@@ -12,6 +12,8 @@ from petsc4py import PETSc
 from coilset.meshes.compat import geometry_dofs
 from coilset.meshes.line import LineMesh
 from coilset.meshes.placement import Placement, straight
+from coilset.model.body import Moment
+from coilset.model.material.creep_law import CreepLaw
 from coilset.model.material.law import Law
 from coilset.model.rod import forms
 from coilset.model.rod.finer_path import FinerPath
@@ -22,6 +24,7 @@ from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule
 from coilset.model.state import State, Where
 
+CLOCKS = "clock", "halfway_clock"  # at a step's end, and half way on its path
 NODAL_ENTRIES = 22  # in a row of the tangent: three nodes with 6 unknowns each, and two elements with 2
 SHEAR_ENTRIES = 14  # two nodes and the element's own 2
 
@@ -82,6 +85,8 @@ class Rod:
         self.line, self.law, self.rule = line, law, rule
         mesh, n = line.mesh, line.owned_cells
         self.mesh, self.parameters = mesh, law.parameters(temperature)
+        self.temperature = law.reference_temperature if temperature is None else temperature
+        self.creep = CreepLaw(law.creep, self.parameters) if law.creep else None
         element = line.element[:n]
         self.radius = np.ascontiguousarray(np.asarray(radius, float)[element])
         self.placement = straight(n)
@@ -152,8 +157,27 @@ class Rod:
         self._section_start = {name: field.equilibrium for name, field in points.items()}
         self._section_trial = {name: field.trial for name, field in points.items()}
         self._section_start["strain"] = self._strain.equilibrium
+        if self.creep is not None:
+            for name in CLOCKS:
+                clock = state.add(name, self.creep.clock(0.0, self.temperature), Where.SHARED)
+                self._section_start[name], self._section_trial[name] = clock.equilibrium, clock.trial
         self.state, self.chart = state, np.tile(np.eye(3), (len(x), 1, 1))
         self.update()
+
+    # ---- time -----------------------------------------------------------------------------------------------------
+
+    @property
+    def clock(self) -> np.ndarray:
+        """Hours since the start, temperature (K) and warm hours at the last equilibrium; see PassesTime."""
+        return self.state["clock"].equilibrium if self.creep is not None else np.array([0.0, self.temperature, 0.0])
+
+    def pass_time(self, middle: Moment, end: Moment) -> None:
+        """Set the clocks of the state on trial; see PassesTime."""
+        if self.creep is None:
+            raise ValueError(f"'{self.law.name}' knows no time; it has no creep")
+        start, halfway, on_trial = self.clock, *(self.state[name].trial for name in reversed(CLOCKS))
+        halfway[:] = self.creep.clock(*middle, start)
+        on_trial[:] = self.creep.clock(*end, halfway)
 
     # ---- results on trial ------------------------------------------------------------------------------------------
 
@@ -202,11 +226,11 @@ class Rod:
         """Follow each step on a finer path from now on; see EstimatesErrors."""
         self._finer = FinerPath(self.sections, self.state)
 
-    def error_works(self, ratio: float, kinked: bool) -> tuple[float, float, float]:
+    def error_works(self, ratio: float, kinked: bool) -> tuple[float, float, float, float]:
         """Works of what the steps up to here and the last one leave wrong; see EstimatesErrors."""
         assert self._finer is not None, "estimate_errors comes before"
         if not self._finer.follow(self.s.values, ratio, kinked):
-            return np.nan, np.nan, np.nan
+            return np.nan, np.nan, np.nan, np.nan
         return self._finer.works(np.linalg.norm(self._chord.trial, axis=1))
 
     def rejoin_finer_path(self) -> None:

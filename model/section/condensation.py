@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from coilset.model.material.functions import KERNEL
-from coilset.model.material.solid import return_map
+from coilset.model.material.point_law import solid_point
 
 # A change of the warping, a strain, that ends the iteration. What it would change in the resultants is added to them,
 # so that they are right to its square over the strain at which the law bends, some 1e-3.
@@ -145,7 +145,7 @@ def integrate(
         for j in range(size):
             for i in range(6):
                 strain[i] += b[i, j] * step[j]
-        if return_map(p, old[k], strain, new[k], C) < 0:
+        if solid_point(p, old[k], strain, new[k], C) < 0:
             return False
         for i in range(6):
             sigma = new[k, i] * area

@@ -23,7 +23,7 @@ import numpy as np
 from numba import njit
 
 from coilset.model.material.functions import INLINE
-from coilset.model.material.rod import return_map
+from coilset.model.material.point_law import rod_point
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.plane import PlaneSections
 
@@ -43,18 +43,18 @@ class CurvedSections(PlaneSections):
         D: np.ndarray,
     ) -> bool:
         """Bring all sections to the end of the increment; as `PlaneSections.update`."""
-        place = self.placement
+        place, law = self.placement, self.law_over_time.over(start, trial)
         status = update_sections(
-            self.parameters, self.y, self.z, self.weights, self.radius, place.curvature, strain - start["strain"],
+            law, self.y, self.z, self.weights, self.radius, place.curvature, strain - start["strain"],
             place.matrices, place.stretch, start["point_state"], trial["point_state"], s, D,
         )  # fmt: skip
         return status == 0
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
         """Bring the points on the wire's surface to the end of the increment; as `PlaneSections.update_surface`."""
-        place = self.placement
+        place, law = self.placement, self.law_over_time.over(start, trial)
         update_surface(
-            self.parameters, self.rim_y, self.rim_z, self.radius, place.curvature, strain - start["strain"],
+            law, self.rim_y, self.rim_z, self.radius, place.curvature, strain - start["strain"],
             place.matrices, start["surface_state"], trial["surface_state"],
         )  # fmt: skip
 
@@ -147,7 +147,7 @@ def integrate_point(
     a22, a23, a32, a33 = shear
     y, z = radius * y, radius * z
     e11, g12, g13 = strains(y, z, g, shear, d)
-    if return_map(p, old, e11, g12, g13, new, C) < 0:
+    if rod_point(p, old, e11, g12, g13, new, C) < 0:
         return False
     sigma, t2, t3 = new[0] * dA, new[1] * dA, new[2] * dA
     resultant[0] += sigma
@@ -200,5 +200,5 @@ def update_surface(
                 length = 1.0 - curvature[c, g] * R * y[k]
                 shear = shear_by_force(y[k], z[k], curvature[c, g] * R, length)
                 e11, g12, g13 = strains(R * y[k], R * z[k], length, shear, d)
-                if return_map(p, old[c, g, k], e11, g12, g13, new[c, g, k], C) < 0:
+                if rod_point(p, old[c, g, k], e11, g12, g13, new[c, g, k], C) < 0:
                     new[c, g, k, :] = math.nan

@@ -9,9 +9,9 @@ from numba import njit
 from coilset.meshes.placement import Placement
 from coilset.model.material.functions import INLINE
 from coilset.model.material.law import Law
-from coilset.model.material.points import initial_state
-from coilset.model.material.rod import return_map
+from coilset.model.material.point_law import rod_point
 from coilset.model.section.chord import to_chord, to_section
+from coilset.model.section.law_over_time import LawOverTime
 from coilset.model.section.rules import DiskRule, rim
 
 
@@ -30,7 +30,7 @@ class PlaneSections:
         components: names of the columns of a point's state.
     """
 
-    components = ("s11", "t12", "t13", "B11", "B12", "B13", "b")
+    components: tuple[str, ...] = ("s11", "t12", "t13", "B11", "B12", "B13", "b")
 
     def __init__(
         self,
@@ -41,14 +41,15 @@ class PlaneSections:
         placement: Placement,
         temperature: float | None = None,
     ) -> None:
-        self.law, self.parameters, self.radius, self.placement = law, parameters, radius, placement
-        self.temperature, self.weights = temperature, rule.weights
+        self.radius, self.placement, self.weights = radius, placement, rule.weights
+        self.law_over_time = LawOverTime(law, parameters, temperature)
+        self.components += self.law_over_time.columns
         self.y, self.z = np.ascontiguousarray(rule.points.T)
         self.rim_y, self.rim_z = np.ascontiguousarray(rim().T)
 
     def initial_state(self) -> dict[str, np.ndarray]:
         """Unstressed points: `point_state`, shape (cells, 2, points, n_state), and `surface_state` on the surface."""
-        row = initial_state(self.law, 1, temperature=self.temperature)
+        row = self.law_over_time.unstressed(3)
         shape = (len(self.radius), 2)
         return {
             "point_state": np.tile(row, (*shape, len(self.y), 1)),
@@ -75,9 +76,9 @@ class PlaneSections:
         Returns:
             False if the law found no solution at some point or the strains are no numbers.
         """
-        place = self.placement
+        place, law = self.placement, self.law_over_time.over(start, trial)
         status = update_sections(
-            self.parameters, self.y, self.z, self.weights, self.radius, strain - start["strain"], place.matrices,
+            law, self.y, self.z, self.weights, self.radius, strain - start["strain"], place.matrices,
             place.stretch, start["point_state"], trial["point_state"], s, D,
         )  # fmt: skip
         return status == 0
@@ -87,9 +88,9 @@ class PlaneSections:
 
         Where the law finds no solution the state becomes NaN.
         """
-        place = self.placement
+        place, law = self.placement, self.law_over_time.over(start, trial)
         update_surface(
-            self.parameters, self.rim_y, self.rim_z, self.radius, strain - start["strain"], place.matrices,
+            law, self.rim_y, self.rim_z, self.radius, strain - start["strain"], place.matrices,
             start["surface_state"], trial["surface_state"],
         )  # fmt: skip
 
@@ -157,7 +158,7 @@ def strain_point(
     p: np.ndarray, y: float, z: float, d: np.ndarray, old: np.ndarray, new: np.ndarray, C: np.ndarray
 ) -> int:
     """The law at one point: ε11 = ε + κ2 z − κ3 y, γ12 = γ2 − φ′ z, γ13 = γ3 + φ′ y (5.2.4)."""
-    return return_map(p, old, d[0] + d[4] * z - d[5] * y, d[1] - d[3] * z, d[2] + d[3] * y, new, C)
+    return rod_point(p, old, d[0] + d[4] * z - d[5] * y, d[1] - d[3] * z, d[2] + d[3] * y, new, C)
 
 
 @njit(**INLINE)

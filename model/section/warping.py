@@ -23,10 +23,10 @@ from numba import njit
 
 from coilset.meshes.placement import Placement
 from coilset.model.material.law import Law
-from coilset.model.material.points import initial_state
-from coilset.model.material.solid import return_map
+from coilset.model.material.point_law import solid_point
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.condensation import condense, find_warping, strain_operator
+from coilset.model.section.law_over_time import LawOverTime
 from coilset.model.section.polynomials import values_and_slopes
 from coilset.model.section.rules import DiskRule, rim
 
@@ -42,7 +42,9 @@ class WarpingSections:
         unknowns: number of warping unknowns of a section.
     """
 
-    components = ("s11", "s22", "s33", "t12", "t13", "t23", "B11", "B22", "B33", "B12", "B13", "B23", "b")
+    components: tuple[str, ...] = (
+        "s11", "s22", "s33", "t12", "t13", "t23", "B11", "B22", "B33", "B12", "B13", "B23", "b",
+    )  # fmt: skip
 
     def __init__(
         self,
@@ -54,8 +56,9 @@ class WarpingSections:
         temperature: float | None = None,
         degree: int = 3,
     ) -> None:
-        self.law, self.parameters, self.radius, self.placement = law, parameters, radius, placement
-        self.temperature, self.weights = temperature, rule.weights
+        self.radius, self.placement, self.weights = radius, placement, rule.weights
+        self.law_over_time = LawOverTime(law, parameters, temperature)
+        self.components += self.law_over_time.columns
         self.points = _with_polynomials(rule.points, degree)
         self.rim = _with_polynomials(rim(), degree)
         self.unknowns = 3 + 3 * self.points[2].shape[2]
@@ -66,7 +69,7 @@ class WarpingSections:
 
         `warping` are the a, shape (cells, 2, unknowns), and `warping_slope` is da/de, shape (cells, 2, unknowns, 6).
         """
-        row = initial_state(self.law, 1, 6, self.temperature)
+        row = self.law_over_time.unstressed(6)
         shape = (len(self.radius), 2)
         return {
             "point_state": np.tile(row, (*shape, len(self.weights), 1)),
@@ -84,9 +87,9 @@ class WarpingSections:
         D: np.ndarray,
     ) -> bool:
         """Bring all sections to the end of the increment; as `PlaneSections.update`."""
-        place = self.placement
+        place, law = self.placement, self.law_over_time.over(start, trial)
         status = update_sections(
-            self.parameters, *self.points, self.weights, self.radius, place.curvature, place.torsion,
+            law, *self.points, self.weights, self.radius, place.curvature, place.torsion,
             strain - start["strain"], place.matrices, place.stretch, start["point_state"], start["warping"],
             start["warping_slope"], trial["point_state"], trial["warping"], trial["warping_slope"], s, D,
             self.iterations,
@@ -95,9 +98,9 @@ class WarpingSections:
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
         """Bring the points on the wire's surface to the end of the increment; as `PlaneSections.update_surface`."""
-        place = self.placement
+        place, law = self.placement, self.law_over_time.over(start, trial)
         update_surface(
-            self.parameters, *self.rim, self.radius, place.curvature, place.torsion, strain - start["strain"],
+            law, *self.rim, self.radius, place.curvature, place.torsion, strain - start["strain"],
             place.matrices, start["surface_state"], trial["warping"] - start["warping"], trial["surface_state"],
         )  # fmt: skip
 
@@ -212,5 +215,5 @@ def update_surface(
                         strain[i] += B[k, i, j] * e[j]
                     for j in range(n):
                         strain[i] += B[k, i, 6 + j] * da[c, g, j]
-                if return_map(p, old[c, g, k], strain, new[c, g, k], C) < 0:
+                if solid_point(p, old[c, g, k], strain, new[c, g, k], C) < 0:
                     new[c, g, k, :] = math.nan

@@ -135,7 +135,7 @@ class SliceAnalysis:
         result = self.result
         self._probe()
         result.snapshots.append(self.snapshot("start"))
-        for index, phase in enumerate(self.case.loading):
+        for index, phase in enumerate(self.case.targets):
             try:
                 self._phase(index, phase, report)
             except SolveError:
@@ -190,6 +190,8 @@ class SliceAnalysis:
         """
         block = self.spring.block_height
         for index, phase in enumerate(self.case.loading):
+            if not isinstance(phase, Phase):
+                raise InputError("a slice knows no time; leave it out, or use coilset solve", f"loading.{index}")
             kind, value = self._target(phase)
             if kind == "height" and value < block * (1.0 - SAME):
                 raise InputError(f"a height of {value:.6g} mm is below block, {block:.6g} mm; give to: block",

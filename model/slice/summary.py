@@ -25,7 +25,7 @@ UNSEEN = (
     "shear_surface_max_angle_deg", "equivalent_surface_max_MPa", "equivalent_surface_max_turn",
     "equivalent_surface_max_angle_deg", "evaluations", "failed_solves", "section_kind",
     "rate_30_70_N_per_mm", "rate_30_70_after_N_per_mm", "rates", "plastic_work_max_turn", "plastic_work_max_angle_deg",
-    "lift_off_max_mm", "estimated_force_error_N", "estimated_set_error_mm",
+    "lift_off_max_mm", "estimated_force_error_N", "estimated_set_error_mm", "load_loss_percent",
 )  # fmt: skip
 
 

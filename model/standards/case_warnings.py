@@ -39,8 +39,8 @@ def _working(case: Case, spring: Spring, law: Law) -> list[Warning]:
         return []
     named = None if isinstance(case.material, str) else wire(case.material.wire)
     made = Sheet(cylinder, Elastic(law.G, law.E, STEEL.density), spring.wire_length, named)
-    lengths = working_lengths(case.loading, cylinder.length, made.rate, cylinder.solid)
-    to_block = [cylinder.solid] if any(phase.to == "block" for phase in case.loading) else []
+    lengths = working_lengths(case.targets, cylinder.length, made.rate, cylinder.solid)
+    to_block = [cylinder.solid] if any(phase.to == "block" for phase in case.targets) else []
     return sheet_warnings(Sheet(cylinder, made.elastic, made.helix, named, lengths), to_block)
 
 

@@ -128,7 +128,7 @@ def material_digest(material: str | NamedWire) -> str:
     """Digest of a material's constants, so that a changed material file makes new cases."""
     if isinstance(material, NamedWire):  # its diameter is the spring's, which is in the digest of the case
         return _digest(wire(material.wire).entry.model_dump_json().encode())
-    return _digest(library.load(material).parameters().tobytes())
+    return _digest(library.load(material).content())
 
 
 @lru_cache

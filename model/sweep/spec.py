@@ -23,8 +23,8 @@ RESPONSES = (
     "equivalent_surface_max_turn", "equivalent_surface_max_angle_deg", "residual_shear_surface_max_MPa",
     "residual_shear_surface_max_turn", "residual_shear_surface_max_angle_deg", "residual_equivalent_surface_max_MPa",
     "residual_equivalent_surface_max_turn", "residual_equivalent_surface_max_angle_deg",
-    "estimated_force_error_N", "estimated_set_error_mm", "steps", "iterations", "evaluations", "failed_solves",
-    "unstable_steps",
+    "estimated_force_error_N", "estimated_set_error_mm", "load_loss_percent", "steps", "iterations",
+    "evaluations", "failed_solves", "unstable_steps",
     "buckling_travel_mm", "buckling_force_N", "buckling_travel_EN_13906_1_mm", "elements", "seconds",
 )  # fmt: skip
 

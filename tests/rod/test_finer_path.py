@@ -67,4 +67,4 @@ def test_what_stays_elastic_has_no_error():
         finer.follow(path.s, 1.0 if k > 1 else 0.0)
         path.state.commit()
     assert np.abs(path.state["section_force_error"].equilibrium).max() < 1e-12 * np.abs(path.s).max()
-    assert finer.works(np.array([1.0])) == pytest.approx((0.0, 0.0, 0.0), abs=1e-8)
+    assert finer.works(np.array([1.0])) == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=1e-8)

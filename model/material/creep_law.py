@@ -1,0 +1,77 @@
+"""The constants of creep out of a material file, as the kernels of `creep` take them, and how warmth counts time.
+
+Time is counted faster where it is warmer (Orr, Sherby and Dorn, Trans. ASM 46, 1954): an hour at T is worth
+
+    exp(−Q/R (1/T − 1/T₀))
+
+hours at the temperature T₀ of the constants.
+"""
+
+import math
+
+import numpy as np
+
+from coilset.model.material.creep import Creeping
+from coilset.model.material.file import Creep
+from coilset.model.material.functions import B1, K0, ROW_LENGTH, ROWS_START
+
+GAS_CONSTANT = 8.31446261815324  # J/(mol K)
+# The clock of a body: hours since the start, temperature (K), and hours at T₀ that they are worth.
+HOURS, TEMPERATURE, WORTH = range(3)
+CREEP_COLUMNS = ("T", "c")  # what creep adds to a point's state: temperature, K, and equivalent creep strain
+
+
+class CreepLaw:
+    """Creep of a material.
+
+    Args:
+        data: the checked entries.
+        plastic: parameter array of the law, `Law.parameters()`.
+    """
+
+    def __init__(self, data: Creep, plastic: np.ndarray) -> None:
+        self.data, self._plastic, self._elastic = data, plastic, without_yield(plastic)
+        self._gauss, self._weights = np.polynomial.legendre.leggauss(12)
+
+    def worth(self, hours: float, start: float, end: float) -> float:
+        """Hours at T₀ that some hours are worth whose temperature goes linearly from one value to another, K."""
+        temperatures = start + 0.5 * (1.0 + self._gauss) * (end - start)
+        factors = np.exp(
+            -self.data.activation_energy / GAS_CONSTANT * (1.0 / temperatures - 1.0 / self.data.temperature)
+        )
+        return hours * 0.5 * float(self._weights @ factors)
+
+    def clock(self, hours: float, temperature: float, before: np.ndarray | None = None) -> np.ndarray:
+        """The clock, shape (3,), at a time and temperature, which goes linearly from that of the clock `before`."""
+        if before is None:
+            return np.array([hours, temperature, 0.0])
+        worth = self.worth(hours - before[HOURS], float(before[TEMPERATURE]), temperature)
+        return np.array([hours, temperature, before[WORTH] + worth])
+
+    def over(self, start: np.ndarray, end: np.ndarray) -> Creeping:
+        """The law over the time between two clocks."""
+        data, power = self.data, self.data.time_exponent
+        time = float(end[WORTH] - start[WORTH])
+        if data.hardening == "time":
+            time, power = float(end[WORTH] ** power - start[WORTH] ** power), 1.0
+        form = 0.0 if data.form == "norton_bailey" else 1.0
+        viscous = np.array([time, power, form, data.strain, data.stress, data.exponent, end[TEMPERATURE]])
+        return Creeping(self._plastic, self._elastic, viscous)
+
+    def strain(self, stress: float, hours: float, temperature: float) -> float:
+        """Equivalent creep strain after some hours of constant stress (N/mm²) and temperature (K)."""
+        x = stress / self.data.stress
+        x = x if self.data.form == "norton_bailey" else math.sinh(x)
+        return float(
+            self.data.strain
+            * x**self.data.exponent
+            * self.worth(hours, temperature, temperature) ** self.data.time_exponent
+        )
+
+
+def without_yield(plastic: np.ndarray) -> np.ndarray:
+    """A parameter array whose first yield lies at infinity."""
+    elastic = plastic.copy()
+    rows = elastic[ROWS_START:].reshape(-1, ROW_LENGTH)
+    rows[:, [K0, B1]] = np.inf
+    return elastic

@@ -1,0 +1,122 @@
+"""Springs in time: holding, heating, load loss, and a run that goes on in the middle of a phase in time."""
+
+import numpy as np
+import pytest
+import yaml
+from mpi4py import MPI
+
+from coilset.meshes.errors import InputError
+from coilset.model.analysis import Analysis
+from coilset.model.case.case import check
+from coilset.model.material import library
+from coilset.model.results.checkpoint import Checkpoint
+from coilset.model.results.summary import summarise
+
+HOLD = [{"to": {"travel": 10}, "steps": 1}, {"hold": {"hours": 1000}, "steps": 8}]
+SPRING = {
+    "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 1.0, "pitch": 25.0},
+    "material": "creeping", "temperature": 373.15, "ends": "clamped",
+    "mesh": {"elements_per_turn": 8, "section": {"kind": "plane", "radial": 3, "angular": 8}},
+}  # fmt: skip
+
+
+def analysis_of(loading, **changes):
+    return Analysis(check(SPRING | {"loading": loading} | changes), MPI.COMM_SELF)
+
+
+@pytest.fixture
+def slow(tmp_path):
+    """The library's creeping law with hardly any creep, and no thermal expansion."""
+    data = yaml.safe_load((library.FOLDER / "creeping.yaml").read_text(encoding="utf-8"))
+    data["creep"]["strain"] = 1e-30
+    for at in data["temperatures"]:
+        at["elasticity"]["alpha"] = 0.0
+        at["isotropic"] = "none"
+    path = tmp_path / "slow.yaml"
+    path.write_text(yaml.safe_dump(data), encoding="utf-8")
+    return str(path)
+
+
+def test_relaxation_follows_the_steps_accuracy():
+    """Automatic steps lose what many equal ones lose, within the asked 0.2 %; their times grow logarithmically."""
+    fine = analysis_of([HOLD[0], HOLD[1] | {"steps": 48}]).run()
+    found = analysis_of([HOLD[0], HOLD[1] | {"steps": "auto"}])
+    result = found.run()
+    losses = [summarise(found.setup, run)["load_loss_percent"] for run in (fine, result)]
+    assert losses[0] > 1.0
+    assert losses[1] == pytest.approx(losses[0], abs=0.2)
+    hours = np.array([step.hours for step in result.steps])
+    assert hours[0] == 0.0
+    assert hours[-1] == 1000.0
+    assert (np.diff(hours[2:]) > 0).all()
+    assert np.diff(np.log(hours[4:])).min() > 0.3
+    last, first = result.steps[-1], result.steps[0]
+    assert last.load_loss_percent == pytest.approx(100 * (1 - last.force_N / first.force_N), rel=1e-12)
+    assert last.seat_height_mm == pytest.approx(first.seat_height_mm, abs=1e-12)
+    assert first.load_loss_percent is None
+
+
+def test_heat_and_back(slow):
+    """Without creep and expansion the force follows G, 10 % less at 573 K, and comes back."""
+    program = [
+        {"to": {"travel": 10}, "steps": 1},
+        {"heat": {"to": 573.15, "minutes": 30}, "steps": 2},
+        {"heat": {"to": 293.15, "minutes": 90}, "steps": 1},
+    ]
+    steps = analysis_of(program, material=slow, temperature=293.15).run().steps
+    cold = steps[0].force_N
+    assert [step.force_N / cold for step in steps] == pytest.approx([1.0, 0.95, 0.9, 1.0], rel=1e-8)
+    assert [step.temperature_K for step in steps] == pytest.approx([293.15, 433.15, 573.15, 293.15])
+    assert [step.hours for step in steps] == pytest.approx([0.0, 0.25, 0.5, 2.0])
+    assert [step.load_loss_percent for step in steps[1:]] == pytest.approx([5.0, 10.0, 0.0], abs=1e-6)
+
+
+def test_constant_force():
+    """The spring creeps down under its force, more and more slowly; then the force is what it was."""
+    program = [{"to": {"force": 400}, "steps": 1}, {"hold": {"hours": 1000, "keep": "force"}, "steps": 6}]
+    steps = analysis_of(program).run().steps
+    assert [step.force_N for step in steps] == pytest.approx([400.0] * 7, rel=1e-7)
+    heights = np.array([step.seat_height_mm for step in steps])
+    assert (np.diff(heights) < 0).all()
+    assert heights[-1] < heights[0] - 0.05
+    assert all(step.load_loss_percent is None for step in steps)
+
+
+def test_a_run_goes_on_in_the_middle_of_a_hold(tmp_path):
+    """To the same bits, with the clock where it was."""
+    program = [*HOLD, {"heat": {"to": 303.15, "minutes": 5}, "steps": 2}, {"to": {"force": 0}, "steps": 2}]
+    case = check(SPRING | {"loading": program})
+    whole = Analysis(case, MPI.COMM_SELF)
+    whole.run()
+    stopped, checkpoint = Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case)
+
+    def stop(step):
+        if step.number == 5:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stopped.run(stop, checkpoint.save)
+    resumed = Analysis(case, MPI.COMM_SELF)
+    resumed.resume(checkpoint.load(MPI.COMM_SELF))
+    assert 0.0 < resumed.rod.clock[0] < 1000.0
+    assert resumed.run().steps == whole.result.steps
+    for name, field in whole.system.state.items():
+        assert (field.equilibrium == resumed.system.state[name].equilibrium).all(), name
+
+
+@pytest.mark.parametrize(
+    ("loading", "changes", "message"),
+    [
+        ([{"hold": {"hours": 1}}], {"material": "ck15", "temperature": 293.15},
+         "loading.0.hold: 'ck15' does not creep, so that time changes nothing; give a material with creep"),
+        ([{"heat": {"to": 700, "hours": 1}}], {},
+         "loading.0.heat.to: 700 K is outside the table of 'creeping', known for 293.15 to 573.15 K"),
+        ([{"hold": {"hours": 1, "minutes": 2}}], {}, "give exactly one of hours or minutes, as in {hours: 48}"),
+        ([{"hold": {"hours": 1}, "heat": {"to": 300, "hours": 1}}], {}, "give exactly one of hold or heat"),
+        ([{"hold": {"hours": -1}}], {}, "loading.0.hold.hours: -1: must be greater than 0"),
+    ],
+)  # fmt: skip
+def test_what_time_cannot_be(loading, changes, message):
+    with pytest.raises(InputError) as caught:
+        analysis_of(loading, **changes)
+    assert message in str(caught.value)
