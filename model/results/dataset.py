@@ -45,6 +45,7 @@ def point_state(setup: Setup, result: Result) -> xr.Dataset:
             "force": ("snapshot", [shot.force for shot in snapshots], {"units": "N"}),
             "y": (("element", "point"), np.outer(radius, rule.points[:, 0]), {"units": "mm"}),
             "z": (("element", "point"), np.outer(radius, rule.points[:, 1]), {"units": "mm"}),
+            "wire_radius": ("element", radius, {"units": "mm"}),
             "weight": ("point", rule.weights),
             "curvature": (("element", "gauss"), setup.placement.curvature, {"units": "1/mm", "about": "towards y"}),
             "torsion": (("element", "gauss"), setup.placement.torsion, {"units": "1/mm"}),
