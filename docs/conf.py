@@ -12,6 +12,7 @@ sys.path.insert(0, str(DOCS / "generators"))
 import command_pages  # noqa: E402
 import docstrings  # noqa: E402
 import entry_pages  # noqa: E402
+import formulas  # noqa: E402
 import python_pages  # noqa: E402
 
 from coilset.model.version import __version__  # noqa: E402
@@ -31,6 +32,8 @@ autodoc_default_options = {"members": True, "ignore-module-all": True}
 python_use_unqualified_type_names = True
 napoleon_use_ivar = True  # attributes as fields of their class, so that none is described twice
 suppress_warnings = ["ref.python"]  # two classes of one name, such as the Rod of two rooms: the link leads to the first
+
+globals().update(formulas.configuration())
 
 html_theme = "alabaster"
 html_title = f"coilset {__version__}"
@@ -68,3 +71,4 @@ def setup(app: Sphinx) -> None:
     app.connect("autodoc-skip-member", docstrings.skip)
     app.connect("autodoc-process-docstring", docstrings.process, priority=100)  # before napoleon
     app.connect("doctree-read", _own_environments)
+    app.connect("build-finished", formulas.copy)

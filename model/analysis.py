@@ -95,6 +95,7 @@ class Analysis:
         self.layout = LineLayout(self.rod)
         self.system = System(self.rod, self.layout, contacts, seats_at(spring.free_length))
         self.torque = self.system.state.add("torque", mean_torque(self.rod), Where.ELEMENT)
+        self.torque_force = self.system.state.add("torque_force", np.zeros(1), Where.SHARED)
         self.newton = self._newton(2.0 * self.rod.largest_radius)
         self.control = AxialControl(
             self.system, spring.free_length, case.ends == "clamped", case.seats.hold == "tips",
@@ -132,7 +133,7 @@ class Analysis:
 
     def _planned_steps(self) -> int:
         automatic = self.case.solver.control.steps.automatic
-        return sum(automatic if phase.steps == "auto" else phase.steps for phase in self.case.loading)
+        return sum(phase.count(automatic) for phase in self.case.loading)
 
     def _passed(self) -> str | None:
         """Why the state on trial is none of a spring: its heads have passed each other; collective."""
@@ -242,14 +243,15 @@ class Analysis:
     def stage(self, phase: Phase) -> Stage:
         """A phase of the case as the load program takes it."""
         to, free_length = phase.to, self.spring.free_length
+        steps = tuple(phase.steps) if isinstance(phase.steps, list) else phase.steps
         if to == "block":
-            return Stage("height", self.spring.block_height, phase.steps, phase.label)
+            return Stage("height", self.spring.block_height, steps, phase.label)
         if to.force is not None:
-            return Stage("force", to.force, phase.steps, phase.label)
+            return Stage("force", to.force, steps, phase.label)
         if to.height is not None:
-            return Stage("height", to.height, phase.steps, phase.label)
+            return Stage("height", to.height, steps, phase.label)
         assert to.travel is not None
-        return Stage("height", free_length - to.travel, phase.steps, phase.label)
+        return Stage("height", free_length - to.travel, steps, phase.label)
 
     def _keep(self, save: Save | None) -> None:
         if save is not None:
@@ -260,13 +262,15 @@ class Analysis:
         contacts = sum(part.closed for part in last.contributions)
         greatest = max(self.result.greatest_force, abs(force))
         x, turns = self.layout.gather(self.rod.x), self.setup.turns
-        lifts = self.case.ends == "seats" and force < -faint_force(self.rod, greatest)
-        step = Step(taken.number, phase, taken.progress, height, self.spring.free_length - height, force,
+        pulls = self.case.ends == "seats" and force < -faint_force(self.rod, greatest)
+        lift_off = max(clearance(self.system, x), 0.0) if pulls else 0.0
+        bears = 0.0 if lift_off else force  # what a seat that is left bears; the tip springs' pull is no force of it
+        step = Step(taken.number, phase, taken.progress, height, self.spring.free_length - height, bears,
                     taken.outcome.iterations, taken.outcome.evaluations, taken.outcome.failed_solves, taken.cuts,
                     contacts, self.system.max_penetration,
                     taken.outcome.negative_pivots, int(taken.outcome.left_branch), taken.outcome.released,
                     axis_offset(x, self.rod.line.stations, turns), self._least_eigenvalue(),
-                    self._greatest_plastic_work(), clearance(self.system, x) if lifts else 0.0,
+                    self._greatest_plastic_work(), lift_off,
                     least_rise(x, turns, self.spring), *self._errors(taken.outcome))  # fmt: skip
         seats = self._seat_reactions(step.number, greatest)
         known = {warning.name for warning in step_warnings(self.setup, self.result)}
@@ -277,12 +281,13 @@ class Analysis:
         return step
 
     def _seat_reactions(self, step: int, greatest_force: float) -> SeatReactions:
-        """At the last equilibrium, whose torque is kept for the next step's active turns."""
-        force = self.result.steps[-1].force_N if self.result.steps else 0.0
-        before = force, self.torque.equilibrium
+        """At the last equilibrium, whose torque and force are kept for the next step's active turns."""
+        before = float(self.torque_force.equilibrium[0]), self.torque.equilibrium
         reactions = seat_reactions(self.system, self.control, self.setup.turns, step, greatest_force, before)
         for kept in (self.torque.trial, self.torque.equilibrium):
             np.copyto(kept, mean_torque(self.rod))
+        for kept in (self.torque_force.trial, self.torque_force.equilibrium):
+            kept[0] = self.control.force
         return reactions
 
     def _greatest_plastic_work(self) -> float:
@@ -330,12 +335,11 @@ class Analysis:
         self.result = replace(self.result, snapshots=(*self.result.snapshots, self.snapshot(name)))
 
     def snapshot(self, name: str) -> Snapshot:
-        """The spring as it stands, gathered on rank 0; collective."""
+        """The spring as it stands, gathered on rank 0; its force is that of the last step; collective."""
+        force = self.result.steps[-1].force_N if self.result.steps else self.control.force
         rod = self.rod
         parts = (rod.triads.values, rod.s.values, rod.point_state, rod.surface_state)
         cells = [rod.line.in_order(values) for values in parts]
         x, components = self.layout.gather(rod.x), rod.sections.components
         triads, resultants, state, surface = cells
-        return Snapshot(
-            name, self.control.height, self.control.force, x, triads, resultants, state, surface, components
-        )
+        return Snapshot(name, self.control.height, force, x, triads, resultants, state, surface, components)

@@ -29,6 +29,8 @@ LONGEST_MESSAGE = 400  # letters that are said of a wrong command line
 INTERRUPTED = 128 + signal.SIGINT
 ONE_SIGNAL = 0.5  # seconds in which several count as one: `timeout` sends to a process and to its group
 
+SOON = 0.02  # seconds after which an interrupt that came during an import is tried again
+
 app = typer.Typer(
     name="coilset",
     help=HELP,
@@ -224,7 +226,7 @@ def examples(
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
 def test(context: typer.Context) -> None:
-    """Run the tests, in serial and under MPI; further arguments go to pytest."""
+    """Run the tests, in serial and under MPI: some ten minutes on two cores; arguments go to pytest as they are."""
     from coilset.scripts.test import test as run_tests
 
     raise typer.Exit(run_tests(context.args))
@@ -285,10 +287,14 @@ def _listen() -> None:
 
     def interrupt(number: int, frame: FrameType | None) -> None:
         nonlocal last
+        if _imports(frame):  # where libraries make an error of their own, or a crash, of an exception out of nowhere
+            signal.setitimer(signal.ITIMER_REAL, SOON)
+            return
         before, last = last, time.monotonic()
         if last - before > ONE_SIGNAL:
             raise KeyboardInterrupt
 
+    signal.signal(signal.SIGALRM, interrupt)
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, interrupt)
     if "COILSET_RANKS" in os.environ:
@@ -296,6 +302,15 @@ def _listen() -> None:
 
         end_with_parent()
         signal.signal(signal.SIGUSR1, interrupt)
+
+
+def _imports(frame: FrameType | None) -> bool:
+    """Is a module being imported there?"""
+    while frame is not None:
+        if frame.f_code.co_filename.startswith("<frozen importlib"):
+            return True
+        frame = frame.f_back
+    return False
 
 
 def _crash() -> None:

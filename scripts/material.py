@@ -21,7 +21,7 @@ if TYPE_CHECKING:  # commands load what they need
 
 app = typer.Typer(help="Draw a material, test it at one point, or fit it to tests.", no_args_is_help=True)
 MATERIAL = typer.Argument(help="name in the library, or the path of a material file")
-DATA = typer.Argument(help="tests (CSV): columns eps11, gamma12, sigma11, tau12")
+DATA = typer.Argument(help="tests (CSV): columns eps11, gamma12, sigma11, tau12; of tension eps11, sigma11")
 OUT = typer.Option(None, callback=folder_target, help="results folder; default results/material/NAME")
 FORCE = typer.Option(False, "--force", help="replace files that are there")
 
@@ -80,12 +80,17 @@ def fit(
     shear_modulus: float = typer.Option(..., "--G", min=0.0, help="shear modulus, N/mm²"),
     poisson: float = typer.Option(..., "--nu", min=-1.0, max=0.5, help="Poisson's ratio"),
     temperature: float = typer.Option(293.15, min=0.0, help="of the tests, K"),
-    saturation: bool = typer.Option(True, help="whether k² has its second branch; tests must reach it"),
+    saturation: bool | None = typer.Option(
+        None,
+        "--saturation/--no-saturation",
+        help="whether k² has its second branch, which the tests must reach; default: no for tension tests alone",
+    ),
+    nominal: bool = typer.Option(False, help="whether tension tests give nominal strain and stress"),
     name: str = typer.Option("fitted", help="name of the material"),
     out: str = OUT,
     force: bool = FORCE,
 ) -> None:
-    """Identify the constants of k², ζ and κ from tension, reversed torsion and tension-torsion tests."""
+    """Identify a material's constants: k² from tension tests; ζ and κ too with reversed torsion and tension-torsion."""
     import yaml
     from rich.console import Console
     from rich.table import Table
@@ -99,7 +104,7 @@ def fit(
     announce_compiling()
     folder = _folder(out, name)
     _refuse([folder / f"{name}.yaml"], force)
-    tests = [experiments.read_test(path) for path in data]
+    tests = [experiments.read_test(path, nominal) for path in data]
     result = fitting.fit(tests, shear_modulus, poisson, saturation, temperature)
     console = Console(highlight=False)
     table = Table("constant", "value", "standard deviation", "± (95 %, all together)", "unit", box=None, padding=(0, 2))

@@ -98,10 +98,10 @@ def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
     table.add_row("free length after", number(summary["free_length_after_mm"], "mm"))
     table.add_row("[bold]set[/]", f"[bold]{number(summary['set_mm'], 'mm')}[/]")
     table.add_row("initial rate", number(summary["rate_N_per_mm"], "N/mm"))
-    table.add_row("greatest force", number(summary["force_max_N"], "N", 2))
+    table.add_row("maximum force", number(summary["force_max_N"], "N", 2))
     table.add_row("shear at the surface, inside, loaded", number(loaded["shear_inside_MPa"], "MPa", 2))
     table.add_row("the same, released", number(released.get("shear_inside_MPa"), "MPa", 2))
-    table.add_row("greatest shear at the surface, released", number(released.get("surface_shear_max_MPa"), "MPa", 2))
+    table.add_row("maximum surface shear stress, released", number(released.get("surface_shear_max_MPa"), "MPa", 2))
     table.add_row("results in", f"{out}{os.sep}")
     console.print(table)
     for warning in summary["warnings"]:

@@ -50,14 +50,15 @@ def solve(
         raise InputError("works on one rank; leave -n out", "--interactive")
     case = read_case(case_file, settings)
     folder = results_folder(out, Path(case_file).stem)
-    try:
-        analysis = Analysis(case, comm)
-    except InputError as error:
-        raise InputError(error.problem, error.place, error.file or case_file) from None
-    on_first_rank(comm, lambda: prepare(folder, force or resume))
     with contextlib.ExitStack() as stack:
+        interrupt = stack.enter_context(Interrupt(comm, console.print))
+        try:
+            analysis = Analysis(case, comm)
+        except InputError as error:
+            raise InputError(error.problem, error.place, error.file or case_file) from None
+        on_first_rank(comm, lambda: prepare(folder, force or resume))
         on_first_rank(comm, lambda: _begin(stack.enter_context(run_log(folder)), folder, resume))
-        _solve(console, analysis, case_file, folder, pictures, resume, interactive)
+        _solve(console, analysis, case_file, folder, pictures, resume, interactive, interrupt)
 
 
 def _begin(log: logging.FileHandler, out: Path, resume: bool) -> None:
@@ -76,13 +77,14 @@ def _solve(
     pictures: bool,
     resume: bool,
     interactive: bool,
+    interrupt: Interrupt,
 ) -> None:
     comm, checkpoint = analysis.comm, Checkpoint(out, analysis.case)
     if resume:
         analysis.resume(checkpoint.load(comm))
     _announce(console, analysis, case_file, resume)
     began = time.perf_counter()
-    failure = _run(console, analysis, checkpoint, interactive)
+    failure = _run(console, analysis, checkpoint, interactive, interrupt)
     analysed = time.perf_counter() - began
     summary = comm.bcast(summarise(analysis.setup, analysis.result) if comm.rank == 0 else None)
 
@@ -111,7 +113,7 @@ def _announce(console: Console, analysis: Analysis, case_file: str | Path, resum
 
 
 def _run(
-    console: Console, analysis: Analysis, checkpoint: Checkpoint, interactive: bool
+    console: Console, analysis: Analysis, checkpoint: Checkpoint, interactive: bool, interrupt: Interrupt
 ) -> SolveError | KeyboardInterrupt | None:
     """Go through the program; what ended it early is returned, for the results up to there are written first."""
     ask = Prompt(analysis, console.print) if interactive else None
@@ -123,8 +125,7 @@ def _run(
             ask(step)
 
     try:
-        with Interrupt(analysis.comm, console.print) as interrupt:
-            analysis.run(report, checkpoint.save, interrupt.check)
+        analysis.run(report, checkpoint.save, interrupt.check)
     except (SolveError, KeyboardInterrupt) as error:
         return error
     return None
@@ -176,9 +177,9 @@ def _conclude(console: Console, summary: dict[str, Any], out: Path, analysed: fl
     table.add_row("rate between 30 and 70 % of the travel", number(summary["rate_30_70_N_per_mm"], "N/mm"))
     for rate in summary["rates"]:
         table.add_row(f"rate at {rate['travel_mm']:g} mm", number(rate["rate_N_per_mm"], "N/mm"))
-    table.add_row("greatest force", number(summary["force_max_N"], "N", 2))
+    table.add_row("maximum force", number(summary["force_max_N"], "N", 2))
     table.add_row("block height", number(summary["block_height_mm"], "mm"))
-    table.add_row("greatest residual shear stress", number(summary["residual_shear_max_MPa"], "MPa", 2))
+    table.add_row("maximum residual shear stress", number(summary["residual_shear_max_MPa"], "MPa", 2))
     table.add_row("residual shear stress, coil's inside", number(summary["residual_shear_inside_MPa"], "MPa", 2))
     table.add_row("results in", f"{out}{os.sep}")
     console.print(table)

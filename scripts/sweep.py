@@ -152,7 +152,7 @@ def _conclude(plan: Plan, out: Path, pictures: bool, console: Console) -> int:
     files, problems = draw(out, plan, data) if pictures else ([], [])
     counts = {status: int((data.status == status).sum()) for status in ("done", "failed", "missing")}
     table = Table(show_header=True, box=None, padding=(0, 2))
-    for column in ("", "least", "mean", "greatest"):
+    for column in ("", "minimum", "mean", "maximum"):
         table.add_column(column, justify="left" if not column else "right")
     for name in ("set_mm", "force_max_N", "rate_N_per_mm", "residual_shear_max_MPa"):
         if name in data and data[name].notnull().any():

@@ -30,6 +30,7 @@ def test(arguments: list[str]) -> int:
     pytest = [sys.executable, "-m", "pytest", *arguments]
     if arguments:
         return run("tests on one rank", pytest)
+    print("coilset: all tests, in serial and under MPI; some ten minutes on two cores", flush=True)
     solves = [f"tests/{name}" for name in SOLVES]
     parts = [*pytest, *(f"--ignore={path}" for path in solves)]
     if usable_cores() > 1:

@@ -18,6 +18,7 @@ from pydantic_core import PydanticUndefined
 
 KINDS = {float: "number", int: "whole number", str: "text", bool: "`true`, `false`", Any: "any value"}
 PLURALS = {"number": "numbers", "text": "texts", "any value": "any values"}
+UNITLESS = {"1": "", "of the option": "", "turns": ""}  # words of the reference that no axis needs
 SIGNS = {Gt: ("gt", ">"), Ge: ("ge", "≥"), Lt: ("lt", "<"), Le: ("le", "≤")}
 
 
@@ -107,6 +108,23 @@ def rows(model: type) -> list[Row]:
     return [_row(item.name, hints[item.name], (), _shown(item.default, item.default is MISSING),
                  meanings.get(item.name, "").rstrip("."))
             for item in fields(model)]  # fmt: skip
+
+
+def entry_unit(model: type, entry: str) -> str:
+    """Unit of the number at an entry's path, such as `loading.0.to.travel`; empty where it has none.
+
+    Args:
+        model: a model of pydantic, or a dataclass.
+        entry: the path; places in a list may be left out.
+    """
+    places, row = [model], None
+    for name in entry.split("."):
+        if not name.isdigit():
+            row = next((row for place in places for row in rows(place) if row.name == name), None)
+            if row is None:
+                return ""
+            places = list(row.groups)
+    return UNITLESS.get(row.unit, row.unit) if row else ""
 
 
 def attributes(model: type) -> dict[str, str]:

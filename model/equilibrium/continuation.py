@@ -31,8 +31,8 @@ class Continuation:
         newton: Newton.
         control: StepControl.
         penetration_limit: penetration beyond which a state is no equilibrium, mm.
-        starts: where to begin solving a load for a step of the given size, one start after the other; default: the last
-            step's increments, scaled, then the last equilibrium.
+        starts: where to begin solving a load for a step of the given length, one start after the other; default: the
+            last step's increments, scaled, then the last equilibrium.
 
         stability: Stability; None: states are not judged.
         step_error: StepError; None: the error of steps is not known, and automatic ones grow on ease alone.
@@ -89,7 +89,7 @@ class Continuation:
         """Commit or restore.
 
         Args:
-            size: of the step, in regular steps.
+            size: length of the step, in regular steps.
             accurately: does a step whose error is too large count as failed?
         """
         if outcome.converged and self.step_error is not None:
@@ -219,13 +219,14 @@ class Continuation:
         while True:
             begun = self.steps.position
             size = self.steps.size(path)
-            load = path.load(begun.done + size)
-            outcome = self._attempt(load, self.starts(load, size), size, path.automatic)
+            load, length = path.load(begun.done + size), path.step_length(begun.done, size)
+            outcome = self._attempt(load, self.starts(load, length), length, path.automatic)
             if outcome.negative_pivots > self.negative_pivots:
                 self._unstable = size
             if not outcome.converged and self._ends_here(size, outcome):
                 there = self._unstable or size
-                beside = self._snap(lambda to=begun.done + there: path.load(to), there)  # type: ignore[misc]
+                length = path.step_length(begun.done, there)
+                beside = self._snap(lambda to=begun.done + there: path.load(to), length)  # type: ignore[misc]
                 if beside.converged:
                     outcome, size = beside, there
                 self._unstable = 0.0  # once a step

@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.convergence import Outcome
@@ -22,13 +24,13 @@ class Stage:
     Attributes:
         kind: what is driven.
         value: at the end, mm or N.
-        steps: number of equal steps, or auto.
+        steps: number of equal steps, or auto, or the parts of the stage at which they end, ascending to 1.
         label: in words.
     """
 
     kind: Literal["height", "force"]
     value: float
-    steps: int | Literal["auto"]
+    steps: int | Literal["auto"] | tuple[float, ...]
     label: str
 
 
@@ -98,12 +100,15 @@ class LoadProgram:
         """
         self.stage, continuation = self.redirected or stage, self.continuation
         while continuation.steps.position.done < (regular := self._regular(self.stage)):
-            outcome, cuts = continuation.advance(self._path(self.stage))
+            path = self._path(self.stage)
+            outcome, cuts = continuation.advance(path)
             error = outcome.estimate.force if outcome.estimate is not None else math.nan
             log.info("step %d: %.6g mm, %.6g N, %d iterations, out of balance %.1e, error about %.2g N; next %.4g of a "
                      "regular step", continuation.number, self.control.height, self.control.force, outcome.iterations,
                      outcome.ratio, error, continuation.steps.position.size)  # fmt: skip
-            yield StepTaken(continuation.number, continuation.steps.position.done / regular, cuts, outcome)
+            done = continuation.steps.position.done
+            progress = (done if path.length is None else path.length(done)) / regular
+            yield StepTaken(continuation.number, progress, cuts, outcome)
 
     def redirect(self, stage: Stage) -> None:
         """Go to another target from here on, in place of the stage in progress."""
@@ -111,14 +116,22 @@ class LoadProgram:
         self.stage = self.redirected = stage
 
     def _regular(self, stage: Stage) -> int:
+        if isinstance(stage.steps, tuple):
+            return len(stage.steps)
         return self.continuation.control.automatic if stage.steps == "auto" else stage.steps
 
     def _path(self, stage: Stage) -> Path:
         regular, begin = self._regular(stage), self._force if stage.kind == "force" else self._height
 
+        marks = np.array([0.0, *stage.steps]) if isinstance(stage.steps, tuple) else None
+
+        def part(done: float) -> float:
+            return done / regular if marks is None else float(np.interp(done, np.arange(regular + 1), marks))
+
         def load(done: float) -> Load:
-            value = stage.value if done >= regular else begin + done / regular * (stage.value - begin)
+            value = stage.value if done >= regular else begin + part(done) * (stage.value - begin)
             return self.control.to_force(value) if stage.kind == "force" else self.control.to_height(value)
 
         return Path(load, regular, stage.label, stage.steps == "auto",
-                    lambda: f"{self.control.height:.6g} mm and {self.control.force:.6g} N")  # fmt: skip
+                    lambda: f"{self.control.height:.6g} mm and {self.control.force:.6g} N",
+                    None if marks is None else lambda done: regular * part(done))  # fmt: skip

@@ -25,6 +25,7 @@ class Path:
         automatic: do steps take the size that their error and the iteration allow? Equal steps end on their marks,
             also after a cut.
         place: where on it the body stands, in words.
+        length: of the path up to a place that is counted in regular steps, in their mean length; None: they are equal.
     """
 
     load: Callable[[float], Load]
@@ -32,6 +33,11 @@ class Path:
     target: str = "the target"
     automatic: bool = False
     place: Callable[[], str] = lambda: "here"
+    length: Callable[[float], float] | None = None
+
+    def step_length(self, done: float, size: float) -> float:
+        """Of a step of a size from a place on the path, both in regular steps; in their mean length."""
+        return size if self.length is None else self.length(done + size) - self.length(done)
 
 
 @dataclass(frozen=True)
@@ -42,8 +48,8 @@ class Position:
         done: what is behind, in regular steps.
         size: next step, in regular steps.
         cuts: how often the step in progress was cut.
-        last: size of the last step, whose increments are the guess for the next one; 0 if there is no guess.
-        before: size of the last step on this path; 0 if there is none.
+        last: length of the last step, whose increments are the guess for the next one; 0 if there is no guess.
+        before: length of the last step on this path; 0 if there is none.
     """
 
     done: float = 0.0
@@ -94,7 +100,7 @@ class StepSizes:
 
     def accept(self, path: Path, outcome: Outcome, size: float) -> None:
         """Stand at the end of a step of this size."""
-        last = 0.0 if outcome.left_branch else size
+        last = 0.0 if outcome.left_branch else path.step_length(self.position.done, size)
         self.position = Position(self.position.done + size, self._following(path, outcome, size), 0, last, last)
 
     def cut(self, outcome: Outcome, size: float) -> bool:

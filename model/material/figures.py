@@ -105,6 +105,8 @@ def fit(result: Fit, name: str) -> Figure:
         for column, test, stress, scatter in zip(axes.T, result.tests, result.stress, result.scatter, strict=True):
             length = 100 * np.concatenate([[0.0], np.cumsum(np.abs(np.diff(test.strain, axis=0)).sum(axis=1))])
             for i, symbol in enumerate(("σ11", "τ12")):
+                if not test.stress[:, i].any():  # the shear of a tension test
+                    continue
                 color = f"C{i}"
                 column[0].plot(length, test.stress[:, i], ".", ms=2, alpha=0.4, color=color, label=f"{symbol}, test")
                 column[0].plot(length, stress[:, i], lw=1.2, color=color, label=f"{symbol}, law")
@@ -116,5 +118,7 @@ def fit(result: Fit, name: str) -> Figure:
             column[1].set_title(f"rms {scatter:.3g} N/mm²", fontsize=8)
             for place in column:
                 place.grid(lw=0.3)
-        figure.suptitle(f"{name}: constants fitted to {len(result.tests)} tests", fontsize=10)
+        figure.suptitle(
+            f"{name}: constants fitted to {len(result.tests)} test{'s' * (len(result.tests) > 1)}", fontsize=10
+        )
     return figure

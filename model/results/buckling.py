@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import isfinite
+from math import inf, isfinite
 
 import numpy as np
 
@@ -37,7 +37,9 @@ def buckling(steps: Sequence[Step], diameter: float) -> Buckling | None:
         steps: Steps up to now.
         diameter: mean diameter of the coil, mm.
     """
-    critical = critical_travel(steps)
+    # Eigenvalues are asked for where a spring is slender enough to buckle. Where none is, its ends push the axis off.
+    asked = any(step.least_eigenvalue is not None for step in steps)
+    critical = critical_travel(steps) if asked else inf
     seen = next((k for k, step in enumerate(steps) if _has_buckled(step, diameter, critical)), None)
     if seen is None:
         return None

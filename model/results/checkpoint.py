@@ -126,6 +126,9 @@ class Checkpoint:
             return Saved(arrays, self._position(about, result), result)
         except InputError:
             raise
+        except (KeyError, TypeError):  # an entry that is missing, or one that nobody knows
+            raise InputError(f"the checkpoint was written by another version of coilset, or is damaged; {ANEW}", "",
+                             path) from None  # fmt: skip
         except Exception as error:
             reason = str(error).partition("\n")[0] or type(error).__name__
             raise InputError(f"the checkpoint is not readable: {reason}; {ANEW}", "", path) from None
@@ -146,6 +149,8 @@ class Checkpoint:
         """Where to go on; a changed target begins its phase where the spring stands now."""
         saved = about["position"]
         redirected = saved["redirected"] and Stage(**saved["redirected"])
+        if redirected and isinstance(redirected.steps, list):  # JSON has no tuples
+            redirected = replace(redirected, steps=tuple(redirected.steps))
         position = ProgramPosition(**{**saved, "on_path": Position(**saved["on_path"]), "redirected": redirected})
         stage, old, new = position.stage, about["case"]["loading"], self.case["loading"]
         if old[stage : stage + 1] == new[stage : stage + 1]:

@@ -22,6 +22,7 @@ class Step:
     failed before it too, see coilset.model.equilibrium.convergence.Outcome.
 
     Attributes:
+        force_N: axial force of the seats or heads on the spring, compression positive; 0 where a seat is left.
         negative_pivots: negative eigenvalues of the tangent; the state is unstable if there are any.
         left_branch: 1 if the spring snapped on the way to it, from a path that ends or is unstable, else 0.
         released_energy_Nmm: potential energy that it lost then.
@@ -100,7 +101,7 @@ class SeatReaction:
     """What one seat, or clamped head, does to the spring.
 
     Attributes:
-        force_N: axial force, compression positive.
+        force_N: axial force, compression positive; a seat that is left bears none.
         lateral_x_N, lateral_y_N: force across the axis, with that of a held tip.
         moment_x_Nmm, moment_y_Nmm, moment_z_Nmm: about the point where the axis meets the seat, with those of a held
             tip; z along the axis.

@@ -92,7 +92,10 @@ class _Observer:
                 down = float(np.abs(wire.turns[number] - wire.turns[wire.tip(end)]).max(initial=down))
                 if part.pressure.sum() > faint:
                     spot = part.pressure[bears] @ points[:, :2] / part.pressure[bears].sum()
-        numbers = (side * wrench.force[2], *wrench.force[:2], *wrench.about(centre), *crossing, np.hypot(*crossing),
+        axial = side * wrench.force[2]
+        if not self.control.clamped and axial < -faint:
+            axial = 0.0  # a seat cannot pull: that is the spring which holds a tip that has lifted off
+        numbers = (axial, *wrench.force[:2], *wrench.about(centre), *crossing, np.hypot(*crossing),
                    *spot, length, down, self.tilt(end))  # fmt: skip
         return SeatReaction(*map(float, numbers))
 

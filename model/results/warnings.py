@@ -65,8 +65,8 @@ def _lift_off(setup: Setup, result: Result) -> Iterator[Warning]:
     if lifted:
         greatest, place = max(step.lift_off_mm for step in lifted), _place(lifted[0])
         message = (
-            f"the spring leaves a seat at {place}, by up to {greatest:.4g} mm: seats cannot pull, and a soft string "
-            "holds it in place, whose force is no force of the spring"
+            f"the spring leaves a seat at {place}, by up to {greatest:.4g} mm: seats cannot pull, so it bears no force "
+            "there; soft springs at its tips hold it in place"
         )
         yield Warning("lift-off", place, message, greatest, 0.0, "mm")
 
@@ -186,9 +186,11 @@ def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
 
 
 def released(result: Result) -> bool:
-    """Whether the spring is free of load where the run stands."""
+    """Whether the spring is free of load where the run stands; one that has left a seat hangs on its tip springs."""
     greatest = max((abs(step.force_N) for step in result.steps), default=0.0)
-    return bool(result.steps) and abs(result.snapshots[-1].force) <= 1e-6 * greatest
+    return (
+        bool(result.steps) and not result.steps[-1].lift_off_mm and abs(result.snapshots[-1].force) <= 1e-6 * greatest
+    )
 
 
 SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _penetration, _buckled, _unstable, _snapped)

@@ -146,11 +146,12 @@ class SliceAnalysis:
         return result
 
     def _phase(self, index: int, phase: Phase, report: Callable[[SliceStep], object]) -> None:
-        steps = AUTOMATIC if phase.steps == "auto" else phase.steps
+        steps = phase.count(AUTOMATIC)
+        marks = phase.steps if isinstance(phase.steps, list) else np.arange(1, steps + 1) / steps
         kind, end = self._target(phase)
         begin = self.problem.force if kind == "force" else self.height
-        for k in range(1, steps + 1):
-            value = end if k == steps else begin + k / steps * (end - begin)
+        for k, mark in enumerate(marks, 1):
+            value = end if k == steps else begin + mark * (end - begin)
             if kind == "force":
                 effort = self.problem.go_to_force(value)
             elif phase.to == "block" and k == steps:
@@ -159,7 +160,7 @@ class SliceAnalysis:
                 effort = self.problem.go_to_rise(self._rise(value))
             problem, pressure = self.problem, self.problem.pressure
             step = SliceStep(
-                len(self.result.steps) + 1, index, k / steps, self.height, self.travel, float(problem.force),
+                len(self.result.steps) + 1, index, float(mark), self.height, self.travel, float(problem.force),
                 effort.iterations, effort.cuts, pressure.bearing, max(0.0, -pressure.gap),
                 2.0 * np.pi * self.body.rise, float(problem.torque),
             )  # fmt: skip

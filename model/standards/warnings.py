@@ -11,13 +11,33 @@ from coilset.model.standards.buckling import buckling_travel
 from coilset.model.warning import Warning
 
 INDEX_USUAL = (4.0, 20.0)  # EN 15800, table 1: cold coiled springs
+WIRE_USUAL = (0.07, 20.0)  # mm; EN 15800, table 1 and, from 16 mm on, annex A
 ACTIVE_LEAST = 2.0  # EN 13906-1: number of active coils
 TIP_LEAST = 0.25  # of the wire's diameter
 
 
 def spring_warnings(spring: Spring) -> list[Warning]:
     """All warnings about the unloaded spring itself."""
-    return [warning for check in (_index, _solid_coils, _active, _ground, _buckling) for warning in check(spring)]
+    return [
+        warning for check in (_wire, _index, _solid_coils, _active, _ground, _buckling) for warning in check(spring)
+    ]
+
+
+def _wire(spring: Spring) -> Iterator[Warning]:
+    """Lengths in metres or inches are most easily seen by the wire."""
+    t = spring.breaks
+    wire, (low, high) = spring.wire_diameter(t), WIRE_USUAL
+    i = np.argmin(wire) if wire.min() < low else np.argmax(wire)
+    if not low <= wire[i] <= high:
+        yield Warning(
+            "wire",
+            "spring.wire_diameter",
+            f"the wire is {wire[i]:.4g} mm thick at turn {t[i]:.3g}, outside of the {low:g} to {high:g} mm usual in "
+            "cold coiling (EN 15800); are all lengths in mm?",
+            float(wire[i]),
+            low if wire[i] < low else high,
+            "mm",
+        )
 
 
 def _index(spring: Spring) -> Iterator[Warning]:

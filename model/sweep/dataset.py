@@ -6,11 +6,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from coilset.model.case import Case
+from coilset.model.case.reference import entry_unit
 from coilset.model.results.folder import reserve, whole
 from coilset.model.sweep.journal import read_records
 from coilset.model.sweep.plan import Plan
 
-UNITS = {"_N_per_mm": "N/mm", "_MPa": "MPa", "_mm": "mm", "_N": "N"}
+UNITS = {"_N_per_mm2": "N/mm²", "_N_per_mm": "N/mm", "_deg": "degrees", "_MPa": "MPa", "_mm": "mm", "_N": "N"}
 CURVE = {"travel_mm": "mm", "seat_height_mm": "mm", "force_N": "N", "phase": "1"}
 
 
@@ -82,8 +84,12 @@ def _input(plan: Plan, k: int) -> tuple[Any, dict[str, str]]:
     """Values of an input for all cases, words where they are not all numbers, and its attributes."""
     vary, values = plan.spec.vary[plan.names[k]], [row[k] for row in plan.rows]
     numbers = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values)
-    column = np.array(values, dtype=float) if numbers else np.array([str(value) for value in values], dtype=object)
-    return column, _attributes(vary.label or plan.names[k], vary.unit)
+    words = vary.label or plan.names[k]
+    if not numbers:
+        return np.array([str(value) for value in values], dtype=object), _attributes(words, vary.unit or "")
+    units = {entry_unit(Case, entry) for entry in vary.entries or [plan.names[k]]}
+    own = units.pop() if len(units) == 1 else ""
+    return np.array(values, dtype=float), _attributes(words, own if vary.unit is None else vary.unit)
 
 
 def write(path: str | Path, data: xr.Dataset) -> None:

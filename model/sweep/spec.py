@@ -36,7 +36,7 @@ class Input(Strict):
         list[str] | None, Field(min_length=1, description="entries of the case that get the value; default: the name")
     ] = None
     label: Annotated[str | None, Field(description="name in figures")] = None
-    unit: Annotated[str, Field(description="unit in figures")] = ""
+    unit: Annotated[str | None, Field(description="unit in figures; default: that of the entries")] = None
 
 
 class Values(Input):

@@ -108,6 +108,11 @@ def test_earlier_names_are_taken_with_a_notice():
     assert problem(raw(contact={"deepest": -1})).startswith("contact.penetration_limit: -1: must be greater than 0")
 
 
+@pytest.mark.parametrize("marks", [[0.5], [0.2, 0.2, 1], [0.0, 1], [0.5, 1, 1.5], []])
+def test_recorded_steps_ascend_to_the_end_of_their_phase(marks):
+    assert problem(raw(loading=[{"to": "block", "steps": marks}])).startswith("loading.0.steps: ")
+
+
 def test_a_list_takes_no_index_beyond_its_end():
     for part in ("7", "-1", "x", "9" * 5000, "²"):
         with pytest.raises(InputError, match="give a number from 0 to 0"):

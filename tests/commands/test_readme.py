@@ -1,13 +1,36 @@
 """What README.md shows is what comes out: its Python snippet, run, prints the numbers under "What comes out"."""
 
+import itertools
 import re
+import shlex
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-README = (Path(__file__).resolve().parents[2] / "README.md").read_text(encoding="utf-8")
+from coilset.model.case import read_case
+from coilset.model.sweep.rehearsal import build_input
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+README = (REPOSITORY / "README.md").read_text(encoding="utf-8")
+
+
+def test_commands_follow_each_other():
+    """None meets the results of one before it, unless it says what is to be done with them, and each can be built."""
+    lines = re.findall(r"^    scripts/coilset (.*?)(?: +#.*)?$", README, re.MULTILINE)
+    solves = [words for words in map(shlex.split, lines) if "solve" in words]
+    assert len(solves) >= 5
+    taken = set()
+    for words in solves:
+        option = dict(itertools.pairwise(words))
+        case = REPOSITORY / option["solve"]
+        folder = option.get("--out", f"results/{case.stem}")
+        assert folder not in taken or {"--force", "--resume"} & set(words), words
+        assert folder in taken or not {"--force", "--resume"} & set(words), words
+        taken.add(folder)
+        settings = [value for word, value in itertools.pairwise(words) if word == "--set"]
+        build_input(read_case(case, settings))
 
 
 def stated(words):
@@ -22,9 +45,9 @@ def test_the_python_snippet_gives_the_stated_numbers(tmp_path):
     done = subprocess.run([sys.executable, "set.py"], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     *steps, (set_mm, residual) = [tuple(map(float, line.split())) for line in done.stdout.splitlines()]
-    assert max(force for _, force in steps) == pytest.approx(stated("greatest force"), abs=0.005)
+    assert max(force for _, force in steps) == pytest.approx(stated("maximum force"), abs=0.005)
     assert set_mm == pytest.approx(stated("set"), abs=5e-5)
-    assert residual == pytest.approx(stated("greatest residual shear stress"), abs=0.005)
+    assert residual == pytest.approx(stated("maximum residual shear stress"), abs=0.005)
     assert stated("free length before") - stated("free length after") == pytest.approx(stated("set"), abs=1e-4)
     assert max(travel for travel, _ in steps) == pytest.approx(
         stated("free length before") - stated("block height"), abs=1e-9

@@ -37,8 +37,8 @@ def test_solve_writes_what_the_readme_says(example, tmp_path):
                          ("free length after", "free_length_after_mm"), ("initial rate", "rate_N_per_mm"),
                          ("block height", "block_height_mm")):  # fmt: skip
         assert printed[words] == f"{summary[entry]:.4f}"
-    assert printed["greatest force"] == f"{summary['force_max_N']:.2f}"
-    assert printed["greatest residual shear stress"] == f"{summary['residual_shear_max_MPa']:.2f}"
+    assert printed["maximum force"] == f"{summary['force_max_N']:.2f}"
+    assert printed["maximum residual shear stress"] == f"{summary['residual_shear_max_MPa']:.2f}"
     again = coilset("solve", example, "--out", "here", *SHORT, cwd=tmp_path)
     assert again.returncode == 2
     assert "--force" in again.stderr

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from coilset import model
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.results.dataset import point_state
@@ -13,6 +14,7 @@ from coilset.model.results.record import SeatReaction, SeatReactions, Step
 from coilset.model.results.summary import summarise
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs/reference/results.md").read_text(encoding="utf-8")
+MODEL = Path(model.__file__).parent
 SHORT = ["loading=[{to: {travel: 1}, steps: 1}, {to: {force: 0}, steps: 1}]", "mesh.elements_per_turn=8"]
 
 
@@ -49,3 +51,12 @@ def test_points(run):
     data = point_state(*run)
     assert sorted(rows("points.nc")) == sorted(data.data_vars)
     assert sorted(rows("points.nc", "coordinate")) == sorted(data.coords)
+
+
+def test_warnings():
+    """Each name that a Warning is made with is on the page, and no other."""
+    made = re.compile(r"\bWarning\(\s*\"([a-z -]+)\"")
+    names = {name for path in MODEL.rglob("*.py") for name in made.findall(path.read_text(encoding="utf-8"))}
+    (listed,) = re.findall(r"^Warnings, by name: (.*?)\. They are printed", PAGE, re.MULTILINE | re.DOTALL)
+    assert {"index", "lift-off", "step error"} <= names
+    assert set(re.findall("`([^`]+)`", listed)) == names

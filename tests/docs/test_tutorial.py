@@ -17,8 +17,8 @@ from coilset.model.sweep.plan import Plan
 PAGES = {path.stem: path.read_text(encoding="utf-8")
          for path in (Path(__file__).resolve().parents[2] / "docs/tutorial").glob("*.md")}  # fmt: skip
 LINES = {"free length before": "free_length_before_mm", "free length after": "free_length_after_mm", "set": "set_mm",
-         "initial rate": "rate_N_per_mm", "greatest force": "force_max_N", "block height": "block_height_mm",
-         "greatest residual shear stress": "residual_shear_max_MPa",
+         "initial rate": "rate_N_per_mm", "maximum force": "force_max_N", "block height": "block_height_mm",
+         "maximum residual shear stress": "residual_shear_max_MPa",
          "residual shear stress, coil's inside": "residual_shear_inside_MPa"}  # fmt: skip
 
 

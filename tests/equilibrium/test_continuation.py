@@ -56,6 +56,23 @@ def test_automatic_steps_grow_on_ease_and_hit_their_stations(make):
     assert travels[:-1].max() > 1.4 * travels[0]
 
 
+def test_the_steps_of_an_automatic_run_give_its_numbers_again(make):
+    """Whatever their lengths; and one that is cut ends on its mark all the same."""
+    program = "[{to: {travel: 15}}, {to: {force: 0}}]"
+    one = make(program).run().steps
+    marks = [[step.progress for step in one if step.phase == phase] for phase in range(2)]
+    recorded = f"[{{to: {{travel: 15}}, steps: {marks[0]}}}, {{to: {{force: 0}}, steps: {marks[1]}}}]"
+    other = make(recorded).run().steps
+    for name in ("progress", "travel_mm", "force_N", "estimated_force_error_N"):
+        np.testing.assert_allclose(
+            [getattr(s, name) for s in other], [getattr(s, name) for s in one], rtol=1e-6, atol=1e-7
+        )
+    assert np.ptp(np.diff(marks[0])) > 0.01
+    cut = make("[{to: {travel: 15}, steps: [0.1, 1]}]", "solver.options.snes_max_it=3").run().steps
+    assert sum(step.cuts for step in cut) > 0
+    assert {0.1, 1.0} <= {step.progress for step in cut}
+
+
 @pytest.mark.parametrize("ends", ["seats", "clamped"])
 def test_an_impossible_target_is_given_up_with_all_that_was_reached(make, ends):
     """Coils that may lie 0.5 µm in each other cannot bear 1300 N; nor can heads pass each other."""

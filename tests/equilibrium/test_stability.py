@@ -98,7 +98,15 @@ def test_an_axis_pushed_off_long_before_has_not_buckled():
     found = buckling([*steps, late], 40.0)
     assert found.travel_mm == pytest.approx(10.0, rel=1e-9)
     assert found.offset_mm == 5.0
-    assert buckling([replace(late, least_eigenvalue=None)], 40.0).travel_mm == 9.8  # nothing tells better
+    assert buckling([replace(late, least_eigenvalue=3.0)], 40.0).travel_mm == 9.8  # one eigenvalue tells no better
+
+
+def test_a_stocky_spring_whose_ends_push_its_axis_off_has_not_buckled():
+    """No eigenvalue was asked for, since the standard's formula says never: 1.35 mm of 25 mm is no buckling."""
+    step = Step(1, 0, 1.0, 60.0, 24.7, 291.6, 8, 9, 0, 0, 70, 0.0)
+    pushed = replace(step, axis_offset_mm=1.35)
+    assert buckling([pushed], 25.0) is None
+    assert buckling([replace(pushed, negative_pivots=1)], 25.0) is not None
 
 
 def test_offset_of_the_axis_is_the_mean_of_a_turn():

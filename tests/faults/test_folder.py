@@ -4,6 +4,7 @@ import json
 import os
 import shutil
 import signal
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -75,6 +76,23 @@ def older(arrays):
     arrays["about"] = np.array(json.dumps(about))
 
 
+def other_layout(*names):
+    """Entries of the text beside the arrays that have another name, as before a change of the program."""
+
+    def change(path):
+        def rename(arrays):
+            about = group = json.loads(str(arrays["about"]))
+            *above, last = names
+            for name in above:
+                group = group[name]
+            group[f"earlier_{last}"] = group.pop(last)
+            arrays["about"] = np.array(json.dumps(about))
+
+        rewrite(path, rename)
+
+    return change
+
+
 STATE, STEPS, SNAPSHOT = "state.npz", "steps.jsonl", "snapshot-00.npz"
 DAMAGES = {
     "truncated": (STATE, lambda path: path.write_bytes(path.read_bytes()[:-300])),
@@ -84,14 +102,26 @@ DAMAGES = {
     "wrong shape": (STATE, lambda path: rewrite(path, lambda arrays: arrays.update(state_x=np.zeros((3, 3))))),
     "not a number": (STATE, lambda path: rewrite(path, lambda arrays: arrays["state_x"].fill(np.nan))),
     "older version": (STATE, lambda path: rewrite(path, older)),
+    "other layout": (STATE, other_layout("position", "on_path")),
+    "other position": (STATE, other_layout("position", "on_path", "size")),
     "steps missing": (STEPS, lambda path: path.unlink()),
     "steps truncated": (STEPS, lambda path: path.write_bytes(path.read_bytes()[:-300])),
     "steps damaged": (STEPS, lambda path: path.write_bytes(path.read_bytes().replace(b'"step"', b'"stop"'))),
+    "steps of others": (STEPS, lambda path: path.write_bytes(path.read_bytes().replace(b'"cuts"', b'"kuts"'))),
     "snapshot missing": (SNAPSHOT, lambda path: path.unlink()),
     "snapshot truncated": (SNAPSHOT, lambda path: path.write_bytes(path.read_bytes()[:-300])),
     "snapshot empty": (SNAPSHOT, lambda path: path.write_bytes(b"")),
     "snapshot of another": (SNAPSHOT, lambda path: rewrite(path, lambda arrays: arrays.update(x=np.zeros((3, 3))))),
 }
+
+
+@pytest.mark.parametrize("damage", ["other layout", "other position", "steps of others"])
+def test_a_checkpoint_of_another_version_is_called_so(example, folder, damage):
+    """Not "not readable: 'on_path'"."""
+    name, spoil = DAMAGES[damage]
+    spoil(folder / "checkpoint" / name)
+    with pytest.raises(InputError, match="written by another version of coilset, or is damaged; give --force"):
+        resume(example, folder)
 
 
 @pytest.mark.parametrize("damage", DAMAGES)
@@ -103,6 +133,48 @@ def test_a_damaged_checkpoint_gets_one_line(example, folder, damage):
     assert "\n" not in str(caught.value)
     assert "--force" in str(caught.value)
     assert not (folder / "summary.json").exists()
+
+
+def members(folder):
+    """Every array of a checkpoint: its file, its name, and where its bytes are in the file."""
+    for path in sorted((folder / "checkpoint").glob("*.npz")):
+        with zipfile.ZipFile(path) as file:
+            for member in file.infolist():
+                yield path, member.filename.removesuffix(".npy"), member.header_offset + 200, member.file_size
+
+
+def test_damage_at_every_array_gets_one_line(example, folder):
+    """Missing, of another shape, not a number, or with one bit turned; the analysis that refuses it stays as it was."""
+    case = read_case(example, SMALL)
+    analysis = Analysis(case, COMM)
+    before, found = analysis.system.state["x"].trial.copy(), list(members(folder))
+    assert len(found) > 25
+    for path, name, place, size in found:
+        whole, spoilt = path.read_bytes(), []
+        with np.load(path) as file:
+            values = file[name]
+        if size > 400:
+            turned = bytearray(whole)
+            turned[place] ^= 1
+            spoilt.append(bytes(turned))
+        changes = [lambda arrays, name=name: arrays.pop(name)]
+        if values.dtype.kind == "f" and values.ndim:
+            changes += [lambda arrays, name=name: arrays.update({name: arrays[name][1:]}),
+                        lambda arrays, name=name: arrays[name].flat.__setitem__(0, np.nan)]  # fmt: skip
+        for change in changes:
+            rewrite(path, change)
+            spoilt.append(path.read_bytes())
+            path.write_bytes(whole)
+        for content in spoilt:
+            path.write_bytes(content)
+            with pytest.raises(InputError) as caught:
+                analysis.resume(Checkpoint(folder, case).load(COMM))
+            assert "\n" not in str(caught.value)
+            assert "--force" in str(caught.value)
+        path.write_bytes(whole)
+    np.testing.assert_array_equal(analysis.system.state["x"].trial, before)
+    analysis.resume(Checkpoint(folder, case).load(COMM))
+    assert analysis.continuation.number == 1
 
 
 def test_an_interrupted_run_is_not_thrown_away(example, folder):

@@ -66,6 +66,59 @@ def test_fitted_material_file_is_a_material(fitted, tmp_path):
     assert stress[0] == pytest.approx(stress[1], rel=5e-3)
 
 
+def flow_curve(plastic):
+    """Yield stress of a made-up wire over the plastic strain, N/mm²: not of the form that the law has in b*."""
+    return 1250 + 330 * (1 - np.exp(-plastic / 0.0025)) + 3500 * plastic
+
+
+def write_tension(path):
+    """A tension test of the wire to 3 % as a laboratory gives it: nominal, 4 N/mm² of scatter, torn at the end."""
+    plastic = np.geomspace(2e-5, 0.03, 140)
+    stress = np.concatenate([np.linspace(50, 1240, 25), flow_curve(plastic)])
+    strain = np.concatenate([np.zeros(25), plastic]) + stress / (2 * 81500 * 1.26)
+    nominal = np.expm1(strain)
+    readings = stress / (1 + nominal) + np.random.default_rng(7).normal(0, 4, stress.size)
+    torn = [(nominal[-1] + 0.001 * i, 1500 - 100 * i) for i in range(1, 5)]
+    rows = "\n".join(f"{e:.6f},{s:.1f}" for e, s in [*zip(nominal, readings, strict=True), *torn])
+    path.write_text(f"# synthetic\neps11,sigma11\n{rows}\n", encoding="utf-8")
+    return strain, stress
+
+
+def test_tension_alone_gives_isotropic_hardening(tmp_path):
+    """The material from nominal readings follows the curve behind them, through scatter of 0.3 %.
+
+    The curve is not one of the law's: with four constants it comes to 0.2 % of it.
+    """
+    write_tension(tmp_path / "wire.csv")
+    test = experiments.read_test(tmp_path / "wire.csv", nominal=True)
+    found = fit.fit([test], 81500, 0.26)
+    assert list(found.constants) == ["k0_squared", "a1", "a2", "a3"]
+    assert found.constants["k0_squared"] == pytest.approx(2 / 3 * 1250**2, rel=0.01)
+    (tmp_path / "wire.yaml").write_text(yaml.safe_dump(found.material("wire")), encoding="utf-8")
+    law = library.load(tmp_path / "wire.yaml")
+    state = points.initial_state(law, 1)
+    for step in range(1, 301):
+        state, _, _ = points.update(law, state, np.array([[1e-4, 0, 0]]))
+        plastic = 1e-4 * step - state[0, 0] / (2 * 81500 * 1.26)
+        if plastic > 1e-3:
+            assert state[0, 0] == pytest.approx(flow_curve(plastic), rel=4e-3)
+
+
+def test_nominal_readings_become_true_ones(tmp_path):
+    """Up to the maximum force, beyond which a specimen necks; the readings are written with 0.05 N/mm² and scatter."""
+    strain, stress = write_tension(tmp_path / "wire.csv")
+    test = experiments.read_test(tmp_path / "wire.csv", nominal=True)
+    rows = len(test.strain)
+    assert len(strain) - 20 < rows <= len(strain)
+    np.testing.assert_allclose(test.strain[:, 0], strain[:rows], atol=1e-6)
+    np.testing.assert_allclose(test.stress[:, 0], stress[:rows], atol=16)
+
+
+def test_nominal_readings_of_torsion_are_refused():
+    with pytest.raises(InputError, match="is no tension test"):
+        experiments.read_test(DATA / "reversed_torsion.csv", nominal=True)
+
+
 @pytest.mark.parametrize(("gone", "kind"), [("tension", "tension"), ("reversed_torsion", "torsion")])
 def test_a_missing_kind_of_test_is_named(shipped, gone, kind):
     with pytest.raises(InputError, match=f"there is no {kind} test"):
@@ -78,6 +131,7 @@ def test_a_missing_kind_of_test_is_named(shipped, gone, kind):
         (lambda text: text.replace("tau12", "tau", 1), "column tau12: is missing"),
         (lambda text: text.replace("23.66,", "often,"), "line 4, column sigma11: 'often' is no number"),
         (lambda text: "\n".join(text.splitlines()[:10]), "has 7 rows; a test needs at least 20"),
+        (lambda text: text.replace("0.0001,", "12,"), "strain: goes up to 12; give strain as a number, 0.02 for 2 %"),
     ],
 )
 def test_wrong_data_files(change, message, tmp_path):

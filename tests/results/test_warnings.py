@@ -45,6 +45,18 @@ def test_a_seat_that_lifts_off_is_told(lifted):
     assert warning.value == steps[-1].lift_off_mm
 
 
+def test_a_seat_that_is_left_bears_nothing(lifted):
+    """The springs at the tips pull by some tenths of a newton; no seat does."""
+    steps, seats = lifted.result.steps, lifted.result.seats
+    assert lifted.control.force < -0.1
+    assert [step.force_N for step in steps[6:]] == [0.0, 0.0]
+    assert [(one.bottom.force_N, one.top.force_N) for one in seats[6:]] == [(0.0, 0.0)] * 2
+    assert lifted.result.snapshots[-1].force == 0.0
+    assert summarise(lifted.setup, lifted.result)["set_mm"] is None  # it is not free: the tips are held
+    for step, one in zip(steps[:5], seats[:5], strict=True):
+        assert one.top.force_N == pytest.approx(step.force_N, rel=1e-9)
+
+
 def test_no_rate_is_that_of_a_lifted_seat(lifted):
     summary = summarise(lifted.setup, lifted.result)
     (asked,) = summary["rates"]

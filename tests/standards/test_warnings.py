@@ -1,8 +1,9 @@
 """What a maker would warn of: each doubtful spring has its one line, a right one has none."""
 
+import numpy as np
 import pytest
 
-from coilset.meshes.spring import SpringSpec
+from coilset.meshes.spring import MeasuredSpec, SpringSpec
 from coilset.model.standards.warnings import spring_warnings
 
 RIGHT = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 6.0, "pitch": 12.0}
@@ -16,11 +17,27 @@ def warnings(entries):
     return spring_warnings(SpringSpec.model_validate(RIGHT | entries).build())
 
 
+@pytest.mark.parametrize("scale", [0.0141, 1.0, 4.0])
+def test_wires_from_a_hair_to_a_finger_are_right(scale):
+    lengths = {name: scale * RIGHT[name] for name in ("wire_diameter", "mean_diameter", "pitch")}
+    assert warnings(lengths) == []
+
+
 def test_the_right_spring_is_right():
     assert warnings({}) == []
 
 
 WARNED = [
+    (  # in metres
+        {"wire_diameter": 0.005, "mean_diameter": 0.04, "pitch": 0.012},
+        "the wire is 0.005 mm thick at turn 0, outside of the 0.07 to 20 mm usual in cold coiling (EN 15800); are all "
+        "lengths in mm?",
+    ),
+    (
+        {"wire_diameter": table([0, 6], [19.0, 25.0]), "mean_diameter": 200.0, "pitch": 50.0},
+        "the wire is 25 mm thick at turn 6, outside of the 0.07 to 20 mm usual in cold coiling (EN 15800); are all "
+        "lengths in mm?",
+    ),
     # γ = 1 − 81.5/206 = 0.6044: 65/γ · (1 − √(1 − γ/0.8956 · (π/3.25)²)) = 42.18 mm
     (
         {"mean_diameter": 20.0, "turns": 8.0, "pitch": 15.625, "end_coils": "open"},
@@ -53,3 +70,12 @@ WARNED = [
 @pytest.mark.parametrize(("entries", "warning"), WARNED, ids=[warning[:40] for _, warning in WARNED])
 def test_doubtful_spring_is_warned_of(entries, warning):
     assert warning in [found.message for found in warnings(entries)]
+
+
+def test_a_measured_wire_in_metres_is_warned_of(tmp_path):
+    """Points in mm, wire in m: no other number of the file is wrong."""
+    turn = np.linspace(0.0, 4.0, 65)
+    points = np.stack([20 * np.cos(2 * np.pi * turn), 20 * np.sin(2 * np.pi * turn), 12 * turn, 0 * turn + 0.005], 1)
+    np.savetxt(tmp_path / "scan.csv", points, delimiter=",", header="x,y,z,wire_diameter", comments="")
+    found = spring_warnings(MeasuredSpec(file=str(tmp_path / "scan.csv")).build())
+    assert [one.name for one in found] == ["wire", "index"]

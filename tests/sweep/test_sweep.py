@@ -270,6 +270,26 @@ def test_files_that_a_sweep_names_count_from_its_folder(write_sweep, tmp_path, m
     assert Path(name).resolve() == tmp_path / "base" / "hard.yaml"
 
 
+def test_inputs_have_the_units_of_their_entries(write_sweep, tmp_path):
+    text = """
+        design: latin_hypercube
+        samples: 2
+        vary:
+          spring.wire_diameter: [5.0]
+          loading.0.to.travel: {from: 5, to: 6}
+          spring.turns: [1.5]
+          material: [ck15, elastic]
+          inches: {values: [0.5], entries: [spring.pitch], unit: in}
+          both: {values: [12.0], entries: [spring.pitch, mesh.sagitta]}
+          mixed: {values: [12.0], entries: [spring.pitch, loading.1.to.force]}
+    """
+    data = dataset.collect(Plan(write_sweep(text)), tmp_path / "journal.jsonl")
+    found = {name: data[name].attrs["units"] for name in data.attrs["inputs"]}
+    assert found == {"spring.wire_diameter": "mm", "loading.0.to.travel": "mm", "spring.turns": "", "material": "",
+                     "inches": "in", "both": "mm", "mixed": ""}  # fmt: skip
+    assert dataset.quantity("plastic_work_max_N_per_mm2") == ("plastic work max", "N/mm²")
+
+
 def test_a_sweep_with_failed_cases_says_so_and_ends_with_3(write_sweep, tmp_path):
     done = subprocess.run(command(write_sweep(THREE), tmp_path / "out"), capture_output=True, text=True, check=False)
     assert done.returncode == 3

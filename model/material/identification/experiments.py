@@ -12,6 +12,8 @@ from coilset.meshes.errors import InputError
 from coilset.model.entries.entry import shortened
 
 COLUMNS = ("eps11", "gamma12", "sigma11", "tau12")
+SHEAR = ("gamma12", "tau12")  # a tension test may leave these columns out
+LARGEST_STRAIN = 2.0  # of a test; above it the numbers are per cent
 
 
 @dataclass(frozen=True)
@@ -32,11 +34,17 @@ class Test:
         return "torsion" if tension < 0.1 * torsion else "combined"
 
 
-def read_test(path: str | Path) -> Test:
+def read_test(path: str | Path, nominal: bool = False) -> Test:
     """Read a test from a CSV file.
 
     Lines at the top that begin with # are remarks. Of the columns, eps11, gamma12 (1) and sigma11, tau12 (N/mm²) are
-    read; the first row is the unloaded start or the first reading after it.
+    read; a tension test needs eps11 and sigma11 only. The first row is the unloaded start or the first reading after
+    it.
+
+    Args:
+        path: the file.
+        nominal: whether a tension test is given by nominal strain and stress, e and s; it is then converted,
+            ε = ln(1 + e), σ = s (1 + e), up to the maximum force, beyond which the specimen necks.
 
     Raises:
         InputError: if the file cannot be read, or a column or a number is missing or wrong.
@@ -51,16 +59,40 @@ def read_test(path: str | Path) -> Test:
                     break
                 remarks += 1
             reader = csv.DictReader(lines)
-            missing = [name for name in COLUMNS if name not in (reader.fieldnames or ())]
+            given = reader.fieldnames or ()
+            sheared = any(name in given for name in SHEAR)
+            missing = [name for name in COLUMNS if name not in given and (sheared or name not in SHEAR)]
             if missing:
-                raise InputError(f"is missing; the columns are {', '.join(COLUMNS)}", f"column {missing[0]}", str(path))
-            rows = [[_number(row[name], name, remarks + reader.line_num, path) for name in COLUMNS] for row in reader]
+                needed = f"{', '.join(COLUMNS)}; of a tension test eps11 and sigma11"
+                raise InputError(f"is missing; the columns are {needed}", f"column {missing[0]}", str(path))
+            rows = [
+                [
+                    _number(row[name], name, remarks + reader.line_num, path) if name in given else 0.0
+                    for name in COLUMNS
+                ]
+                for row in reader
+            ]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", file=str(path)) from error
     if len(rows) < 20:
         raise InputError(f"has {len(rows)} rows; a test needs at least 20", file=str(path))
     values = np.array(rows)
-    return Test(path.stem, values[:, :2], values[:, 2:])
+    largest = np.abs(values[:, :2]).max()
+    if largest > LARGEST_STRAIN:
+        raise InputError(f"goes up to {largest:g}; give strain as a number, 0.02 for 2 %", "strain", str(path))
+    test = Test(path.stem, values[:, :2], values[:, 2:])
+    return _true(test, path) if nominal else test
+
+
+def _true(test: Test, path: Path) -> Test:
+    """A tension test from nominal strain and stress, up to its maximum force."""
+    if test.kind != "tension":
+        raise InputError("is no tension test; only these have nominal strain and stress", "--nominal", str(path))
+    end = int(test.stress[:, 0].argmax()) + 1
+    strain, stress = test.strain[:end].copy(), test.stress[:end].copy()
+    stress[:, 0] *= 1 + strain[:, 0]
+    strain[:, 0] = np.log1p(strain[:, 0])
+    return Test(test.name, strain, stress)
 
 
 def _number(text: str | None, name: str, line: int, path: Path) -> float:

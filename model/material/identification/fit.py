@@ -6,7 +6,7 @@
 3. Tension-torsion with an abrupt change gives the deviation from normality, κ(b*).
 
 Last, all constants are adjusted together to all tests, from several bends b1* of k²; the uncertainties are those of
-this step.
+this step. From tension alone only k² is identified: the law then hardens isotropically.
 """
 
 import itertools
@@ -30,13 +30,14 @@ from coilset.model.material.identification.result import Fit, Minimum, result
 STEP = 1e-4  # of the logarithms of the variables, for derivatives
 
 
-def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool = True, temperature: float = 293.15) -> Fit:
-    """Identify the constants of k², ζ and κ.
+def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool | None = None, temperature: float = 293.15) -> Fit:
+    """Identify the constants of k², ζ and κ; those of k² alone where there are only tension tests.
 
     Args:
-        tests: `Test` objects, at least one each of tension, torsion with reversal, and tension-torsion.
+        tests: `Test` objects: tension alone, or at least one each of tension, torsion with reversal, and
+            tension-torsion.
         G, nu: elastic constants, measured before; N/mm².
-        saturates: whether k² has its second branch; the tests must reach it.
+        saturates: whether k² has its second branch, which the tests must reach; if None, all but tension alone do.
         temperature: of the tests, K.
 
     Returns:
@@ -48,6 +49,10 @@ def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool = True, temp
     """
     tests = tuple(tests)
     kinds = {kind: [test for test in tests if test.kind == kind] for kind in ("tension", "torsion", "combined")}
+    isotropic = bool(tests) and len(kinds["tension"]) == len(tests)
+    saturates = not isotropic if saturates is None else saturates
+    if isotropic:
+        return _fit_hardening(FittedLaw(float(G), float(nu), saturates, isotropic), tests, float(temperature))
     for kind, use in (("tension", "k²"), ("torsion", "ζ"), ("combined", "κ")):
         if not kinds[kind]:
             raise InputError(f"there is no {kind} test among the data; without it {use} cannot be identified")
@@ -60,6 +65,15 @@ def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool = True, temp
     values, _ = _minima(model, _closest(model, starts, kinds["combined"], 1), NORMALITY, kinds["combined"])[0]
     minima = _minima(model, bend_starts(model, values, proportional, reach), model.names, tests)
     return result(model, minima, tests, float(temperature))
+
+
+def _fit_hardening(model: FittedLaw, tests: tuple[Test, ...], temperature: float) -> Fit:
+    """k² alone, from tension tests alone."""
+    values, reach = hardening(model, tests, NO_BACK_STRESS, first_starts(model))
+    values |= {name: 0.0 for name in NORMALITY}
+    return result(
+        model, _minima(model, bend_starts(model, values, tests, reach), model.names, tests), tests, temperature
+    )
 
 
 def _adjust(model: FittedLaw, values: dict[str, float], names: Sequence[str], tests: Sequence[Test]) -> Minimum:

@@ -50,15 +50,16 @@ class FittedLaw:
     Args:
         G, nu: elastic constants, N/mm².
         saturates: whether k² has its second branch.
+        isotropic: whether k² is all there is, without back stress and with normality.
 
     Attributes:
         hardening, names: names of the variables of k², and of all.
     """
 
-    def __init__(self, G: float, nu: float, saturates: bool) -> None:
-        self.G, self.nu = G, nu
+    def __init__(self, G: float, nu: float, saturates: bool, isotropic: bool = False) -> None:
+        self.G, self.nu, self.isotropic = G, nu, isotropic
         self.hardening = [name for name in HARDENING if saturates or name not in ("b1", "gain")]
-        self.names = [*self.hardening, *KINEMATIC, *NORMALITY]
+        self.names = [*self.hardening] if isotropic else [*self.hardening, *KINEMATIC, *NORMALITY]
 
     def row(self, values: Variables) -> np.ndarray:
         """A row of the parameter array, and k1², a4."""

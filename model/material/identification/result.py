@@ -53,15 +53,16 @@ class Fit:
             "temperature": self.temperature,
             "elasticity": {"G": self.G, "nu": self.nu},
             "isotropic": isotropic,
-            "kinematic": {key: c[key] for key in ("a5", "a6", "a7")},
-            "non_normality": {"a": c["a"]},
+            "kinematic": {key: c[key] for key in ("a5", "a6", "a7")} if "a5" in c else "none",
+            "non_normality": {"a": c["a"]} if "a" in c else "none",
         }
+        remark = "As far as the tests went." if "a5" in c else "Tension only; no reversed loading was tested."
         return {
             "name": name,
             "description": "Constants identified from tests",
             "source": "coilset material fit: " + ", ".join(test.name for test in self.tests),
             "units": "N, mm, K",
-            "validity": {"plastic_work": float(f"{self.work:.3g}"), "remark": "As far as the tests went."},
+            "validity": {"plastic_work": float(f"{self.work:.3g}"), "remark": remark},
             "temperatures": [at],
         }
 
@@ -95,6 +96,8 @@ def _constants(model: FittedLaw, values: Variables) -> dict[str, float]:
     names = {"k0_squared": fn.K0, "a1": fn.A1, "a2": fn.A2, "a3": fn.A3}
     if "b1" in model.names:
         names |= {"b1": fn.B1, "k1_squared": fn.K1, "k_inf_squared": fn.KINF, "a4": fn.A4}
+    if model.isotropic:
+        return {name: float(row[place]) for name, place in names.items()}
     names |= {"a5": fn.A5, "a6": fn.A6, "a7": fn.A7}
     return {name: float(row[place]) for name, place in names.items()} | {"a": float(values["a"])}
 
