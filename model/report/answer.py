@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
+from coilset.model.report.panel import said
 from coilset.model.results.opened import Run
 
 
@@ -24,13 +25,17 @@ class Number:
 def subtitle(run: Run) -> str:
     """The spring and what was done with it, in a line."""
     spring, summary = run.case["spring"], run.summary
-    size = [f"{label} {spring[name]:g} mm" for name, label in (("wire_diameter", "wire"), ("mean_diameter", "mean diameter"))
-            if isinstance(spring.get(name), int | float)]  # fmt: skip
+    size = [
+        f"{label} {spring[name]:g} mm"
+        for name, label in (("wire_diameter", "wire"), ("mean_diameter", "mean diameter"))
+        if isinstance(spring.get(name), int | float)
+    ]
     if isinstance(spring.get("turns"), int | float):
         size.append(f"{spring['turns']:g} turns")
     way = ", then ".join(run.snapshots[1:])
-    return ", ".join([*size, summary["material"], f"on {summary['ends']}" if summary["ends"] == "seats" else "clamped"]) + (
-        f"; to {way}" if way else "")  # fmt: skip
+    return ", ".join(
+        [*size, summary["material"], f"on {summary['ends']}" if summary["ends"] == "seats" else "clamped"]
+    ) + (f"; to {way}" if way else "")
 
 
 def answer(run: Run) -> list[Number]:
@@ -45,15 +50,19 @@ def answer(run: Run) -> list[Number]:
     return [
         Number("set", _said(s["set_mm"], "mm", 3), share),
         Number("free length", _said(after, "mm", 3), f"after; {before:.3f} mm before"),
-        Number("residual shear stress", _said(inside, "MPa", 1), f"at the inside of the middle coils{', ' + told if told else ''}"),
+        Number(
+            "residual shear stress",
+            _said(inside, "MPa", 1),
+            f"at the inside of the middle coils{', ' + told if told else ''}",
+        ),
         Number("greatest force", _said(s["force_max_N"], "N", 1), _error(s["estimated_force_error_N"], "N")),
         Number("initial rate", _said(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
         Number("block height", _said(s["block_height_mm"], "mm", 2)),
-    ]  # fmt: skip
+    ]
 
 
 def _said(value: float | None, unit: str, digits: int) -> str:
-    return "not reached" if value is None else f"{value:.{digits}f} {unit}".replace("-", "−")
+    return "not reached" if value is None else said(value, unit, digits)
 
 
 def _error(value: float | None, unit: str) -> str:

@@ -17,8 +17,14 @@ def cost(run: Run) -> Panel:
     finding = f"{summary['steps']} steps took {summary['evaluations']} evaluations" + (
         f" and {cuts} cuts" if cuts else ""
     )
-    return Panel("cost", finding, f"{finding}. Iterations and evaluated states of each step.", traces,
-                 {"xaxis": axis("step"), "yaxis": axis("count"), "barmode": "group"}, height=320)  # fmt: skip
+    return Panel(
+        "cost",
+        finding,
+        f"{finding}. Iterations and evaluated states of each step.",
+        traces,
+        {"xaxis": axis("step"), "yaxis": axis("count"), "barmode": "group"},
+        height=320,
+    )
 
 
 def step_error(run: Run) -> Panel | None:
@@ -27,9 +33,25 @@ def step_error(run: Run) -> Panel | None:
     if not np.isfinite(error).any():
         return None
     last = run.summary["estimated_force_error_N"]
-    finding = "What the length of the steps leaves wrong in the force" if last is None else \
-        f"The length of the steps leaves about {abs(last):.2g} N wrong in the greatest force"  # fmt: skip
-    trace = {"type": "scatter", "mode": "lines+markers", "x": run.data["step"].values, "y": error, "marker": {"size": 5},
-             "line": {"color": COLOURS[1], "width": 2}, "showlegend": False}  # fmt: skip
-    return Panel("step_error", finding, f"{finding}. Estimated error over the steps.", [trace],
-                 {"xaxis": axis("step"), "yaxis": axis("estimated error of the force, N")}, height=320)  # fmt: skip
+    finding = (
+        "What the length of the steps leaves wrong in the force"
+        if last is None
+        else f"The length of the steps leaves about {abs(last):.2g} N wrong in the greatest force"
+    )
+    trace = {
+        "type": "scatter",
+        "mode": "lines+markers",
+        "x": run.data["step"].values,
+        "y": error,
+        "marker": {"size": 5},
+        "line": {"color": COLOURS[1], "width": 2},
+        "showlegend": False,
+    }
+    return Panel(
+        "step_error",
+        finding,
+        f"{finding}. Estimated error over the steps.",
+        [trace],
+        {"xaxis": axis("step"), "yaxis": axis("estimated error of the force, N")},
+        height=320,
+    )

@@ -18,9 +18,20 @@ def material_curve(results: Run) -> Panel:
     far = FAR * law.yield_stress / (3.0**0.5 * law.G)
     steps = [Step(to={"gamma12": to}, increments=number * INCREMENTS) for number, to in ((1, far), (2, -far), (2, far))]
     history = run(law, Program(name="there and back", steps=tuple(steps)))
-    trace = {"type": "scatter", "mode": "lines", "x": 100.0 * history.strain[:, 1], "y": history.stress[:, 1],
-             "line": {**LINE, "color": COLOURS[0]}, "showlegend": False}  # fmt: skip
+    trace = {
+        "type": "scatter",
+        "mode": "lines",
+        "x": 100.0 * history.strain[:, 1],
+        "y": history.stress[:, 1],
+        "line": {**LINE, "color": COLOURS[0]},
+        "showlegend": False,
+    }
     finding = f"{law.name}: twisted to {100.0 * far:.2g} % shear, {abs(history.stress[INCREMENTS, 1]):.0f} MPa"
-    return Panel("material", finding, f"{finding}. Shear stress over shear strain of one point, there, back, and again.",
-                 [trace], {"xaxis": axis("shear strain, %"), "yaxis": axis("shear stress, MPa")},
-                 note=law.description + ". Source: " + law.source)  # fmt: skip
+    return Panel(
+        "material",
+        finding,
+        f"{finding}. Shear stress over shear strain of one point, there, back, and again.",
+        [trace],
+        {"xaxis": axis("shear strain, %"), "yaxis": axis("shear stress, MPa")},
+        note=law.description + ". Source: " + law.source,
+    )

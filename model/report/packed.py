@@ -12,8 +12,11 @@ def packed(value: Any) -> Any:
     """Plain data with every array as `{"f4": base64, "shape": [...]}`; short ones as lists."""
     if isinstance(value, np.ndarray):
         if value.dtype.kind != "f" or value.size < 24:
-            return [None if isinstance(one, float) and one != one else one for one in value.tolist()] \
-                if value.ndim == 1 else value.tolist()  # fmt: skip
+            return (
+                [None if isinstance(one, float) and one != one else one for one in value.tolist()]
+                if value.ndim == 1
+                else value.tolist()
+            )
         bits = np.ascontiguousarray(value, dtype="<f4").tobytes()
         return {KEY: base64.b64encode(bits).decode("ascii"), "shape": list(value.shape)}
     if isinstance(value, dict):

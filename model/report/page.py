@@ -21,7 +21,7 @@ from coilset.model.report.glossary import GLOSSARY
 from coilset.model.report.material_curves import material_curve
 from coilset.model.report.packed import packed
 from coilset.model.report.panel import Panel
-from coilset.model.report.section_map import section_map
+from coilset.model.report.section_map import normal_map, shear_map
 from coilset.model.report.spring_view import spring_view
 from coilset.model.results.folder import whole
 from coilset.model.results.opened import Run
@@ -30,7 +30,8 @@ NAME = "report.html"
 CHAPTERS: tuple[tuple[str, tuple[Callable[[Run], Panel | None], ...]], ...] = (
     ("Force and travel", (characteristic, rate_curve)),
     ("The spring", (spring_view,)),
-    ("Stress", (section_map, stress_along_wire, moments_along_wire)),
+    ("Stress in the wire", (shear_map, normal_map)),
+    ("Along the wire", (stress_along_wire, moments_along_wire)),
     ("Seats and coils", (force_centre, contact)),
     ("Material", (material_curve,)),
     ("How it was computed", (cost, step_error)),
@@ -56,19 +57,33 @@ def write_report(run: Run) -> Path:
 
 def _page(run: Run, chapters: Iterable[tuple[str, list[Panel]]]) -> str:
     environment = Environment(
-        loader=PackageLoader("coilset.model.report", "template"), autoescape=select_autoescape(["html"]),
-        undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True,
-    )  # fmt: skip
+        loader=PackageLoader("coilset.model.report", "template"),
+        autoescape=select_autoescape(["html"]),
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
     environment.filters["embedded"] = embedded
     case = yaml.safe_dump(given(run.case), sort_keys=False, allow_unicode=True)
     part = files("coilset.model.report") / "template"
     return environment.get_template("page.html").render(
-        name=run.folder.resolve().name, subtitle=subtitle(run), summary=run.summary, answer=answer(run), chapters=list(chapters),
-        glossary=GLOSSARY, case=case, origin=run.summary["origin"],
-        style=(part / "style.css").read_text(encoding="utf-8"), script=(part / "script.js").read_text(encoding="utf-8"),
-        plotly=_plotly(), figures={panel.name: packed({"data": panel.traces, "layout": panel.layout})
-                                   for _, panels in chapters for panel in panels},
-    )  # fmt: skip
+        name=run.folder.resolve().name,
+        subtitle=subtitle(run),
+        summary=run.summary,
+        answer=answer(run),
+        chapters=list(chapters),
+        glossary=GLOSSARY,
+        case=case,
+        origin=run.summary["origin"],
+        style=(part / "style.css").read_text(encoding="utf-8"),
+        script=(part / "script.js").read_text(encoding="utf-8"),
+        plotly=_plotly(),
+        figures={
+            panel.name: packed({"data": panel.traces, "layout": panel.layout})
+            for _, panels in chapters
+            for panel in panels
+        },
+    )
 
 
 def given(entries: Any) -> Any:
@@ -88,6 +103,7 @@ def _plotly() -> str:
     try:
         from plotly.offline import get_plotlyjs
     except ImportError:
-        raise InputError("is not installed; the report draws with it: install python3-plotly, or pip install plotly",
-                         "", "plotly") from None  # fmt: skip
+        raise InputError(
+            "is not installed; the report draws with it: install python3-plotly, or pip install plotly", "", "plotly"
+        ) from None
     return base64.b64encode(gzip.compress(get_plotlyjs().encode(), mtime=0)).decode("ascii")

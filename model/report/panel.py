@@ -41,3 +41,8 @@ class Panel:
 def axis(title: str, **more: Any) -> dict[str, Any]:
     """An axis with its quantity and unit."""
     return {"title": {"text": title}, **more}
+
+
+def said(value: float, unit: str, digits: int = 0) -> str:
+    """A number with its unit, as a text shows it."""
+    return f"{value:.{digits}f} {unit}".replace("-", "−")

@@ -1,4 +1,4 @@
-"""A results folder read back: the summary, the tables and the section points, for reports and for whoever studies them."""
+"""A results folder read back: the summary, the tables and the section points, for reports and for studies."""
 
 import json
 from dataclasses import dataclass
@@ -10,8 +10,16 @@ import xarray as xr
 
 from coilset.meshes.errors import InputError
 
-UNITS = {"_N_per_mm2": "N/mm²", "_N_per_mm": "N/mm", "_Nmm": "N mm", "_mm": "mm", "_MPa": "MPa", "_N": "N", "_rad": "rad",
-         "_turns": "1"}  # fmt: skip
+UNITS = {
+    "_N_per_mm2": "N/mm²",
+    "_N_per_mm": "N/mm",
+    "_Nmm": "N mm",
+    "_mm": "mm",
+    "_MPa": "MPa",
+    "_N": "N",
+    "_rad": "rad",
+    "_turns": "1",
+}
 
 
 @dataclass(frozen=True)
