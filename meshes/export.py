@@ -13,6 +13,18 @@ from coilset.meshes.geometry import Spring
 from coilset.meshes.measured import WIRE_DIAMETER
 
 
+def check_format(path: str | Path) -> None:
+    """Refuse a file whose suffix says no format of a mesh, before anything is made.
+
+    Raises:
+        InputError: with formats that hold a wire.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix != ".msh" and suffix not in meshio.extension_to_filetypes:
+        named = f"'{suffix}' is no format of a mesh" if suffix else "has no suffix to say its format"
+        raise InputError(f"{named}; take .vtu, .msh, .inp or .xdmf", "--write", path)
+
+
 def write_mesh(spring: Spring, turns: np.ndarray, path: str | Path) -> None:
     """Write the nodes on the centre line and the elements between them.
 

@@ -2,9 +2,11 @@
 
 import errno
 import os
+import re
 import signal
 import sys
 import time
+from difflib import get_close_matches
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
@@ -241,7 +243,19 @@ def python(context: typer.Context) -> None:
 def command_line_message(error: Any) -> str:
     """What click says of a command line, with the user's words in it, in one line that is not too long."""
     said = printable(error.format_message())
+    said += _hint(said)
     return said if len(said) <= LONGEST_MESSAGE else f"{said[: LONGEST_MESSAGE - 3]}..."
+
+
+def _hint(said: str) -> str:
+    """What may have been meant."""
+    if said.startswith("No such option: -n"):
+        return "; -n goes before the command, as in coilset -n 2 solve"
+    if unknown := re.fullmatch(r"No such command '(.*)'\.", said):
+        names = [str(command.name or getattr(command.callback, "__name__", "")) for command in app.registered_commands]
+        near = get_close_matches(unknown[1], [*names, "material"], 1)
+        return f" Is {near[0]} meant?" if near else " coilset --help lists the commands."
+    return ""
 
 
 def run() -> None:

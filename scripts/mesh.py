@@ -47,6 +47,11 @@ def mesh(
         return  # nothing here is worth dividing
     console = Console(highlight=False)
     case = read_case(case_file, settings)
+    if write:
+        from coilset.meshes.export import check_format, write_mesh
+
+        for path in write:
+            check_format(path)
     folder = results_folder(out, Path(case_file).stem)
     _refuse_to_replace([folder / name for name in FILES if pictures] + [Path(path) for path in write], force)
     try:
@@ -59,8 +64,6 @@ def mesh(
     for warning in spring_warnings(spring):
         console.print(f"[yellow]warning:[/] {warning.message}")
     for path in write:
-        from coilset.meshes.export import write_mesh
-
         make(Path(path).parent)
         try:
             with whole(path) as partial:

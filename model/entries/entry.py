@@ -28,7 +28,11 @@ TEXTS = {  # what would be right, where pydantic's words are those of a programm
     "bool_type": "must be true or false",
     "string_pattern_mismatch": "must be a name of letters, digits, _ and in a sweep also full stops",
 }
-ALTERNATIVES = {"(word)": ", or a number", "(none)": ", or a group of constants"}  # to a word, by its tag
+ALTERNATIVES = {
+    "(word)": ", or a number",
+    "(none)": ", or a group of constants",
+    "(block)": ", or a target as in {travel: 5}",
+}  # to a word, by its tag
 _short = reprlib.Repr()
 _short.maxlevel, _short.maxdict, _short.maxlist, _short.maxtuple = 3, 4, 6, 6
 _short.maxstring = _short.maxlong = _short.maxother = LONGEST
@@ -60,8 +64,19 @@ def explain(error: ValidationError) -> tuple[str, str]:
     given = "" if first["type"] in (*OWN, "value_error") else f"{shown(first['input'])}: "
     problem = TEXTS.get(first["type"]) or _in_words(first["msg"])
     problem += ALTERNATIVES.get(first["loc"][-1], "") if first["loc"] else ""
+    if first["type"] in ("float_type", "int_type") and isinstance(first["input"], str):
+        problem += _number_in_words(first["input"])
     more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
     return ".".join(parts), f"{given}{problem}{more}"
+
+
+def _number_in_words(text: str) -> str:
+    """What is wrong with a number that came as a word, such as `5,0` or `5 mm`."""
+    if re.fullmatch(r"\s*[-+]?\d+,\d+\s*", text):
+        return f" with a decimal point, as in {text.strip().replace(',', '.')}"
+    if re.fullmatch(r"\s*[-+]?\d*\.?\d+\s*[^\d\s.,:][^\d]{0,9}", text):
+        return " without its unit; units are N, mm, MPa and K everywhere"
+    return ""
 
 
 def _innermost(found: list[Any]) -> list[Any]:

@@ -122,6 +122,8 @@ def load_yaml(text: str, file: str | Path = "") -> Any:
         mark = error.problem_mark
         place = f"line {mark.line + 1}, column {mark.column + 1}" if mark else ""
         problem = ", ".join(filter(None, [error.context, error.problem]))
+        if r"'\t'" in problem:
+            problem = "there is a tab at the start; indent with spaces"
         raise InputError(f"not readable as YAML: {shortened(problem, 200)}", place, file) from None
     except yaml.YAMLError as error:
         raise InputError(f"not readable as YAML: {shortened(str(error), 200)}", "", file) from None
@@ -137,6 +139,8 @@ def read_data(path: str | Path, kind: str = "") -> dict[str, Any]:
     Raises:
         InputError: if it cannot be read.
     """
+    if not str(path):  # else Path makes the folder that we are in of it
+        raise InputError("the name of the file is empty")
     path = Path(path)
     try:
         text = path.read_text(encoding="utf-8-sig")

@@ -10,12 +10,14 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from coilset.model.results.folder import whole
+from coilset.model.results.labels import named_phases, plain, unnamed
 from coilset.model.results.record import Result, Setup, Snapshot
 from coilset.model.results.rings import ROUND, refined, rings
 
 STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False}
 DPI = 160
 NAMED = 6  # targets in a legend, at most
+BESIDE = 4  # lines of a legend that find room beside a characteristic
 
 
 def save(figure: Figure, path: str | Path) -> None:
@@ -30,31 +32,32 @@ def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapp
         figure = Figure(figsize=(6.4, 4.2), layout="constrained")
         axes = figure.add_subplot()
         travel, force = [0.0], [0.0]
-        targets = list(dict.fromkeys(setup.phases))  # cycles go to the same ones again
-        for index, phase in enumerate(setup.phases):
+        for index, (number, name) in enumerate(named_phases(setup.phases, NAMED)):
             steps = [step for step in result.steps if step.phase == index]
             if not steps:
                 continue
             travel = [travel[-1]] + [step.travel_mm for step in steps]
             force = [force[-1]] + [step.force_N for step in steps]
-            number = targets.index(phase)
-            first = setup.phases.index(phase) == index and number < NAMED
-            axes.plot(
-                travel, force, "o-", ms=3, lw=1.3, color=f"C{number % 10}", label=f"to {phase}" if first else None
-            )
-        if len(targets) > NAMED:
-            axes.plot([], [], " ", label=f"and {len(targets) - NAMED} more")
+            label = name and f"to {name}"
+            axes.plot(travel, force, "o-", ms=3, lw=1.3, color=f"C{number % 10}", label=label)
+        if more := unnamed(setup.phases, NAMED):
+            axes.plot([], [], " ", label=more)
         greatest = max(abs(summary["force_max_N"]), 1e-300)
-        if (rate := summary["rate_N_per_mm"]) is not None:
-            axes.plot([0, greatest / rate], [0, greatest], "k:", lw=0.9, label=f"initial rate {rate:.4g} N/mm")
         block = summary["free_length_before_mm"] - summary["block_height_mm"]
+        if (rate := summary["rate_N_per_mm"]) is not None:
+            end = min(greatest / rate, max([block, *(step.travel_mm for step in result.steps)]))
+            axes.plot([0, end], [0, rate * end], "k:", lw=0.9, label=f"initial rate {rate:.4g} N/mm")
         axes.axvline(block, color="0.6", lw=0.8, ls="--", label=f"block, {summary['block_height_mm']:.4g} mm high")
         if summary["set_mm"] is not None:
             set_mm = summary["set_mm"]
             axes.annotate("", (0, 0), (set_mm, 0), arrowprops={"arrowstyle": "<->", "lw": 0.9, "color": "0.3"})
-            axes.annotate(f"set {set_mm:.3f} mm", (0.5 * set_mm, 0.02 * greatest), ha="center", va="bottom")
+            axes.annotate(f"set {set_mm:.3f} mm", (0.5 * set_mm, 0.02 * greatest), ha="center", va="bottom",
+                          bbox={"fc": "w", "ec": "none", "pad": 0.5, "alpha": 0.8})  # fmt: skip
         axes.set(xlabel="travel in mm", ylabel="axial force in N", title=f"Characteristic, {setup.material}")
-        axes.legend(fontsize=8)
+        if len(axes.get_legend_handles_labels()[1]) <= BESIDE:
+            axes.legend(fontsize=8)
+        else:
+            figure.legend(fontsize=8, loc="outside right upper")
         axes.grid(lw=0.3)
         save(figure, path)
 
@@ -90,6 +93,6 @@ def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
             direction = "towards" if inwards else "away from"
             axes.set(aspect="equal", xlabel=f"{direction} the coil's axis, mm", ylabel="across, mm", title=name)
             figure.colorbar(shown, ax=axes, label="MPa", shrink=0.85)
-        force = f"F = {abs(snapshot.force):.1f} N"
+        force = f"F = {plain(round(abs(snapshot.force), 9))} N"
         figure.suptitle(f"Cross-section at mid height, {snapshot.name} ({force}); dots: section points")
         save(figure, path)

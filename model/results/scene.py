@@ -10,6 +10,7 @@ import numpy as np
 import pyvista as pv
 
 from coilset.model.results.folder import whole
+from coilset.model.results.labels import plain
 from coilset.model.results.record import Snapshot
 
 POINTS_PER_ELEMENT = 6
@@ -74,8 +75,10 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.nda
     x = np.concatenate([shot.x for shot in snapshots])
     low, high = float(x[:, 2].min() - radius.max()), float(x[:, 2].max() + radius.max())
     across = float(np.ptp(x[:, :2], axis=0).max()) + 2.0 * float(radius.max())
+    aside = 0.5 * float(x[:, 0].min() + x[:, 0].max())  # a buckled spring goes off its axis to one side
     frame, end = Frame.of(across, high - low, len(snapshots)), scale_end(max(float(s.shear.max()) for s in snapshots))
     force = max(abs(shot.force) for shot in snapshots)
+    middle = aside + 0.5 * frame.column * (len(snapshots) - 1)
     plotter = pv.Plotter(off_screen=True, window_size=(WIDTH, frame.height))
     plotter.set_background("white")
     for place, shot in enumerate(snapshots):
@@ -86,11 +89,10 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.nda
             mesh, scalars=name, clim=(0.0, end), cmap="viridis", smooth_shading=True, scalar_bar_args=_bar(frame, name),
         )  # fmt: skip
         bears = abs(shot.force) if abs(shot.force) > 1e-6 * force else 0.0
-        label = f"{shot.name}\n{shot.height:.5g} mm, {bears:.4g} N"
-        foot = [place * frame.column, 0.0, high + (0.5 * ABOVE * across + 15.0 / frame.scale)]
+        label = f"{shot.name}\n{plain(shot.height, 5)} mm, {plain(bears)} N"
+        foot = [aside + place * frame.column, 0.0, high + (0.5 * ABOVE * across + 15.0 / frame.scale)]
         plotter.add_point_labels([foot], [label], font_size=20, text_color="black", shape=None, show_points=False,
                                  always_visible=True, justification_horizontal="center")  # fmt: skip
-    middle = 0.5 * frame.column * (len(snapshots) - 1)
     centre, away = 0.5 * (low + high) + 0.5 * (LABELS - BAR) / frame.scale, 10.0 * (high - low + across)
     plotter.camera_position = [(middle, -away, centre + ABOVE * away), (middle, 0.0, centre), (0, 0, 1)]
     plotter.camera.parallel_projection = True

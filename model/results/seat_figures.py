@@ -8,9 +8,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from coilset.model.contact.base import ENDS
 from coilset.model.results.figures import STYLE, save
+from coilset.model.results.labels import decimals, named_phases, unnamed
 from coilset.model.results.record import ContactRecord, Result, Setup
 
 COLOURS = {"bottom": "C0", "top": "C3"}
@@ -18,7 +20,12 @@ DRAWN = {  # what both seats of a symmetric spring share stays to be seen
     "bottom": {"color": "C0", "lw": 3.0, "alpha": 0.45, "ms": 5.0},
     "top": {"color": "C3", "lw": 1.0, "ms": 2.5},
 }
-LINES = ("-", "--", ":", "-.")  # of the phases
+LINES = ("-", "--", ":", "-.")  # of the phases' targets
+TURNS = (  # what is drawn of them: name in the records, words, line
+    ("active_turns", "active", {"color": "C2", "lw": 1.0, "ms": 2.5}),
+    ("free_turns", "touching nothing", {"color": "0.5", "lw": 1.0, "ms": 2.5}),
+)
+OVER_LINES: dict[str, Any] = {"frameon": True, "framealpha": 0.8, "edgecolor": "none"}  # legends where there is no room
 FAINT = 0.02  # part of the greatest force below which a force centre says little and is not drawn
 REACH = 1.3  # of the picture, in coil radii
 DECADES = 3  # of the pressure's colours
@@ -33,6 +40,20 @@ def phases(result: Result) -> dict[int, list[int]]:
     return found
 
 
+def phase_styles(setup: Setup) -> list[str]:
+    """Line of each phase, the same where the target is."""
+    return [LINES[number % len(LINES)] for number, _ in named_phases(setup.phases, len(LINES))]
+
+
+def name_styles(axes: Axes, setup: Setup) -> None:
+    """Say in the legend which line goes to which target."""
+    for number, name in named_phases(setup.phases, len(LINES)):
+        if name is not None:
+            axes.plot([], [], LINES[number], lw=1.0, color="k", label=f"to {name}")
+    if more := unnamed(setup.phases, len(LINES)):
+        axes.plot([], [], " ", label=more)
+
+
 def column(result: Result, end: str, name: str) -> np.ndarray:
     """One entry of an end's SeatReactions over the steps."""
     return np.array([getattr(getattr(one, end), name) for one in result.seats])
@@ -43,6 +64,7 @@ def force_centre(path: str | Path, setup: Setup, result: Result) -> None:
     travel = np.array([step.travel_mm for step in result.steps])
     force = np.abs([step.force_N for step in result.steps])
     strong = force > FAINT * force.max()
+    styles = phase_styles(setup)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.6, 4.3), layout="constrained")
         plan, over = figure.subplots(1, 2, width_ratios=(1, 1.15))
@@ -57,20 +79,23 @@ def force_centre(path: str | Path, setup: Setup, result: Result) -> None:
                 for name in ("centre_x", "centre_y", "eccentricity", "pressure_x", "pressure_y")
             )
             plan.plot(px, py, "-", color=COLOURS[end], lw=3.5, alpha=0.25, label=f"centre of pressure, {end}")
-            for style, (index, steps) in zip(LINES * len(travel), phases(result).items(), strict=False):
+            for index, steps in phases(result).items():
                 joined = steps if index == 0 or steps[0] == 0 else [steps[0] - 1, *steps]
-                label = f"{end} seat, to {setup.phases[index]}"
+                style = styles[index]
                 plan.plot(x[joined], y[joined], style, marker="o", ms=2.5, lw=1.0, color=COLOURS[end])
-                over.plot(travel[joined], distance[joined], style, marker="o", **DRAWN[end], label=label)
+                over.plot(travel[joined], distance[joined], style, marker="o", **DRAWN[end])
         radius = float(np.hypot(*setup.spring.centre_line(np.array([0.0, setup.spring.turns]))[:, :2].T).max())
         plan.plot(0, 0, "k+", ms=9)
         plan.set(aspect="equal", xlabel="x in mm", ylabel="y in mm", title="force centre, seen along the axis",
                  xlim=(-REACH * radius, REACH * radius), ylim=(-REACH * radius, REACH * radius))  # fmt: skip
         plan.legend(fontsize=6.5, loc="upper right")
+        for end in ENDS:
+            over.plot([], [], "-", marker="o", **DRAWN[end], label=f"{end} seat")
+        name_styles(over, setup)
         over.axhline(radius, color="0.6", lw=0.8, ls="--", label="coil radius at the tip")
         over.set(xlabel="travel in mm", ylabel="distance of the force centre from the axis in mm",
                  ylim=(0.0, REACH * radius), title=f"at {100 * FAINT:g} % of the greatest force or more")  # fmt: skip
-        over.legend(fontsize=7)
+        over.legend(fontsize=7, **OVER_LINES)
         for axes in (plan, over):
             axes.grid(lw=0.3)
         save(figure, path)
@@ -102,19 +127,23 @@ def seat_pressure(path: str | Path, setup: Setup, result: Result) -> bool:
             axes.set_title(f"pressure on the {end} seat")
         if shown is not None:
             figure.colorbar(shown, ax=maps, label="force per length of wire in N/mm")
-        for style, (index, steps) in zip(LINES * len(travel), phases(result).items(), strict=False):
-            label = f"to {setup.phases[index]}"
+        styles = phase_styles(setup)
+        for index, steps in phases(result).items():
             for end in seats:
-                lengths.plot(travel[steps], column(result, end, "length_mm")[steps], style, marker="o", **DRAWN[end],
-                             label=f"{end} seat, {label}")  # fmt: skip
-            for name, colour, words in (("active_turns", "C2", "active"), ("free_turns", "0.5", "touching nothing")):
+                values = column(result, end, "length_mm")[steps]
+                lengths.plot(travel[steps], values, styles[index], marker="o", **DRAWN[end])
+            for name, _words, drawn in TURNS:
                 values = np.array([getattr(result.seats[k], name) for k in steps])
-                turns.plot(travel[steps], values, style, marker="o", ms=2.5, lw=1.0, color=colour,
-                           label=f"{words}, {label}")  # fmt: skip
+                turns.plot(travel[steps], values, styles[index], marker="o", **drawn)
+        for end in seats:
+            lengths.plot([], [], "-", marker="o", **DRAWN[end], label=f"{end} seat")
+        for _name, words, drawn in TURNS:
+            turns.plot([], [], "-", marker="o", **drawn, label=words)
         lengths.set(xlabel="travel in mm", ylabel="wire in contact with the seat in mm")
         turns.set(xlabel="travel in mm", ylabel="turns", ylim=(0.0, 1.5 * setup.spring.turns))
         for axes in (lengths, turns):
-            axes.legend(fontsize=7)
+            name_styles(axes, setup)
+            axes.legend(fontsize=7, **OVER_LINES)
             axes.grid(lw=0.3)
         save(figure, path)
     return True
@@ -138,7 +167,11 @@ def draw_pressure(axes: Axes, result: Result, kind: int, contact: ContactRecord,
     number = [step.number for step in result.steps]
     shown = axes.pcolormesh(away[points], number, values, norm=norm, cmap="viridis", shading="nearest")
     places = np.unique(np.linspace(0, len(number) - 1, min(len(number), 9)).astype(int))
-    labels = [f"{result.steps[k].travel_mm:.1f} mm, {abs(result.steps[k].force_N):.0f} N" for k in places]
+    travels = [result.steps[k].travel_mm for k in places]
+    forces = [abs(result.steps[k].force_N) for k in places]
+    a, b = decimals(max(map(abs, travels))), decimals(max(forces))
+    labels = [f"{travel:.{a}f} mm, {force:,.{b}f} N" for travel, force in zip(travels, forces, strict=True)]
     axes.set_yticks([number[k] for k in places], labels, fontsize=7)
+    axes.xaxis.set_major_locator(MaxNLocator(6))
     axes.set(xlim=(-0.02 * reach, None), xlabel="turns from the wire's tip", ylabel="step" if kind == 1 else None)
     return shown

@@ -34,7 +34,22 @@ def problem(data):
         ({"loading": [{"to": "block", "steps": True}]}, "loading.0.steps: True: must be a whole number"),
         ({"loading": [{"to": "block", "steps": "12"}]}, "loading.0.steps: '12': must be 'auto', or a number"),
         ({"loading": [{"to": "block", "steps": 0}]}, "loading.0.steps: 0: must be greater than 0"),
-        ({"loading": [{"to": "blok"}]}, "loading.0.to: 'blok': must be 'block'$"),
+        (
+            {"loading": [{"to": "blok"}]},
+            "loading.0.to: 'blok': must be 'block', or a target as in {travel: 5}$",
+        ),
+        ({"loading": [{"to": 20}]}, "loading.0.to: 20: must be 'block', or a target as in {travel: 5}$"),
+        (
+            {"loading": [{"to": {"travel": "5 mm"}}]},
+            "loading.0.to.travel: '5 mm': must be a number without its unit; units are N, mm, MPa and K everywhere$",
+        ),
+        (
+            {"spring": SPRING | {"pitch": "12,5"}},
+            "spring.pitch: '12,5': must be a number with a decimal point, as in 12.5$",
+        ),
+        ({"spring": SPRING | {"pitch": "12,500,1"}}, "spring.pitch: '12,500,1': must be a number$"),
+        ({"temperature": "20°C"}, "temperature: '20°C': must be a number without its unit; units are N, mm, MPa and K"),
+        ({"temperature": "warm"}, "temperature: 'warm': must be a number$"),
         ({"mesh": 5}, "mesh: 5: must be a group of entries, as in {name: value}"),
         ({"mesh": [1]}, "mesh: [1]: must be a group of entries"),
         ({"loading": {"to": "block"}}, "loading: {'to': 'block'}: must be a list, as in [1, 2]"),

@@ -46,6 +46,7 @@ BOMB = "a0: &a0 [x, x, x, x, x, x, x, x, x]\n" + "".join(
         ("&a [*a]", "does an alias lie within what it repeats?"),
         ("a: *b", "line 1, column 4: not readable as YAML: found undefined alias 'b'"),
         ("a: b\0c", "not readable as YAML"),
+        ("a:\n\tb: 1", "line 2, column 1: not readable as YAML: there is a tab at the start; indent with spaces"),
         ('a: "b\\0c"', "line 1, column 4: not readable as YAML: there is a character in this text that is none"),
         ('a: "\\uD800"', "there is a character in this text that is none"),
         ("a: !!python/object/apply:os.system ['true']", "the tag tag:yaml.org,2002:python/object/apply:os.system is"),
@@ -72,5 +73,7 @@ def test_files_without_entries_are_refused(tmp_path, content, words):
     (tmp_path / "x.yaml").write_bytes(content)
     with pytest.raises(InputError, match=words):
         read_data(tmp_path / "x.yaml")
+    with pytest.raises(InputError, match="the name of the file is empty"):
+        read_data("")
     with pytest.raises(InputError, match="No such file"):
         read_data(tmp_path / "none.yaml")

@@ -70,10 +70,16 @@ def shipped(path):
     return path.read_text(encoding="utf-8")
 
 
+@cache
+def parsed(path):
+    """Its data, read once; a copy is to be changed."""
+    return yaml.safe_load(shipped(path))
+
+
 @st.composite
 def spoilt_data(draw, kind):
     """The data of a shipped file, perhaps with entries that it leaves out, and one to three of its entries spoilt."""
-    data = yaml.safe_load(shipped(draw(st.sampled_from(KINDS[kind]))))
+    data = copy.deepcopy(parsed(draw(st.sampled_from(KINDS[kind]))))
     if kind in ENTRIES and draw(st.booleans()):
         data |= copy.deepcopy(draw(st.sampled_from(ENTRIES[kind])))
     for _change in range(draw(st.integers(0, 3))):

@@ -3,14 +3,18 @@
 from dataclasses import replace
 
 import matplotlib.figure
+import numpy as np
 import pytest
+from matplotlib.image import imread
 from mpi4py import MPI
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.results import figures
+from coilset.model.results import figures, seat_figures
+from coilset.model.results.display import ensure
+from coilset.model.results.labels import plain
 from coilset.model.results.record import Step
-from coilset.model.results.scene import ABOVE, BAR, COLUMN, LABELS, MOST_HEIGHT, WIDTH, Frame, scale_end
+from coilset.model.results.scene import ABOVE, BAR, COLUMN, LABELS, MOST_HEIGHT, WIDTH, Frame, scale_end, springs
 from coilset.model.results.summary import summarise
 
 
@@ -30,20 +34,58 @@ def test_scales_end_on_few_digits(greatest, end):
     assert scale_end(greatest) == pytest.approx(end)
 
 
-def test_cycles_make_no_legend_of_their_own(example, tmp_path, monkeypatch):
-    """Twenty phases to two targets have two lines in the legend; twenty targets have six, and how many more."""
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.0, "0"), (-0.0, "0"), (258.28, "258.3"), (120165.57, "120,166"), (1.10254, "1.103"), (0.00421, "0.00421"),
+     (35.0, "35"), (-1.5e-9, "0"), (1e7, "10,000,000"), (99.996, "100")],
+)  # fmt: skip
+def test_numbers_of_any_size_are_plain(value, text):
+    assert plain(value) == text
+
+
+@pytest.fixture(scope="module")
+def analysis(example):
     settings = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "loading=[{to: {travel: 1}, steps: 1}]"]
     analysis = Analysis(read_case(example, settings), MPI.COMM_SELF)
     analysis.run()
+    return analysis
+
+
+@pytest.mark.parametrize("aside", [-150.0, 150.0])
+def test_a_buckled_spring_is_whole_in_its_picture(analysis, tmp_path, aside):
+    """It goes off its axis to one side."""
+    if not ensure():
+        pytest.skip("no display and no Xvfb")
+    shots = []
+    for shot in analysis.result.snapshots:
+        z = shot.x[:, 2] / shot.x[-1, 2]
+        shots.append(replace(shot, x=shot.x + np.stack([aside * z * (1.0 - z) * 4.0, 0.0 * z, 0.0 * z], axis=-1)))
+    springs(tmp_path / "springs.png", shots, analysis.setup.wire_radius)
+    picture = imread(tmp_path / "springs.png")[LABELS:-BAR, :, :3]
+    drawn = np.flatnonzero((picture < 0.99).any(axis=(0, 2)))
+    assert drawn[0] > 10
+    assert drawn[-1] < WIDTH - 10
+
+
+def test_cycles_make_no_legend_of_their_own(analysis, monkeypatch):
+    """Twenty phases to two targets have two lines in the legend; twenty targets have six, and how many more."""
     steps = tuple(Step(k, k, 1.0, 35.0 - k % 2, k % 2, 9.0 * (k % 2), 1, 1, 0, 0, 0, 0.0) for k in range(20))
-    result, legends = replace(analysis.result, steps=steps), []
+    result, legends = replace(analysis.result, steps=steps, seats=analysis.result.seats * 20), []
 
     def keep(figure: matplotlib.figure.Figure, path):
-        legends.append([text.get_text() for text in figure.axes[0].get_legend().get_texts()])
+        own = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
+        legends.append([[text.get_text() for text in one.get_texts()] for one in [*figure.legends, *own]])
 
     monkeypatch.setattr(figures, "save", keep)
+    monkeypatch.setattr(seat_figures, "save", keep)
     for phases in (("travel 1 mm", "force 0 N") * 10, tuple(f"travel {k} mm" for k in range(20))):
-        figures.characteristic("", replace(analysis.setup, phases=phases), result, summarise(analysis.setup, result))
-    few, many = ([text for text in one if text.startswith(("to ", "and "))] for one in legends)
-    assert few == ["to travel 1 mm", "to force 0 N"]
-    assert many == [*(f"to travel {k} mm" for k in range(6)), "and 14 more"]
+        setup = replace(analysis.setup, phases=phases)
+        figures.characteristic("", setup, result, summarise(setup, result))
+        seat_figures.force_centre("", setup, result)
+        seat_figures.seat_pressure("", setup, result)
+    texts = [[text for text in one if text.startswith(("to ", "and "))] for figure in legends for one in figure]
+    few, many = texts[:5], texts[5:]
+    assert few == [["to travel 1 mm", "to force 0 N"], [], *[["to travel 1 mm", "to force 0 N"]] * 3]
+    assert many[0] == [*(f"to travel {k} mm" for k in range(6)), "and 14 more"]
+    assert many[2:] == [[*(f"to travel {k} mm" for k in range(4)), "and 16 more"]] * 3
+    assert max(len(one) for figure in legends for one in figure) <= 10

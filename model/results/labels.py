@@ -1,0 +1,37 @@
+"""Texts in pictures: numbers of any size in few digits, and which phases of a program a legend names."""
+
+import math
+from collections.abc import Sequence
+
+MOST_DECIMALS = 6
+
+
+def decimals(size: float, digits: int = 3) -> int:
+    """Decimals with which a number of this size has so many digits."""
+    if not size or not math.isfinite(size):
+        return 0
+    return min(max(digits - 1 - math.floor(math.log10(abs(size))), 0), MOST_DECIMALS)
+
+
+def plain(value: float, digits: int = 4) -> str:
+    """A number in so many digits, without an exponent and without zeros at its end: `120,200`, `1.103`, `0.0042`."""
+    text = f"{value:,.{decimals(value, digits)}f}"
+    text = text.rstrip("0").rstrip(".") if "." in text else text
+    return "0" if text == "-0" else text
+
+
+def named_phases(phases: Sequence[str], most: int) -> list[tuple[int, str | None]]:
+    """For each phase the number of its target among the different ones, and its name in a legend.
+
+    Cycles go to the same targets again and again: each is named once, and `most` of them at most; else None.
+    """
+    targets = list(dict.fromkeys(phases))
+    numbers = [targets.index(phase) for phase in phases]
+    return [(number, phase if phases.index(phase) == index and number < most else None)
+            for index, (number, phase) in enumerate(zip(numbers, phases, strict=True))]  # fmt: skip
+
+
+def unnamed(phases: Sequence[str], most: int) -> str | None:
+    """What a legend says of the targets that it does not name."""
+    more = len(dict.fromkeys(phases)) - most
+    return f"and {more} more" if more > 0 else None
