@@ -188,15 +188,9 @@ def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
 def released(result: Result) -> bool:
     """Whether the spring is free of load where the run stands; one that has left a seat hangs on its tip springs."""
     greatest = max((abs(step.force_N) for step in result.steps), default=0.0)
-<<<<<<< HEAD
-    return (
-        bool(result.steps) and not result.steps[-1].lift_off_mm and abs(result.snapshots[-1].force) <= 1e-6 * greatest
-    )
-=======
     if not result.steps or result.steps[-1].lift_off_mm:
         return False
     return abs(result.snapshots[-1].force) <= 1e-6 * greatest
->>>>>>> hard
 
 
 SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _penetration, _buckled, _unstable, _snapped)

@@ -18,14 +18,8 @@ TIP_LEAST = 0.25  # of the wire's diameter
 
 def spring_warnings(spring: Spring) -> list[Warning]:
     """All warnings about the unloaded spring itself."""
-<<<<<<< HEAD
-    return [
-        warning for check in (_wire, _index, _solid_coils, _active, _ground, _buckling) for warning in check(spring)
-    ]
-=======
     checks = (_wire, _index, _solid_coils, _active, _ground, _buckling)
     return [warning for check in checks for warning in check(spring)]
->>>>>>> hard
 
 
 def _wire(spring: Spring) -> Iterator[Warning]:
