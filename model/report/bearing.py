@@ -3,6 +3,7 @@
 import numpy as np
 
 from coilset.model.report.panel import COLOURS, LINE, Panel, axis
+from coilset.model.report.scale import round_end
 from coilset.model.results.opened import Run
 
 FAINT = 0.02  # of the greatest force: a smaller one passes anywhere
@@ -44,37 +45,40 @@ def contact(run: Run) -> Panel | None:
     """Pressure of each kind of contact along the wire in each step; None where nothing ever bears."""
     if "pressure" not in run.data:
         return None
-    pressure, kinds = run.data["pressure"], [str(name) for name in run.data["contact"].values]
-    heights, traces = run.data["seat_height_mm"].values, []
-    bears = [kind for kind in kinds if float(np.nanmax(pressure.sel(contact=kind).values)) > 0.0]
-    if not bears:
-        return None
-    text = [f"step {n}, {h:.4g} mm high" for n, h in zip(run.data["step"].values, heights, strict=True)]
-    turns = run.data["wire_turn"].values
-    for number, kind in enumerate(bears):
-        values = pressure.sel(contact=kind).values
+    pressure, traces, bears = run.data["pressure"], [], []
+    turns, steps, heights = (run.data[name].values for name in ("wire_turn", "step", "seat_height_mm"))
+    greatest = float(np.nanmax(pressure.values, initial=0.0))
+    for kind in pressure["contact"].values:
+        values = np.nan_to_num(pressure.sel(contact=kind).values)
+        row, place = np.nonzero(values > 0.0)
+        if not len(row):
+            continue
+        marker = {"symbol": "square", "size": 9, "color": values[row, place], "colorscale": "Viridis", "cmin": 0.0}
+        bar = {"title": {"text": "N/mm"}, "thickness": 14}
         traces.append(
             {
-                "type": "heatmap",
-                "x": turns,
-                "y": run.data["step"].values,
-                "z": values,
-                "zmin": 0.0,
-                "text": [[line] * len(turns) for line in text],
-                "colorscale": "Viridis",
-                "meta": {"choice": number},
-                "colorbar": {"title": {"text": "N/mm"}, "thickness": 14},
-                "hovertemplate": "turn %{x:.2f}, %{text}<br>%{z:.3g} N/mm<extra></extra>",
+                "type": "scatter",
+                "mode": "markers",
+                "x": turns[place],
+                "y": steps[row],
+                "text": [f"{height:.4g} mm high" for height in heights[row]],
+                "marker": {**marker, "cmax": round_end(greatest), "showscale": True, "colorbar": bar},
+                "meta": {"choice": len(bears)},
+                "hovertemplate": "turn %{x:.2f}, step %{y}, %{text}<br>%{marker.color:.3g} N/mm<extra></extra>",
+                "showlegend": False,
             }
         )
-    greatest = float(np.nanmax(pressure.values))
+        bears.append(str(kind))
+    if not bears:
+        return None
+    ends = float(run.data["turn"].values[0]), float(run.data["turn"].values[-1])
     finding = f"Contact bears up to {greatest:.3g} N per millimetre of wire"
     return Panel(
         "contact",
         finding,
         f"{finding}. Force per length of wire over the turns and the steps.",
         traces,
-        {"xaxis": axis("turn from the bottom tip"), "yaxis": axis("step")},
+        {"xaxis": axis("turn from the bottom tip", range=[ends[0] - 0.1, ends[1] + 0.1]), "yaxis": axis("step")},
         tuple(bears),
         choice="contact of",
     )
