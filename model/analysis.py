@@ -269,6 +269,7 @@ class Analysis:
         pulls = self.case.ends == "seats" and force < -faint_force(self.rod, greatest)
         lift_off = max(clearance(self.system, x), 0.0) if pulls else 0.0
         bears = 0.0 if lift_off else force  # what a seat that is left bears; the tip springs' pull is no force of it
+        hours, temperature, loss = self._time(phase, force)
         step = Step(taken.number, phase, taken.progress, height, self.spring.free_length - height, bears,
                     taken.outcome.iterations, taken.outcome.evaluations, taken.outcome.failed_solves, taken.cuts,
                     contacts, self.system.max_penetration,
@@ -276,7 +277,7 @@ class Analysis:
                     axis_offset(x, self.rod.line.stations, turns), self._least_eigenvalue(),
                     self._greatest_plastic_work(), lift_off,
                     least_rise(x, turns, self.spring), *self._errors(taken.outcome),
-                    *self._time(phase, force))  # fmt: skip
+                    hours, temperature, loss)  # fmt: skip
         seats = self._seat_reactions(step.number, greatest)
         known = {warning.name for warning in step_warnings(self.setup, self.result)}
         self.result = replace(self.result, steps=(*self.result.steps, step), seats=(*self.result.seats, seats))

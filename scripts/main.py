@@ -155,6 +155,17 @@ def sheet(
 
 
 @app.command()
+def report(
+    results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
+) -> None:
+    """Write a page of a run: the answer, the figures, the spring in 3D; it opens from disk without a network."""
+    announce_compiling()
+    from coilset.scripts.report import report as write_page
+
+    write_page(results)
+
+
+@app.command()
 def sweep(
     sweep_file: str = typer.Argument(metavar="SWEEP", help="sweep file (YAML)"),
     out: str = typer.Option(None, callback=folder_target, help="results folder; default results/NAME-OF-SWEEP"),

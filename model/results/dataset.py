@@ -39,6 +39,7 @@ def point_state(setup: Setup, result: Result) -> LabelledData:
             "force": Variable(("snapshot",), shots("force"), {"units": "N"}),
             "y": Variable(("element", "point"), np.outer(radius, rule.points[:, 0]), mm),
             "z": Variable(("element", "point"), np.outer(radius, rule.points[:, 1]), mm),
+            "wire_radius": Variable(("element",), radius, mm),
             "weight": Variable(("point",), rule.weights),
             "curvature": Variable(("element", "gauss"), setup.placement.curvature, curvature),
             "torsion": Variable(("element", "gauss"), setup.placement.torsion, {"units": "1/mm"}),

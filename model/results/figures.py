@@ -12,6 +12,7 @@ from matplotlib.ticker import MaxNLocator
 from coilset.model.results.folder import whole
 from coilset.model.results.labels import named_phases, plain, unnamed
 from coilset.model.results.record import Result, Setup, Snapshot
+from coilset.model.results.rings import ROUND, refined, rings
 
 STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False}
 DPI = 160
@@ -61,9 +62,6 @@ def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapp
         save(figure, path)
 
 
-ROUND = 96  # points of the rim in a picture
-
-
 def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
     """Stress over the cross-section at mid height, to the wire's surface: circumferential shear and normal stress."""
     n = len(setup.turns) - 1
@@ -98,35 +96,3 @@ def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
         force = f"F = {plain(round(abs(snapshot.force), 9))} N"
         figure.suptitle(f"Cross-section at mid height, {snapshot.name} ({force}); dots: section points")
         save(figure, path)
-
-
-def rings(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Rings of a rule's points, shape (n, 2), filled up to `ROUND` points each.
-
-    Returns:
-        The places, shape (m, 2), and the matrix (m, n) that carries values at the points to them: of rings of equal
-        angles by the trigonometric polynomial; other points stay as they are.
-    """
-    radius, angle = np.round(np.hypot(*points.T), 9), np.arctan2(points[:, 1], points[:, 0])
-    places, carried = [], []
-    for one in np.unique(radius):
-        ring = np.flatnonzero(radius == one)
-        ring = ring[np.argsort(angle[ring])]
-        unit = np.eye(len(points))[ring]
-        even = len(ring) > 2 and np.allclose(np.diff(angle[ring]), 2.0 * np.pi / len(ring))
-        if even:
-            around = angle[ring[0]] + 2.0 * np.pi * np.arange(ROUND) / ROUND
-            places.append(one * np.stack([np.cos(around), np.sin(around)], axis=-1))
-            carried.append(np.stack([refined(column, ROUND) for column in unit.T], axis=-1))
-        else:
-            places.append(points[ring])
-            carried.append(unit)
-    return np.concatenate(places), np.concatenate(carried)
-
-
-def refined(values: np.ndarray, points: int) -> np.ndarray:
-    """Values at equal angles of a circle, shape (n,), at more such angles, by the trigonometric polynomial."""
-    waves = np.fft.rfft(values)
-    if len(values) % 2 == 0:
-        waves[-1] *= 0.5  # its half of the highest wave
-    return np.fft.irfft(waves, points) * points / len(values)

@@ -60,7 +60,7 @@ def reserve(path: Path, size: int) -> None:
 HEADER = 1 << 20  # bytes in a NetCDF file beside its numbers, at most
 RESULTS = ("summary.json", "history.csv", "seats.csv", "points.nc", "fields/*.vtu", "checkpoint/*.npz",
            "checkpoint/*.jsonl", "characteristic.png", "springs.png", "cross_section.png", "force_centre.png",
-           "seat_pressure.png")  # fmt: skip
+           "seat_pressure.png", "report.html")  # fmt: skip
 
 
 def prepare(folder: str | Path, force: bool) -> Path:

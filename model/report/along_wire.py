@@ -1,0 +1,64 @@
+"""What lies along the wire: stress at the inside and the outside of the coil, force and moments of the sections."""
+
+import numpy as np
+
+from coilset.model.report.panel import COLOURS, LINE, Panel, Trace, axis, said
+from coilset.model.report.wire import inside, section_turns, shear_around
+from coilset.model.results.opened import Run
+
+SIDES = (("inside of the coil", 0.0, "solid"), ("outside", np.pi, "dash"))
+SHOWN = {"Mt": "torque Mt", "M2": "bending moment M2", "M3": "bending moment M3"}
+
+
+def stress_along_wire(run: Run) -> Panel:
+    """Shear on the surface over the turns at all snapshots, inside and outside of the coil."""
+    turns, shear, traces = section_turns(run).ravel(), shear_around(run), []
+    for number, name in enumerate(run.snapshots[1:], start=1):
+        for side, angle, dash in SIDES:
+            place = round((inside(run).angle + angle) / (2.0 * np.pi) * shear.shape[-1]) % shear.shape[-1]
+            traces.append(_line(f"{name}, {side}", turns, shear[number, ..., place].ravel(), number - 1, dash))
+    stays = run.summary["residual_shear_inside_MPa"]
+    finding = (
+        "Shear stress along the wire"
+        if stays is None
+        else f"{said(stays, 'MPa')} of shear stay at the inside of the middle coils"
+    )
+    return Panel(
+        "along_wire",
+        finding,
+        f"{finding}. Shear stress on the surface over the turns from the bottom tip, at the inside and the outside of "
+        "the coil, positive as in a compressed spring.",
+        traces,
+        {"xaxis": axis("turn from the bottom tip"), "yaxis": axis("shear about the wire's axis, MPa")},
+        height=420,
+    )
+
+
+def moments_along_wire(run: Run) -> Panel:
+    """Torque and bending moments of the sections over the turns, a snapshot at a time."""
+    turns, traces = section_turns(run).ravel(), []
+    for number, _ in enumerate(run.snapshots):
+        for place, (key, name) in enumerate(SHOWN.items()):
+            values = run.data["resultants"].sel(resultant=key).values[number].ravel()
+            traces.append({**_line(name, turns, values, place, "solid"), "meta": {"choice": number}})
+    greatest = np.abs(run.data["resultants"].sel(resultant="Mt").values).max()
+    finding = f"The wire bears a torque of up to {greatest:.4g} N mm"
+    return Panel(
+        "moments",
+        finding,
+        f"{finding}. Torque and bending moments of the wire's sections over the turns.",
+        traces,
+        {"xaxis": axis("turn from the bottom tip"), "yaxis": axis("moment, N mm")},
+        tuple(run.snapshots),
+    )
+
+
+def _line(name: str, x: np.ndarray, y: np.ndarray, number: int, dash: str) -> Trace:
+    return {
+        "type": "scatter",
+        "mode": "lines",
+        "name": name,
+        "x": x,
+        "y": y,
+        "line": {**LINE, "dash": dash, "color": COLOURS[number % len(COLOURS)]},
+    }

@@ -1,0 +1,74 @@
+"""The numbers that a reader came for, in the words of a spring maker; all are those of summary.json."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from coilset.model.report.panel import said
+from coilset.model.results.opened import Run
+
+
+@dataclass(frozen=True)
+class Number:
+    """One number of the answer.
+
+    Attributes:
+        term: what it is; a word of the glossary, if it is one.
+        value: with its unit.
+        remark: what it means beside others.
+    """
+
+    term: str
+    value: str
+    remark: str = ""
+
+
+def subtitle(run: Run) -> str:
+    """The spring and what was done with it, in a line."""
+    spring, summary = run.case["spring"], run.summary
+    size = [
+        f"{label} {spring[name]:g} mm"
+        for name, label in (("wire_diameter", "wire"), ("mean_diameter", "mean diameter"))
+        if isinstance(spring.get(name), int | float)
+    ]
+    if isinstance(spring.get("turns"), int | float):
+        size.append(f"{spring['turns']:g} turns")
+    way = ", then ".join(run.snapshots[1:])
+    return ", ".join(
+        [*size, summary["material"], f"on {summary['ends']}" if summary["ends"] == "seats" else "clamped"]
+    ) + (f"; to {way}" if way else "")
+
+
+def answer(run: Run) -> list[Number]:
+    """Set first, then what stays in the wire, forces and rates."""
+    s = run.summary
+    before, after = s["free_length_before_mm"], s["free_length_after_mm"]
+    share = (
+        f"{100.0 * s['set_mm'] / before:.1f} % of the free length" if s["set_mm"] is not None else "it was not let go"
+    )
+    inside = s["residual_shear_inside_MPa"]
+    told = "" if inside is None or inside == 0.0 else "against the load" if inside < 0.0 else "with the load"
+    return [
+        Number("set", _said(s["set_mm"], "mm", 3), share),
+        Number("free length", _said(after, "mm", 3), f"after; {before:.3f} mm before"),
+        Number(
+            "residual shear stress",
+            _said(inside, "MPa", 1),
+            f"at the inside of the middle coils{', ' + told if told else ''}",
+        ),
+        Number("greatest force", _said(s["force_max_N"], "N", 1), _error(s["estimated_force_error_N"], "N")),
+        Number("initial rate", _said(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
+        Number("block height", _said(s["block_height_mm"], "mm", 2)),
+    ]
+
+
+def _said(value: float | None, unit: str, digits: int) -> str:
+    return "not reached" if value is None else said(value, unit, digits)
+
+
+def _error(value: float | None, unit: str) -> str:
+    return "" if value is None else f"{abs(value):.2g} {unit} uncertain by the length of the steps"
+
+
+def _after(summary: dict[str, Any]) -> str:
+    rate = summary["rate_30_70_after_N_per_mm"]
+    return "" if rate is None else f"{rate:.3f} N/mm on release, between 30 and 70 % of the travel"

@@ -1,0 +1,85 @@
+"""How the seats bear: where the force passes, and where along the wire coils and seats press."""
+
+import numpy as np
+
+from coilset.model.report.panel import COLOURS, LINE, Panel, axis
+from coilset.model.report.scale import round_end
+from coilset.model.results.opened import Run
+
+FAINT = 0.02  # of the greatest force: a smaller one passes anywhere
+
+
+def force_centre(run: Run) -> Panel | None:
+    """Path of the force centre on both seats; None for a spring without steps."""
+    if "bottom_centre_x_mm" not in run.data:
+        return None
+    traces, away = [], 0.0
+    for number, seat in enumerate(("bottom", "top")):
+        x, y, force = (run.data[f"{seat}_{name}"].values for name in ("centre_x_mm", "centre_y_mm", "force_N"))
+        bears = np.abs(force) > FAINT * np.nanmax(np.abs(force), initial=0.0)
+        traces.append(
+            {
+                "type": "scatter",
+                "mode": "lines+markers",
+                "name": f"{seat} seat",
+                "x": x[bears],
+                "y": y[bears],
+                "text": [f"step {n}" for n in run.data["step"].values[bears]],
+                "marker": {"size": 5},
+                "line": {**LINE, "color": COLOURS[number]},
+            }
+        )
+        away = max(away, float(np.hypot(x[bears], y[bears]).max(initial=0.0)))
+    finding = f"The force passes up to {away:.3g} mm beside the axis"
+    return Panel(
+        "force_centre",
+        finding,
+        f"{finding}. Path of the force centre on each seat, seen along the axis.",
+        traces,
+        {"xaxis": axis("x, mm", zeroline=True), "yaxis": axis("y, mm", scaleanchor="x", zeroline=True)},
+        height=420,
+    )
+
+
+def contact(run: Run) -> Panel | None:
+    """Pressure of each kind of contact along the wire in each step; None where nothing ever bears."""
+    if "pressure" not in run.data:
+        return None
+    pressure, traces = run.data["pressure"], []
+    bears: list[str] = []
+    turns, steps, heights = (run.data[name].values for name in ("wire_turn", "step", "seat_height_mm"))
+    greatest = float(np.nanmax(pressure.values, initial=0.0))
+    for kind in pressure["contact"].values:
+        values = np.nan_to_num(pressure.sel(contact=kind).values)
+        row, place = np.nonzero(values > 0.0)
+        if not len(row):
+            continue
+        marker = {"symbol": "square", "size": 9, "color": values[row, place], "colorscale": "Viridis", "cmin": 0.0}
+        bar = {"title": {"text": "N/mm"}, "thickness": 14}
+        traces.append(
+            {
+                "type": "scatter",
+                "mode": "markers",
+                "x": turns[place],
+                "y": steps[row],
+                "text": [f"{height:.4g} mm high" for height in heights[row]],
+                "marker": {**marker, "cmax": round_end(greatest), "showscale": True, "colorbar": bar},
+                "meta": {"choice": len(bears)},
+                "hovertemplate": "turn %{x:.2f}, step %{y}, %{text}<br>%{marker.color:.3g} N/mm<extra></extra>",
+                "showlegend": False,
+            }
+        )
+        bears.append(str(kind))
+    if not bears:
+        return None
+    ends = float(run.data["turn"].values[0]), float(run.data["turn"].values[-1])
+    finding = f"Contact bears up to {greatest:.3g} N per millimetre of wire"
+    return Panel(
+        "contact",
+        finding,
+        f"{finding}. Force per length of wire over the turns and the steps.",
+        traces,
+        {"xaxis": axis("turn from the bottom tip", range=[ends[0] - 0.1, ends[1] + 0.1]), "yaxis": axis("step")},
+        tuple(bears),
+        choice="contact of",
+    )

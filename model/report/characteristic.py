@@ -1,0 +1,119 @@
+"""Force over travel, and the rate along it."""
+
+import numpy as np
+
+from coilset.model.report.panel import COLOURS, LINE, Panel, Trace, axis
+from coilset.model.results.opened import Run
+
+
+def phases(run: Run) -> list[tuple[str, np.ndarray, np.ndarray]]:
+    """Label, travel (mm) and force (N) of each phase, from the end of the one before on."""
+    data, found = run.data, []
+    labels, last = run.snapshots[1:], (0.0, 0.0)
+    of_phase = data["phase"].values.astype(int)
+    for number in np.unique(of_phase):
+        here = of_phase == number
+        travel, force = (
+            np.append(start, data[name].values[here])
+            for start, name in zip(last, ("travel_mm", "force_N"), strict=True)
+        )
+        label = labels[number] if number < len(labels) else "last equilibrium"
+        found.append((label, travel, force))
+        last = float(travel[-1]), float(force[-1])
+    return found
+
+
+def characteristic(run: Run) -> Panel:
+    """Force over travel, a line a phase, with the initial rate, block and set."""
+    summary, traces = run.summary, []
+    for number, (label, travel, force) in enumerate(phases(run)):
+        traces.append(_line(f"to {label}", travel, force, number))
+    greatest, rate = summary["force_max_N"], summary["rate_N_per_mm"]
+    if rate:
+        x = np.array([0.0, greatest / rate])
+        traces.append(
+            {
+                "type": "scatter",
+                "mode": "lines",
+                "name": f"initial rate {rate:.4g} N/mm",
+                "x": x,
+                "y": rate * x,
+                "line": {"dash": "dot", "width": 1, "color": "#808080"},
+            }
+        )
+    block = summary["free_length_before_mm"] - summary["block_height_mm"]
+    shapes = [
+        {
+            "type": "line",
+            "x0": block,
+            "x1": block,
+            "yref": "paper",
+            "y0": 0,
+            "y1": 1,
+            "line": {"dash": "dash", "width": 1, "color": "#808080"},
+        }
+    ]
+    notes = [{"x": block, "y": 1, "yref": "paper", "yanchor": "bottom", "text": "block", "showarrow": False}]
+    set_mm = summary["set_mm"]
+    if set_mm:
+        notes.append(
+            {
+                "x": set_mm,
+                "ax": 0,
+                "y": 0,
+                "ay": 0,
+                "axref": "x",
+                "ayref": "y",
+                "text": "",
+                "arrowhead": 2,
+                "arrowside": "end+start",
+                "showarrow": True,
+                "arrowwidth": 1.2,
+            }
+        )
+        notes.append(
+            {"x": 0.5 * set_mm, "y": 0, "yanchor": "bottom", "text": f"set {set_mm:.3f} mm", "showarrow": False}
+        )
+    finding = f"Pressed with up to {greatest:.4g} N" + (
+        f", the spring sets {set_mm:.4g} mm" if set_mm is not None else ""
+    )
+    return Panel(
+        "characteristic",
+        finding,
+        f"Axial force over travel. {finding}. Block is at {block:.4g} mm of travel.",
+        traces,
+        {"xaxis": axis("travel, mm"), "yaxis": axis("axial force, N"), "shapes": shapes, "annotations": notes},
+        height=440,
+    )
+
+
+def rate_curve(run: Run) -> Panel | None:
+    """Slope of the characteristic over travel, phase by phase; None if no phase has three steps."""
+    traces = []
+    for number, (label, travel, force) in enumerate(phases(run)):
+        apart = np.append(True, np.abs(np.diff(travel)) > 1e-9 * np.ptp(travel))
+        if apart.sum() > 2:
+            traces.append(_line(f"to {label}", travel[apart], np.gradient(force[apart], travel[apart]), number))
+    if not traces:
+        return None
+    rate = run.summary["rate_N_per_mm"]
+    first = f"The rate begins at {rate:.4g} N/mm" if rate else "The rate over the travel"
+    return Panel(
+        "rate",
+        first,
+        f"{first}. Slope of the characteristic over travel, each phase a line.",
+        traces,
+        {"xaxis": axis("travel, mm"), "yaxis": axis("rate, N/mm", rangemode="tozero")},
+    )
+
+
+def _line(name: str, x: np.ndarray, y: np.ndarray, number: int) -> Trace:
+    return {
+        "type": "scatter",
+        "mode": "lines+markers",
+        "name": name,
+        "x": x,
+        "y": y,
+        "marker": {"size": 5},
+        "line": {**LINE, "color": COLOURS[number % len(COLOURS)]},
+    }

@@ -1,0 +1,57 @@
+"""How hard the run was, and how true its steps are."""
+
+import numpy as np
+
+from coilset.model.report.panel import COLOURS, Panel, axis
+from coilset.model.results.opened import Run
+
+
+def cost(run: Run) -> Panel:
+    """Iterations and evaluated states of each step."""
+    step, summary = run.data["step"].values, run.summary
+    traces = [
+        {"type": "bar", "name": name, "x": step, "y": run.data[column].values, "marker": {"color": COLOURS[number]}}
+        for number, (name, column) in enumerate((("iterations", "iterations"), ("states evaluated", "evaluations")))
+    ]
+    cuts = int(np.nansum(run.data["cuts"].values))
+    finding = f"{summary['steps']} steps took {summary['evaluations']} evaluations" + (
+        f" and {cuts} cuts" if cuts else ""
+    )
+    return Panel(
+        "cost",
+        finding,
+        f"{finding}. Iterations and evaluated states of each step.",
+        traces,
+        {"xaxis": axis("step"), "yaxis": axis("count"), "barmode": "group"},
+        height=320,
+    )
+
+
+def step_error(run: Run) -> Panel | None:
+    """Estimated error of the force by the length of the steps; None where it is not known."""
+    error = run.data["estimated_force_error_N"].values
+    if not np.isfinite(error).any():
+        return None
+    last = run.summary["estimated_force_error_N"]
+    finding = (
+        "What the length of the steps leaves wrong in the force"
+        if last is None
+        else f"The length of the steps leaves about {abs(last):.2g} N wrong in the greatest force"
+    )
+    trace = {
+        "type": "scatter",
+        "mode": "lines+markers",
+        "x": run.data["step"].values,
+        "y": error,
+        "marker": {"size": 5},
+        "line": {"color": COLOURS[1], "width": 2},
+        "showlegend": False,
+    }
+    return Panel(
+        "step_error",
+        finding,
+        f"{finding}. Estimated error over the steps.",
+        [trace],
+        {"xaxis": axis("step"), "yaxis": axis("estimated error of the force, N")},
+        height=320,
+    )

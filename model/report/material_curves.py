@@ -1,0 +1,37 @@
+"""What the wire is made of: one point of it twisted there and back."""
+
+import json
+
+from coilset.model.material.file import MaterialFile
+from coilset.model.material.law import Law
+from coilset.model.material.programs import Program, Step, run
+from coilset.model.report.panel import COLOURS, LINE, Panel, axis
+from coilset.model.results.opened import Run
+
+FAR = 12.0  # yield strains of torsion to which the point is twisted
+INCREMENTS = 60
+
+
+def material_curve(results: Run) -> Panel:
+    """Shear stress over shear strain, forwards and back."""
+    law = Law(MaterialFile.model_validate(json.loads(results.data.attrs["material_file"])))
+    far = FAR * law.yield_stress / (3.0**0.5 * law.G)
+    steps = [Step(to={"gamma12": to}, increments=number * INCREMENTS) for number, to in ((1, far), (2, -far), (2, far))]
+    history = run(law, Program(name="there and back", steps=tuple(steps)))
+    trace = {
+        "type": "scatter",
+        "mode": "lines",
+        "x": 100.0 * history.strain[:, 1],
+        "y": history.stress[:, 1],
+        "line": {**LINE, "color": COLOURS[0]},
+        "showlegend": False,
+    }
+    finding = f"{law.name}: twisted to {100.0 * far:.2g} % shear, {abs(history.stress[INCREMENTS, 1]):.0f} MPa"
+    return Panel(
+        "material",
+        finding,
+        f"{finding}. Shear stress over shear strain of one point, there, back, and again.",
+        [trace],
+        {"xaxis": axis("shear strain, %"), "yaxis": axis("shear stress, MPa")},
+        note=law.description + ". Source: " + law.source,
+    )

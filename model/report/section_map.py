@@ -1,0 +1,115 @@
+"""Stress over the wire's section at mid height, to its rim."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.tri import LinearTriInterpolator, Triangulation
+
+from coilset.model.report.panel import DIVERGING, Panel, Trace, axis, said
+from coilset.model.report.scale import round_end
+from coilset.model.report.wire import inside
+from coilset.model.results.opened import Run
+from coilset.model.results.rings import ROUND, refined, rings
+
+PIXELS = 121  # of a map, across the wire
+BEYOND = 1.04  # wire radii up to which colours go: the rim is drawn over them
+
+
+def shear_map(run: Run) -> Panel:
+    """Shear about the wire's axis, a map a snapshot."""
+    return _panel(run, "section_shear", "shear", 0, "; positive as in a compressed spring")
+
+
+def normal_map(run: Run) -> Panel:
+    """Normal stress, a map a snapshot."""
+    return _panel(run, "section_normal", "normal stress", 1, "")
+
+
+def _panel(run: Run, name: str, quantity: str, which: int, sign: str) -> Panel:
+    element = len(run.data["turn"]) // 2
+    places, carry, radius = _places(run, element)
+    fields = [_stresses(run, number, element, places, carry) for number in range(len(run.snapshots))]
+    traces = []
+    for number, both in enumerate(fields):
+        end = round_end(max(float(np.abs(field).max()) for field in both))
+        traces.append(_map(places * radius, both[which], radius, end, number))
+    y, z = (run.data[axis_name].values[element] for axis_name in "yz")
+    dots = {"type": "scatter", "mode": "markers", "x": y, "y": z, "marker": {"size": 2, "color": "#404040"}}
+    traces.append({**dots, "hoverinfo": "skip", "showlegend": False})
+    low, high = (said(float(f(fields[-1][which])), "MPa") for f in (np.min, np.max))
+    finding = f"At {run.snapshots[-1]} the {quantity} at mid height runs from {low} to {high}"
+    return Panel(
+        name,
+        finding,
+        f"Map of the wire's section at mid height. {finding}{sign}.",
+        traces,
+        _layout(radius, np.cos(inside(run).angle) > 0),
+        tuple(run.snapshots),
+        height=430,
+        note="Dots are the points at which the section is integrated; the stress on the rim is integrated there, too.",
+    )
+
+
+def _places(run: Run, element: int) -> tuple[np.ndarray, np.ndarray, float]:
+    """Places in wire radii, the matrix that carries values at the section points to those within, and the radius."""
+    radius = float(run.data["wire_radius"].values[element])
+    points = np.stack([run.data[name].values[element] for name in "yz"], axis=-1) / radius
+    inner, carry = rings(points)
+    angle = 2.0 * np.pi * np.arange(ROUND) / ROUND
+    return np.concatenate([inner, np.stack([np.cos(angle), np.sin(angle)], axis=-1)]), carry, radius
+
+
+def _stresses(run: Run, snapshot: int, element: int, places: np.ndarray, carry: np.ndarray) -> tuple[np.ndarray, ...]:
+    def stress(name: str) -> np.ndarray:
+        within, rim = (
+            run.data[kind].sel(component=name).values[snapshot, element].mean(axis=0) for kind in ("history", "surface")
+        )
+        return np.concatenate([carry @ within, refined(rim, ROUND)])
+
+    y, z = places.T
+    distance = np.maximum(np.hypot(y, z), 1e-12)
+    here = inside(run)
+    around = here.sign * np.cos(here.angle) * (stress("t13") * y - stress("t12") * z) / distance
+    return around, stress("s11")
+
+
+def _map(places: np.ndarray, values: np.ndarray, radius: float, end: float, choice: int) -> Trace:
+    """Values on a grid of pixels; beyond the rim those of the rim."""
+    line = np.linspace(-BEYOND * radius, BEYOND * radius, PIXELS)
+    y, z = np.meshgrid(line, line)
+    distance = np.hypot(y, z)
+    within = np.minimum(1.0, 0.9995 * radius / np.maximum(distance, 1e-12))
+    triangles = Triangulation(*places.T)
+    field = LinearTriInterpolator(triangles, values)(y * within, z * within).filled(np.nan)
+    field[distance > BEYOND * radius] = np.nan
+    return {
+        "type": "heatmap",
+        "x": line,
+        "y": line,
+        "z": field,
+        "zmin": -end,
+        "zmax": end,
+        "zsmooth": "best",
+        "colorscale": DIVERGING,
+        "meta": {"choice": choice},
+        "colorbar": {"title": {"text": "MPa"}, "thickness": 12, "len": 0.85},
+        "hovertemplate": "%{z:.0f} MPa<extra></extra>",
+    }
+
+
+def _layout(radius: float, inwards: bool) -> dict[str, Any]:
+    """A square map; what lies beyond the rim is covered with paper."""
+    edge = BEYOND * 1.06 * radius
+    around = radius * np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 181))
+    rim = "M" + " L".join(f"{at.real:.5g},{at.imag:.5g}" for at in around) + " Z"
+    beyond = f"M{-edge},{-edge} L{edge},{-edge} L{edge},{edge} L{-edge},{edge} Z{rim}"
+    square = {"range": [-edge, edge], "constrain": "domain", "showgrid": False, "zeroline": False}
+    towards = f"{'towards' if inwards else 'away from'} the coil's axis, mm"
+    cover = {"type": "path", "path": beyond, "fillrule": "evenodd", "fillcolor": "paper", "line": {"width": 0}}
+    line = {"type": "path", "path": rim, "line": {"width": 1, "color": "#808080"}}
+    return {
+        "showlegend": False,
+        "xaxis": axis(towards, **square),
+        "yaxis": axis("across, mm", scaleanchor="x", **square),
+        "shapes": [cover, line],
+    }

@@ -1,0 +1,91 @@
+"""A results folder read back: the summary, the tables and the section points, for reports and for studies."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from coilset.meshes.errors import InputError
+
+UNITS = {
+    "_N_per_mm2": "N/mm²",
+    "_N_per_mm": "N/mm",
+    "_Nmm": "N mm",
+    "_mm": "mm",
+    "_MPa": "MPa",
+    "_N": "N",
+    "_rad": "rad",
+    "_turns": "1",
+    "hours": "h",
+    "_K": "K",
+    "_percent": "%",
+}
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run as its folder tells it.
+
+    Attributes:
+        folder: where it lies.
+        summary: of summary.json.
+        data: history.csv and seats.csv along the dimension `step`, and all of points.nc; each with its `units`.
+    """
+
+    folder: Path
+    summary: dict[str, Any]
+    data: xr.Dataset
+
+    @property
+    def case(self) -> dict[str, Any]:
+        """The case with all its defaults."""
+        case: dict[str, Any] = self.summary["origin"]["case"]
+        return case
+
+    @property
+    def snapshots(self) -> list[str]:
+        """What moments there are: the start, and the end of each phase."""
+        return [str(name) for name in self.data["snapshot"].values]
+
+
+def open_run(folder: str | Path) -> Run:
+    """Read a results folder of `coilset solve`.
+
+    Raises:
+        InputError: if there is no run in it, or a file of it cannot be read.
+    """
+    folder = Path(folder)
+    path = folder / "summary.json"
+    if not path.is_file():
+        raise InputError("holds no results of a run: there is no summary.json", "", folder)
+    try:
+        summary = json.loads(path.read_text(encoding="utf-8"))
+        path = folder / "points.nc"
+        with xr.open_dataset(path, engine="h5netcdf") as file:
+            data = file.load()
+        for name in ("history", "seats"):
+            path = folder / f"{name}.csv"
+            data = data.merge(_table(path), compat="override", join="outer")
+    except (OSError, ValueError, KeyError) as error:
+        raise InputError(f"is not readable: {str(error).partition(chr(10))[0]}", "", path) from None
+    if "origin" not in summary:
+        raise InputError("is of a version without the case in it; solve it again", "", folder / "summary.json")
+    return Run(folder, summary, data)
+
+
+def _table(path: Path) -> xr.Dataset:
+    """Columns of a CSV as variables along `step`, NaN where nothing is written."""
+    rows = np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True, encoding="utf-8"))
+    names = rows.dtype.names or ()
+    if not names or len(rows.shape) == 0 or names == ("step",):
+        return xr.Dataset()
+    number = names[0]  # of the step
+    columns = {name: ("step", rows[name], {"units": _unit(name)}) for name in names if name != number}
+    return xr.Dataset(columns, coords={"step": rows[number].astype(int)})
+
+
+def _unit(name: str) -> str:
+    return next((unit for end, unit in UNITS.items() if name.endswith(end)), "1")
