@@ -9,9 +9,9 @@ from mpi4py import MPI
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import Case
+from coilset.model.equilibrium.branch_switching import Snap
 from coilset.model.equilibrium.continuation import Continuation
-from coilset.model.equilibrium.control import StepControl
-from coilset.model.equilibrium.snap import Snap
+from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.stability import vanishing
 from coilset.model.results.buckling import axis_offset, buckling, critical_travel
 from coilset.model.results.record import Step
