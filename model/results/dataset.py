@@ -97,7 +97,7 @@ def write_points(folder: str | Path, data: xr.Dataset) -> None:
     """points.nc (NetCDF 4)."""
     with whole(Path(folder) / "points.nc") as path:
         reserve(path, data.nbytes)
-        data.to_netcdf(path, engine="h5netcdf")
+        data.to_netcdf(path.absolute(), engine="h5netcdf")
 
 
 def write_fields(folder: str | Path, setup: Setup, snapshots: Sequence[Snapshot]) -> None:
