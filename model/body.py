@@ -119,7 +119,7 @@ class EstimatesErrors(Protocol):
 
         Args:
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
-            kinked: did contacts close or open within the step?
+            kinked: is the path of strains kinked within the step, in its middle at worst?
 
         Returns:
             Work of the error of the inner forces on the step's deformation; of that share of the error which came in

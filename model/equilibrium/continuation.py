@@ -132,7 +132,7 @@ class Continuation:
 
     def _estimated(self, outcome: Outcome, step_error: StepError, size: float, accurately: bool) -> Outcome:
         before = self.steps.position.before
-        estimate = step_error.estimate(size / before if before else 0.0)
+        estimate = step_error.estimate(size / before if before else 0.0, accurately)
         outcome = replace(outcome, estimate=estimate)
         if not accurately or estimate.share <= self.control.tolerated_share or size <= self.control.finest:
             return outcome

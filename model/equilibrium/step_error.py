@@ -9,7 +9,7 @@ driven head's force is wrong by
 where Δs is the step's travel and ∂F/∂s its secant. Of the error that comes in with one step, the work on the first
 step's deformation, which is elastic, gives in the same way what will be wrong when the spring is let go: the set. The
 greater of both, ΔF', is of third order in the step's size h, so that h (a/ΔF')^⅓ is the size of a step that brings in
-a. Over a step in which contacts close or open the path of strains is kinked, which the body is told.
+a. Over an automatic step in which contacts close or open the path of strains is taken for kinked.
 """
 
 import math
@@ -60,16 +60,19 @@ class StepError:
         body.estimate_errors()
         self._memory = control.system.state.add("step_error", np.zeros(3), Where.SHARED)
 
-    def estimate(self, ratio: float) -> Estimate:
+    def estimate(self, ratio: float, controls: bool) -> Estimate:
         """Judge the state on trial, once, before it is committed or given up; collective.
 
         Args:
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
+            controls: does the length of steps hang on it? A kink then counts as in the middle of the step. Where steps
+                are equal it lies somewhere in each, and the errors of many would not add up as those of the worst.
         """
         control, comm = self.control, self.control.system.comm
         memory, last = self._memory.trial, self._memory.equilibrium
         memory[CLOSED] = sum(part.closed for part in control.system.last.contributions)
-        works = np.array(self._body.error_works(ratio, bool(memory[CLOSED] != last[CLOSED])))
+        kinked = controls and memory[CLOSED] != last[CLOSED]
+        works = np.array(self._body.error_works(ratio, bool(kinked)))
         if comm.size > 1:
             works = comm.allreduce(works)
         before, force = control.force, control.trial_force

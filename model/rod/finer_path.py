@@ -48,7 +48,7 @@ class FinerPath:
         Args:
             s: section forces on trial, shape (cells, 2, 6), N and N mm.
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
-            kinked: did contacts close or open within the step?
+            kinked: is the path kinked within the step, in its middle at worst?
 
         Returns:
             False if the law found no solution on this rank: the finer path then goes on from the step's own end, and

@@ -10,8 +10,10 @@ close in. So the cone is pressed in up to 768 steps.
 The example as it is shipped must be within 0.2 % of its limit in force and 0.1 % in set with automatic steps, the
 others within 0.5 and 0.2 %. Where a sequence does not close in (its last difference is more than 0.6 of the one before
 it) its limit is not taken; the last value stands for it if the two last ones are within a third of the tolerance, else
-the deviation is shown and not judged. How steep the wall is that a spring stands on at block, and by how much height
-the tolerance is, says the first table; what steps say of their own error the second, and what it costs the third.
+the deviation is shown and not judged. Nor is a force that falls while the spring is pressed on: coils slide past each
+other there, without friction, and where the slide began is an accident. How steep the wall is that a spring stands on
+at block, and by how much height the tolerance is, says the first table; what steps say of their own error the second,
+and what it costs the third.
 """
 
 import time
@@ -116,7 +118,9 @@ def report(study: Study, presses: Mapping[str, Sequence[Press]]) -> None:
             rows.append([name, quantity, ", ".join(map(str, steps)), *values, automatic, end if closes else np.nan,
                          order, off[name, k][-1], wall, tolerance * end / wall if k == 0 else np.nan])  # fmt: skip
             what = f"{name}, {quantity}, automatic steps"
-            if closes:
+            if k == 0 and wall < 0.0:
+                study.shown(what, automatic, end, f"{steps[-1]} steps", "it falls as coils slide past each other")
+            elif closes:
                 study.check(what, automatic, end, "Richardson's limit", tolerance)
             elif last <= tolerance * end / 3.0:
                 study.check(what, automatic, end, f"{steps[-1]} steps", tolerance)
