@@ -18,24 +18,32 @@ from coilset.verification.benchmarks.target import ITERATION, per_element, secon
 WIDTH = 140  # columns where the output goes to a file
 
 
-def bench(out: str, full: bool, cold: bool) -> None:
+def bench(out: str, full: bool, cold: bool, against: str | None = None) -> None:
     """Run the benchmarks; see `coilset bench --help`.
 
     Raises:
         CoilsetError: if a measurement failed.
+        InputError: if `against` is no checkout.
     """
     environment = dict(os.environ)  # as it was before MPI
     console = Console(highlight=False, width=None if sys.stdout.isatty() else WIDTH)
     began, folder = time.perf_counter(), Path(out)
     with console.status("") as status:
-        record = measure_all(full, cold, environment, lambda name: status.update(f"measuring: {name}"))
+        record = measure_all(full, cold, environment, lambda name: status.update(f"measuring: {name}"),
+                             Path(against).resolve() if against else None)  # fmt: skip
     from coilset.verification.benchmarks.figure import draw
 
     make(folder)
     with whole(folder / "bench.json") as path:
         path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
     draw(folder / "bench.png", record)
-    for table in (_stages(record), _elements(record["elements"]), _ranks(record["ranks"]), _targets(record["targets"])):
+    for table in (
+        _commands(record["commands"]),
+        _stages(record),
+        _elements(record["elements"]),
+        _ranks(record["ranks"]),
+        _targets(record["targets"]),
+    ):
         console.print(table)
     cases = record["cases"]
     console.print(f"cases: {cases['cases']} one after the other, {cases['failed']} failed, {cases['seconds'][1]:.3f} s "
@@ -51,6 +59,16 @@ def _new(title: str, *columns: str) -> Table:
     table = Table(title=title, title_justify="left", box=None, padding=(0, 2), header_style="bold")
     for column in columns:
         table.add_column(column, justify="left" if column == columns[0] else "right")
+    return table
+
+
+def _commands(rows: list[dict[str, Any]]) -> Table:
+    """Medians of this checkout, and of another one where there is one."""
+    sides = ("", ", the other")[: len(rows[0]["end"])]
+    table = _new("commands, medians by the clock, s", "command", *(f"first line{side}" for side in sides),
+                 *(f"end{side}" for side in sides))  # fmt: skip
+    for row in rows:
+        table.add_row(row["name"], *(f"{value:.2f}" for value in (*row["first_line"], *row["end"])))
     return table
 
 

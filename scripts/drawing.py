@@ -37,7 +37,8 @@ class Drawings:
     """
 
     def __init__(self, environment: Mapping[str, str]) -> None:
-        self.environment, self.processes = dict(environment), dict[str, subprocess.Popen[bytes]]()
+        self.environment = dict(environment)
+        self.processes: dict[str, subprocess.Popen[bytes]] = {}
 
     def start_if_free(self) -> None:
         """Start the processes now if there is a core for them, beside those of the ranks."""
@@ -125,16 +126,23 @@ def draw_part(part: str, tasks: BinaryIO) -> dict[str, Any] | None:
         out, run = pickle.load(tasks)
     except EOFError:
         return None
+    before = signal.signal(signal.SIGTERM, _leave)
     try:
         return {"problem": None, "warnings": draw(out, run)}
     except CoilsetError as error:
         return {"problem": str(error), "warnings": []}
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _leave(*_: object) -> None:
+    """End as an error would: nothing half written is left."""
+    sys.exit(128 + signal.SIGTERM)
 
 
 def main(part: str) -> None:
-    """The process that draws a part; SIGTERM ends it as an error would, so that nothing half written is left."""
+    """The process that draws a part."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that solves
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     os.nice(MODEST)
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # what libraries print must not get between the answers

@@ -1,4 +1,4 @@
-# Sourced by scripts/coilset: find_environment sets `python` and `enter`, making the environment where there is none.
+# Sourced by scripts/coilset: find_environment sets `python` and `enter`, and `made` if it had to make the environment.
 #
 # An environment is, in this order: (a) a Python that has DOLFINx >= 0.9 and the other packages: $COILSET_PYTHON, or
 # python3 of the PATH (conda, a venv), or /usr/bin/python3; (b) Debian >= 13 or Ubuntu >= 25.04 with root: the
@@ -23,6 +23,7 @@ packages() { tr '\n' ' ' < "$scripts/packages.txt"; }
 # What was found is kept beside the checkout's link in the cache folder, one record for each python3 of the PATH: the
 # kind, the Python, and facts: files and folders that must be there and not be newer than the record.
 find_environment() {
+    made=''
     local first=${COILSET_PYTHON:-} kind='' fact facts=()
     [ -n "$first" ] || first=$(type -P python3 || true)
     found=$namespace/found-${COILSET_RELEASE:-any}-${first//\//%}
@@ -33,6 +34,7 @@ find_environment() {
     if ! ready; then
         case " $* " in *' --help '* | *' -h '* | *' --version '* | '  ') printf '%s\n' "$ways"; exit 0 ;; esac
         make_environment
+        made=yes
     fi
     "enter_$kind"
     remember

@@ -225,12 +225,22 @@ def bench(
     ),
     full: bool = typer.Option(False, "--full", help="up to 400,000 elements: 10 GiB, a quarter of an hour"),
     cold: bool = typer.Option(False, "--cold", help="also time the compilers, from nothing"),
+    against: str = typer.Option(None, metavar="CHECKOUT", help="time the commands of another checkout beside these"),
 ) -> None:
     """Measure time by stage, over elements and ranks, and cases per hour."""
     announce_if_cold()
     from coilset.scripts.bench import bench as run_benchmarks
 
-    run_benchmarks(out, full, cold)
+    run_benchmarks(out, full, cold, against)
+
+
+@app.command(name="compile")
+def compile_() -> None:
+    """Compile forms and kernels now, about 20 s, so that the first run need not; nothing if they are there."""
+    announce_compiling()
+    from coilset.scripts.warm import warm
+
+    warm()
 
 
 @app.command()

@@ -4,6 +4,7 @@ A material file gives, for one or more temperatures, the elastic constants and t
 """
 
 import math
+from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -190,5 +191,15 @@ def read(path: str | Path) -> MaterialFile:
     Raises:
         InputError: if the file cannot be read or says something wrong.
     """
+    try:
+        content = Path(path).read_bytes()
+    except OSError:
+        content = b""  # which is said below
+    return _read(str(path), content)
+
+
+@lru_cache(maxsize=16)  # cases of a sweep share their materials
+def _read(path: str, content: bytes) -> MaterialFile:
+    """What a file with this content says."""
     kind = "is no material file; it wants name, source, units, validity, ..."
     return check_entries(read_data(path, kind), MaterialFile, path)

@@ -16,6 +16,7 @@ from coilset.model.body import Moment
 from coilset.model.material.creep_law import CreepLaw
 from coilset.model.material.law import Law
 from coilset.model.rod import forms
+from coilset.model.rod.compiled import compiled_forms
 from coilset.model.rod.finer_path import FinerPath
 from coilset.model.rod.kinematics import GAUSS, chord_triads, section_strains
 from coilset.model.rod.prediction import Frames, Prediction, linear_strains
@@ -123,9 +124,10 @@ class Rod:
         self.correction = fem.Function(self.V)
         self._prediction: Prediction | None = None
         self._finer: FinerPath | None = None
-        self.forms = forms.RodForms(mesh, self.V, *(field.function for field in fields))
-        self._residual = fem.form(self.forms.residual)
-        self._tangent = fem.form(self.forms.material_stiffness + self.forms.frame_stiffness)
+        functions = [field.function for field in fields]
+        made = sorted(functions, key=lambda function: function.count())
+        compiled = compiled_forms(mesh.comm, tuple(one.function_space.ufl_element() for one in made))
+        self._residual, self._tangent = compiled.on(self.V, functions)
         self.row_entries = np.full(self.V.dofmap.index_map.size_local, NODAL_ENTRIES, dtype=PETSc.IntType)
         self.row_entries[self.shear_dofs] = SHEAR_ENTRIES
         self.largest_radius = comm_max(mesh.comm, self.radius.max(initial=0.0))

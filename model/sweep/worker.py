@@ -10,6 +10,7 @@ import os
 import signal
 import sys
 
+from coilset.model.caches import load_without_compiler
 from coilset.model.processes import end_with_parent
 
 
@@ -20,6 +21,7 @@ def main() -> None:
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # what libraries print must not get between the answers
 
+    load_without_compiler()
     from mpi4py import MPI
 
     from coilset.model.sweep.evaluate import evaluate

@@ -1,14 +1,18 @@
 """The benchmarks measure what they say: stages do not overlap, records are whole, tables and figure come of them."""
 
+import itertools
 import json
+import os
+import sys
 from types import SimpleNamespace
 
 import pytest
 from mpi4py import MPI
 
+from coilset.meshes.errors import CoilsetError, InputError
 from coilset.model import analysis
 from coilset.scripts import bench as command
-from coilset.verification.benchmarks import measure, run, stopwatch
+from coilset.verification.benchmarks import everyday, measure, run, stopwatch
 from coilset.verification.benchmarks.stopwatch import Stopwatch
 from coilset.verification.benchmarks.target import ITERATION, per_element, seconds, spread, targets
 
@@ -68,8 +72,9 @@ def record():
             patch.setattr(analysis, function, getattr(analysis, function))
         example = measure.example(1)
         runs = [measure.press(elements) for elements in (20, 40)]
-    record = {"machine": run.machine(), "example": example, "elements": runs, "ranks": [runs[0], runs[0]],
-              "cases": measure.cases(1), "load_after": 0.0}  # fmt: skip
+    commands = [{"name": "solve", "first_line": [0.25, 0.75], "end": [1.5, 3.5]}]
+    record = {"machine": run.machine(), "commands": commands, "example": example, "elements": runs,
+              "ranks": [runs[0], runs[0]], "cases": measure.cases(1), "load_after": 0.0}  # fmt: skip
     return record | {"targets": targets(record)}
 
 
@@ -103,10 +108,41 @@ def test_spread_is_of_the_large_runs():
 
 @pytest.mark.skipif(MPI.COMM_WORLD.size > 1, reason="measures one rank")
 def test_command_prints_and_writes(record, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(command, "measure_all", lambda full, cold, environment, report: record)
+    monkeypatch.setattr(command, "measure_all", lambda full, cold, environment, report, against: record)
     command.bench(tmp_path / "out", False, False)
     said = capsys.readouterr().out
-    for words in ("factorise", "µs", "ranks", "an hour and core", "aimed at"):
+    for words in ("factorise", "µs", "ranks", "an hour and core", "aimed at", "first line, the other"):
         assert words in said
     assert json.loads((tmp_path / "out" / "bench.json").read_text()) == record
     assert (tmp_path / "out" / "bench.png").stat().st_size > 10_000
+
+
+def test_commands_are_timed_in_turns_and_the_first_run_does_not_count(monkeypatch, tmp_path):
+    """The clock of the first run of each is that of its compilers."""
+    (tmp_path / "scripts").mkdir()
+    (tmp_path / "scripts" / "coilset").touch()
+    called, clock = [], itertools.count(10)
+
+    def timed(command, environment):
+        called.append(command[0])
+        assert "COILSET_STARTED" not in environment  # or its times would count from when this one was started
+        return 0.5, 100.0 if len(called) <= 2 else float(next(clock))
+
+    monkeypatch.setattr(everyday, "timed", timed)
+    monkeypatch.setattr(everyday, "COMMANDS", {"--help": ["--help"]})
+    rows = everyday.everyday({"COILSET_STARTED": "1"}, tmp_path, 3)
+    assert rows == [{"name": "--help", "first_line": [0.5, 0.5], "end": [12.0, 13.0]}]  # of 10, 12, 14 and 11, 13, 15
+    assert called == 4 * [called[0], str(tmp_path / "scripts" / "coilset")]
+
+
+def test_what_is_no_checkout_is_said(tmp_path):
+    with pytest.raises(InputError, match="is no checkout of coilset"):
+        everyday.everyday({}, tmp_path)
+
+
+def test_a_command_is_timed_to_its_first_line_and_to_its_end():
+    slow = "import time; print('first', flush=True); time.sleep(0.3); print('last')"
+    first, end = everyday.timed([sys.executable, "-c", slow], dict(os.environ))
+    assert 0.0 < first <= end - 0.3
+    with pytest.raises(CoilsetError, match="failed: no such thing"):
+        everyday.timed([sys.executable, "-c", "import sys; sys.exit('no such thing')"], dict(os.environ))

@@ -7,10 +7,12 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 from coilset.meshes.errors import CoilsetError
 from coilset.model.processes import MPI_SETTINGS, mpirun
+from coilset.verification.benchmarks.everyday import everyday
 from coilset.verification.benchmarks.target import targets
 
 MODULE = "coilset.verification.benchmarks.measure"
@@ -49,7 +51,13 @@ def cold(environment: dict[str, str]) -> dict[str, Any]:
         return measure(environment | {"XDG_CACHE_HOME": folder, "NUMBA_CACHE_DIR": folder}, "example", 1)
 
 
-def bench(full: bool, with_cold: bool, environment: dict[str, str], report: Callable[[str], object]) -> dict[str, Any]:
+def bench(
+    full: bool,
+    with_cold: bool,
+    environment: dict[str, str],
+    report: Callable[[str], object],
+    against: Path | None = None,
+) -> dict[str, Any]:
     """All measurements.
 
     Args:
@@ -57,12 +65,15 @@ def bench(full: bool, with_cold: bool, environment: dict[str, str], report: Call
         with_cold: also time the compilers.
         environment: of the processes, from before MPI.
         report: called with the name of each measurement before it begins.
+        against: another checkout, whose commands are timed beside this one's.
 
     Returns:
         The record: plain data for JSON.
     """
     size = "full" if full else "quick"
     record: dict[str, Any] = {"machine": machine()}
+    report("commands")
+    record["commands"] = everyday(environment, against)
     report("example")
     record["example"] = measure(environment, "example", 5)
     if with_cold:

@@ -1,0 +1,81 @@
+"""The commands of every day, by the clock and from outside: how long until they say something, and until they end."""
+
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+from coilset.meshes.errors import CoilsetError, InputError
+from coilset.model.examples import EXAMPLES
+
+REPEATS = 5
+THIS = Path(__file__).resolve().parents[2]
+CASE = str(EXAMPLES / "ck15_presetting.yaml")
+EQUAL = ["--set", "loading.0.steps=12", "--set", "loading.1.steps=12",
+         "--set", "mesh.section.radial=4", "--set", "mesh.section.angular=12"]  # fmt: skip
+COMMANDS = {
+    "--help": ["--help"],
+    "solve --no-pictures, 12 + 12 steps, 4 x 12 points": ["solve", CASE, "--no-pictures", *EQUAL],
+    "solve --no-pictures": ["solve", CASE, "--no-pictures"],
+    "solve": ["solve", CASE],
+}
+
+
+def launcher(checkout: Path) -> list[str]:
+    """The words that start the command of a checkout, or of this installation where there is none.
+
+    Raises:
+        InputError: if there is no checkout of coilset.
+    """
+    script = checkout / "scripts" / "coilset"
+    if script.is_file():
+        return [str(script)]
+    if checkout != THIS:
+        raise InputError("is no checkout of coilset; there is no scripts/coilset in it", "--against", checkout)
+    return [sys.executable, "-m", "coilset.scripts"]
+
+
+def timed(command: Sequence[str], environment: Mapping[str, str]) -> tuple[float, float]:
+    """Seconds to the first line and to the end of a command.
+
+    Raises:
+        CoilsetError: if it failed.
+    """
+    with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as complaints:
+        began = time.perf_counter()
+        process = subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=complaints)
+        assert process.stdout is not None
+        process.stdout.readline()
+        first = time.perf_counter() - began
+        process.stdout.read()
+        process.stdout.close()
+        if process.wait():
+            complaints.seek(0)
+            lines = complaints.read().decode(errors="replace").strip().splitlines() or ["no message"]
+            raise CoilsetError(f"'{' '.join(command)}' failed: {lines[-1]}")
+        return first, time.perf_counter() - began
+
+
+def everyday(environment: Mapping[str, str], against: Path | None, repeats: int = REPEATS) -> list[dict[str, Any]]:
+    """Medians for this checkout and for another one, measured in turns; a first run of each, not counted, warms up.
+
+    Args:
+        environment: of the commands, from before MPI.
+        against: another checkout, or None.
+        repeats: of each command.
+
+    Returns:
+        For each command its `name`, and `first_line` and `end`: seconds for each checkout, this one first.
+    """
+    plain = {name: value for name, value in environment.items() if name != "COILSET_STARTED"}
+    starts = [launcher(checkout) for checkout in (THIS, against) if checkout is not None]
+    rows = []
+    for name, arguments in COMMANDS.items():
+        runs = [[timed([*start, *arguments], plain) for start in starts] for _ in range(repeats + 1)][1:]
+        first, end = ([median(run[i][which] for run in runs) for i in range(len(starts))] for which in (0, 1))
+        rows.append({"name": name, "first_line": first, "end": end})
+    return rows
