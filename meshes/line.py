@@ -1,6 +1,6 @@
 """The line mesh of a rod: a gmsh model of straight elements through given stations, distributed by DOLFINx."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import gmsh
@@ -8,7 +8,7 @@ import numpy as np
 from dolfinx import mesh as dmesh
 from mpi4py import MPI
 
-from coilset.meshes.compat import geometry_dofs, mesh_from_gmsh
+from coilset.meshes.compat import geometry_dofs, mesh_from_gmsh, to_ranks
 
 
 @dataclass
@@ -71,6 +71,16 @@ def gmsh_line(stations: np.ndarray, groups: Mapping[str, int] | None = None, nam
         gmsh.model.addPhysicalGroup(0, [point], name=group)
 
 
+def _pieces(elements: int) -> Callable[..., object]:
+    """Partitioner that cuts the wire in contiguous pieces of as many elements each, the first for the first rank."""
+
+    def partition(comm: MPI.Comm, ranks: int, kinds: Sequence[object], nodes: Sequence[np.ndarray]) -> object:
+        element = nodes[0].reshape(-1, 2).min(axis=1)
+        return to_ranks(element * ranks // elements)
+
+    return partition
+
+
 def line_mesh(stations: np.ndarray, comm: MPI.Comm) -> LineMesh:
     """Mesh the polygon through the stations with gmsh and distribute it over the ranks of `comm`.
 
@@ -86,7 +96,7 @@ def line_mesh(stations: np.ndarray, comm: MPI.Comm) -> LineMesh:
     try:
         if comm.rank == 0:
             gmsh_line(stations)
-        mesh = mesh_from_gmsh(gmsh.model, comm)[0]
+        mesh = mesh_from_gmsh(gmsh.model, comm, partitioner=_pieces(len(stations) - 1))[0]
     finally:
         gmsh.finalize()
     node = np.asarray(mesh.geometry.input_global_indices, dtype=np.int64)

@@ -70,6 +70,7 @@ class TangentMatrix:
         there = np.minimum(entries, layout.size - layout.size_local)
         self.mat.setPreallocationNNZ((here, there) if layout.comm.size > 1 else here)
         self.mat.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
+        self.mat.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)  # allocation on ranks forgets it
         self._places = self._contact_places(contributions)
         self.version += 1
 
