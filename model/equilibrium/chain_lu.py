@@ -41,7 +41,8 @@ class ChainLU:
     def __init__(self, mat: PETSc.Mat) -> None:
         self.mat, self.comm, self.negative_pivots = mat, mat.getComm().tompi4py(), 0
         self.start, self.stop = mat.getOwnershipRange()
-        indptr, indices = mat.getValuesCSR()[:2]
+        indptr, indices, _ = mat.getValuesCSR()
+        self._indptr, self._indices = indptr, indices
         rows = np.repeat(np.arange(self.start, self.stop), np.diff(indptr))
         coupled = np.unique(rows[indices < self.start])
         self.interface = np.concatenate(self.comm.allgather(coupled))
@@ -49,21 +50,19 @@ class ChainLU:
         self._numbers = np.union1d(rows[mine], indices[mine])  # of the rank's own matrix
         self._divide()
         if len(self.interface) > FEW and self._whole_is_cheaper():
-            self.interface, self._numbers = np.arange(mat.getSize()[0]), np.empty(0, dtype=np.int64)
+            self.interface, self._numbers = np.arange(mat.getSize()[0]), self._numbers[:0]
             self._divide()
         self._local, self._shared = PartialLU(self._local_plan), PartialLU(self._shared_plan)
         self._blocks = np.empty(self._block_starts[-1])
-        self._rows = np.flatnonzero((self.interface >= self.start) & (self.interface < self.stop))
         self._gathered = [self.comm.allgather(places) for places in (self._rows, self._at)]
 
     # ---- plan ------------------------------------------------------------------------------------------------------
 
     def _divide(self) -> None:
         """Plan the rank's own elimination and that of S."""
-        sets = [PETSc.IS().createGeneral(numbers.astype(PETSc.IntType), comm=PETSc.COMM_SELF)
-                for numbers in (self._numbers, self.interface)]  # fmt: skip
-        self._sets, self._parts = sets, self.mat.createSubMatrices(sets, sets)
-        indptr, indices, _ = self._parts[0].getValuesCSR()
+        self._set = PETSc.IS().createGeneral(self._numbers.astype(PETSc.IntType), comm=PETSc.COMM_SELF)
+        self._part = self.mat.createSubMatrices([self._set], [self._set])
+        indptr, indices, self._local_order = ascending_pattern(self._part[0])
         keep = np.isin(self._numbers, self.interface)
         rows = np.repeat(np.arange(len(keep)), np.diff(indptr))
         self._among_kept = np.flatnonzero(keep[rows] & keep[indices])
@@ -74,8 +73,15 @@ class ChainLU:
 
     def _plan_shared(self) -> Plan:
         """Plan for S, whose entries are those of A_ss and a dense block of each rank."""
-        size, (indptr, indices, _) = len(self.interface), self._parts[1].getValuesCSR()
-        entries = np.repeat(np.arange(size), np.diff(indptr)) * size + indices
+        size = len(self.interface)
+        self._rows = np.flatnonzero((self.interface >= self.start) & (self.interface < self.stop))
+        mine = self.interface[self._rows] - self.start
+        lengths = np.diff(self._indptr)[mine]
+        columns = np.concatenate([self._indices[:0], *(self._indices[self._indptr[i] : self._indptr[i + 1]] for i in mine)])
+        self._shared_entries = np.flatnonzero(np.isin(columns, self.interface))
+        entries = np.repeat(self._rows, lengths) * size + np.searchsorted(self.interface, columns)
+        gathered = self.comm.allgather(entries[self._shared_entries])
+        self._counts, entries = [len(each) for each in gathered], np.concatenate(gathered)
         at = np.searchsorted(self.interface, self._kept)  # of the rank's own block
         blocks = [(each[:, None] * size + each).ravel() for each in self.comm.allgather(at)]
         places = np.unique(np.concatenate([entries, np.arange(size) * (size + 1), *blocks]))
@@ -88,9 +94,8 @@ class ChainLU:
 
     def _whole_is_cheaper(self) -> bool:
         """Does the elimination of the whole matrix take fewer multiplications than the two plans? Collective."""
-        numbers = PETSc.IS().createStride(self.mat.getSize()[0], comm=PETSc.COMM_SELF)
-        (whole,) = self.mat.createSubMatrices([numbers], [numbers])
-        indptr, indices, _ = whole.getValuesCSR()
+        lengths = np.concatenate(self.comm.allgather(np.diff(self._indptr)))
+        indptr, indices = np.append(0, np.cumsum(lengths)), np.concatenate(self.comm.allgather(self._indices))
         plan = plan_elimination(indptr, indices, np.zeros(len(indptr) - 1, dtype=bool))
         local = self.comm.allreduce(self._local_plan.multiplications, op=MPI.MAX)
         return plan.multiplications < local + self._shared_plan.multiplications
@@ -99,20 +104,29 @@ class ChainLU:
 
     def factorise(self) -> bool:
         """Factorise the matrix as it is now; False on every rank if a pivot is zero or no number; collective."""
-        self._parts = self.mat.createSubMatrices(self._sets, self._sets, self._parts)
-        own = self._parts[0].getValuesCSR()[2]
+        self._part = self.mat.createSubMatrices([self._set], [self._set], self._part)
+        own = self._part[0].getValuesCSR()[2][self._local_order]
         own[self._among_kept] = 0.0  # what couples interface unknowns is in A_ss
         found = self._local.factorise(own)
         starts = self._block_starts
         self.comm.Allgatherv(self._local.schur.ravel(), (self._blocks, np.diff(starts)))
         self._values[:] = 0.0
-        self._values[self._shared_places] = self._parts[1].getValuesCSR()[2]
+        shared = np.empty(sum(self._counts))
+        self.comm.Allgatherv(self._interface_rows()[self._shared_entries], (shared, self._counts))
+        self._values[self._shared_places] = shared
         for rank, places in enumerate(self._block_places):
             self._values[places] += self._blocks[starts[rank] : starts[rank + 1]]
         found &= self._shared.factorise(self._values)
         failed, negative = self.comm.allreduce(np.array([not found, self._local.negative_pivots]))
         self.negative_pivots = int(negative) + self._shared.negative_pivots
         return failed == 0
+
+    def _interface_rows(self) -> np.ndarray:
+        """Entries of this rank's rows of interface unknowns."""
+        if len(self._rows) == self.stop - self.start:
+            return self.mat.getValuesCSR()[2]
+        rows = self.interface[self._rows].tolist()
+        return np.concatenate([np.empty(0), *(self.mat.getRow(row)[1] for row in rows)])
 
     def solve(self, right: np.ndarray, out: np.ndarray) -> None:
         """Write this rank's part of the solution into `out`, given that of the right side; collective."""
@@ -128,6 +142,17 @@ class ChainLU:
         self._local.backward(x[self._at], b)
         out[self._numbers[self._inner] - self.start] = b[self._inner]
         out[self.interface[self._rows] - self.start] = x[self._rows]
+
+
+def ascending_pattern(mat: PETSc.Mat) -> tuple[np.ndarray, np.ndarray, np.ndarray | slice]:
+    """CSR pattern of a matrix with ascending columns, and how to bring its entries, as PETSc gives them, in that order."""
+    indptr, indices, _ = mat.getValuesCSR()
+    rows = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
+    entries = rows * mat.getSize()[1] + indices
+    if (np.diff(entries) > 0).all():
+        return indptr, indices, slice(None)
+    order = np.argsort(entries)
+    return indptr, indices[order], order
 
 
 class ChainPC:

@@ -84,6 +84,8 @@ def _order(indptr: np.ndarray, indices: np.ndarray, kept: np.ndarray) -> np.ndar
     there it would carry the interface along.
     """
     n = len(indptr) - 1
+    if n == 0:
+        return np.empty(0, np.int64)
     edges = np.ones(len(indices)), indices, indptr
     graph = sparse.csr_array(edges, (n, n))
     if len(kept):
@@ -91,7 +93,7 @@ def _order(indptr: np.ndarray, indices: np.ndarray, kept: np.ndarray) -> np.ndar
         graph = sparse.csr_array(graph + sparse.coo_array((np.ones(len(pairs[0])), pairs), (n, n)))
     pattern = graph.indptr.astype(PETSc.IntType), graph.indices.astype(PETSc.IntType)
     matrix = PETSc.Mat().createAIJ((n, n), csr=(*pattern, graph.data), comm=PETSc.COMM_SELF)
-    order = matrix.getOrdering(ORDERING)[0].getIndices().astype(np.int64) if n else np.empty(0, np.int64)
+    order = matrix.getOrdering(ORDERING)[0].getIndices().astype(np.int64)
     matrix.destroy()
     return order
 

@@ -249,6 +249,12 @@ class Newton:
             for each in (self.snes, self._first, self.snes.getNPC() if self.snes.hasNPC() else None):
                 if each is not None:
                     each.ksp.reset()
+                    self._order(each.ksp.pc)
+
+    def _order(self, pc: PETSc.PC) -> None:
+        """Let PETSc's LU eliminate in an order that fits the contacts, unless the user has named one."""
+        if pc.getType() == PETSc.PC.Type.LU and not any("mat_ordering_type" in key for key in self.method.of_the_user):
+            pc.setFactorOrdering(self.matrix.ordering)
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Before a line search of type `basic`: scale the correction −y."""
