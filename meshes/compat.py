@@ -4,6 +4,7 @@ import inspect
 from collections.abc import Callable
 from typing import Any
 
+import dolfinx.graph
 import dolfinx.io
 import dolfinx.mesh
 import numpy as np
@@ -33,6 +34,13 @@ def mesh_from_gmsh(
 def unghosted() -> Callable:
     """Partitioner of a mesh whose ranks share no cells."""
     return dolfinx.mesh.create_cell_partitioner(dolfinx.mesh.GhostMode.none, *_LINKS)
+
+
+def to_ranks(ranks: np.ndarray) -> Any:
+    """What a partitioner gives back: the rank of each cell, shape (cells,); 0.10 renamed and wrapped it."""
+    make = getattr(dolfinx.graph, "adjacencylist", None) or dolfinx.graph.adjacency_list
+    found = make(ranks.astype(np.int32)[:, None])
+    return getattr(found, "_cpp_object", found)
 
 
 def geometry_dofs(mesh: dolfinx.mesh.Mesh) -> np.ndarray:

@@ -1,5 +1,6 @@
 """The line mesh of a rod: straight elements through given stations, distributed by DOLFINx."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import basix.ufl
@@ -7,7 +8,7 @@ import numpy as np
 from dolfinx import mesh as dmesh
 from mpi4py import MPI
 
-from coilset.meshes.compat import geometry_dofs
+from coilset.meshes.compat import geometry_dofs, to_ranks
 
 
 @dataclass
@@ -46,6 +47,16 @@ class LineMesh:
         return np.concatenate([part[1] for part in parts])[order]
 
 
+def _pieces(elements: int) -> Callable[..., object]:
+    """Partitioner that cuts the wire in contiguous pieces of as many elements each, the first for the first rank."""
+
+    def partition(comm: MPI.Comm, ranks: int, kinds: Sequence[object], nodes: Sequence[np.ndarray]) -> object:
+        element = nodes[0].reshape(-1, 2).min(axis=1)
+        return to_ranks(element * ranks // elements)
+
+    return partition
+
+
 def line_mesh(stations: np.ndarray, comm: MPI.Comm) -> LineMesh:
     """Distribute the polygon through the stations over the ranks of `comm`.
 
@@ -62,7 +73,13 @@ def line_mesh(stations: np.ndarray, comm: MPI.Comm) -> LineMesh:
     first = np.arange(len(stations) - 1 if comm.rank == 0 else 0, dtype=np.int64)
     nodes = stations if comm.rank == 0 else stations[:0]
     element = basix.ufl.element("Lagrange", "interval", 1, shape=(3,))
-    mesh = dmesh.create_mesh(comm=comm, cells=np.stack([first, first + 1], axis=1), x=nodes, e=element)
+    mesh = dmesh.create_mesh(
+        comm=comm,
+        cells=np.stack([first, first + 1], axis=1),
+        x=nodes,
+        e=element,
+        partitioner=_pieces(len(stations) - 1),
+    )
     node = np.asarray(mesh.geometry.input_global_indices, dtype=np.int64)
     elements = node[geometry_dofs(mesh)].min(axis=1)
     return LineMesh(mesh, stations, node, elements, mesh.topology.index_map(1).size_local)

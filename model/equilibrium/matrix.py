@@ -15,6 +15,13 @@ from coilset.model.contact.base import Contribution
 from coilset.model.equilibrium.layout import Layout, LineLayout
 
 
+# Contacts lead out of the band of a line. Up to SMALL unknowns the fill of the natural order costs less than to look for
+# a better one; beyond, minimum degree: 2,560 elements in 2.5 windings take 17 ms a factorisation where the band takes
+# 2.8 s, and 25 ms where it takes 54 ms in 160 windings.
+SMALL = 1500
+NATURAL, MINIMUM_DEGREE = "natural", "qmd"
+
+
 class TangentMatrix:
     """A matrix of the system.
 
@@ -33,6 +40,11 @@ class TangentMatrix:
         self._places = np.empty(0, dtype=np.int64)
         if self._entries is not None:
             self._make_room([])
+
+    @property
+    def ordering(self) -> str:
+        """PETSc's name of the order in which its LU should eliminate, on one rank."""
+        return MINIMUM_DEGREE if len(self._places) and self.layout.size > SMALL else NATURAL
 
     def clear(self, contributions: Sequence[Contribution], exactly: bool) -> None:
         """Zero the matrix, with room for the contacts that are closed; `exactly` for these and no others."""
@@ -68,6 +80,7 @@ class TangentMatrix:
         there = np.minimum(entries, layout.size - layout.size_local)
         self.mat.setPreallocationNNZ((here, there) if layout.comm.size > 1 else here)
         self.mat.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
+        self.mat.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)  # allocation on ranks forgets it
         self._places = self._contact_places(contributions)
         self.version += 1
 

@@ -15,6 +15,7 @@ from typing import Any, Literal
 from coilset.meshes.errors import InputError
 
 DIRECT = {"ksp_type": "preonly", "pc_type": "lu"}
+ON_RANKS = "coilset.model.equilibrium.chain_lu.ChainPC"
 RENEWAL = 10
 # one Newton step; PETSc's Broyden and Anderson take no matrix of their own, but such a step as preconditioner
 ONE_STEP = {
@@ -139,7 +140,7 @@ def check_method(method: str) -> None:
 
 
 def rod_method(name: str, ranks: int, extra: Mapping[str, Any] | None = None, arc: float | None = None) -> Method:
-    """A method for rods; MUMPS factorises where there is more than one rank.
+    """A method for rods; ChainPC factorises where there is more than one rank.
 
     Args:
         name: a key of METHODS.
@@ -155,7 +156,7 @@ def rod_method(name: str, ranks: int, extra: Mapping[str, Any] | None = None, ar
     chosen = {"snes_stol": 0.0} | METHODS[name]
     prefix = "npc_" if "npc_pc_type" in chosen else ""
     if ranks > 1:
-        chosen[f"{prefix}pc_factor_mat_solver_type"] = "mumps"
+        chosen |= {f"{prefix}pc_type": "python", f"{prefix}pc_python_type": ON_RANKS}
     else:  # DOLFINx numbers a line along itself: the matrix is banded, and its factors have 1.2 times its entries
         chosen |= {f"{prefix}pc_factor_mat_ordering_type": "natural", f"{prefix}pc_factor_fill": 1.3}
     if name == "arc-length" and arc is not None:

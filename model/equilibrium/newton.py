@@ -219,10 +219,12 @@ class Newton:
 
     def negative_pivots(self) -> int | None:
         """Number of negative pivots of the last factors L U; None where PETSc does not show them or they are old."""
-        if self.system.comm.size > 1 or not self.method.searches:
+        pc = self.snes.getKSP().getPC()
+        if not self.method.searches or pc.getType() not in (PETSc.PC.Type.LU, PETSc.PC.Type.PYTHON):
             return None
-        factors = self.snes.getKSP().getPC().getFactorMatrix()
-        return int(np.count_nonzero(factors.getDiagonal().getArray(readonly=True) < 0.0))
+        if pc.getType() == PETSc.PC.Type.PYTHON:
+            return pc.getPythonContext().factors.negative_pivots
+        return int(np.count_nonzero(pc.getFactorMatrix().getDiagonal().getArray(readonly=True) < 0.0))
 
     def _set_arc_load(self) -> None:
         """What the step adds to loads and prescribed values: minus the residual at its start."""
@@ -247,6 +249,12 @@ class Newton:
             for each in (self.snes, self._first, self.snes.getNPC() if self.snes.hasNPC() else None):
                 if each is not None:
                     each.ksp.reset()
+                    self._order(each.ksp.pc)
+
+    def _order(self, pc: PETSc.PC) -> None:
+        """Let PETSc's LU eliminate in an order that fits the contacts, unless the user has named one."""
+        if pc.getType() == PETSc.PC.Type.LU and not any("mat_ordering_type" in key for key in self.method.of_the_user):
+            pc.setFactorOrdering(self.matrix.ordering)
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Before a line search of type `basic`: scale the correction −y."""

@@ -1,9 +1,9 @@
 """Is an equilibrium stable? The sign of the tangent and its weakest mode; `branch_switching` leaves what is unstable.
 
 A state of equilibrium is stable where the symmetric part of the tangent of the free unknowns is positive definite. By
-Sylvester's law it has as many negative eigenvalues as its factors L D Lᵀ have negative pivots. On one rank Newton's own
-factors L U show the signs of the pivots at the last iterate for nothing; where one of them is negative, on more ranks,
-and with methods that keep a matrix, the symmetric part is factorised at the state itself.
+Sylvester's law it has as many negative eigenvalues as its factors L D Lᵀ have negative pivots. Newton's own factors L U
+show the signs of the pivots at the last iterate for nothing; where one of them is negative, and with methods that keep a
+matrix, the symmetric part is factorised at the state itself.
 """
 
 import math
@@ -13,8 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from petsc4py import PETSc
 
+from coilset.model.equilibrium.chain_lu import ChainPC
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.matrix import NATURAL
 from coilset.model.equilibrium.newton import Newton
 
 BLOCK = 4  # vectors of the inverse iteration: a double eigenvalue and its neighbours
@@ -51,7 +53,7 @@ class Stability:
         """Number of negative eigenvalues of the symmetric part of the tangent at the last evaluation; collective."""
         if self.newton.negative_pivots() == 0:
             return 0
-        return self._factors(load).getFactorMatrix().getInertia()[0]
+        return negative_pivots(self._factors(load))
 
     def weakest(self, load: Load) -> Weakest:
         """The weakest mode at the last evaluation; collective."""
@@ -67,7 +69,7 @@ class Stability:
             values, block = _rayleigh_ritz(matrix, scale, block)
         mode = block[int(values.argmin())]
         mode.scale(1.0 / self.greatest_displacement(mode))
-        return Weakest(factors.getFactorMatrix().getInertia()[0], float(values.min()), mode)
+        return Weakest(negative_pivots(factors), float(values.min()), mode)
 
     # ---- matrix ----------------------------------------------------------------------------------------------------
 
@@ -85,14 +87,12 @@ class Stability:
         matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)
         factors = PETSc.PC().create(self.system.comm)
         factors.setOperators(matrix)
-        factors.setType(PETSc.PC.Type.CHOLESKY)
-        if self.system.comm.size > 1:
-            factors.setFactorSolverType("mumps")
-            factors.setFactorSetUpSolverType()
-            factors.getFactorMatrix().setMumpsIcntl(13, 1)  # the root's pivots are counted, too
-            factors.getFactorMatrix().setMumpsIcntl(24, 1)  # PETSc asks for it before it tells the inertia
+        if self.system.comm.size > 1 or tangent.ordering != NATURAL:
+            factors.setType(PETSc.PC.Type.PYTHON)
+            factors.setPythonContext(ChainPC())
         else:
-            factors.setFactorOrdering("natural")
+            factors.setType(PETSc.PC.Type.CHOLESKY)
+            factors.setFactorOrdering(NATURAL)
         factors.setUp()
         return factors
 
@@ -119,6 +119,13 @@ class Stability:
         n = len(self.layout.station_dofs)
         natural = self.layout.to_order(mode.getArray(readonly=True))[: 6 * n].reshape(n, 6)
         return float(np.linalg.norm(natural[:, :3], axis=1).max())
+
+
+def negative_pivots(factors: PETSc.PC) -> int:
+    """Number of negative pivots of a symmetric matrix's factors."""
+    if factors.getType() == PETSc.PC.Type.PYTHON:
+        return factors.getPythonContext().factors.negative_pivots
+    return factors.getFactorMatrix().getInertia()[0]
 
 
 def _rayleigh_ritz(matrix: PETSc.Mat, scale: PETSc.Vec, block: list[PETSc.Vec]) -> tuple[np.ndarray, list[PETSc.Vec]]:

@@ -12,7 +12,7 @@ from coilset.model.case import Case
 from coilset.model.equilibrium.branch_switching import Snap
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.settings import StepControl
-from coilset.model.equilibrium.stability import vanishing
+from coilset.model.equilibrium.stability import negative_pivots, vanishing
 from coilset.model.results.buckling import axis_offset, buckling, critical_travel
 from coilset.model.results.record import Step
 from coilset.model.results.summary import summarise
@@ -48,7 +48,7 @@ def test_negative_pivots_are_negative_eigenvalues(travel):
     analysis.run()
     expected = int((np.linalg.eigvalsh(dense(analysis)) < 0.0).sum())
     assert (expected > 0) == (travel > HARINGX)
-    assert analysis.stability._factors(analysis.newton.load).getFactorMatrix().getInertia()[0] == expected
+    assert negative_pivots(analysis.stability._factors(analysis.newton.load)) == expected
 
 
 def test_few_steps_end_on_the_stable_branch():
@@ -128,7 +128,7 @@ def test_ranks_count_and_weigh_alike():
         analysis = pressed(30.0, 2, comm)
         analysis.run()
         load = analysis.newton.load
-        negative = analysis.stability._factors(load).getFactorMatrix().getInertia()[0]
+        negative = negative_pivots(analysis.stability._factors(load))
         found.append((negative, analysis.stability.weakest(load).value))
     assert found[0][0] == found[1][0] == 0
     assert found[0][1] == pytest.approx(found[1][1], rel=1e-6)

@@ -1,0 +1,355 @@
+"""The plan of a sparse LU that stops before some unknowns: which fronts there are, and what goes into which.
+
+Unknowns with the same neighbours form a *group*, as those of a node. A *front* is a dense matrix of the k unknowns
+that it eliminates, and of the m that these are coupled with by then. What it leaves of the latter, its update, m × m,
+is added to the front that eliminates the first of them. Fronts follow each other so that updates wait on a stack.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from petsc4py import PETSc
+from scipy import sparse
+
+ORDERING = "qmd"  # PETSc's quotient minimum degree; along a chain it finds an order without fill
+# Share of zeros that a front may have for the sake of being large: small ones cost more to move than to eliminate.
+ZEROS = 0.15
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How to eliminate the unknowns of every matrix with one pattern.
+
+    Attributes:
+        order: unknown at each place of the elimination, shape (n,); the kept ones come last.
+        kept: number of these.
+        first: place of each front's first pivot, and n, shape (fronts + 1,). The last front holds the kept unknowns.
+        rest_start, rest: places that each front is coupled with beyond its pivots, in ranges.
+        into: row in the next front of each of `rest`.
+        child_start, child: fronts whose updates each front takes, in ranges.
+        entry_start, entry, position: entries of the matrix that each front takes, in ranges, and where they go in it.
+        stack: numbers in the updates that wait at one time, at most.
+        multiplications: of a factorisation.
+    """
+
+    order: np.ndarray
+    kept: int
+    first: np.ndarray
+    rest_start: np.ndarray
+    rest: np.ndarray
+    into: np.ndarray
+    child_start: np.ndarray
+    child: np.ndarray
+    entry_start: np.ndarray
+    entry: np.ndarray
+    position: np.ndarray
+    stack: int
+    multiplications: float
+
+
+def plan_elimination(indptr: np.ndarray, indices: np.ndarray, keep: np.ndarray) -> Plan:
+    """Plan for a pattern.
+
+    Args:
+        indptr, indices: the pattern, CSR with ascending columns and a full diagonal.
+        keep: which unknowns are kept, shape (n,), bool.
+
+    Raises:
+        ValueError: if the pattern is not symmetric.
+    """
+    mirror = mirrored_entries(indptr, indices)
+    if not len(mirror) and len(indices):
+        raise ValueError("the pattern of the matrix is not symmetric")
+    group = np.unique(fingerprints(indptr, indices, keep), return_inverse=True)[1].astype(np.int64)
+    size, members = np.bincount(group), np.argsort(group, kind="stable")
+    graph = group_graph(indptr, indices, group, members, size)
+    kept = np.zeros(len(size), dtype=bool)
+    kept[group[keep]] = True
+    order = _order(*graph, np.flatnonzero(kept))
+    sequence, eliminated = np.concatenate([order[~kept[order]], order[kept[order]]]), int((~kept).sum())
+    fronts = find_fronts(*graph, sequence, eliminated, size)
+    order, first, rest_start, rest, child_start, child, stack, multiplications = number_places(*fronts, size, members)
+    into, entry_start, entry, position = place_entries(
+        indptr, indices, mirror, order, first, rest_start, rest, child_start, child
+    )
+    return Plan(order, int(keep.sum()), first, rest_start, rest, into, child_start, child, entry_start, entry, position,
+                stack, multiplications)  # fmt: skip
+
+
+def _order(indptr: np.ndarray, indices: np.ndarray, kept: np.ndarray) -> np.ndarray:
+    """Order that leaves few entries, of the vertices of a graph, if those that are kept are moved to its end.
+
+    These are coupled with each other for that, so that a rank's elimination comes to its interface last: if it began
+    there it would carry the interface along.
+    """
+    n = len(indptr) - 1
+    if n == 0:
+        return np.empty(0, np.int64)
+    edges = np.ones(len(indices)), indices, indptr
+    graph = sparse.csr_array(edges, (n, n))
+    if len(kept):
+        pairs = np.repeat(kept, len(kept)), np.tile(kept, len(kept))
+        graph = sparse.csr_array(graph + sparse.coo_array((np.ones(len(pairs[0])), pairs), (n, n)))
+    pattern = graph.indptr.astype(PETSc.IntType), graph.indices.astype(PETSc.IntType)
+    matrix = PETSc.Mat().createAIJ((n, n), csr=(*pattern, graph.data), comm=PETSc.COMM_SELF)
+    order = matrix.getOrdering(ORDERING)[0].getIndices().astype(np.int64)
+    matrix.destroy()
+    return order
+
+
+@njit(cache=True)
+def mirrored_entries(indptr, indices):
+    """Entry (j, i) for each entry (i, j); nothing if one is missing."""
+    mirror, next_in_row = np.empty(len(indices), np.int64), indptr[:-1].astype(np.int64)
+    for i in range(len(indptr) - 1):
+        for e in range(indptr[i], indptr[i + 1]):
+            j = indices[e]
+            mirror[e] = next_in_row[j]
+            if next_in_row[j] >= indptr[j + 1] or indices[next_in_row[j]] != i:
+                return np.empty(0, np.int64)
+            next_in_row[j] += 1
+    return mirror
+
+
+@njit(cache=True)
+def fingerprints(indptr, indices, keep):
+    """A number for each row by the set of its columns, and by whether it is kept (Steele's SplitMix64, summed)."""
+    found = np.empty(len(indptr) - 1, np.uint64)
+    for i in range(len(found)):
+        total = np.uint64(keep[i])
+        for e in range(indptr[i], indptr[i + 1]):
+            z = np.uint64(indices[e] + 1) * np.uint64(0x9E3779B97F4A7C15)
+            z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+            z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+            total += z ^ (z >> np.uint64(31))
+        found[i] = total
+    return found
+
+
+@njit(cache=True)
+def group_graph(indptr, indices, group, members, size):
+    """Neighbours of each group, itself among them, CSR; the rows of a group are all alike."""
+    n = len(size)
+    out_ptr, out, seen, row = np.zeros(n + 1, np.int64), np.empty(len(indices), np.int64), np.full(n, -1), 0
+    for g in range(n):
+        out_ptr[g + 1] = out_ptr[g]
+        i = members[row]
+        for e in range(indptr[i], indptr[i + 1]):
+            h = group[indices[e]]
+            if seen[h] != g:
+                seen[h] = g
+                out[out_ptr[g + 1]] = h
+                out_ptr[g + 1] += 1
+        row += size[g]
+    return out_ptr, out[: out_ptr[n]].copy()
+
+
+@njit(cache=True)
+def find_fronts(indptr, indices, sequence, eliminated, size):
+    """Fronts by groups.
+
+    A group joins the front of one that is eliminated before it if they are coupled with the same groups then, or nearly
+    so: with at most the share ZEROS of zeros in the front's rows.
+
+    Args:
+        indptr, indices: neighbours of the groups.
+        sequence: groups in the order of their elimination, the kept ones last.
+        eliminated: number of groups that are not kept.
+        size: unknowns in each group.
+
+    Returns:
+        Groups of each front in ranges, with those that are kept in the last front; groups of each front's rest in
+        ranges; the front that takes its update.
+    """
+    n = len(sequence)
+    at, head, before = np.empty(n, np.int64), np.empty(eliminated, np.int64), np.full(eliminated, -1)
+    at[sequence] = np.arange(n)
+    start, beyond, count = np.zeros(eliminated + 1, np.int64), np.empty(4 * len(indices) + 16, np.int64), 0
+    first_child, sibling, weight = np.full(n, -1), np.full(eliminated, -1), np.zeros(eliminated, np.int64)
+    seen, absorbed = np.full(n, -1), np.zeros(eliminated, np.bool_)
+    pivots, zeros = np.zeros(eliminated, np.int64), np.zeros(eliminated, np.int64)
+    for j in range(eliminated):
+        seen[j] = j
+        need = indptr[sequence[j] + 1] - indptr[sequence[j]]
+        c = first_child[j]
+        while c >= 0:
+            need += start[c + 1] - start[c]
+            c = sibling[c]
+        if count + need > len(beyond):
+            grown = np.empty(2 * (count + need), np.int64)
+            grown[:count] = beyond[:count]
+            beyond = grown
+        for e in range(indptr[sequence[j]], indptr[sequence[j] + 1]):
+            k = at[indices[e]]
+            if k > j and seen[k] != j:
+                seen[k] = j
+                beyond[count] = k
+                count += 1
+        c = first_child[j]
+        while c >= 0:
+            for e in range(start[c], start[c + 1]):
+                k = beyond[e]
+                if seen[k] != j:
+                    seen[k] = j
+                    beyond[count] = k
+                    count += 1
+            c = sibling[c]
+        start[j + 1] = count
+        parent = n
+        for e in range(start[j], count):
+            weight[j] += size[sequence[beyond[e]]]
+            parent = min(parent, beyond[e])
+        pivots[j] = size[sequence[j]]
+        c, best, least = first_child[j], -1, 0
+        while c >= 0:
+            rows, added = pivots[c] + size[sequence[j]], pivots[c] * (size[sequence[j]] + weight[j] - weight[c])
+            if zeros[c] + added <= ZEROS * rows * (0.5 * rows + weight[j]) and (best < 0 or added < least):
+                best, least = c, added
+            c = sibling[c]
+        if best >= 0:
+            before[j], absorbed[best] = best, True
+            pivots[j], zeros[j] = pivots[j] + pivots[best], zeros[best] + least
+        if parent < n:
+            sibling[j], first_child[parent] = first_child[parent], j
+    # the fronts, after those whose updates they take
+    fronts = eliminated - np.sum(absorbed) + 1
+    own_start, own, rest_start = np.zeros(fronts + 1, np.int64), np.empty(n, np.int64), np.zeros(fronts + 1, np.int64)
+    total = 0
+    for j in range(eliminated):
+        if not absorbed[j]:
+            total += start[j + 1] - start[j]
+    rest, takes = np.empty(total, np.int64), np.full(fronts, -1)
+    stack, height, front_of = np.empty(n + 1, np.int64), 0, np.full(n, fronts - 1)
+    last = np.empty(fronts, np.int64)  # group of each front that is eliminated last
+    number = 0
+    for root in range(eliminated - 1, -1, -1):
+        if absorbed[root] or (
+            start[root + 1] > start[root] and np.min(beyond[start[root] : start[root + 1]]) < eliminated
+        ):
+            continue
+        stack[height] = root
+        height += 1
+    # depth first: a front is numbered when it is met the second time
+    met = np.zeros(eliminated, np.bool_)
+    while height:
+        j = stack[height - 1]
+        if not met[j]:
+            met[j] = True
+            g = j
+            while g >= 0:
+                c = first_child[g]
+                while c >= 0:
+                    if not absorbed[c]:
+                        stack[height] = c
+                        height += 1
+                    c = sibling[c]
+                g = before[g]
+            continue
+        height -= 1
+        g, length = j, 0
+        while g >= 0:
+            length += 1
+            front_of[g] = number
+            g = before[g]
+        own_start[number + 1] = own_start[number] + length
+        g, place = j, own_start[number + 1]
+        while g >= 0:
+            place -= 1
+            own[place] = sequence[g]
+            g = before[g]
+        size_of_rest = start[j + 1] - start[j]
+        rest_start[number + 1] = rest_start[number] + size_of_rest
+        rest[rest_start[number] : rest_start[number + 1]] = np.sort(beyond[start[j] : start[j + 1]])
+        last[number] = j
+        number += 1
+    own_start[fronts] = n
+    own[own_start[fronts - 1] :] = sequence[eliminated:]
+    rest_start[fronts] = rest_start[fronts - 1]
+    for f in range(fronts - 1):
+        if rest_start[f + 1] > rest_start[f]:
+            takes[f] = front_of[rest[rest_start[f]]]
+    for e in range(len(rest)):
+        rest[e] = sequence[rest[e]]
+    return own_start, own, rest_start, rest, takes
+
+
+@njit(cache=True)
+def number_places(own_start, own, rest_start, rest, takes, size, members):
+    """From groups to unknowns: see Plan for what comes back."""
+    fronts, groups = len(own_start) - 1, len(size)
+    begin = np.zeros(groups + 1, np.int64)
+    begin[1:] = np.cumsum(size)
+    order, place, first = np.empty(len(members), np.int64), np.empty(groups, np.int64), np.zeros(fronts + 1, np.int64)
+    count = 0
+    for f in range(fronts):
+        first[f] = count
+        for e in range(own_start[f], own_start[f + 1]):
+            g = own[e]
+            place[g] = count
+            order[count : count + size[g]] = members[begin[g] : begin[g + 1]]
+            count += size[g]
+    first[fronts] = count
+    out_start, total = np.zeros(fronts + 1, np.int64), 0
+    for e in range(len(rest)):
+        total += size[rest[e]]
+    out, total = np.empty(total, np.int64), 0
+    child_start = np.zeros(fronts + 1, np.int64)
+    multiplications = 0.0
+    for f in range(fronts):
+        for e in range(rest_start[f], rest_start[f + 1]):
+            g = rest[e]
+            for k in range(size[g]):
+                out[total] = place[g] + k
+                total += 1
+        out_start[f + 1] = total
+        if takes[f] >= 0:
+            child_start[takes[f] + 1] += 1
+        if f < fronts - 1:
+            k, m = float(first[f + 1] - first[f]), float(out_start[f + 1] - out_start[f])
+            multiplications += k**3 / 3.0 + k * k * m + k * m * m
+    child_start = np.cumsum(child_start)
+    child, filled = np.empty(child_start[fronts], np.int64), child_start.copy()
+    top = highest = 0
+    for f in range(fronts):
+        for e in range(child_start[f], child_start[f + 1]):
+            top -= (out_start[child[e] + 1] - out_start[child[e]]) ** 2
+        if takes[f] >= 0:
+            child[filled[takes[f]]] = f
+            filled[takes[f]] += 1
+            top += (out_start[f + 1] - out_start[f]) ** 2
+            highest = max(highest, top)
+    return order, first, out_start, out, child_start, child, highest, multiplications
+
+
+@njit(cache=True)
+def place_entries(indptr, indices, mirror, order, first, rest_start, rest, child_start, child):
+    """Where the updates and the matrix's entries go: `into`, `entry_start`, `entry`, `position` of Plan."""
+    n, fronts = len(order), len(first) - 1
+    place, row = np.empty(n, np.int64), np.zeros(n, np.int64)
+    for p in range(n):
+        place[order[p]] = p
+    into, entry_start = np.zeros(len(rest), np.int32), np.zeros(fronts + 1, np.int64)
+    entry, position, count = np.empty(len(indices), np.int32), np.empty(len(indices), np.int32), 0
+    for f in range(fronts):
+        k, m = first[f + 1] - first[f], rest_start[f + 1] - rest_start[f]
+        w = k + m
+        for p in range(k):
+            row[first[f] + p] = p
+        for p in range(m):
+            row[rest[rest_start[f] + p]] = k + p
+        for c in child[child_start[f] : child_start[f + 1]]:
+            for e in range(rest_start[c], rest_start[c + 1]):
+                into[e] = row[rest[e]]
+        for p in range(first[f], first[f + 1]):
+            i = order[p]
+            for e in range(indptr[i], indptr[i + 1]):
+                q = place[indices[e]]
+                if q >= first[f]:
+                    entry[count], position[count] = e, row[p] * w + row[q]
+                    count += 1
+                    if q >= first[f + 1]:
+                        entry[count], position[count] = mirror[e], row[q] * w + row[p]
+                        count += 1
+        entry_start[f + 1] = count
+    return into, entry_start, entry, position

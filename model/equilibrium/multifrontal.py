@@ -1,0 +1,165 @@
+"""A sparse LU that can stop before some unknowns.
+
+With the unknowns i that are eliminated and the unknowns s that are kept it finds the factors of A_ii and
+
+    S = A_ss − A_si A_ii⁻¹ A_is.
+
+PETSc's own LU eliminates all or nothing; S would then cost one solve for every kept unknown. Pivots are not exchanged,
+as in PETSc's. Those of a symmetric matrix have the signs of its eigenvalues (Sylvester), and the negative ones of A_ii
+and of S add up to those of A (Haynsworth).
+"""
+
+import numpy as np
+from numba import njit
+
+from coilset.model.equilibrium.elimination import Plan
+
+
+class PartialLU:
+    """Factors of matrices with one pattern.
+
+    Args:
+        plan: Plan.
+
+    Attributes:
+        schur: S, shape (kept, kept), in the order of the last places of the plan.
+        negative_pivots: of A_ii.
+    """
+
+    def __init__(self, plan: Plan) -> None:
+        self.plan, self.negative_pivots = plan, 0
+        self.schur = np.zeros((plan.kept, plan.kept))
+        k, m = np.diff(plan.first)[:-1], np.diff(plan.rest_start)[:-1]
+        self._factors = np.empty(int((k * (k + 2 * m)).sum()))
+        self._work = np.empty(int(((k + m) ** 2).max(initial=0)))
+        self._stack = np.empty(plan.stack)
+        self._places = np.empty(len(plan.order))
+
+    def factorise(self, values: np.ndarray) -> bool:
+        """Eliminate; False if a pivot is zero or no number.
+
+        Args:
+            values: entries of the matrix in the order of the pattern.
+        """
+        p = self.plan
+        self.negative_pivots = eliminate(
+            p.first, p.rest_start, p.into, p.child_start, p.child, p.entry_start, p.entry, p.position, values,
+            self._work, self._stack, self._factors, self.schur,
+        )  # fmt: skip
+        return self.negative_pivots >= 0
+
+    def forward(self, right: np.ndarray) -> np.ndarray:
+        """b_s − A_si A_ii⁻¹ b_i, the right side of S's equations; the rest of it is kept for `backward`."""
+        np.take(right, self.plan.order, out=self._places)
+        go_forward(self.plan.first, self.plan.rest_start, self.plan.rest, self._factors, self._places)
+        return self._places[len(self._places) - self.plan.kept :].copy()
+
+    def backward(self, kept: np.ndarray, out: np.ndarray) -> None:
+        """Write the solution into `out`, given that of the kept unknowns."""
+        self._places[len(self._places) - len(kept) :] = kept
+        go_backward(self.plan.first, self.plan.rest_start, self.plan.rest, self._factors, self._places)
+        out[self.plan.order] = self._places
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def eliminate(
+    first, rest_start, into, child_start, child, entry_start, entry, position, values, work, stack, factors, schur
+):  # fmt: skip
+    """Factors of all fronts, each k rows of U over m rows of L; number of negative pivots, −1 where one is no pivot."""
+    fronts, top, written, negative = len(first) - 1, 0, 0, 0
+    for f in range(fronts):
+        k, m = first[f + 1] - first[f], rest_start[f + 1] - rest_start[f]
+        w, last = k + m, f == fronts - 1
+        F = schur.reshape(schur.size) if last else work[: w * w]
+        F[:] = 0.0
+        for e in range(entry_start[f], entry_start[f + 1]):
+            F[position[e]] = values[entry[e]]
+        for at in range(child_start[f + 1] - 1, child_start[f] - 1, -1):
+            c = child[at]
+            size = rest_start[c + 1] - rest_start[c]
+            top -= size * size
+            rows = into[rest_start[c] : rest_start[c + 1]]
+            for i in range(size):
+                for j in range(size):
+                    F[rows[i] * w + rows[j]] += stack[top + i * size + j]
+        if last:
+            break
+        block = F.reshape((w, w))
+        found = eliminate_pivots(block, k)
+        if found < 0:
+            return -1
+        negative += found
+        factors[written : written + k * w] = F[: k * w]
+        written += k * w
+        for i in range(k, w):
+            factors[written : written + k] = block[i, :k]
+            written += k
+        for i in range(k, w):
+            stack[top : top + m] = block[i, k:]
+            top += m
+    return negative
+
+
+@njit(cache=True, error_model="numpy", fastmath={"contract"})
+def eliminate_pivots(F, k):
+    """Eliminate the first k unknowns of a front, row after row; number of negative pivots, −1 where one is no pivot."""
+    w, negative = len(F), 0
+    for i in range(w):
+        row, p, stop = F[i], 0, min(i, k)
+        while p + 1 < stop:  # two pivot rows at a time, as each number of the row is read and written once then
+            one, two = F[p], F[p + 1]
+            a = row[p] / one[p]
+            b = (row[p + 1] - a * one[p + 1]) / two[p + 1]
+            row[p], row[p + 1] = a, b
+            for j in range(p + 2, w):
+                row[j] -= a * one[j] + b * two[j]
+            p += 2
+        if p < stop:
+            one = F[p]
+            a = row[p] / one[p]
+            row[p] = a
+            for j in range(p + 1, w):
+                row[j] -= a * one[j]
+        if i < k:
+            if not abs(row[i]) > 0.0 or not abs(row[i]) < np.inf:
+                return -1
+            negative += row[i] < 0.0
+    return negative
+
+
+@njit(cache=True, error_model="numpy")
+def go_forward(first, rest_start, rest, factors, x):
+    """L⁻¹ b of the eliminated places, and what it leaves of the others, in place."""
+    at = 0
+    for f in range(len(first) - 2):
+        begin, k, m = first[f], first[f + 1] - first[f], rest_start[f + 1] - rest_start[f]
+        w = k + m
+        for i in range(1, k):
+            total = 0.0
+            for j in range(i):
+                total += factors[at + i * w + j] * x[begin + j]
+            x[begin + i] -= total
+        at += k * w
+        for i in range(m):
+            total = 0.0
+            for j in range(k):
+                total += factors[at + i * k + j] * x[begin + j]
+            x[rest[rest_start[f] + i]] -= total
+        at += m * k
+
+
+@njit(cache=True, error_model="numpy")
+def go_backward(first, rest_start, rest, factors, x):
+    """U⁻¹ of the eliminated places, where the others are known, in place."""
+    at = len(factors)
+    for f in range(len(first) - 3, -1, -1):
+        begin, k, m = first[f], first[f + 1] - first[f], rest_start[f + 1] - rest_start[f]
+        w = k + m
+        at -= k * (w + m)
+        for i in range(k - 1, -1, -1):
+            row, total = at + i * w, x[begin + i]
+            for j in range(m):
+                total -= factors[row + k + j] * x[rest[rest_start[f] + j]]
+            for j in range(i + 1, k):
+                total -= factors[row + j] * x[begin + j]
+            x[begin + i] = total / factors[row + i]
