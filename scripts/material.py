@@ -127,7 +127,7 @@ def _folder(out: str | None, name: str) -> Path:
 def _refuse(paths: Iterable[Path], force: bool) -> None:
     for path in paths:
         if path.exists() and not force:
-            raise InputError("is there already; give --force to replace it", "", path)
+            raise InputError("already exists; use --force to overwrite it", "", path)
 
 
 def _save(figure: "Figure", path: Path, force: bool, console: "Console") -> None:

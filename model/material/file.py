@@ -139,5 +139,5 @@ def read(path: str | Path) -> MaterialFile:
     Raises:
         InputError: if the file cannot be read or says something wrong.
     """
-    kind = "is no material file; it wants name, source, units, validity, ..."
+    kind = "is not a material file; it needs name, source, units, validity, ..."
     return check_entries(read_data(path, kind), MaterialFile, path)

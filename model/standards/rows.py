@@ -111,7 +111,7 @@ def _stresses(sheet: Sheet) -> Iterator[Row]:
     yield Row("stress correction k", k, "", "(w + 0.5)/(w − 0.75)", TWO)
     yield Row("corrected stress τkc", k * τ, "MPa", "k τc", TWO)
     if wire is None:
-        yield Row("allowed at block", None, "MPa", why="the material is no wire of a standard; give --wire")
+        yield Row("allowed at block", None, "MPa", why="the material is not a standard wire; give --wire")
         return
     strength, share = wire.entry.strength, wire.entry.block_stress
     yield Row("least strength Rm", wire.strength(s.d), "MPa", wire.name, SHORT[strength.sure])
