@@ -28,7 +28,7 @@ def test_printed_sheet_of_another_program():
     made = Sheet(PRINTED, DM.elastic(5.0), 1260.0, DM, (88.5, 67.5), dynamic=True)
     shown = rows(made)
     assert shown["spring index w"].value == pytest.approx(6.92)
-    assert shown["least strength Rm"].value == pytest.approx(1460, abs=5)
+    assert shown["minimum tensile strength Rm"].value == pytest.approx(1460, abs=5)
     assert shown["rate R"].value == pytest.approx(16.181, abs=5e-4)
     assert shown["force at 88.5 mm"].value == pytest.approx(280, abs=0.1)
     assert shown["force at 67.5 mm"].value == pytest.approx(620, abs=0.4)
