@@ -60,9 +60,9 @@ def section_mesh(
         InputError: values that make no mesh.
     """
     if not (np.isfinite(across) and across >= 1):
-        raise InputError(f"{across:g} cannot be; give 1 or more triangles across the section", "section.across")
+        raise InputError(f"{across:g} is not possible; give 1 or more triangles across the section", "section.across")
     if degree not in (2, 3):
-        raise InputError(f"{degree} cannot be; give 2 or 3", "section.degree")
+        raise InputError(f"{degree} is not possible; give 2 or 3", "section.degree")
     gmsh.initialize(["coilset", "-v", "1"], readConfigFiles=False, interruptible=False)
     try:
         gmsh.model.add("section")

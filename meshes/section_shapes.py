@@ -27,7 +27,7 @@ class Outline(Protocol):
 def _positive(**lengths: float) -> None:
     for name, value in lengths.items():
         if not (np.isfinite(value) and value > 0):
-            raise InputError(f"{value:g} mm cannot be; give a positive length", f"section.{name}")
+            raise InputError(f"{value:g} mm is not possible; give a positive length", f"section.{name}")
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class Trapezoid:
     def __post_init__(self) -> None:
         _positive(width=self.width, inside=self.inside, outside=self.outside)
         if not self.corner >= 0:
-            raise InputError(f"{self.corner:g} mm cannot be; give a radius from 0", "section.corner")
+            raise InputError(f"{self.corner:g} mm is not possible; give a radius from 0", "section.corner")
 
     @property
     def corners(self) -> np.ndarray:
@@ -117,7 +117,7 @@ class Curve:
 
     @classmethod
     def read(cls, path: str | Path, smooth: bool = False) -> "Curve":
-        """Read a CSV file with two columns ξ, η in mm; a line that is no pair of numbers may only be the first.
+        """Read a CSV file with two columns ξ, η in mm; a line that is not a pair of numbers may only be the first.
 
         Raises:
             InputError: if it cannot be read, with the line.
@@ -134,7 +134,7 @@ class Curve:
             except ValueError:
                 if number == rows[0][0]:
                     continue  # the columns' names
-                raise InputError(f"'{','.join(row)}' is no pair of numbers ξ, η in mm", f"line {number}",
+                raise InputError(f"'{','.join(row)}' is not a pair of numbers ξ, η in mm", f"line {number}",
                                  path) from None  # fmt: skip
             points.append((ξ, η))
         try:
@@ -215,10 +215,10 @@ def parse(text: str) -> Outline:
         except ValueError:
             lengths = []
         if not least <= len(lengths) <= most:
-            raise InputError(f"'{text}' is no section; give {FORMS}", "--section")
+            raise InputError(f"'{text}' is not a section; give {FORMS}", "--section")
         return make(*lengths)
     smooth = word == "smooth" and bool(rest)
     path = ":".join(rest) if smooth else text
     if not path.endswith(".csv"):
-        raise InputError(f"'{text}' is no section; give {FORMS}, or a file.csv of its outline", "--section")
+        raise InputError(f"'{text}' is not a section; give {FORMS}, or a file.csv of its outline", "--section")
     return Curve.read(path, smooth)

@@ -112,9 +112,9 @@ def straight_wire(
     """
     for name, value in (("diameter", diameter), ("length", length)):
         if not (np.isfinite(value) and value > 0):
-            raise InputError(f"{value} mm cannot be; give a positive length", name)
+            raise InputError(f"{value} mm is not possible; give a positive length", name)
     if layers < 1:
-        raise InputError(f"{layers} layers of elements cannot be; give at least 1", "layers")
+        raise InputError(f"{layers} layers of elements are not possible; give at least 1", "layers")
     if cell not in ("hexahedron", "tetrahedron"):
         raise InputError(f"'{cell}' is unknown; give hexahedron or tetrahedron", "cell")
     gmsh.initialize(["coilset", "-v", "1"], readConfigFiles=False, interruptible=False)
@@ -159,7 +159,7 @@ def coil_section(
     if not mean_diameter > wire_diameter:
         raise InputError(f"{mean_diameter} mm is not more than the wire's {wire_diameter} mm", "mean_diameter")
     if not degrees > 0:
-        raise InputError(f"{degrees}° cannot be; give a positive angle", "degrees")
+        raise InputError(f"{degrees}° is not possible; give a positive angle", "degrees")
     helix = Helix(mean_diameter, pitch, degrees)
     wire = straight_wire(wire_diameter, helix.length, layers, comm, grid, cell)
     wire.mesh.geometry.x[:] = helix.place(wire.straight)

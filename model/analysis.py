@@ -238,8 +238,8 @@ class Analysis:
                             or found.shape != values.shape or not np.isfinite(found).all()), None)  # fmt: skip
         problem = self.comm.bcast(problem)
         if problem:
-            raise InputError("the checkpoint's array is missing or not of this spring; give --force instead of "
-                             "--resume to begin anew", problem)  # fmt: skip
+            raise InputError("the checkpoint's array is missing or not of this spring; use --force instead of "
+                             "--resume to start again", problem)  # fmt: skip
 
     def stage(self, phase: AnyPhase) -> Stage:
         """A phase of the case as the load program takes it."""

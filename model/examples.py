@@ -57,13 +57,13 @@ def copy(name: str, folder: Path, replace: bool = False) -> list[Path]:
     """Copy an example, and what it needs, to the places below `folder` that it has below the examples.
 
     Raises:
-        InputError: if a file is there already and not to be replaced; nothing is copied then.
+        InputError: if a file already exists and is not to be replaced; nothing is copied then.
         CoilsetError: if one cannot be written.
     """
     targets = {EXAMPLES / file: folder / file for file in needs(name)}
     for target in targets.values():
         if target.exists() and not replace:
-            raise InputError("is there already; give --force to replace it", "", target)
+            raise InputError("already exists; use --force to overwrite it", "", target)
     for source, target in targets.items():
         make(target.parent)
         with whole(target) as partial:

@@ -48,7 +48,7 @@ def _lock(handler: logging.FileHandler, folder: Path) -> None:
     try:
         fcntl.flock(handler.stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
-        raise InputError("another run works in this folder; wait for it, or give another --out", "--out",
+        raise InputError("another run is using this folder; wait for it, or use another --out", "--out",
                          folder) from None  # fmt: skip
     except OSError:
         pass  # a file system without locks

@@ -22,10 +22,11 @@ from coilset.scripts.target import file_targets, folder_target
 if TYPE_CHECKING:  # commands load what they need
     from mpi4py import MPI
 
-HELP = """How far does a coil spring set, and what stress stays in it?
+HELP = """How far does a coil spring set, and what stress remains in it?
 
-It needs DOLFINx >= 0.9: without root from conda (environment.yml) or pip (wheels), as root from the packages of
-Debian 13 or Ubuntu 25.04, or in a private Debian 13 on older ones (scripts/coilset does both). See docs/install.md."""
+It needs DOLFINx >= 0.9: without root from conda (environment.yml) or pip (wheels); as root from the packages of
+Debian 13 or Ubuntu 25.04, or in a private Debian 13 on older releases (scripts/coilset installs both). See
+docs/install.md."""
 NO_ROOM = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT, errno.EROFS)
 TOGETHER = 10.0  # seconds in which all ranks meet an error that is all ranks' error
 LONGEST_MESSAGE = 400  # letters that are said of a wrong command line
@@ -73,15 +74,17 @@ def options(
 @app.command()
 def solve(
     case: str = typer.Argument(help="case file (YAML)"),
-    out: str = typer.Option(None, callback=folder_target, help="results folder; default results/NAME-OF-CASE"),
-    force: bool = typer.Option(False, "--force", help="replace results that are there"),
-    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
+    out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-CASE]"),
+    force: bool = typer.Option(False, "--force", help="overwrite existing results"),
+    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
     pictures: bool = typer.Option(True, help="draw the figures"),
-    resume: bool = typer.Option(False, "--resume", help="go on from the last converged step in the results folder"),
-    interactive: bool = typer.Option(False, "--interactive", help="ask after each step; Enter goes on, ? helps"),
-    method: str = typer.Option(None, help="iteration method; newton, modified-newton, bfgs, broyden, arc-length, ..."),
+    resume: bool = typer.Option(False, "--resume", help="continue from the last converged step in the results folder"),
+    interactive: bool = typer.Option(
+        False, "--interactive", help="pause after each step; Enter continues, ? shows help"
+    ),
+    method: str = typer.Option(None, help="iteration method: newton, modified-newton, bfgs, broyden, arc-length, ..."),
 ) -> None:
-    """Run a spring through its load program and write what it found."""
+    """Take a spring through its load program and write the results."""
     from coilset.scripts.drawing import Drawings
 
     announce_begin("solves", case, out)
@@ -98,14 +101,14 @@ def solve(
 @app.command(name="slice")
 def slice_(
     case: str = typer.Argument(help="case file (YAML) of a cylindrical spring"),
-    out: str = typer.Option(None, callback=folder_target, help="results folder; default results/NAME-OF-CASE-slice"),
-    force: bool = typer.Option(False, "--force", help="replace results that are there"),
-    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
+    out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-CASE-slice]"),
+    force: bool = typer.Option(False, "--force", help="overwrite existing results"),
+    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
     section: str = typer.Option(None, help="oval:4:5, rectangle:4:5:0.5, trapezoid:4:5:6:0.4, FILE.csv"),
-    across: float = typer.Option(None, help="triangles across the section; default 5.75"),
+    across: float = typer.Option(None, help="number of triangles across the section [default: 5.75]"),
     pictures: bool = typer.Option(True, help="draw the figure"),
 ) -> None:
-    """Press and release a cylindrical spring as a 3D body, by one section of its wire, and write what it found."""
+    """Solve a cylindrical spring as a 3D body, through a single section of its wire, and write the results."""
     from coilset.scripts.slice import slice_case
 
     slice_case(case, out, force, settings, section, across, pictures)
@@ -114,9 +117,11 @@ def slice_(
 @app.command()
 def mesh(
     case: str = typer.Argument(help="case file (YAML)"),
-    out: str = typer.Option(None, callback=folder_target, help="folder of the pictures; default results/NAME-OF-CASE"),
-    force: bool = typer.Option(False, "--force", help="replace files that are there"),
-    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
+    out: str = typer.Option(
+        None, callback=folder_target, help="folder for the pictures [default: results/NAME-OF-CASE]"
+    ),
+    force: bool = typer.Option(False, "--force", help="overwrite existing files"),
+    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
     write: list[str] = typer.Option(
         [], callback=file_targets, metavar="FILE", help="write the mesh: .msh, .vtu, .vtk, .inp, .xdmf, ..."
     ),
@@ -131,21 +136,21 @@ def mesh(
 @app.command()
 def sheet(
     case: str = typer.Argument(None, help="case file (YAML)"),
-    results: str = typer.Option(None, help="results folder of the case, to show what was found beside the formulas"),
-    wire: str = typer.Option(None, help='wire of a standard, such as "EN 10270-1 SH"; default: the case\'s material'),
-    length: list[float] = typer.Option([], help="working length, mm; give it twice for a cycle; default: the case's"),
-    grade: int = typer.Option(2, min=1, max=3, help="of EN 15800"),
-    surface: str = typer.Option("as coiled", help='"as coiled" or "shot peened", for the endurance'),
-    dynamic: bool = typer.Option(False, "--dynamic", help="the load alternates: larger gaps between the coils"),
+    results: str = typer.Option(None, help="results folder of the case, to compare with the formulas"),
+    wire: str = typer.Option(None, help='standard wire, such as "EN 10270-1 SH" [default: the material of the case]'),
+    length: list[float] = typer.Option([], help="working length, mm; twice for a load cycle [default: from the case]"),
+    grade: int = typer.Option(2, min=1, max=3, help="quality grade of EN 15800"),
+    surface: str = typer.Option("as coiled", help='"as coiled" or "shot peened", for the fatigue limits'),
+    dynamic: bool = typer.Option(False, "--dynamic", help="cyclic load: larger minimum gaps between the coils"),
     out: str = typer.Option(
-        None, callback=folder_target, help="folder of the Goodman diagram; default results/NAME-OF-CASE"
+        None, callback=folder_target, help="folder for the Goodman diagram [default: results/NAME-OF-CASE]"
     ),
-    force: bool = typer.Option(False, "--force", help="replace a figure that is there"),
-    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="replace any entry of the case file"),
-    wires: bool = typer.Option(False, "--wires", help="list the wires that are known"),
+    force: bool = typer.Option(False, "--force", help="overwrite an existing figure"),
+    settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
+    wires: bool = typer.Option(False, "--wires", help="list the standard wires"),
     pictures: bool = typer.Option(True, help="draw the Goodman diagram"),
 ) -> None:
-    """Print rate, stresses, lengths and tolerances of the standards, beside what a run found."""
+    """Print rate, stresses, lengths and tolerances by the standards, beside the results of a run."""
     from coilset.scripts import sheet as sheets
 
     if wires:
@@ -168,15 +173,15 @@ def report(
 @app.command()
 def sweep(
     sweep_file: str = typer.Argument(metavar="SWEEP", help="sweep file (YAML)"),
-    out: str = typer.Option(None, callback=folder_target, help="results folder; default results/NAME-OF-SWEEP"),
-    force: bool = typer.Option(False, "--force", help="throw away the cases that are there"),
-    resume: bool = typer.Option(False, "--resume", help="run only the cases that are missing"),
-    retry: bool = typer.Option(False, "--retry", help="like --resume, and run the cases that failed again"),
-    jobs: int = typer.Option(None, min=1, help="processes on this machine; default: one a core"),
-    ranks_per_case: int = typer.Option(1, min=1, help="under mpirun: ranks that share a case"),
+    out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-SWEEP]"),
+    force: bool = typer.Option(False, "--force", help="discard existing cases"),
+    resume: bool = typer.Option(False, "--resume", help="run only the missing cases"),
+    retry: bool = typer.Option(False, "--retry", help="like --resume, but also rerun failed cases"),
+    jobs: int = typer.Option(None, min=1, help="processes on this machine [default: one per core]"),
+    ranks_per_case: int = typer.Option(1, min=1, help="under mpirun: number of ranks that share a case"),
     pictures: bool = typer.Option(True, help="draw the figures"),
 ) -> None:
-    """Run a case many times with some of its entries varied."""
+    """Solve many variants of a case."""
     announce_begin("sweeps", sweep_file, out)
     announce_if_cold()
     from coilset.scripts.sweep import sweep as run_sweep
@@ -200,15 +205,15 @@ def design(
 
 @app.command()
 def verify(
-    names: list[str] = typer.Argument(None, metavar="[NAME]...", help="cases; all if none is named"),
+    names: list[str] = typer.Argument(None, metavar="[NAME]...", help="cases to run; all by default"),
     out: str = typer.Option(
-        "results/verify", callback=folder_target, help="folder of the records and figures; what is there is replaced"
+        "results/verify", callback=folder_target, help="folder for records and figures, overwritten"
     ),
-    fast: bool = typer.Option(False, "--fast", help="only cases that take seconds"),
+    fast: bool = typer.Option(False, "--fast", help="only the cases that take seconds"),
     show: bool = typer.Option(False, "--list", help="list the cases"),
-    page: str = typer.Option(None, "--page", help="also write the page of all records here, as docs/verification.md"),
+    page: str = typer.Option(None, "--page", help="also write a page of all records, such as docs/verification.md"),
 ) -> None:
-    """Compare with tables, closed solutions and finer models; exits 1 if a value is off."""
+    """Compare with tables, closed-form solutions and finer models; exit 1 on any deviation."""
     from coilset.scripts import verify as verification
 
     if show:
@@ -220,14 +225,12 @@ def verify(
 
 @app.command()
 def bench(
-    out: str = typer.Option(
-        "results/bench", callback=folder_target, help="folder of the record and the figure; what is there is replaced"
-    ),
-    full: bool = typer.Option(False, "--full", help="up to 400,000 elements: 10 GiB, a quarter of an hour"),
-    cold: bool = typer.Option(False, "--cold", help="also time the compilers, from nothing"),
-    against: str = typer.Option(None, metavar="CHECKOUT", help="time the commands of another checkout beside these"),
+    out: str = typer.Option("results/bench", callback=folder_target, help="folder for record and figure, overwritten"),
+    full: bool = typer.Option(False, "--full", help="up to 400,000 elements: 10 GiB, 15 minutes"),
+    cold: bool = typer.Option(False, "--cold", help="also time compilation from scratch"),
+    against: str = typer.Option(None, metavar="CHECKOUT", help="also time the commands of another checkout"),
 ) -> None:
-    """Measure time by stage, over elements and ranks, and cases per hour."""
+    """Measure run time by stage, number of elements and ranks, and cases per hour."""
     announce_if_cold()
     from coilset.scripts.bench import bench as run_benchmarks
 
@@ -245,11 +248,11 @@ def compile_() -> None:
 
 @app.command()
 def examples(
-    name: str = typer.Argument(None, help="example to copy; all are listed if none is named"),
+    name: str = typer.Argument(None, help="example to copy; without a name, list all"),
     out: str = typer.Option(".", callback=folder_target, help="folder to copy it to"),
-    force: bool = typer.Option(False, "--force", help="replace files that are there"),
+    force: bool = typer.Option(False, "--force", help="overwrite existing files"),
 ) -> None:
-    """List the examples, or copy one to start from."""
+    """List the examples, or copy one as a starting point."""
     from coilset.scripts import examples as shipped
 
     if name is None:
@@ -260,7 +263,7 @@ def examples(
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
 def test(context: typer.Context) -> None:
-    """Run the tests, in serial and under MPI: some ten minutes on two cores; arguments go to pytest as they are."""
+    """Run the tests, in serial and under MPI: about ten minutes on two cores. Arguments are passed to pytest."""
     from coilset.scripts.test import test as run_tests
 
     raise typer.Exit(run_tests(context.args))
@@ -268,7 +271,7 @@ def test(context: typer.Context) -> None:
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
 def python(context: typer.Context) -> None:
-    """Run a Python script, or Python itself, in the environment that the commands use."""
+    """Run a Python script, or Python itself, in the environment of the commands."""
     os.execv(sys.executable, [sys.executable, *context.args])
 
 

@@ -19,11 +19,11 @@ if TYPE_CHECKING:  # commands load what they need
     from coilset.model.material.law import Law
     from coilset.model.material.programs import History, Program
 
-app = typer.Typer(help="Draw a material, test it at one point, or fit it to tests.", no_args_is_help=True)
-MATERIAL = typer.Argument(help="name in the library, or the path of a material file")
+app = typer.Typer(help="Show a material, test it at one point, or fit it to test data.", no_args_is_help=True)
+MATERIAL = typer.Argument(help="name in the library, or path of a material file")
 DATA = typer.Argument(help="tests (CSV): columns eps11, gamma12, sigma11, tau12; of tension eps11, sigma11")
-OUT = typer.Option(None, callback=folder_target, help="results folder; default results/material/NAME")
-FORCE = typer.Option(False, "--force", help="replace files that are there")
+OUT = typer.Option(None, callback=folder_target, help="results folder [default: results/material/NAME]")
+FORCE = typer.Option(False, "--force", help="overwrite existing files")
 
 
 @app.command()
@@ -46,11 +46,11 @@ def run_program(
     material: str = MATERIAL,
     program: str = typer.Argument(help="program file (YAML): targets of strain and stress"),
     integrator: str = typer.Option("return_mapping", help="return_mapping, or heun as in the thesis"),
-    spin: bool = typer.Option(False, help="whether the rod's form has its spin terms (5.2.33)"),
+    spin: bool = typer.Option(False, help="include the spin terms of the rod's form (5.2.33)"),
     out: str = OUT,
     force: bool = FORCE,
 ) -> None:
-    """Drive one point through a program of strain, stress or both, and draw it."""
+    """Drive one material point through a program of strain and stress, and draw the result."""
     from rich.console import Console
 
     from coilset.model.material import figures, library, points, programs
@@ -79,18 +79,18 @@ def fit(
     data: list[str] = DATA,
     shear_modulus: float = typer.Option(..., "--G", min=0.0, help="shear modulus, N/mm²"),
     poisson: float = typer.Option(..., "--nu", min=-1.0, max=0.5, help="Poisson's ratio"),
-    temperature: float = typer.Option(293.15, min=0.0, help="of the tests, K"),
+    temperature: float = typer.Option(293.15, min=0.0, help="temperature of the tests, K"),
     saturation: bool | None = typer.Option(
         None,
         "--saturation/--no-saturation",
-        help="whether k² has its second branch, which the tests must reach; default: no for tension tests alone",
+        help="fit the second branch of k², which the tests must reach [default: not for tension tests alone]",
     ),
-    nominal: bool = typer.Option(False, help="whether tension tests give nominal strain and stress"),
+    nominal: bool = typer.Option(False, help="tension tests are nominal strain and stress"),
     name: str = typer.Option("fitted", help="name of the material"),
     out: str = OUT,
     force: bool = FORCE,
 ) -> None:
-    """Identify a material's constants: k² from tension tests; ζ and κ too with reversed torsion and tension-torsion."""
+    """Identify material constants: k² from tension tests, with reversed torsion and tension-torsion also ζ and κ."""
     import yaml
     from rich.console import Console
     from rich.table import Table
@@ -127,7 +127,7 @@ def _folder(out: str | None, name: str) -> Path:
 def _refuse(paths: Iterable[Path], force: bool) -> None:
     for path in paths:
         if path.exists() and not force:
-            raise InputError("is there already; give --force to replace it", "", path)
+            raise InputError("already exists; use --force to overwrite it", "", path)
 
 
 def _save(figure: "Figure", path: Path, force: bool, console: "Console") -> None:

@@ -80,7 +80,7 @@ def mesh(
 def _refuse_to_replace(paths: Iterable[Path], force: bool) -> None:
     for path in paths:
         if path.exists() and not force:
-            raise InputError("is there already; give --force to replace it", "", path)
+            raise InputError("already exists; use --force to overwrite it", "", path)
 
 
 def _table(data: SpringData, turns: np.ndarray) -> Table:

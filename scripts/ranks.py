@@ -34,7 +34,7 @@ def check(ranks: int, command: str) -> None:
             COILSET_MAX_RANKS allows more.
     """
     if ranks > 1 and command not in PARALLEL:
-        raise InputError(f"'{command}' works on one rank; leave -n out", "-n")
+        raise InputError(f"'{command}' works on one rank only; omit -n", "-n")
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     given = os.environ.get("COILSET_MAX_RANKS", "")
     most = int(given) if given.isdigit() else RANKS_A_CORE * cores

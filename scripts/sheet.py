@@ -49,7 +49,7 @@ def sheet(
     """Print the sheet of a spring and draw its Goodman diagram; see `coilset sheet --help`.
 
     Raises:
-        InputError: wrong input, a spring that is no cylinder, or a figure that is there already.
+        InputError: wrong input, a spring that is no cylinder, or a figure that already exists.
     """
     if MPI.COMM_WORLD.rank:
         return  # nothing here is worth dividing
@@ -66,7 +66,7 @@ def sheet(
         raise InputError(error.problem, error.place, error.file or case_file) from None
     diagram = _diagram(made) if pictures else None
     if diagram is not None and (folder / FIGURE).exists() and not force:
-        raise InputError("is there already; give --force to replace it", "", folder / FIGURE)
+        raise InputError("already exists; use --force to overwrite it", "", folder / FIGURE)
     for title, rows in sections(made):
         console.print(f"[bold]{title}[/]")
         for line in _lines(rows, run is not None):

@@ -50,7 +50,7 @@ def solve(
     """
     console = Console(quiet=comm.rank != 0, highlight=False)
     if interactive and comm.size > 1:
-        raise InputError("works on one rank; leave -n out", "--interactive")
+        raise InputError("works on one rank only; omit -n", "--interactive")
     case = read_case(case_file, settings)
     folder = results_folder(out, Path(case_file).stem)
     with contextlib.ExitStack() as stack:
@@ -113,7 +113,7 @@ def _solve(
     console.print(f"analysis {analysed:.2f} s, all {time.time() - STARTED:.2f} s")
     if failure is not None:
         if analysis.result.steps:
-            console.print("go on from the last step with --resume")
+            console.print("continue from the last step with --resume")
         raise failure
 
 

@@ -83,7 +83,7 @@ def _prepare(sweep_file: str, out: Path, force: bool, resume: bool) -> Plan:
     plan = Plan(sweep_file)
     journal = out / "journal.jsonl"
     if journal.exists() and not (force or resume):
-        raise InputError("holds a sweep; give --resume for what is missing, --force to replace it", "--out", out)
+        raise InputError("holds a sweep; use --resume to finish it, or --force to overwrite it", "--out", out)
     try:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:

@@ -33,7 +33,7 @@ def verify(names: Sequence[str] | None, out: str | Path, fast: bool, page_file: 
         InputError: for a name that is no case.
     """
     if MPI.COMM_WORLD.size > 1:
-        raise InputError("works on one rank; leave -n out", "verify")
+        raise InputError("works on one rank only; omit -n", "verify")
     cases = [registry.load(name) for name in names or registry.names()]
     if fast:
         cases = [case for case in cases if case.fast]

@@ -38,7 +38,7 @@ def load(name: str) -> Case:
     if name not in names():
         near = get_close_matches(name, names(), 1)
         hint = f"is {near[0]} meant?" if near else "coilset verify --list lists them"
-        raise InputError(f"'{shortened(name)}' is no case; {hint}", "verify")
+        raise InputError(f"'{shortened(name)}' is not a case; {hint}", "verify")
     module = importlib.import_module(f"{cases.__name__}.{name.replace('-', '_')}")
     title, _, text = (inspect.getdoc(module) or "").partition("\n")
     return Case(name, title, text.strip(), getattr(module, "FAST", False), module.run)

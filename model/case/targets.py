@@ -88,7 +88,7 @@ def _not_below(target: Target, free_length: float, lowest: float, place: str) ->
     travel, slack = free_length - lowest, SLACK * free_length
     if target.travel is not None and target.travel > travel + slack:
         end = "where it is at block; give block, or less" if lowest else "which is its free length; give less"
-        raise InputError(f"is {target.travel:g} mm, but the spring can be pressed by {travel:.6g} mm only, {end}",
+        raise InputError(f"is {target.travel:g} mm, but the spring can only be compressed by {travel:.6g} mm, {end}",
                          f"{place}.travel")  # fmt: skip
     if target.height is not None and target.height < lowest - slack:
         raise InputError(f"is {target.height:g} mm, below the block height of {lowest:.6g} mm; give block, or more",

@@ -136,7 +136,9 @@ def check_method(method: str) -> None:
     if method not in METHODS:
         near = get_close_matches(str(method), METHODS, 1)
         hint = f"; is {near[0]} meant?" if near else ""
-        raise InputError(f"'{method}' is no iteration method; there are {', '.join(METHODS)}{hint}", "solver.method")
+        raise InputError(
+            f"'{method}' is not an iteration method; choose from {', '.join(METHODS)}{hint}", "solver.method"
+        )
 
 
 def rod_method(name: str, ranks: int, extra: Mapping[str, Any] | None = None, arc: float | None = None) -> Method:
@@ -178,5 +180,5 @@ def solid_method(name: str, unknowns: int, extra: Mapping[str, Any] | None = Non
     if name == "auto":
         name = "direct" if unknowns <= DIRECT_LIMIT else "multigrid"
     if name not in SOLID_METHODS:
-        raise InputError(f"'{name}' is no solver of the solid; give auto or {', '.join(SOLID_METHODS)}", "solver")
+        raise InputError(f"'{name}' is not a solver of the solid; give auto or {', '.join(SOLID_METHODS)}", "solver")
     return Method(name, SOLID_METHODS[name] | dict(extra or {}), frozenset(extra or ()))

@@ -201,5 +201,5 @@ def read(path: str | Path) -> MaterialFile:
 @lru_cache(maxsize=16)  # cases of a sweep share their materials
 def _read(path: str, content: bytes) -> MaterialFile:
     """What a file with this content says."""
-    kind = "is no material file; it wants name, source, units, validity, ..."
+    kind = "is not a material file; it needs name, source, units, validity, ..."
     return check_entries(read_data(path, kind), MaterialFile, path)

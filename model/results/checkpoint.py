@@ -28,7 +28,7 @@ from coilset.model.warning import Warning
 # what must be the same to go on
 SPRING_ENTRIES = ("spring", "material", "temperature", "ends", "seats", "mesh", "contact")
 PREFIX = "state_"  # of the state's arrays
-ANEW = "give --force instead of --resume to begin anew"
+ANEW = "use --force instead of --resume to start again"
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ class Checkpoint:
     def require(self) -> None:
         """Raise InputError where there is nothing to go on from."""
         if not (self.folder / "state.npz").exists():
-            raise InputError("there is no checkpoint to go on from; run it without --resume", "", self.folder)
+            raise InputError("there is no checkpoint to continue from; run it without --resume", "", self.folder)
 
     # ---- resuming --------------------------------------------------------------------------------------------------
 
@@ -182,7 +182,7 @@ class Checkpoint:
                              self.folder)  # fmt: skip
         behind = about["position"]["stage"]
         if old["loading"][:behind] != new["loading"][:behind]:
-            raise InputError(f"its first {behind} phases are behind and must stay as they were", "loading", self.folder)
+            raise InputError(f"its first {behind} phases are finished and must not change", "loading", self.folder)
 
 
 def _arrays(path: Path) -> dict[str, np.ndarray]:

@@ -91,9 +91,9 @@ def prepare(folder: str | Path, force: bool) -> Path:
     folder = Path(folder)
     try:
         if (folder / "summary.json").exists() and not force:
-            raise InputError("holds results already; give --force to replace them, or another --out", "--out", folder)
+            raise InputError("already holds results; use --force to overwrite them, or another --out", "--out", folder)
         if (folder / "checkpoint" / "state.npz").exists() and not force:
-            raise InputError("holds an interrupted run; give --resume to go on with it, --force to begin anew, or "
+            raise InputError("holds an interrupted run; use --resume to continue it, --force to start again, or "
                              "another --out", "--out", folder)  # fmt: skip
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:

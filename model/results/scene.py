@@ -70,7 +70,7 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.nda
         snapshots: Snapshots from left to right.
         wire_radius: of the elements, shape (n,), mm.
     """
-    name = "greatest shear stress in the section, MPa"
+    name = "maximum shear stress in the section, MPa"
     radius = 0.5 * (np.append(wire_radius, wire_radius[-1]) + np.append(wire_radius[0], wire_radius))
     x = np.concatenate([shot.x for shot in snapshots])
     low, high = float(x[:, 2].min() - radius.max()), float(x[:, 2].max() + radius.max())

@@ -94,7 +94,7 @@ def force_centre(path: str | Path, setup: Setup, result: Result) -> None:
         name_styles(over, setup)
         over.axhline(radius, color="0.6", lw=0.8, ls="--", label="coil radius at the tip")
         over.set(xlabel="travel in mm", ylabel="distance of the force centre from the axis in mm",
-                 ylim=(0.0, REACH * radius), title=f"at {100 * FAINT:g} % of the greatest force or more")  # fmt: skip
+                 ylim=(0.0, REACH * radius), title=f"at {100 * FAINT:g} % of the maximum force or more")  # fmt: skip
         over.legend(fontsize=7, **OVER_LINES)
         for axes in (plan, over):
             axes.grid(lw=0.3)

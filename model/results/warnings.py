@@ -38,8 +38,8 @@ def accuracy_warning(error: float, asked: float, place: str) -> Warning | None:
     if error <= asked:
         return None
     message = (
-        f"the error of the steps is about {100 * error:.2g} %, more than the {100 * asked:.2g} % asked for; "
-        "smaller steps make it less"
+        f"the error due to the step size is about {100 * error:.2g} %, more than the {100 * asked:.2g} % requested; "
+        "take smaller steps"
     )
     return Warning("step error", place, message, error, asked)
 
@@ -47,8 +47,8 @@ def accuracy_warning(error: float, asked: float, place: str) -> Warning | None:
 def beyond_validity(greatest: float, limit: float, material: str, place: str) -> Warning:
     """Plastic work beyond that up to which a material's constants are valid, N/mm²; `place` is where it began."""
     message = (
-        f"the plastic work b* is up to {greatest:.4g} N/mm², and the constants of {material} are valid up to "
-        f"{limit:.4g} N/mm²; it is beyond since {place}"
+        f"the plastic work b* reaches {greatest:.4g} N/mm², but the constants of {material} are valid up to "
+        f"{limit:.4g} N/mm² only; exceeded since {place}"
     )
     return Warning("plastic work", place, message, greatest, limit, "N/mm²")
 
@@ -69,8 +69,8 @@ def _lift_off(setup: Setup, result: Result) -> Iterator[Warning]:
     if lifted:
         greatest, place = max(step.lift_off_mm for step in lifted), _place(lifted[0])
         message = (
-            f"the spring leaves a seat at {place}, by up to {greatest:.4g} mm: seats cannot pull, so it bears no force "
-            "there; soft springs at its tips hold it in place"
+            f"the spring lifts off a seat at {place}, by up to {greatest:.4g} mm: seats cannot pull, so they carry "
+            "no force there; weak springs at its tips hold it in place"
         )
         yield Warning("lift-off", place, message, greatest, 0.0, "mm")
 
@@ -80,8 +80,8 @@ def _slipped(setup: Setup, result: Result) -> Iterator[Warning]:
     if first is not None:
         least, place = min(_rise(step) for step in result.steps), _place(first)
         message = (
-            f"coils have slipped past each other since {place}: the rise from one to the next is {least:.2g} of what "
-            "it is where they lie on each other"
+            f"coils have slipped past each other since {place}: the rise from one to the next is {least:.2g} of "
+            "its value when they lie on each other"
         )
         yield Warning("coils slipped", place, message, least, SLIPPED)
 
@@ -112,7 +112,7 @@ def _penetration(setup: Setup, result: Result) -> Iterator[Warning]:
     deepest, limit = max(result.steps, key=lambda step: step.penetration_mm, default=None), setup.limits.penetration
     if deepest is not None and deepest.penetration_mm > limit:
         depth, place = deepest.penetration_mm, _place(deepest)
-        message = f"coils or seats lie {depth:.3g} mm in each other at {place}, more than {limit:.3g} mm"
+        message = f"coils or seats penetrate each other by {depth:.3g} mm at {place}, more than {limit:.3g} mm"
         yield Warning("penetration", place, message, depth, limit, "mm")
 
 
@@ -122,7 +122,7 @@ def _buckled(setup: Setup, result: Result) -> Iterator[Warning]:
         beside = f"at {limit:.4g} mm" if isfinite(limit) else "never"
         message = (
             f"the spring buckled at a travel of {found.travel_mm:.4g} mm and {found.force_N:.4g} N (EN 13906-1: "
-            f"{beside}); what follows is of the buckled shape"
+            f"{beside}); the results beyond are for the buckled shape"
         )
         place = f"travel {found.travel_mm:.4g} mm"
         yield Warning("buckled", place, message, found.travel_mm, limit if isfinite(limit) else None, "mm")
@@ -132,8 +132,8 @@ def _unstable(setup: Setup, result: Result) -> Iterator[Warning]:
     unstable = [step for step in result.steps if step.negative_pivots > 0]
     if unstable:
         message = (
-            f"{len(unstable)} steps are unstable equilibria, no stable one was found beside them: several branches "
-            "exist, smaller steps may find another"
+            f"{len(unstable)} steps ended in unstable equilibria with no stable one nearby: there are several "
+            "branches, and smaller steps may find another"
         )
         yield Warning("unstable", _place(unstable[0]), message, len(unstable), 0.0)
 
@@ -167,8 +167,8 @@ def _strength(setup: Setup, result: Result) -> Iterator[Warning]:
     greatest, shot = max(((_equivalent(shot), shot) for shot in result.snapshots), key=lambda pair: pair[0])
     if greatest > strength:
         message = (
-            f"the equivalent stress is {greatest:.4g} N/mm² at {shot.name}, above the wire's least strength Rm of "
-            f"{strength:.4g} N/mm²"
+            f"the equivalent stress is {greatest:.4g} N/mm² at {shot.name}, above the wire's minimum "
+            f"tensile strength Rm of {strength:.4g} N/mm²"
         )
         yield Warning("strength", shot.name, message, greatest, strength, "MPa")
 

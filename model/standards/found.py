@@ -71,7 +71,7 @@ def read(folder: str | Path) -> Found:
         heights = [summary["free_length_before_mm"], *(float(row["seat_height_mm"]) for row in rows)]
         forces = [0.0, *(float(row["force_N"]) for row in rows)]
     except (KeyError, TypeError, ValueError) as error:
-        raise InputError(f"is no result of coilset solve ({error})", "--results", folder) from None
+        raise InputError(f"is not a result of coilset solve ({error})", "--results", folder) from None
     residual, ring = _residual(folder / "points.nc")
     return Found(summary, np.array(heights), np.array(forces), residual, ring)
 

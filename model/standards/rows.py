@@ -107,14 +107,14 @@ def _stresses(sheet: Sheet) -> Iterator[Row]:
     s, wire = sheet.spring, sheet.wire
     k, τ = en13906.stress_correction(s.index), sheet.stress(s.solid)
     found = sheet.at_run("shear_max_MPa") if _was_at_block(sheet) else None
-    yield Row("stress τc", τ, "MPa", "8 D Fc/(π d³)", DERIVED, found, "greatest true shear stress at a section point")
+    yield Row("stress τc", τ, "MPa", "8 D Fc/(π d³)", DERIVED, found, "maximum true shear stress at a section point")
     yield Row("stress correction k", k, "", "(w + 0.5)/(w − 0.75)", TWO)
     yield Row("corrected stress τkc", k * τ, "MPa", "k τc", TWO)
     if wire is None:
-        yield Row("allowed at block", None, "MPa", why="the material is no wire of a standard; give --wire")
+        yield Row("allowed at block", None, "MPa", why="the material is not a standard wire; give --wire")
         return
     strength, share = wire.entry.strength, wire.entry.block_stress
-    yield Row("least strength Rm", wire.strength(s.d), "MPa", wire.name, SHORT[strength.sure])
+    yield Row("minimum tensile strength Rm", wire.strength(s.d), "MPa", wire.name, SHORT[strength.sure])
     yield Row("allowed at block", wire.block_stress(s.d), "MPa", f"{share.at(s.d):g} Rm", SHORT[share.sure])
 
 

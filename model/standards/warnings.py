@@ -31,7 +31,7 @@ def _wire(spring: Spring) -> Iterator[Warning]:
         yield Warning(
             "wire",
             "spring.wire_diameter",
-            f"the wire is {wire[i]:.4g} mm thick at turn {t[i]:.3g}, outside of the {low:g} to {high:g} mm usual in "
+            f"the wire is {wire[i]:.4g} mm thick at turn {t[i]:.3g}, outside the {low:g} to {high:g} mm usual in "
             "cold coiling (EN 15800); are all lengths in mm?",
             float(wire[i]),
             low if wire[i] < low else high,
@@ -48,7 +48,7 @@ def _index(spring: Spring) -> Iterator[Warning]:
         yield Warning(
             "index",
             "spring.mean_diameter",
-            f"D/d = {index[i]:.3g} at turn {t[i]:.3g} is outside of the "
+            f"D/d = {index[i]:.3g} at turn {t[i]:.3g} is outside the "
             f"{low:g} to {high:g} usual in cold coiling (EN 15800)",
             float(index[i]),
             low if index[i] < low else high,
@@ -67,7 +67,7 @@ def _solid_coils(spring: Spring) -> Iterator[Warning]:
         yield Warning(
             "solid coils",
             "spring.pitch",
-            "coils of the body are solid before any load, between the turns "
+            "coils of the body touch before any load, between turns "
             f"{solid[0]:.3g} and {solid[-1]:.3g}; their pitch is {pitch:.4g} mm",
             pitch,
             unit="mm",
@@ -94,7 +94,7 @@ def _ground(spring: Spring) -> Iterator[Warning]:
                 "ground tip",
                 "spring.end_coils",
                 f"the ground {name} end is {end.tip_thickness * d:.3g} mm "
-                f"thin at its tip, less than a quarter of the wire ({TIP_LEAST * d:.3g} mm)",
+                f"thick at its tip, less than a quarter of the wire ({TIP_LEAST * d:.3g} mm)",
                 end.tip_thickness * d,
                 TIP_LEAST * d,
                 "mm",
@@ -119,8 +119,8 @@ def _buckling(spring: Spring) -> Iterator[Warning]:
         yield Warning(
             "buckling",
             "spring.free_length",
-            f"slender, L0/D = {slender:.3g}: unguided it buckles at "
-            f"{limit:.3g} mm of travel on parallel seats, before its block at {travel:.3g} mm (EN 13906-1)",
+            f"slender, L0/D = {slender:.3g}: without a guide it buckles on parallel seats at "
+            f"{limit:.3g} mm of travel, before block at {travel:.3g} mm (EN 13906-1)",
             limit,
             travel,
             "mm",

@@ -32,7 +32,7 @@ def stress_warnings(spring: Cylinder, shear_modulus: float, lengths: Sequence[fl
         if stress > allowed:
             found.append(
                 Warning("stress", "loading", f"at {length:.4g} mm the nominal shear stress is {stress:.4g} N/mm², "
-                        f"above the {allowed:.4g} N/mm² that {wire.name} is allowed", stress, allowed, "MPa")
+                        f"above the {allowed:.4g} N/mm² allowed for {wire.name}", stress, allowed, "MPa")
             )  # fmt: skip
     return found
 
@@ -43,7 +43,7 @@ def endurance_warnings(cycle: Cycle, endured: Line) -> list[Warning]:
     if spread <= allowed:
         return []
     return [Warning("endurance", "loading", f"the corrected stress varies by {spread:.4g} N/mm² over {cycle.lower:.4g} "
-                    f"N/mm²; {allowed:.4g} N/mm² is endured {endured.times} times, {endured.surface}",
+                    f"N/mm²; the limit is {allowed:.4g} N/mm² for {endured.times} cycles, {endured.surface}",
                     spread, allowed, "MPa")]  # fmt: skip
 
 

@@ -66,6 +66,6 @@ def watch(comm: MPI.Comm, began: float, time_limit: float | None) -> Callable[[S
 
     def report(step: Step) -> None:
         if time_limit is not None and comm.bcast(time.perf_counter() - began > time_limit):
-            raise SolveError(f"given up after the time limit of {time_limit:g} s")
+            raise SolveError(f"stopped at the time limit of {time_limit:g} s")
 
     return report

@@ -72,7 +72,7 @@ def _response(data: xr.Dataset, name: str, place: Any) -> np.ndarray:
     """Values of a response, shape (cases,)."""
     known = [key for key in data.data_vars if data[key].dims == ("case",) and data[key].dtype.kind == "f"]
     if name not in known:
-        raise InputError(f"'{name}' is no response of these cases ({', '.join(sorted(known))})", f"{place}.of")
+        raise InputError(f"'{name}' is not a response of these cases ({', '.join(sorted(known))})", f"{place}.of")
     return data[name].to_numpy()
 
 

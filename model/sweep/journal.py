@@ -95,6 +95,6 @@ def read_records(path: str | Path) -> Iterator[dict[str, Any]]:
                 record = json.loads(line)
                 record["key"], record["status"]
             except (ValueError, KeyError, TypeError):
-                raise InputError("is no record of a case; remove this line, and --resume runs its case again",
+                raise InputError("is not a record of a case; remove this line, and --resume runs its case again",
                                  f"line {number}", path) from None  # fmt: skip
             yield record

@@ -1,4 +1,4 @@
-"""Entries of a case: what is no number, what is misspelt, paths, earlier names, and messages in words."""
+"""Entries of a case: what is not a number, what is misspelt, paths, earlier names, and messages in words."""
 
 import pytest
 

@@ -120,7 +120,7 @@ def test_a_checkpoint_of_another_version_is_called_so(example, folder, damage):
     """Not "not readable: 'on_path'"."""
     name, spoil = DAMAGES[damage]
     spoil(folder / "checkpoint" / name)
-    with pytest.raises(InputError, match="written by another version of coilset, or is damaged; give --force"):
+    with pytest.raises(InputError, match="written by another version of coilset, or is damaged; use --force"):
         resume(example, folder)
 
 

@@ -30,7 +30,7 @@ def test_an_unloaded_spring_is_no_pull(example, target):
 
 
 BEYOND = [
-    ("travel: 25", "travel: is 25 mm, but the spring can be pressed by 17.5 mm only, where it is at block"),
+    ("travel: 25", "travel: is 25 mm, but the spring can only be compressed by 17.5 mm, where it is at block"),
     ("travel: 1e9", "travel: is 1e+09 mm"),
     ("height: 10", "height: is 10 mm, below the block height of 17.5 mm"),
     ("height: 17.49", "height: is 17.49 mm, below the block height of 17.5 mm"),

@@ -115,7 +115,7 @@ def test_nominal_readings_become_true_ones(tmp_path):
 
 
 def test_nominal_readings_of_torsion_are_refused():
-    with pytest.raises(InputError, match="is no tension test"):
+    with pytest.raises(InputError, match="is not a tension test"):
         experiments.read_test(DATA / "reversed_torsion.csv", nominal=True)
 
 
@@ -129,7 +129,7 @@ def test_a_missing_kind_of_test_is_named(shipped, gone, kind):
     ("change", "message"),
     [
         (lambda text: text.replace("tau12", "tau", 1), "column tau12: is missing"),
-        (lambda text: text.replace("23.66,", "often,"), "line 4, column sigma11: 'often' is no number"),
+        (lambda text: text.replace("23.66,", "often,"), "line 4, column sigma11: 'often' is not a number"),
         (lambda text: "\n".join(text.splitlines()[:10]), "has 7 rows; a test needs at least 20"),
         (lambda text: text.replace("0.0001,", "12,"), "strain: goes up to 12; give strain as a number, 0.02 for 2 %"),
     ],

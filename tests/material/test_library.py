@@ -175,13 +175,13 @@ def test_loss_of_positive_definiteness_between_two_temperatures(tmp_path):
 
 def test_unknown_names_and_unreadable_files(tmp_path):
     with pytest.raises(
-        InputError, match=r"'ck16' is no material of the library \(ck15, elastic, .*\) and no .yaml file"
+        InputError, match=r"'ck16' is neither a material of the library \(ck15, elastic, .*\) nor a .yaml file"
     ):
         library.load("ck16")
     with pytest.raises(InputError, match=r"none\.yaml: the file cannot be read"):
         library.load(tmp_path / "none.yaml")
     (tmp_path / "list.yaml").write_text("- 1\n")
-    with pytest.raises(InputError, match="is no material file; it wants name, source, units"):
+    with pytest.raises(InputError, match="is not a material file; it needs name, source, units"):
         library.load(tmp_path / "list.yaml")
 
 

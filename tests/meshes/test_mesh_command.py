@@ -43,7 +43,7 @@ def test_files_and_pictures(tmp_path, capsys):
     for name in ("drawing.png", "spring.png"):
         image = matplotlib.image.imread(out / name)[..., :3]
         assert 0.02 < np.mean(image.min(axis=-1) < 0.95) < 0.6  # neither empty nor full
-    with pytest.raises(InputError, match="is there already; give --force to replace it"):
+    with pytest.raises(InputError, match="already exists; use --force to overwrite it"):
         mesh(SPRINGS / "closed_and_ground.yaml", out=out)
     mesh(SPRINGS / "closed_and_ground.yaml", out=out, write=[str(file)], force=True)
 

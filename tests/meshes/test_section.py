@@ -64,9 +64,9 @@ def test_words_and_files(tmp_path):
 @pytest.mark.parametrize(
     ("text", "problem"),
     [
-        ("oval:4", "no section"), ("oval:4:x", "no section"), ("star:3", "no section"), ("round:-5", "positive"),
-        ("rectangle:4:5:3", "more than the sides allow"), ("rectangle:4:5:-1", "radius from 0"),
-        ("none.csv", "cannot be read"),
+        ("oval:4", "not a section"), ("oval:4:x", "not a section"), ("star:3", "not a section"),
+        ("round:-5", "positive"), ("rectangle:4:5:3", "more than the sides allow"),
+        ("rectangle:4:5:-1", "radius from 0"), ("none.csv", "cannot be read"),
     ],
 )  # fmt: skip
 def test_wrong_words(text, problem):

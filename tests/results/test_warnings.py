@@ -144,7 +144,7 @@ def test_they_are_in_the_log_the_summary_and_the_checkpoint(example, tmp_path, c
     for one in found:
         assert one["message"] in log
         assert printed.rindex("warning: " + one["message"]) > printed.index("results in")
-    assert log.index("leaves a seat") < log.index("step 8:")  # said when it happened
+    assert log.index("lifts off a seat") < log.index("step 8:")  # said when it happened
 
 
 def test_a_checkpoint_keeps_warnings(example, tmp_path):

@@ -28,7 +28,7 @@ def test_printed_sheet_of_another_program():
     made = Sheet(PRINTED, DM.elastic(5.0), 1260.0, DM, (88.5, 67.5), dynamic=True)
     shown = rows(made)
     assert shown["spring index w"].value == pytest.approx(6.92)
-    assert shown["least strength Rm"].value == pytest.approx(1460, abs=5)
+    assert shown["minimum tensile strength Rm"].value == pytest.approx(1460, abs=5)
     assert shown["rate R"].value == pytest.approx(16.181, abs=5e-4)
     assert shown["force at 88.5 mm"].value == pytest.approx(280, abs=0.1)
     assert shown["force at 67.5 mm"].value == pytest.approx(620, abs=0.4)
@@ -127,13 +127,13 @@ def test_command_prints_and_draws(case, tmp_path, capsys):
     assert "force at 40 mm" in printed
     assert "972.33 MPa" in printed
     assert (tmp_path / "out" / "goodman.png").stat().st_size > 10_000
-    with pytest.raises(InputError, match="is there already; give --force"):
+    with pytest.raises(InputError, match="already exists; use --force"):
         sheet(case, wire_name="EN 10270-1 SH", surface="shot peened", out=tmp_path / "out")
 
 
 def test_command_draws_nothing_without_a_wire(case, tmp_path, capsys):
     sheet(case, out=tmp_path / "out")
-    assert "the material is no wire of a standard; give --wire" in capsys.readouterr().out
+    assert "the material is not a standard wire; give --wire" in capsys.readouterr().out
     assert not (tmp_path / "out").exists()
 
 
@@ -149,6 +149,6 @@ def test_wrong_questions(case, tmp_path):
         sheet(case, results=tmp_path, out=tmp_path / "out")
     folder = run_folder(tmp_path / "run")
     (folder / "history.csv").write_text("a,b\n1,2\n", encoding="utf-8")
-    with pytest.raises(InputError, match="is no result of coilset solve"):
+    with pytest.raises(InputError, match="is not a result of coilset solve"):
         found.read(folder)
     shutil.rmtree(folder)

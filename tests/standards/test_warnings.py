@@ -30,29 +30,29 @@ def test_the_right_spring_is_right():
 WARNED = [
     (  # in metres
         {"wire_diameter": 0.005, "mean_diameter": 0.04, "pitch": 0.012},
-        "the wire is 0.005 mm thick at turn 0, outside of the 0.07 to 20 mm usual in cold coiling (EN 15800); are all "
+        "the wire is 0.005 mm thick at turn 0, outside the 0.07 to 20 mm usual in cold coiling (EN 15800); are all "
         "lengths in mm?",
     ),
     (
         {"wire_diameter": table([0, 6], [19.0, 25.0]), "mean_diameter": 200.0, "pitch": 50.0},
-        "the wire is 25 mm thick at turn 6, outside of the 0.07 to 20 mm usual in cold coiling (EN 15800); are all "
+        "the wire is 25 mm thick at turn 6, outside the 0.07 to 20 mm usual in cold coiling (EN 15800); are all "
         "lengths in mm?",
     ),
     # γ = 1 − 81.5/206 = 0.6044: 65/γ · (1 − √(1 − γ/0.8956 · (π/3.25)²)) = 42.18 mm
     (
         {"mean_diameter": 20.0, "turns": 8.0, "pitch": 15.625, "end_coils": "open"},
-        "slender, L0/D = 6.5: unguided it buckles at 42.2 mm of travel on parallel seats, before its block at 85 mm "
+        "slender, L0/D = 6.5: without a guide it buckles on parallel seats at 42.2 mm of travel, before block at 85 mm "
         "(EN 13906-1)",
     ),
-    ({"mean_diameter": 17.5}, "D/d = 3.5 at turn 0 is outside of the 4 to 20 usual in cold coiling (EN 15800)"),
-    ({"mean_diameter": 110.0}, "D/d = 22 at turn 0 is outside of the 4 to 20 usual in cold coiling (EN 15800)"),
+    ({"mean_diameter": 17.5}, "D/d = 3.5 at turn 0 is outside the 4 to 20 usual in cold coiling (EN 15800)"),
+    ({"mean_diameter": 110.0}, "D/d = 22 at turn 0 is outside the 4 to 20 usual in cold coiling (EN 15800)"),
     (
         {"turns": 3.5, "end_coils": "closed"},
         "only 1.5 active turns; formulas for rate and stress need 2 or more (EN 13906-1)",
     ),
     (
         {"end_coils": {"bottom": {"form": "closed and ground", "tip": 0.2}}},
-        "the ground bottom end is 1 mm thin at its tip, less than a quarter of the wire (1.25 mm)",
+        "the ground bottom end is 1 mm thick at its tip, less than a quarter of the wire (1.25 mm)",
     ),
     # the end turn of this cone rises by √(5² − 4²) = 3 mm; the flat ends 0.75 · 5 mm above the tip, 0.75 mm into the
     # transition, 3 u/2 + 9 (u³ − u⁴/2)/2 = 0.75 at u = 0.373 of its half turn
@@ -62,7 +62,7 @@ WARNED = [
     ),
     (
         {"pitch": table([0, 2, 3, 6], [5.0, 5.0, 12.0, 12.0])},
-        "coils of the body are solid before any load, between the turns 0 and 2; their pitch is 5 mm",
+        "coils of the body touch before any load, between turns 0 and 2; their pitch is 5 mm",
     ),
 ]
 

@@ -90,8 +90,8 @@ def test_name_is_found_however_it_is_spaced():
 
 
 WRONG = [
-    (lambda: wire("EN 10270-1 SX"), "material.wire: 'EN 10270-1 SX' is no wire; is EN 10270-1 "),
-    (lambda: wire("copper"), "material.wire: 'copper' is no wire; `coilset sheet --wires` lists them"),
+    (lambda: wire("EN 10270-1 SX"), "material.wire: 'EN 10270-1 SX' is not a known wire; is EN 10270-1 "),
+    (lambda: wire("copper"), "material.wire: 'copper' is not a known wire; `coilset sheet --wires` lists them"),
     (lambda: wire("EN 10270-1 SL").strength(0.5),
      "material.wire: the strength of 'EN 10270-1 SL' is not known at 0.5 mm; known for 1 to 10 mm"),
     (lambda: wire("EN 10270-3 1.4401").strength(1.2),

@@ -58,7 +58,7 @@ def test_stress():
     (found,) = stress_warnings(cylinder(free_length=90.0), 81500.0, [90 - bound - 0.1], known)
     assert found.name == "stress"
     assert found.limit == pytest.approx(972.3, abs=0.1)
-    assert "EN 10270-1 SH is allowed" in found.message
+    assert "allowed for EN 10270-1 SH" in found.message
 
 
 def test_presetting():

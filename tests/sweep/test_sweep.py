@@ -100,7 +100,7 @@ def test_time_limit_gives_a_case_up(write_sweep, monkeypatch):
     plan = Plan(write_sweep("change: {loading.0.steps: 100}\nvary: {spring.wire_diameter: [5.0]}"))
     record = evaluate(plan.data(plan.rows[0]), MPI.COMM_SELF, time_limit=0.5)
     assert record["status"] == "failed"
-    assert record["reason"] == "given up after the time limit of 0.5 s"
+    assert record["reason"] == "stopped at the time limit of 0.5 s"
     assert len(record["steps"]["force_N"]) == 6  # the first whose 0.6 s are over the limit
     assert record["summary"]["set_mm"] is None
 
@@ -200,7 +200,7 @@ def test_figures_of_each_kind_and_one_without_a_response(write_sweep, tmp_path):
     ]  # fmt: skip
     assert all((tmp_path / name).stat().st_size > 10_000 for name in files)
     assert [error.place for error in problems] == ["figures.5.of"]
-    assert "'seconds' is no response" in problems[0].problem
+    assert "'seconds' is not a response" in problems[0].problem
 
 
 @pytest.mark.parametrize(

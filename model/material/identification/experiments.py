@@ -87,7 +87,7 @@ def read_test(path: str | Path, nominal: bool = False) -> Test:
 def _true(test: Test, path: Path) -> Test:
     """A tension test from nominal strain and stress, up to its maximum force."""
     if test.kind != "tension":
-        raise InputError("is no tension test; only these have nominal strain and stress", "--nominal", str(path))
+        raise InputError("is not a tension test; only tension tests can be nominal", "--nominal", str(path))
     end = int(test.stress[:, 0].argmax()) + 1
     strain, stress = test.strain[:end].copy(), test.stress[:end].copy()
     stress[:, 0] *= 1 + strain[:, 0]
@@ -101,5 +101,5 @@ def _number(text: str | None, name: str, line: int, path: Path) -> float:
     except (TypeError, ValueError):
         value = math.nan
     if not math.isfinite(value):
-        raise InputError(f"'{shortened(str(text))}' is no number", f"line {line}, column {name}", str(path))
+        raise InputError(f"'{shortened(str(text))}' is not a number", f"line {line}, column {name}", str(path))
     return value

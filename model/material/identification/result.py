@@ -112,7 +112,7 @@ def _spread(model: FittedLaw, values: Variables, found: OptimizeResult) -> np.nd
     try:
         inverse = np.linalg.inv(J.T @ J)
     except np.linalg.LinAlgError as error:
-        raise SolveError("these tests cannot tell the constants apart; other paths are needed") from error
+        raise SolveError("these tests cannot distinguish the constants; other strain paths are needed") from error
     covariance = inverse @ (weighted.T @ weighted) @ inverse * J.shape[0] / (J.shape[0] - J.shape[1])
     start = {name: values[name] for name in model.names}
     moved = [list(_constants(model, moved_by(start, step)).values()) for step in 1e-6 * np.eye(len(start))]

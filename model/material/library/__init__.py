@@ -35,6 +35,8 @@ def load(name: str | Path, **options: Any) -> Law:
         return Law(read(name), file=name, **options)
     if name not in names():
         known = ", ".join(names())
-        raise InputError(f"'{shortened(name)}' is no material of the library ({known}) and no .yaml file", "material")
+        raise InputError(
+            f"'{shortened(name)}' is neither a material of the library ({known}) nor a .yaml file", "material"
+        )
     path = FOLDER / f"{name}.yaml"
     return Law(read(path), file=path, **options)

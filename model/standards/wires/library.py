@@ -44,7 +44,7 @@ def wire(name: str) -> Wire:
     if _key(name) not in by_key:
         near = [by_key[key] for key in get_close_matches(_key(name), by_key, 1, 0.7)]
         known = f"is {near[0]} meant?" if near else "`coilset sheet --wires` lists them"
-        raise InputError(f"'{shortened(name)}' is no wire; {known}", "material.wire")
+        raise InputError(f"'{shortened(name)}' is not a known wire; {known}", "material.wire")
     name = by_key[_key(name)]
     file, entry = _wires()[name]
     return Wire(name, entry, file.sources)
