@@ -174,6 +174,20 @@ def sweep(
 
 
 @app.command()
+def design(
+    wish: str = typer.Argument(help="wish (YAML): a case, what to find: in it, and such_that: conditions"),
+    out: str = typer.Option(None, callback=folder_target, help="results folder; default results/NAME-OF-WISH"),
+    force: bool = typer.Option(False, "--force", help="replace a design that is there"),
+    resume: bool = typer.Option(False, "--resume", help="go on with a search that was not finished"),
+) -> None:
+    """Find entries of a case, such as pitch and preset height, for which its run meets conditions."""
+    announce_compiling()
+    from coilset.scripts.design import design as run_design
+
+    run_design(wish, out, force, resume)
+
+
+@app.command()
 def verify(
     names: list[str] = typer.Argument(None, metavar="[NAME]...", help="cases; all if none is named"),
     out: str = typer.Option(

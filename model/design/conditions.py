@@ -1,0 +1,96 @@
+"""Conditions of a wish: which number of a run each is about, where it is read, and how far off it is."""
+
+import copy
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from coilset.meshes.errors import InputError
+from coilset.model.design.wish import Conditions, WishSpec
+
+MEASURING_STEPS = 2  # equal steps to a height at which a force is measured, and back: the way is elastic, or nearly so
+UNITS = {"_mm": "mm", "_N": "N", "_MPa": "MPa", "_N_per_mm": "N/mm", "_N_per_mm2": "N/mm²"}
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One condition.
+
+    Attributes:
+        name: as in the wish, with a number if it is one of several forces.
+        wish: the value that is wished.
+        height: at which a force is wished, mm; None for numbers of the summary.
+        phase: of the load program, at whose end the force is read; None for numbers of the summary.
+    """
+
+    name: str
+    wish: float
+    height: float | None = None
+    phase: int | None = None
+
+    @property
+    def words(self) -> str:
+        """For progress and messages."""
+        return self.name if self.height is None else f"force at {self.height:g} mm"
+
+    @property
+    def unit(self) -> str:
+        """Of its value."""
+        if self.height is not None:
+            return "N"
+        return next(unit for ending, unit in sorted(UNITS.items(), key=lambda pair: -len(pair[0]))
+                    if self.name.endswith(ending))  # fmt: skip
+
+    def off(self, value: float) -> float:
+        """How far a value is from the wish, relative to it."""
+        return (value - self.wish) / abs(self.wish)
+
+
+def conditions(spec: WishSpec, base: Mapping[str, Any]) -> tuple[list[Condition], dict[str, Any]]:
+    """The conditions of a wish, and its case with all that they need to be read.
+
+    Args:
+        spec: WishSpec.
+        base: raw data of the case, checked.
+
+    Returns:
+        Conditions in the order of the wish; raw data of the case, whose load program goes to all the heights.
+
+    Raises:
+        InputError: a condition that needs a released spring, and the program does not release it.
+    """
+    data = copy.deepcopy(dict(base))
+    program = data["loading"]
+    if isinstance(program, dict):  # {accuracy: …, program: […]}
+        program = program["program"]
+    found = [Condition(f"such_that.{name}", value) for name, value in _numbers(spec.such_that)]
+    missing = sorted({at.height for at in spec.such_that.force_at if _phase(program, at.height) is None}, reverse=True)
+    released = _is_release(program[-1])
+    needing = [one.name for one in found if "after" in one.name or "set_mm" in one.name or "residual" in one.name]
+    if not released and (needing or missing):
+        name = needing[0] if needing else "such_that.force_at"
+        raise InputError("is of the spring that is free of load again; let the load program end with {to: {force: 0}}",
+                         name)  # fmt: skip
+    for height in missing:
+        program.append({"to": {"height": height}, "steps": MEASURING_STEPS})
+    if missing:
+        program.append({"to": {"force": 0}, "steps": MEASURING_STEPS})
+    for number, at in enumerate(spec.such_that.force_at):
+        name = "such_that.force_at" + (f".{number}" if len(spec.such_that.force_at) > 1 else "")
+        found.append(Condition(name, at.N, at.height, _phase(program, at.height)))
+    return found, data
+
+
+def _numbers(wished: Conditions) -> list[tuple[str, float]]:
+    return [(name, value) for name, value in wished if isinstance(value, float | int)]
+
+
+def _phase(program: Sequence[Mapping[str, Any]], height: float) -> int | None:
+    """Number of the last phase that goes to a height, None if there is none."""
+    there = [number for number, phase in enumerate(program)
+             if isinstance(phase["to"], dict) and phase["to"].get("height") == height]  # fmt: skip
+    return there[-1] if there else None
+
+
+def _is_release(phase: Mapping[str, Any]) -> bool:
+    return isinstance(phase["to"], dict) and phase["to"].get("force") == 0

@@ -1,0 +1,73 @@
+"""From a wish to what was found: conditions, evaluations, search, and the reason where there is none."""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+from coilset.model.design.conditions import conditions
+from coilset.model.design.evaluation import Evaluation, Evaluator
+from coilset.model.design.reach import look_around, nearest_seen, refuse
+from coilset.model.design.search import Found, Search
+from coilset.model.design.wish import Wish
+
+NEARER = 0.8  # of the distance from the wish, for a place seen later to be worth a search of its own
+REPLANS = 2  # how often the steps are planned anew where their error is larger than the case allows
+
+
+def make_search(
+    wish: Wish,
+    known: Mapping[str, Mapping[str, Any]] | None = None,
+    keep: Callable[[dict[str, Any]], object] = lambda record: None,
+    report: Callable[[Evaluation, bool], object] = lambda evaluation, known: None,
+) -> Search:
+    """The Search of a wish; the arguments are those of `Evaluator`.
+
+    Raises:
+        InputError: a condition that the load program cannot meet.
+    """
+    sought, data = conditions(wish.spec, wish.base)
+    evaluator = Evaluator(wish, sought, data, known, keep, report)
+    bounds = np.array([[one.low, one.high] for one in wish.spec.find.values()])
+    start = np.array([_given(data, name) for name in wish.spec.find])
+    search = Search(evaluator, bounds, sought, start)
+    evaluator.data(bounds[:, 0])  # names of unknowns that are no entries
+    for name, values in wish.spec.trade_offs.items():
+        for value in values:
+            wish.check(evaluator.data(bounds.mean(axis=1), None, {name: value}))
+    return search
+
+
+def find(search: Search) -> Found:
+    """What a search finds.
+
+    Returns:
+        Found; `met`, or with more conditions than unknowns as near as it can be.
+
+    Raises:
+        InputError: the wish cannot be met, with the reason.
+        SolveError: the search does not end.
+    """
+    found = search.run()
+    for _ in range(REPLANS):
+        if not any(warning["name"] == "step error" for warning in found.best.summary["warnings"]):
+            break
+        found = search.run(again=found.x)
+    if not found.met and len(search.conditions) == len(found.x):
+        look_around(search, found)
+        near = nearest_seen(search)
+        if np.linalg.norm(search.off(near.values)) < NEARER * np.linalg.norm(found.off):
+            found = search.run(again=near.x)
+        if not found.met:
+            refuse(search, found)
+    return found
+
+
+def _given(data: Any, name: str) -> float:
+    """The case's own value of an entry; NaN if it has none that is a number."""
+    for part in name.split("."):
+        try:
+            data = data[int(part)] if isinstance(data, list) else data[part]
+        except (KeyError, IndexError, ValueError, TypeError):
+            return float("nan")
+    return float(data) if isinstance(data, int | float) and not isinstance(data, bool) else float("nan")

@@ -1,0 +1,168 @@
+"""One evaluation: the case with values for its unknowns is run, and kept in the journal under its key."""
+
+import copy
+import json
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+
+from coilset.meshes.errors import CoilsetError, InputError
+from coilset.model.analysis import Analysis
+from coilset.model.case.settings import put
+from coilset.model.design.conditions import Condition
+from coilset.model.design.surrogate import Guess, guess
+from coilset.model.design.wish import Wish
+from coilset.model.results.record import Result, Setup
+from coilset.model.results.summary import summarise
+from coilset.model.sweep.evaluate import plain
+from coilset.model.sweep.plan import key
+
+Plan = tuple[tuple[float, ...] | None, ...]
+"""For each phase: the parts of it at which its steps end; None: automatic, or as the case says."""
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """What a run came to.
+
+    Attributes:
+        x: values of the unknowns, shape (n,).
+        values: of the conditions, shape (m,); not a number if the run failed.
+        reason: why it failed; empty if it did not.
+        plan: the steps that it took.
+        summary: its numbers and warnings, as in summary.json.
+        seconds: that it took.
+        wrong: whether no such spring can be built, or run: its entries contradict each other.
+    """
+
+    x: np.ndarray
+    values: np.ndarray
+    reason: str
+    plan: Plan
+    summary: Mapping[str, Any]
+    seconds: float
+    wrong: bool = False
+
+    @property
+    def failed(self) -> bool:
+        """Whether there are no values."""
+        return bool(self.reason)
+
+
+class Evaluator:
+    """Runs the case of a wish with values for its unknowns.
+
+    Args:
+        wish: Wish.
+        conditions, data: see `coilset.model.design.conditions.conditions`.
+        known: records of earlier evaluations by their keys.
+        keep: writes a record of a new one.
+        report: called with every Evaluation, and whether it was known.
+
+    Attributes:
+        names: of the unknowns.
+        count: number of evaluations, those among them that were known.
+    """
+
+    def __init__(
+        self,
+        wish: Wish,
+        conditions: Sequence[Condition],
+        data: Mapping[str, Any],
+        known: Mapping[str, Mapping[str, Any]] | None = None,
+        keep: Callable[[dict[str, Any]], object] = lambda record: None,
+        report: Callable[[Evaluation, bool], object] = lambda evaluation, known: None,
+    ) -> None:
+        self.wish, self.conditions, self._data = wish, conditions, data
+        self.names = list(wish.spec.find)
+        self._known, self._keep, self._report = dict(known or {}), keep, report
+        self.count, self.solves = 0, 0
+
+    def data(self, x: np.ndarray, plan: Plan | None = None, others: Mapping[str, Any] | None = None) -> dict[str, Any]:
+        """Raw data of the case.
+
+        Args:
+            x: values of the unknowns.
+            plan: steps of its phases; None: as the case says.
+            others: other entries, and their values.
+        """
+        data = copy.deepcopy(dict(self._data))
+        for name, value in (others or {}).items():
+            put(data, name, copy.deepcopy(value), f"trade_offs.{name}")
+        for name, value in zip(self.names, x, strict=True):
+            put(data, name, float(value), f"find.{name}")
+        program = data["loading"]["program"] if isinstance(data["loading"], dict) else data["loading"]
+        for phase, marks in zip(program, plan or (None,) * len(program), strict=True):
+            if marks is not None:
+                phase["steps"] = list(marks)
+        return data
+
+    def guess(self, x: np.ndarray, others: Mapping[str, Any] | None = None) -> Guess:
+        """What the uniform rod comes to; raises InputError if there is no such spring."""
+        return guess(self.wish.check(self.data(x, None, others)), self.conditions)
+
+    def run(self, x: np.ndarray, plan: Plan | None = None) -> Evaluation:
+        """Run it, or take what the journal holds of it."""
+        x, self.count = np.array(x, float), self.count + 1
+        began = time.perf_counter()
+        try:
+            case = self.wish.check(self.data(x, plan))
+            name = key(case)
+        except InputError as error:
+            found = _failed(x, error, began)
+            self._report(found, False)
+            return found
+        record, known = self._known.get(name), True
+        if record is None:
+            known, self.solves = False, self.solves + 1
+            analysis = None
+            try:
+                analysis = Analysis(case, MPI.COMM_SELF)
+                found = self._read(x, analysis.setup, analysis.run(), began)
+            except CoilsetError as error:
+                found = _failed(x, error, began)
+            del analysis
+            record = {"key": name, "status": "failed" if found.failed else "done", **_plain(found)}
+            self._keep(record)
+            self._known[name] = json.loads(json.dumps(record))
+        found = _of_record(self._known[name])
+        self._report(found, known)
+        return found
+
+    def _read(self, x: np.ndarray, setup: Setup, result: Result, began: float) -> Evaluation:
+        summary = {name: plain(value) for name, value in summarise(setup, result).items()}
+        values = [_read(one, summary, result) for one in self.conditions]
+        phases = range(len(setup.phases))
+        plan = tuple(tuple(step.progress for step in result.steps if step.phase == phase) for phase in phases)
+        missing = [one.words for one, value in zip(self.conditions, values, strict=True) if value is None]
+        reason = f"{missing[0]} is not known of this run" if missing else ""
+        return Evaluation(x, np.array(values, float), reason, plan, summary, time.perf_counter() - began)
+
+
+def _read(condition: Condition, summary: Mapping[str, Any], result: Result) -> float | None:
+    if condition.phase is None:
+        return summary[condition.name.removeprefix("such_that.")]
+    return [step for step in result.steps if step.phase == condition.phase][-1].force_N
+
+
+def _failed(x: np.ndarray, error: CoilsetError, began: float) -> Evaluation:
+    wrong = isinstance(error, InputError)
+    reason = f"{error.place}: {error.problem}" if isinstance(error, InputError) and error.place else str(error)
+    return Evaluation(x, np.full(1, np.nan), reason, (), {}, time.perf_counter() - began, wrong)
+
+
+def _plain(found: Evaluation) -> dict[str, Any]:
+    values = [None if np.isnan(value) else float(value) for value in found.values]
+    return asdict(found) | {"x": found.x.tolist(), "values": values}
+
+
+def _of_record(record: Mapping[str, Any]) -> Evaluation:
+    """The Evaluation that a line of the journal holds."""
+    values = np.array([np.nan if value is None else value for value in record["values"]])
+    plan = tuple(tuple(marks) for marks in record["plan"])
+    return Evaluation(np.array(record["x"]), values, record["reason"], plan, record["summary"], record["seconds"],
+                      record["wrong"])  # fmt: skip

@@ -1,0 +1,128 @@
+"""Why a wish is not met: what its bounds reach, computed by runs, and the reason where it is known."""
+
+import itertools
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import minimize
+
+from coilset.meshes.errors import InputError
+from coilset.model.design.conditions import Condition
+from coilset.model.design.evaluation import Evaluation
+from coilset.model.design.search import Found, Search
+
+LOOKS = {1: 9, 2: 4}  # runs along each of so many unknowns
+SAMPLES = 200  # corners looked at by the surrogate for more unknowns
+WINDING = ("spring.pitch", "spring.free_length")  # entries that say how long a spring is wound
+BACK = 0.05  # of the bounds' width, by which it is wound less for the slope
+STIFF = 0.2  # mm of length after it for a mm of winding: below it winding makes no longer spring
+FULLY_PLASTIC = 4.0 / 3.0  # of the yield torque of a round wire: ∫ τ r 2π r dr = (2π/3) r³ τ over (π/2) r³ τ
+DEAD = 1e-4  # singular value over the greatest one, below which no condition feels a direction
+
+
+def look_around(search: Search, found: Found) -> None:
+    """Run springs all over the bounds, and where the mapped surrogate is least and greatest for each condition."""
+    n = len(search.width)
+    if n in LOOKS:
+        for place in itertools.product(np.linspace(0.0, 1.0, LOOKS[n]), repeat=n):
+            search.full(np.array(place))
+    else:
+        answer = mapped(search, found)
+        for number, sign in itertools.product(range(len(search.conditions)), (1.0, -1.0)):
+            places = np.random.default_rng(0).random((SAMPLES, n)).round()  # corners
+            search.full(min(places, key=lambda place: sign * answer(place)[number]))
+
+
+def nearest_seen(search: Search) -> Evaluation:
+    """The run that came nearest to the wish."""
+    good = [one for one in search.evaluations if not one.failed]
+    return min(good, key=lambda one: float(np.linalg.norm(search.off(one.values))))
+
+
+def refuse(search: Search, found: Found) -> None:
+    """Say why the conditions cannot be met, from all that was run.
+
+    Raises:
+        InputError: always.
+    """
+    good = [one for one in search.evaluations if not one.failed]
+    for number, one in enumerate(search.conditions):
+        low, high = (min(good, key=lambda run, sign=sign: sign * run.values[number]) for sign in (1.0, -1.0))
+        least, most = low.values[number], high.values[number]
+        if not least <= one.wish <= most:
+            near, end = (high, "greatest") if one.wish > most else (low, "least")
+            reason = plastic_reason(search, near) if one.wish > most and "free_length_after" in one.name else ""
+            raise InputError(
+                f"{one.wish:g} {one.unit} is out of reach{_at(one)}: between the bounds it goes from about {least:.6g} "
+                f"to {most:.6g} {one.unit}, the {end} with {_words(search, near)}{reason}", one.name)  # fmt: skip
+    worst = int(np.abs(found.off).argmax())
+    one = search.conditions[worst]
+    nearest = ", ".join(f"{other.words.removeprefix('such_that.')} {value:.6g} for {other.wish:g} {other.unit}"
+                        for other, value in zip(search.conditions, found.best.values, strict=True))  # fmt: skip
+    raise InputError(f"{one.wish:g} {one.unit}{_at(one)} cannot be met together with the other conditions between these "
+                     f"bounds{_with_others_met(search, found, worst)}; the nearest found is {nearest}, with "
+                     f"{_words(search, found.best)}{unfelt(search, found)}", one.name)  # fmt: skip
+
+
+def unfelt(search: Search, found: Found) -> str:
+    """Names of unknowns that no condition feels where the search has ended; empty if there are none."""
+    _, sizes, directions = np.linalg.svd(found.slopes)
+    if sizes[-1] > DEAD * sizes[0]:
+        return ""
+    names = [name for name, part in zip(search.evaluator.names, directions[len(sizes) - 1], strict=True)
+             if abs(part) > 0.3]  # fmt: skip
+    return f"; no condition feels {' with '.join(names)} there"
+
+
+def plastic_reason(search: Search, near: Evaluation) -> str:
+    """Whether longer winding does not help because the wire is fully plastic, in words; empty if it does."""
+    names = search.evaluator.names
+    column = next((names.index(name) for name in WINDING if name in names), None)
+    torque = search.evaluator.guess(near.x).torque
+    if torque <= 1.0:
+        return ""
+    said = f"; the torque of its wire comes to {torque:.3g} times that at which the surface yields"
+    if column is None:
+        return said
+    back = near.x.copy()
+    back[column] -= BACK * search.width[column] * (1.0 if back[column] > search.low[column] else -1.0)
+    other = search.full((back - search.low) / search.width)
+    if other.failed:
+        return said
+    change = near.summary["free_length_before_mm"] - other.summary["free_length_before_mm"]
+    slope = (near.summary["free_length_after_mm"] - other.summary["free_length_after_mm"]) / change
+    if slope > STIFF:
+        return said
+    return (f"{said}, and it is fully plastic at {FULLY_PLASTIC:.3g} times without hardening: beyond that no longer "
+            f"winding makes a longer spring ({slope:.2g} mm for each mm here)")  # fmt: skip
+
+
+def mapped(search: Search, found: Found) -> Callable[[np.ndarray], np.ndarray]:
+    """The surrogate as the runs have corrected it."""
+    about, error, E = found.error
+    return lambda u: search.surrogate(u) + error + E @ (u - about)
+
+
+def _with_others_met(search: Search, found: Found, worst: int) -> str:
+    """The range of a condition where the others are met, by the mapped surrogate; empty if there is no such place."""
+    answer, others = mapped(search, found), np.arange(len(found.off)) != worst
+    values = []
+    for sign in (1.0, -1.0):
+        end = minimize(
+            lambda u, sign=sign: sign * answer(u)[worst], found.error[0], method="SLSQP",
+            bounds=[(0.0, 1.0)] * len(search.width), options={"maxiter": 40},
+            constraints={"type": "eq", "fun": lambda u: answer(u)[others]},
+        )  # fmt: skip
+        if np.abs(answer(end.x)[others]).max() > 1e-3:
+            return ""
+        one = search.conditions[worst]
+        values.append(one.wish + abs(one.wish) * float(answer(end.x)[worst]))
+    return f": with these met it goes from about {min(values):.4g} to {max(values):.4g} {search.conditions[worst].unit}"
+
+
+def _at(one: Condition) -> str:
+    return f" at {one.height:g} mm" if one.height is not None else ""
+
+
+def _words(search: Search, one: Evaluation) -> str:
+    return ", ".join(f"{name} = {value:.6g}" for name, value in zip(search.evaluator.names, one.x, strict=True))

@@ -1,0 +1,271 @@
+"""The search: a surrogate shows the way, a few runs correct it.
+
+A run's answer f(x) is taken as the uniform rod's s(x) and an error that is linear about the best place b so far,
+
+    m(x) = s(x) + f(b) − s(b) + E (x − b),
+
+and the next place is where m(x) meets the wish, or comes nearest to it, between the bounds (space mapping). What the run
+there says of the error, y = f(x) − s(x) − (f(b) − s(b)), goes into its slopes by Broyden's update,
+
+    E ← E + (y − E Δ) Δᵀ/(ΔᵀΔ),   Δ = x − b,
+
+which makes the way to the end as fast as a secant's. Slopes that the uniform rod cannot know begin as differences of
+runs. All is in shares: x between its bounds, f − wish over the wish.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from coilset.meshes.errors import InputError, SolveError
+from coilset.model.design.conditions import Condition
+from coilset.model.design.evaluation import Evaluation, Evaluator, Plan
+
+TOLERANCE = 1e-8  # relative, to which conditions are met
+SETTLED = 1e-7  # of the bounds' width: a step below it ends a search that can only come near
+MOST = 40  # evaluations
+PATIENCE = 5  # evaluations, in which the distance from the wish must shrink by the factor
+ENOUGH = 0.7
+DIFFERENCE = 0.02  # of the bounds' width, for slopes by runs
+FLAT = 1e-9  # slope below which the surrogate does not feel an unknown
+SLOPE_STEP = 1e-4  # of the bounds' width, for slopes of the surrogate
+FAR = 10.0  # in place of the answer where the surrogate has none
+START_GRID = 5  # places along an unknown, from which the surrogate is sought through
+
+
+@dataclass
+class Found:
+    """What a search has come to.
+
+    Attributes:
+        x: values of the unknowns, shape (n,).
+        best: Evaluation there.
+        off: of the conditions, relative, shape (m,).
+        slopes: ∂ off/∂(x in shares), shape (m, n).
+        met: whether all conditions are met to `TOLERANCE`.
+        error: of the surrogate there, and its slopes: what makes it the mapped one.
+        evaluations: all of them, in their order.
+    """
+
+    x: np.ndarray
+    best: Evaluation
+    off: np.ndarray
+    slopes: np.ndarray
+    met: bool
+    error: tuple[np.ndarray, np.ndarray, np.ndarray]
+    evaluations: list[Evaluation] = field(default_factory=list)
+
+
+class Search:
+    """Seeks the unknowns of a wish.
+
+    Args:
+        evaluator: Evaluator.
+        bounds: least and greatest values, shape (n, 2).
+        conditions: Conditions.
+        start: where to begin if the uniform rod does not help, shape (n,); NaN where nothing is known.
+
+    Attributes:
+        low, width: of the bounds, shape (n,).
+        plan: steps of all runs but the first, whose automatic ones they are.
+        evaluations: of all runs.
+    """
+
+    def __init__(
+        self,
+        evaluator: Evaluator,
+        bounds: np.ndarray,
+        conditions: Sequence[Condition],
+        start: np.ndarray,
+    ) -> None:
+        self.evaluator, self.conditions = evaluator, list(conditions)
+        self.low, self.width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
+        self._start = np.clip((start - self.low) / self.width, 0.0, 1.0)
+        self.plan: Plan | None = None
+        self.evaluations: list[Evaluation] = []
+
+    # ---- shares -----------------------------------------------------------------------------------------------------
+
+    def value(self, u: np.ndarray) -> np.ndarray:
+        """Values of unknowns in shares; of their bounds to the last digit."""
+        return np.where(u >= 1.0, self.low + self.width, self.low + u * self.width)
+
+    def off(self, values: np.ndarray) -> np.ndarray:
+        """How far values are from the conditions, relative, shape (m,)."""
+        return np.array([one.off(value) for one, value in zip(self.conditions, values, strict=True)])
+
+    def surrogate(self, u: np.ndarray, others: Mapping[str, Any] | None = None) -> np.ndarray:
+        """How far the uniform rod is from the conditions; 0 for those that it does not know, shape (m,).
+
+        Args:
+            u: unknowns, in shares.
+            others: other entries of the case, and their values.
+        """
+        try:
+            values = self.evaluator.guess(self.value(u), others).values
+        except InputError:
+            return np.full(len(self.conditions), FAR)
+        if np.isnan(values).all():
+            return np.full(len(self.conditions), FAR)
+        return np.nan_to_num(self.off(values), nan=0.0)
+
+    def full(self, u: np.ndarray) -> Evaluation:
+        """A run, with the steps that are planned; the first one that succeeds plans them."""
+        found = self.evaluator.run(self.value(u), self.plan)
+        self.evaluations.append(found)
+        return found
+
+    # ---- the way ----------------------------------------------------------------------------------------------------
+
+    def run(self, again: np.ndarray | None = None) -> Found:
+        """Go on until the conditions are met, or no step comes nearer.
+
+        Args:
+            again: values of the unknowns, shape (n,), from which to go on with steps that are planned anew; default:
+                where the uniform rod meets the wish.
+
+        Raises:
+            InputError: no spring between the bounds can be run, or no condition feels an unknown.
+            SolveError: the search does not end.
+        """
+        u, best = self._first() if again is None else self._planned(again)
+        off = self.off(best.values)
+        base = self.surrogate(u)
+        E = self._unknown_slopes(u, off, base)
+        reach, square = 1.0, len(off) == len(u)
+        ended, norms = len(self.evaluations) + MOST, [float(np.linalg.norm(off))]
+        while len(self.evaluations) < ended:
+            if np.abs(off).max() <= TOLERANCE:
+                return self._found(u, best, off, base, E, True)
+            to = self._nearest(u, off, base, E, reach)
+            step = to - u
+            size = float(np.abs(step).max())
+            if size <= SETTLED * (0.01 if square else 1.0):
+                return self._found(u, best, off, base, E, False)
+            there = self.full(to)
+            if there.failed:
+                reach = 0.5 * size
+                if reach < SETTLED:
+                    raise SolveError(f"no way on from {self.words(u)}: {there.reason}")
+                continue
+            off_there, base_there = self.off(there.values), self.surrogate(to)
+            y = (off_there - base_there) - (off - base)
+            E = E + np.outer(y - E @ step, step) / (step @ step)
+            if np.linalg.norm(off_there) < np.linalg.norm(off):
+                gained = np.linalg.norm(off_there) < 0.5 * np.linalg.norm(off)
+                u, best, off, base = to, there, off_there, base_there
+                reach = min(1.0, 4.0 * max(reach, size)) if gained else max(size, 0.5 * reach)
+            else:
+                reach = 0.5 * size
+                if reach <= SETTLED:
+                    return self._found(u, best, off, base, E, False)
+            norms.append(float(np.linalg.norm(off)))
+            if square and norms[-1] > ENOUGH * norms[max(len(norms) - 1 - PATIENCE, 0)] and len(norms) > PATIENCE:
+                return self._found(u, best, off, base, E, False)
+        raise SolveError(f"the search has not ended after {MOST} evaluations; the nearest is {self.words(u)}, off by "
+                         f"{np.abs(off).max():.2g}")  # fmt: skip
+
+    def words(self, u: np.ndarray) -> str:
+        """Unknowns and their values."""
+        return ", ".join(
+            f"{name} = {value:.6g}" for name, value in zip(self.evaluator.names, self.value(u), strict=True)
+        )
+
+    def _first(self) -> tuple[np.ndarray, Evaluation]:
+        """The place where the uniform rod meets the wish, or one near it at which a spring can be run."""
+        middle = np.full(len(self.width), 0.5)
+        given = np.where(np.isnan(self._start), 0.5, self._start)
+        places = [given, middle, *np.random.default_rng(0).random((START_GRID ** min(len(middle), 2), len(middle)))]
+        starts = sorted(places, key=lambda place: float(np.linalg.norm(self.surrogate(place))))[:2]
+        ends = [self.nearest(self.surrogate, start) for start in starts]
+        u = min(ends, key=lambda place: float(np.linalg.norm(self.surrogate(place))))
+        reason = ""
+        for part in (0.0, 0.1, 0.3, 1.0):
+            for goal in (given, middle):
+                to = u + part * (goal - u)
+                found = self.full(to)
+                if not found.failed:
+                    self.plan = found.plan
+                    return to, found
+                reason = reason or f"{found.reason} (with {self.words(to)})"
+                if part == 0.0:
+                    break
+        raise InputError(f"no spring can be run between these bounds; {reason}", "find")
+
+    def _planned(self, x: np.ndarray) -> tuple[np.ndarray, Evaluation]:
+        u = (x - self.low) / self.width
+        self.plan = None
+        found = self.full(u)
+        if found.failed:
+            raise SolveError(f"no equilibrium with {self.words(u)}: {found.reason}")
+        self.plan = found.plan
+        return u, found
+
+    def _unknown_slopes(self, u: np.ndarray, off: np.ndarray, base: np.ndarray) -> np.ndarray:
+        """Slopes of the error at the start: 0, or by a run each for unknowns, and conditions, the uniform rod ignores."""
+        slopes = self.slopes(self.surrogate, u)
+        E = np.zeros_like(slopes)
+        blind = np.abs(slopes).max(axis=1) < FLAT  # conditions
+        for column in range(len(u)):
+            if blind.any() or np.abs(slopes[:, column]).max() < FLAT:
+                to = u.copy()
+                to[column] += DIFFERENCE if u[column] < 0.5 else -DIFFERENCE
+                there = self.full(to)
+                if there.failed:
+                    continue
+                y = (self.off(there.values) - self.surrogate(to)) - (off - base)
+                felt = np.abs(slopes[:, column]).max() >= FLAT
+                E[:, column] = np.where(blind, y, 0.0 if felt else y) / (to[column] - u[column])
+                if np.abs(slopes[:, column] + E[:, column]).max() < FLAT * 100.0:
+                    raise InputError(
+                        "no condition feels it: what is wished does not change with it from "
+                        f"{self.value(u)[column]:.6g} to {self.value(to)[column]:.6g}; leave it out, or give a "
+                        "condition that depends on it", f"find.{self.evaluator.names[column]}")  # fmt: skip
+        return E
+
+    def mapped(
+        self, about: np.ndarray, off: np.ndarray, base: np.ndarray, E: np.ndarray
+    ) -> Callable[[np.ndarray], np.ndarray]:
+        """The surrogate with what runs have shown of its error."""
+        return lambda u: self.surrogate(u) + (off - base) + E @ (u - about)
+
+    def _nearest(self, u: np.ndarray, off: np.ndarray, base: np.ndarray, E: np.ndarray, reach: float) -> np.ndarray:
+        """Where the mapped surrogate comes nearest to the wish, no farther than `reach`."""
+        low, high = np.maximum(u - reach, 0.0), np.minimum(u + reach, 1.0)
+        if np.abs(off).max() < 1e-3:  # the surrogate is as good as straight over such a way, and has rounding
+            slopes = self.slopes(self.surrogate, u) + E
+            return self._solve(lambda v: off + slopes @ (v - u), u, low, high)
+        return self._solve(self.mapped(u, off, base, E), u, low, high)
+
+    def slopes(self, answer: Callable[[np.ndarray], np.ndarray], u: np.ndarray) -> np.ndarray:
+        """∂ answer/∂u by central differences, within the bounds, shape (m, n)."""
+        columns = []
+        for step in SLOPE_STEP * np.eye(len(u)):
+            up, down = np.minimum(u + step, 1.0), np.maximum(u - step, 0.0)
+            columns.append((answer(up) - answer(down)) / (up - down).max())
+        return np.array(columns).T
+
+    def nearest(self, answer: Callable[[np.ndarray], np.ndarray], start: np.ndarray) -> np.ndarray:
+        """Where an answer comes nearest to 0 between the bounds; in shares."""
+        return self._solve(answer, start, np.zeros_like(start), np.ones_like(start))
+
+    def _solve(
+        self, answer: Callable[[np.ndarray], np.ndarray], u: np.ndarray, low: np.ndarray, high: np.ndarray
+    ) -> np.ndarray:
+        """Least squares between bounds."""
+        room = 1e-12
+        start = np.clip(u, low + room, np.maximum(high - room, low + room))
+        found = least_squares(answer, start, bounds=(low, high), diff_step=SLOPE_STEP, xtol=1e-12, ftol=1e-14, gtol=1e-14,
+                              max_nfev=60)  # fmt: skip
+        x = found.x
+        x = np.where(x - low < 1e-9, low, x)  # the solver stays within: an active bound is meant
+        return np.where(high - x < 1e-9, high, x)
+
+    def _found(
+        self, u: np.ndarray, best: Evaluation, off: np.ndarray, base: np.ndarray, E: np.ndarray, met: bool
+    ) -> Found:
+        slopes = self.slopes(self.surrogate, u) + E
+        return Found(self.value(u), best, off, slopes, met, (u, off - base, E), self.evaluations)

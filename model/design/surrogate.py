@@ -1,0 +1,120 @@
+"""The uniform rod in the place of a spring: what a run would come to, in milliseconds, as a first guess and for slopes.
+
+A spring that is no cylinder is taken as the cylinder of the same compliance and mean wire. Ends, contact and bowing are
+unknown to it; the search learns what they make of the answer.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from math import isfinite, pi, sqrt
+
+import numpy as np
+
+from coilset.meshes.errors import SolveError
+from coilset.meshes.geometry import Spring
+from coilset.model.case.case import Case
+from coilset.model.case.phases import Phase
+from coilset.model.case.targets import check_targets
+from coilset.model.design.conditions import Condition
+from coilset.model.material import library
+from coilset.model.material.law import Law
+from coilset.model.section.rules import polar, upper_half
+from coilset.model.standards.wires.law import case_law
+from coilset.model.uniform import UniformState, press
+
+STEPS = 6  # of a phase
+PROBE = 1e-3  # of the free length, for the initial rate
+RULE = upper_half(polar(5, 12, staggered=False))
+TORSION = 2  # of the sections' N, Q₃, Mt, M₃
+
+
+@dataclass(frozen=True)
+class Guess:
+    """What the uniform rod comes to.
+
+    Attributes:
+        values: of the conditions, shape (m,); not a number where the uniform rod does not know them.
+        torque: greatest torque in the wire over that at which its surface yields; 0 for an elastic law.
+    """
+
+    values: np.ndarray
+    torque: float
+
+
+def coil(spring: Spring) -> np.ndarray:
+    """Wire diameter, mean diameter, pitch (mm) and turns of the cylinder in the place of a spring, shape (4,).
+
+    Its turns are the active ones, its compliance ∝ ∫ D³/d⁴ dt that of the spring.
+    """
+    start, end = spring.bottom.end_turns, spring.turns - spring.top.end_turns
+    t = np.linspace(start, end, 257)
+    middle = 0.5 * (t[1:] + t[:-1])
+    d = spring.wire_diameter(middle)
+    mean = float(d.mean())
+    D = float(np.mean((2.0 * spring.mean_radius(middle)) ** 3 / d**4) * mean**4) ** (1.0 / 3.0)
+    pitch = float(spring.height(end) - spring.height(start)) / (end - start)
+    return np.array([mean, D, pitch, end - start])
+
+
+def guess(case: Case, conditions: Sequence[Condition]) -> Guess:
+    """Take the uniform rod through the load program of a case.
+
+    Raises:
+        InputError: if spring or material cannot be built, or a target is none of the spring.
+    """
+    spring = case.spring.build()
+    law = _law(case.material) if isinstance(case.material, str) else case_law(case, spring)
+    check_targets(case, spring, law.G)
+    unknown = np.full(len(conditions), np.nan)
+    try:
+        found, torque = _press(case, spring, law)
+    except SolveError:
+        return Guess(unknown, 0.0)
+    values = [found.get(one.name.removeprefix("such_that.") if one.phase is None else f"force {one.phase}", np.nan)
+              for one in conditions]  # fmt: skip
+    return Guess(np.array(values), torque)
+
+
+@lru_cache
+def _law(material: str) -> Law:
+    """A material, read once for all guesses."""
+    return library.load(material)
+
+
+def _press(case: Case, spring: Spring, law: Law) -> tuple[dict[str, float], float]:
+    length, free = spring.free_length, case.ends == "seats"
+    one, temperature = coil(spring), case.temperature
+    found = {"free_length_before_mm": length, "block_height_mm": spring.block_height}
+    probe, _ = press(one, law, travels=np.array([PROBE * length]), rule=RULE, free_ends=free, temperature=temperature)
+    found["rate_N_per_mm"] = float(probe[0, 0]) / (PROBE * length)
+    state: UniformState | np.ndarray = one
+    travel, force, greatest, torque = 0.0, 0.0, 0.0, 0.0
+    for number, phase in enumerate(case.loading):
+        by_force, end = _target(phase, spring)
+        begin = force if by_force else travel
+        way = np.linspace(begin, end, STEPS + 1)[1:]
+        if by_force:
+            _, state = press(state, law, forces=way, rule=RULE, free_ends=free, temperature=temperature)
+        else:
+            _, state = press(state, law, travels=way, rule=RULE, free_ends=free, temperature=temperature)
+        travel, force = float(state.travel[0]), float(state.force[0])
+        greatest = max(greatest, abs(force))
+        torque = max(torque, abs(float(state.sections[0, TORSION])))
+        found[f"force {number}"] = force
+    found["force_max_N"] = greatest
+    if force == 0.0 or abs(force) < 1e-6 * greatest:
+        found |= {"free_length_after_mm": length - travel, "set_mm": travel}
+    # τ = √(k²/2) in torsion (3.1.4), T = π d³ τ / 16
+    yielding = law.yield_stress / sqrt(3.0) * pi * one[0] ** 3 / 16.0
+    return found, torque / yielding if isfinite(yielding) else 0.0
+
+
+def _target(phase: Phase, spring: Spring) -> tuple[bool, float]:
+    """Is a phase driven by force? Where to, N, or the travel, mm."""
+    to, length = phase.to, spring.free_length
+    if to == "block":
+        return False, length - spring.block_height
+    if to.force is not None:
+        return True, to.force
+    return False, to.travel if to.travel is not None else length - (to.height or 0.0)

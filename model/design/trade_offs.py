@@ -1,0 +1,71 @@
+"""What else could be had: other wishes and other springs, estimated by the surrogate as the runs have corrected it."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from coilset.meshes.errors import InputError
+from coilset.model.design.search import FAR, Found, Search
+
+CHANGE = 0.02  # of each condition, for the rows about other wishes
+NEAR = 1e-3  # relative, to which an estimate must meet the wish to count as possible
+
+
+@dataclass(frozen=True)
+class TradeOff:
+    """One row.
+
+    Attributes:
+        of: what is other than in the wish: a condition or an entry.
+        value: its value.
+        unknowns: values of the unknowns, by their names.
+        off: how far the conditions are from being met, the farthest, relative.
+        wire_length_mm, free_length_before_mm: of the spring as wound; None where it cannot be built.
+        torque: greatest torque over that at which the surface yields.
+    """
+
+    of: str
+    value: Any
+    unknowns: Mapping[str, float]
+    off: float
+    wire_length_mm: float | None
+    free_length_before_mm: float | None
+    torque: float | None
+
+    @property
+    def possible(self) -> bool:
+        """Whether the conditions are met between the bounds, as far as the estimate goes."""
+        return self.off <= NEAR
+
+
+def trade_offs(search: Search, found: Found, others: Mapping[str, Sequence[Any]]) -> Iterator[TradeOff]:
+    """Each condition a little smaller and greater, then each of the entries with other values, one at a time."""
+    for number, one in enumerate(search.conditions):
+        for sign in (-1.0, 1.0):
+            shift = np.zeros(len(search.conditions))
+            shift[number] = sign * CHANGE
+            wish = one.wish + sign * CHANGE * abs(one.wish)
+            yield _row(search, found, one.words.removeprefix("such_that."), wish, {}, shift)
+    for name, values in others.items():
+        for value in values:
+            yield _row(search, found, name, value, {name: value}, np.zeros(len(search.conditions)))
+
+
+def _row(search: Search, found: Found, of: str, value: Any, others: dict[str, Any], shift: np.ndarray) -> TradeOff:
+    about, error, slopes = found.error
+
+    def answer(u: np.ndarray) -> np.ndarray:
+        return search.surrogate(u, others) + error + slopes @ (u - about) - shift
+
+    u = search.nearest(answer, about)
+    off = float(np.abs(answer(u)).max())
+    x = search.value(u)
+    unknowns = dict(zip(search.evaluator.names, x.tolist(), strict=True))
+    try:
+        case = search.evaluator.wish.check(search.evaluator.data(x, None, others))
+        spring, torque = case.spring.build(), search.evaluator.guess(x, others).torque
+    except InputError:
+        return TradeOff(of, value, unknowns, FAR, None, None, None)
+    return TradeOff(of, value, unknowns, off, spring.wire_length, spring.free_length, torque)

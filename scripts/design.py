@@ -1,0 +1,161 @@
+"""`coilset design`: seek entries of a case so that its run meets conditions, and write the case that was found."""
+
+import os
+import time
+from contextlib import closing
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from coilset.meshes.errors import CoilsetError, InputError
+from coilset.model.design import output
+from coilset.model.design.conditions import Condition
+from coilset.model.design.design import find, make_search
+from coilset.model.design.evaluation import Evaluation
+from coilset.model.design.search import Found, Search
+from coilset.model.design.trade_offs import TradeOff, trade_offs
+from coilset.model.design.wish import Wish, read_wish
+from coilset.model.sweep.journal import Journal, read_records
+from coilset.scripts.log import run_log
+from coilset.scripts.target import results_folder
+
+
+def design(wish_file: str, out: str | None, force: bool, resume: bool) -> None:
+    """Seek what a wish asks for; see `coilset design --help`.
+
+    Raises:
+        InputError: a wish that is wrong, or cannot be met; nothing is left of it then.
+        SolveError: the search does not end; --resume goes on.
+    """
+    console = Console(highlight=False)
+    wish = read_wish(wish_file)
+    try:
+        make_search(wish)
+    except InputError as error:
+        raise InputError(error.problem, error.place, error.file or wish_file) from None
+    folder = results_folder(out, Path(wish_file).stem)
+    new = _prepare(folder, force, resume)
+    try:
+        with run_log(folder) as log:
+            if not resume:
+                assert log.stream is not None  # it is open from the start
+                log.stream.truncate(0)
+                _clear(folder)
+            with closing(Journal(folder / "journal.jsonl")) as journal:
+                _design(console, wish, folder, journal)
+    except InputError as error:
+        if error.place != "--out":  # the folder is another's
+            _forget(folder, new)
+        raise InputError(error.problem, error.place, error.file or wish_file) from None
+    except KeyboardInterrupt:
+        console.print("interrupted; the same command with --resume goes on")
+        raise
+
+
+def _design(console: Console, wish: Wish, folder: Path, journal: Journal) -> None:
+    began = time.perf_counter()
+    known = {record["key"]: record for record in read_records(journal.path)}
+    progress = Progress(console)
+    search = make_search(wish, known, journal.append, progress)
+    progress.search = search
+    console.print(f"{wish.file.name}: {len(search.width)} unknown(s), {len(search.conditions)} condition(s)")
+    found = find(search)
+    rows = list(trade_offs(search, found, wish.spec.trade_offs))
+    output.write(folder, wish, search, found, rows, time.perf_counter() - began)
+    _conclude(console, search, found, rows, folder, time.perf_counter() - began)
+
+
+class Progress:
+    """A line for each evaluation."""
+
+    def __init__(self, console: Console) -> None:
+        self.console, self.number = console, 0
+        self.search: Search | None = None
+
+    def __call__(self, found: Evaluation, known: bool) -> None:
+        """An evaluation has ended."""
+        assert self.search is not None
+        self.number += 1
+        search, names = self.search, self.search.evaluator.names
+        unknowns = ", ".join(f"{name} {value:.7g}" for name, value in zip(names, found.x, strict=True))
+        if found.failed:
+            answer = f"fails: {found.reason}"
+        else:
+            values = (f"{_name(one)} {value:.7g} {one.unit}"
+                      for one, value in zip(search.conditions, found.values, strict=True))  # fmt: skip
+            answer = f"{', '.join(values)}, off by {abs(search.off(found.values)).max():.1e}"
+        seconds = "known" if known else f"{found.seconds:.1f} s"
+        self.console.print(f"{self.number:3d}  {unknowns}: {answer} ({seconds})", soft_wrap=True)
+
+
+def _name(one: Condition) -> str:
+    return one.words.removeprefix("such_that.")
+
+
+def _conclude(
+    console: Console, search: Search, found: Found, rows: list[TradeOff], folder: Path, seconds: float
+) -> None:
+    for name, value in zip(search.evaluator.names, found.x, strict=True):
+        console.print(f"[bold]{name} = {value:.7g}[/]")
+    if not found.met:
+        parts = (f"{_name(one)} {value:.6g} for {one.wish:g} {one.unit}"
+                 for one, value in zip(search.conditions, found.best.values, strict=True))  # fmt: skip
+        console.print(f"as near as it can be (least squares): {', '.join(parts)}")
+    console.print("estimates for other wishes and springs, by the uniform rod as the runs have corrected it:")
+    table = Table(box=None, padding=(0, 2))
+    table.add_column("")
+    for name in (*search.evaluator.names, "wire/mm", "wound/mm", "torque/yield"):
+        table.add_column(name, justify="right")
+    table.add_column("")
+    for row in rows:
+        value = f"{row.value:.6g}" if isinstance(row.value, float) else str(row.value)
+        numbers = [*row.unknowns.values(), row.wire_length_mm, row.free_length_before_mm, row.torque]
+        cells = ("–" if number is None else f"{number:.5g}" for number in numbers)
+        table.add_row(f"{row.of} {value}", *cells, "" if row.possible else "out of reach")
+    console.print(table)
+    for warning in found.best.summary["warnings"]:
+        console.print(f"[yellow]warning:[/] {warning['message']}")
+    console.print(f"{search.evaluator.count} evaluations in {seconds:.1f} s; solve {folder}{os.sep}found.yaml for all "
+                  "results of this spring (also there: design.json, trade_offs.csv)")  # fmt: skip
+
+
+# ---- the folder ------------------------------------------------------------------------------------------------------
+
+
+def _prepare(folder: Path, force: bool, resume: bool) -> bool:
+    """Make the folder; whether it is new.
+
+    Raises:
+        InputError: if it holds a design already, finished or not, or cannot be made.
+    """
+    new = not folder.exists()
+    try:
+        if not (force or resume):
+            if (folder / "design.json").exists():
+                raise InputError(
+                    "holds a design already; give --force to replace it, or another --out", "--out", folder
+                )
+            if (folder / "journal.jsonl").exists():
+                raise InputError("holds an unfinished search; give --resume to go on with it, --force to begin "
+                                 "anew, or another --out", "--out", folder)  # fmt: skip
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"cannot be made: {error.strerror}", "--out", folder) from None
+    return new
+
+
+def _clear(folder: Path) -> None:
+    for name in output.FILES:
+        try:
+            (folder / name).unlink(missing_ok=True)
+        except OSError as error:
+            raise CoilsetError(f"{folder / name}: cannot be removed: {error.strerror}") from None
+
+
+def _forget(folder: Path, new: bool) -> None:
+    """Nothing is left of a wish that was refused."""
+    _clear(folder)
+    (folder / "log.txt").unlink(missing_ok=True)
+    if new:
+        folder.rmdir()
