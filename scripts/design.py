@@ -20,6 +20,8 @@ from coilset.model.sweep.journal import Journal, read_records
 from coilset.scripts.log import run_log
 from coilset.scripts.target import results_folder
 
+WIDTH = 150  # of what is printed where there is no terminal
+
 
 def design(wish_file: str, out: str | None, force: bool, resume: bool) -> None:
     """Seek what a wish asks for; see `coilset design --help`.
@@ -29,6 +31,8 @@ def design(wish_file: str, out: str | None, force: bool, resume: bool) -> None:
         SolveError: the search does not end; --resume goes on.
     """
     console = Console(highlight=False)
+    if not console.is_terminal:
+        console = Console(highlight=False, width=WIDTH)
     wish = read_wish(wish_file)
     try:
         make_search(wish)
@@ -104,9 +108,9 @@ def _conclude(
         console.print(f"as near as it can be (least squares): {', '.join(parts)}")
     console.print("estimates for other wishes and springs, by the uniform rod as the runs have corrected it:")
     table = Table(box=None, padding=(0, 2))
-    table.add_column("")
-    for name in (*search.evaluator.names, "wire/mm", "wound/mm", "torque/yield"):
-        table.add_column(name, justify="right")
+    table.add_column("", no_wrap=True)
+    for name in (*search.evaluator.names, "wire length", "wound", "torque/yield"):
+        table.add_column(".".join(name.split(".")[-2:]), justify="right")
     table.add_column("")
     for row in rows:
         value = f"{row.value:.6g}" if isinstance(row.value, float) else str(row.value)

@@ -1,1 +1,1 @@
-"""Inverse design: entries of a case sought so that its run meets conditions; `wish` holds the entries, `search` the way."""
+"""Inverse design: entries of a case sought so that its run meets conditions; `design` is the way in."""

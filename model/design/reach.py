@@ -11,7 +11,7 @@ from coilset.model.design.conditions import Condition
 from coilset.model.design.evaluation import Evaluation
 from coilset.model.design.search import Found, Search
 
-LOOKS = {1: 9, 2: 4}  # runs along each of so many unknowns
+LOOKS = {1: 7, 2: 3}  # runs along each of so many unknowns
 SAMPLES = 200  # corners looked at by the surrogate for more unknowns
 WINDING = ("spring.pitch", "spring.free_length")  # entries that say how long a spring is wound
 BACK = 0.05  # of the bounds' width, by which it is wound less for the slope
@@ -59,8 +59,8 @@ def refuse(search: Search, found: Found) -> None:
     one = search.conditions[worst]
     nearest = ", ".join(f"{other.words.removeprefix('such_that.')} {value:.6g} for {other.wish:g} {other.unit}"
                         for other, value in zip(search.conditions, found.best.values, strict=True))  # fmt: skip
-    raise InputError(f"{one.wish:g} {one.unit}{_at(one)} cannot be met together with the other conditions between these "
-                     f"bounds{_with_others_met(search, found, worst)}; the nearest found is {nearest}, with "
+    raise InputError(f"{one.wish:g} {one.unit}{_at(one)} cannot be met together with the other conditions between "
+                     f"these bounds{_with_others_met(search, found, worst)}; the nearest found is {nearest}, with "
                      f"{_words(search, found.best)}{unfelt(search, found)}", one.name)  # fmt: skip
 
 

@@ -4,8 +4,8 @@ A run's answer f(x) is taken as the uniform rod's s(x) and an error that is line
 
     m(x) = s(x) + f(b) − s(b) + E (x − b),
 
-and the next place is where m(x) meets the wish, or comes nearest to it, between the bounds (space mapping). What the run
-there says of the error, y = f(x) − s(x) − (f(b) − s(b)), goes into its slopes by Broyden's update,
+and the next place is where m(x) meets the wish, or comes nearest to it, between the bounds (space mapping). What the
+run there says of the error, y = f(x) − s(x) − (f(b) − s(b)), goes into its slopes by Broyden's update,
 
     E ← E + (y − E Δ) Δᵀ/(ΔᵀΔ),   Δ = x − b,
 
@@ -205,7 +205,7 @@ class Search:
         return u, found
 
     def _unknown_slopes(self, u: np.ndarray, off: np.ndarray, base: np.ndarray) -> np.ndarray:
-        """Slopes of the error at the start: 0, or by a run each for unknowns, and conditions, the uniform rod ignores."""
+        """Slopes of the error at the start: 0, or by runs where the uniform rod ignores an unknown or a condition."""
         slopes = self.slopes(self.surrogate, u)
         E = np.zeros_like(slopes)
         blind = np.abs(slopes).max(axis=1) < FLAT  # conditions
@@ -258,8 +258,8 @@ class Search:
         """Least squares between bounds."""
         room = 1e-12
         start = np.clip(u, low + room, np.maximum(high - room, low + room))
-        found = least_squares(answer, start, bounds=(low, high), diff_step=SLOPE_STEP, xtol=1e-12, ftol=1e-14, gtol=1e-14,
-                              max_nfev=60)  # fmt: skip
+        found = least_squares(answer, start, bounds=(low, high), diff_step=SLOPE_STEP, xtol=1e-12, ftol=1e-14,
+                              gtol=1e-14, max_nfev=60)  # fmt: skip
         x = found.x
         x = np.where(x - low < 1e-9, low, x)  # the solver stays within: an active bound is meant
         return np.where(high - x < 1e-9, high, x)

@@ -12,6 +12,7 @@ from pydantic import Discriminator, Field, Tag
 
 from coilset.model.entries.entry import Strict, check_entries
 from coilset.model.entries.yaml import read_data
+from coilset.model.material.curve import RambergOsgood, Swift, Table, Voce
 
 Text = Annotated[str, Field(min_length=1)]
 NONE = "its constants, or 'none' if the material has no such function"
@@ -69,6 +70,12 @@ def _kind(value: Any) -> str:
     return "(none)" if isinstance(value, str) else "(constants)"
 
 
+def _hardening(value: Any) -> str:
+    """The law of a curve, constants of k², or the word `none`."""
+    law = value.get("law") if isinstance(value, dict) else getattr(value, "law", None)
+    return _kind(value) if law is None else f"({law})"
+
+
 Word = Annotated[Literal["none"], Tag("(none)")]
 
 
@@ -78,7 +85,18 @@ class Constants(Strict):
     temperature: Annotated[float, Unit("K"), Field(gt=0, description="the temperature of the constants, K")]
     elasticity: Annotated[Elasticity, Field(description="G and nu")]
     isotropic: Annotated[
-        Annotated[IsotropicHardening, Tag("(constants)")] | Word, Discriminator(_kind), Field(description=NONE)
+        Annotated[IsotropicHardening, Tag("(constants)")]
+        | Annotated[Swift, Tag("(swift)")]
+        | Annotated[Voce, Tag("(voce)")]
+        | Annotated[RambergOsgood, Tag("(ramberg-osgood)")]
+        | Annotated[Table, Tag("(table)")]
+        | Word,
+        Discriminator(
+            _hardening,
+            custom_error_type="law",
+            custom_error_message="law must be swift, voce, ramberg-osgood or table; without it k² has constants",
+        ),
+        Field(description=f"{NONE}; or a curve of stress over plastic strain"),
     ]
     kinematic: Annotated[
         Annotated[KinematicHardening, Tag("(constants)")] | Word, Discriminator(_kind), Field(description=NONE)
@@ -161,7 +179,8 @@ class MaterialFile(Strict):
 UNITS = {
     "G": "N/mm²", "nu": "", "alpha": "1/K", "k0_squared": "N²/mm⁴", "a1": "N²/mm⁴", "a2": "mm²/N", "a3": "mm²/N",
     "b1": "N/mm²", "k1_squared": "N²/mm⁴", "k_inf_squared": "N²/mm⁴", "a4": "mm²/N", "a5": "N/mm²", "a6": "mm²/N",
-    "a7": "mm²/N", "a": "mm⁶/N³",
+    "a7": "mm²/N", "a": "mm⁶/N³", "up_to": "", "C": "N/mm²", "strain_0": "", "n": "", "yield_stress": "N/mm²",
+    "rise": "N/mm²", "rate": "", "proof_stress": "N/mm²", "elastic_limit": "N/mm²",
 }  # fmt: skip
 
 

@@ -2,6 +2,7 @@
 
 The kernels take one 1-D array `p`: a head of `ROWS_START` entries, then one row of `ROW_LENGTH` constants for every
 temperature of the material's table. Between two temperatures the values of the functions are interpolated linearly.
+Behind the rows stand the curves of k² that are given by points (`coilset.model.material.curve`).
 """
 
 import math
@@ -26,15 +27,42 @@ CHANGE = 4  # K: prescribed change of temperature over the increment; 0: isother
 N_ROWS = 5  # number of temperatures
 ROWS_START = 6
 
-# A row: temperature, elastic constants, then the constants of 6.2.2 by their names there; KAPPA is a/(2G).
-ROW_T, YOUNG, SHEAR, ALPHA, K0, A1, A2, A3, B1, K1, KINF, A4, A5, A6, A7, KAPPA = range(16)
-ROW_LENGTH = 16
+# A row: temperature, elastic constants, then the constants of 6.2.2 by their names there; KAPPA is a/(2G). CURVE is
+# where in `p` the points of k² begin, NODES their number, 0 if k² is that of 6.2.2.
+ROW_T, YOUNG, SHEAR, ALPHA, K0, A1, A2, A3, B1, K1, KINF, A4, A5, A6, A7, KAPPA, CURVE, NODES = range(18)
+ROW_LENGTH = 18
+
+
+@njit(**KERNEL)
+def curve(p: np.ndarray, o: int, b: float) -> tuple[float, float]:
+    """k², dk²/db* between the points of a curve, whose row starts at `o`: cubic with their slopes, level beyond.
+
+    The points are b*, k² and dk²/db*, one array behind the other.
+    """
+    start, n = int(p[o + CURVE]), int(p[o + NODES])
+    low, high = 0, n - 1
+    if b >= p[start + high]:
+        return p[start + n + high], 0.0
+    while high - low > 1:
+        middle = (low + high) // 2
+        if b < p[start + middle]:
+            high = middle
+        else:
+            low = middle
+    at = start + low
+    h = p[at + 1] - p[at]
+    t = (b - p[at]) / h
+    k, k_up, m, m_up = p[at + n], p[at + n + 1], h * p[at + 2 * n], h * p[at + 2 * n + 1]
+    square, cubic = 3.0 * (k_up - k) - 2.0 * m - m_up, 2.0 * (k - k_up) + m + m_up
+    return k + t * (m + t * (square + t * cubic)), (m + t * (2.0 * square + 3.0 * t * cubic)) / h
 
 
 @njit(**INLINE)
 def row_functions(p: np.ndarray, o: int, b: float) -> Functions:
     """k², ∂k²/∂b*, ζ, ∂ζ/∂b*, κ, ∂κ/∂b* of the temperature whose row starts at `o` of `p`, (6.2.2)."""
-    if b < p[o + B1]:
+    if p[o + NODES] > 0.0:
+        k2, dk2 = curve(p, o, b)
+    elif b < p[o + B1]:
         e = math.exp(-p[o + A3] * b)
         k2 = p[o + K0] + p[o + A1] * (1.0 + p[o + A2] * b - e)
         dk2 = p[o + A1] * (p[o + A2] + p[o + A3] * e)

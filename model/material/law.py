@@ -11,6 +11,7 @@ import numpy.typing as npt
 from coilset.meshes.errors import InputError
 from coilset.model.entries.entry import Strict
 from coilset.model.material import functions as fn
+from coilset.model.material.curve import AnyCurve
 from coilset.model.material.file import UNITS, Constants, Creep, MaterialFile, Validity
 
 
@@ -32,6 +33,7 @@ class Law:
     ) -> None:
         self.data, self.spin, self.heun_tolerance, self.file = data, spin, heun_tolerance, str(file)
         self._temperatures = np.array([at.temperature for at in data.temperatures])
+        self._curves: dict[int, np.ndarray] = {}  # of the temperatures whose k² is given by points
         self._rows = np.array([self._row(i, at) for i, at in enumerate(data.temperatures)])
         if np.any(np.diff(self._temperatures) <= 0):
             self._fail("temperatures", f"{self._temperatures.tolist()} K do not ascend; sort the entries, none twice")
@@ -147,7 +149,11 @@ class Law:
         head[fn.HEATING] = self.heating
         head[fn.TOLERANCE] = self.heun_tolerance
         head[fn.N_ROWS] = len(self._rows)
-        return np.concatenate([head, self._rows.ravel()])
+        rows, start = self._rows.copy(), fn.ROWS_START + self._rows.size
+        for i, points in self._curves.items():
+            rows[i, fn.CURVE] = start
+            start += len(points)
+        return np.concatenate([head, rows.ravel(), *self._curves.values()])
 
     def content(self) -> bytes:
         """All constants, for a digest."""
@@ -200,7 +206,16 @@ class Law:
         G, nu = at.elasticity.G, at.elasticity.nu
         row[[fn.ROW_T, fn.YOUNG, fn.SHEAR, fn.ALPHA]] = at.temperature, 2 * G * (1 + nu), G, at.elasticity.alpha
         row[[fn.K0, fn.B1]] = np.inf
-        if at.isotropic != "none":
+        if isinstance(at.isotropic, AnyCurve):
+            try:
+                points = at.isotropic.sampled(2 * G * (1 + nu), G)
+            except InputError as error:
+                place = f"temperatures.{i}.isotropic"
+                named = error.file or error.place
+                raise InputError(error.problem, error.place if named else place, error.file or self.file) from None
+            row[fn.K0], row[fn.NODES] = points[1][0], len(points[0])
+            self._curves[i] = np.concatenate(points)
+        elif at.isotropic != "none":
             k = at.isotropic
             row[[fn.K0, fn.A1, fn.A2, fn.A3]] = k.k0_squared, k.a1, k.a2, k.a3
             if k.saturation:
@@ -246,5 +261,5 @@ class Law:
 def _entries(section: object) -> Iterator[tuple[str, tuple[float, str]]]:
     if isinstance(section, Strict):
         for name, value in section:
-            if not isinstance(value, Strict) and value is not None:
+            if isinstance(value, float | int):
                 yield name, (value, UNITS[name])

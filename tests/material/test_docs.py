@@ -43,3 +43,16 @@ def test_yaml_examples(tmp_path):
     assert history.temperature[-1] == pytest.approx(293.15 + rise, rel=1e-9)
     assert set(library.names()) == set(re.findall(r"^\| `(\w+)` \|", TEXT, re.MULTILINE)) - {"return_mapping"}
     assert points.INTEGRATORS == ("return_mapping", "heun")
+
+
+def test_every_law_of_a_curve_is_one(tmp_path):
+    """The lines `isotropic: {law: ...}`, each in the annotated material file."""
+    material, lines = blocks("yaml")[0], re.findall(r"^    isotropic: (\{law:.*?\})", TEXT, re.MULTILINE)
+    (tmp_path / "tension.csv").write_text("strain,stress\n0,0\n0.004,800\n0.01,900\n0.1,1000\n", encoding="utf-8")
+    assert len(lines) == 5
+    for number, line in enumerate(lines):
+        text = re.sub(r"isotropic: \{k0_squared: 45000.*?\}", f"isotropic: {line}", material)
+        assert text != material
+        path = tmp_path / f"steel_{number}.yaml"
+        path.write_text(text, encoding="utf-8")
+        assert library.load(path).functions(10.0, 473.15)[1] > 0

@@ -1,0 +1,44 @@
+"""`coilset design` from the command line: its folder, and what is left of a wish that is refused."""
+
+import json
+
+import pytest
+import yaml
+
+from coilset.meshes.errors import InputError
+from coilset.model.sweep.journal import read_records
+from coilset.scripts.design import design
+
+FIND, SUCH = {"loading.0.to.height": [18, 34]}, {"free_length_after_mm": 25.0}
+
+
+def test_a_folder_is_not_overwritten_unasked_and_a_cut_journal_is_gone_on_from(wish, tmp_path, capsys):
+    path, out = str(wish(FIND, SUCH)), tmp_path / "out"
+    design(path, str(out), False, False)
+    said = json.loads((out / "design.json").read_text(encoding="utf-8"))
+    assert said["met"]
+    assert said["conditions"][0]["value"] == pytest.approx(25.0, rel=1e-6)
+    assert yaml.safe_load((out / "found.yaml").read_text(encoding="utf-8"))["loading"][0]["to"] == {
+        "height": said["found"]["loading.0.to.height"]
+    }
+    assert "off by" in capsys.readouterr().out
+    with pytest.raises(InputError, match="holds a design already"):
+        design(path, str(out), False, False)
+    lines = (out / "journal.jsonl").read_text(encoding="utf-8").splitlines(keepends=True)
+    (out / "journal.jsonl").write_text("".join(lines[:2]) + lines[2][:40], encoding="utf-8")  # a kill while writing
+    (out / "design.json").unlink()
+    with pytest.raises(InputError, match="holds an unfinished search"):
+        design(path, str(out), False, False)
+    design(path, str(out), False, True)
+    assert "(known)" in capsys.readouterr().out
+    assert [record["x"] for record in read_records(out / "journal.jsonl")] == [json.loads(line)["x"] for line in lines]
+    again = json.loads((out / "design.json").read_text(encoding="utf-8"))
+    assert again["found"] == said["found"]
+
+
+def test_nothing_is_left_of_a_wish_that_is_refused(wish, tmp_path):
+    path = str(wish({"rates_at.0": [1, 2]}, SUCH, rates_at=[1.0]))
+    out = tmp_path / "out"
+    with pytest.raises(InputError, match="no condition feels it"):
+        design(path, str(out), False, False)
+    assert not out.exists()

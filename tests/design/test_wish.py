@@ -1,0 +1,70 @@
+"""A wish is read strictly: what is wrong with it is said before anything is run."""
+
+import pytest
+import yaml
+
+from coilset.meshes.errors import InputError
+from coilset.model.design.conditions import conditions
+from coilset.model.design.design import make_search
+from coilset.model.design.wish import read_wish
+
+FIND, SUCH = {"spring.pitch": [9, 15]}, {"free_length_after_mm": 25.0}
+
+
+def build(path):
+    """Read a wish and guess at one of its corners."""
+    search = make_search(read_wish(path))
+    search.evaluator.guess(search.low)
+
+
+@pytest.mark.parametrize(
+    ("find", "such_that", "problem"),
+    [
+        ({"spring.pitch": [15, 9]}, SUCH, "find.spring.pitch: from 15 to 9 is no range"),
+        ({"spring.pitch": 9}, SUCH, "find.spring.pitch: must be the least and the greatest value"),
+        (FIND, {}, "such_that: there is no condition"),
+        (FIND, {"free_length_after": 25.0}, "is free_length_after_mm meant?"),
+        (FIND, {"force_at": {"height": 30.0}}, "such_that.force_at.0.N: this entry is required"),
+        (FIND, {"residual_shear_inside_MPa": 0.0}, "must not be 0"),
+        ({**FIND, "spring.turns": [2, 3]}, SUCH, "2 unknowns and 1 condition"),
+        ({"spring.pich": [9, 15]}, SUCH, "spring.pich: unknown entry; is pitch meant?"),
+        ({"loading.7.to.height": [18, 20]}, SUCH, "find.loading.7.to.height: '7' is not an entry of this list"),
+    ],
+)
+def test_what_is_wrong_is_said_in_one_line(wish, find, such_that, problem):
+    with pytest.raises(InputError) as caught:
+        build(wish(find, such_that))
+    assert problem in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_case_stands_in_the_wish_or_beside_it(tmp_path, wish, example):
+    beside = tmp_path / "beside.yaml"
+    beside.write_text(yaml.safe_dump({"case": str(example), "find": FIND, "such_that": SUCH}), encoding="utf-8")
+    assert read_wish(beside).base["spring"]["turns"] == 2.5
+    with pytest.raises(InputError, match="loading: is an entry of a case, which case: names already"):
+        read_wish(wish(FIND, SUCH, case=str(example)))
+
+
+def test_paths_in_the_case_count_from_its_file(tmp_path, wish):
+    assert read_wish(wish(FIND, SUCH, material="voce")).base["material"] == "voce"
+    assert read_wish(wish(FIND, SUCH, material="mine.yaml")).base["material"] == str(tmp_path / "mine.yaml")
+
+
+def test_a_force_is_read_where_the_program_goes_to_its_height(wish):
+    read = read_wish(wish(FIND, {"force_at": [{"height": 20.0, "N": 100.0}, {"height": 22.0, "N": 50.0}]}))
+    found, data = conditions(read.spec, read.base)
+    assert [(one.height, one.phase) for one in found] == [(20.0, 0), (22.0, 2)]
+    assert [phase["to"] for phase in data["loading"]] == [
+        {"height": 20.0},
+        {"force": 0},
+        {"height": 22.0},
+        {"force": 0},
+    ]
+    assert len(read.base["loading"]) == 2
+
+
+def test_a_length_after_needs_a_release(wish):
+    read = read_wish(wish(FIND, SUCH, loading=[{"to": "block"}]))
+    with pytest.raises(InputError, match="let the load program end with"):
+        conditions(read.spec, read.base)
