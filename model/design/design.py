@@ -52,7 +52,7 @@ def find(search: Search) -> Found:
     for _ in range(REPLANS):
         if not any(warning["name"] == "step error" for warning in found.best.summary["warnings"]):
             break
-        found = search.run(again=found.x)
+        found = search.run(found.x, found.error[2])
     if not found.met and len(search.conditions) == len(found.x):
         look_around(search, found)
         near = nearest_seen(search)

@@ -31,6 +31,7 @@ PATIENCE = 5  # evaluations, in which the distance from the wish must shrink by 
 ENOUGH = 0.7
 DIFFERENCE = 0.02  # of the bounds' width, for slopes by runs
 FLAT = 1e-9  # slope below which the surrogate does not feel an unknown
+CAREFUL = 0.25  # of the bounds' width: longest first step where only differences of runs show the way
 SLOPE_STEP = 1e-4  # of the bounds' width, for slopes of the surrogate
 FAR = 10.0  # in place of the answer where the surrogate has none
 START_GRID = 5  # places along an unknown, from which the surrogate is sought through
@@ -120,12 +121,13 @@ class Search:
 
     # ---- the way ----------------------------------------------------------------------------------------------------
 
-    def run(self, again: np.ndarray | None = None) -> Found:
+    def run(self, again: np.ndarray | None = None, slopes: np.ndarray | None = None) -> Found:
         """Go on until the conditions are met, or no step comes nearer.
 
         Args:
             again: values of the unknowns, shape (n,), from which to go on with steps that are planned anew; default:
                 where the uniform rod meets the wish.
+            slopes: of the surrogate's error there, if they are known, shape (m, n).
 
         Raises:
             InputError: no spring between the bounds can be run, or no condition feels an unknown.
@@ -134,8 +136,9 @@ class Search:
         u, best = self._first() if again is None else self._planned(again)
         off = self.off(best.values)
         base = self.surrogate(u)
-        E = self._unknown_slopes(u, off, base)
-        reach, square = 1.0, len(off) == len(u)
+        E = self._unknown_slopes(u, off, base) if slopes is None else slopes
+        blind = slopes is None and bool(np.any(E))  # nothing is known but differences
+        reach, square = CAREFUL if blind else 1.0, len(off) == len(u)
         ended, norms = len(self.evaluations) + MOST, [float(np.linalg.norm(off))]
         while len(self.evaluations) < ended:
             if np.abs(off).max() <= TOLERANCE:

@@ -83,6 +83,7 @@ CLOSE = 1e-6
 def run(study: Study) -> None:
     """All wishes."""
     rows, ways = [], {}
+    wish(None, *next(iter(WISHES.items())))  # compiles, so that the times are those of searches
     for name, entries in WISHES.items():
         found = wish(study, name, entries)
         rows.append([name, *found[:3]])
@@ -91,8 +92,8 @@ def run(study: Study) -> None:
     study.figure("design_round_trip", draw(ways))
 
 
-def wish(study: Study, name: str, entries: dict[str, Any]) -> tuple[int, int, float, list[float]]:
-    """One wish: number of unknowns and runs, seconds, and how far off each run was."""
+def wish(study: Study | None, name: str, entries: dict[str, Any]) -> tuple[int, int, float, list[float]]:
+    """One wish: number of unknowns and runs, seconds, and how far off each run was; judged if there is a study."""
     with tempfile.TemporaryDirectory() as folder:
         path, written = Path(folder) / "wish.yaml", Path(folder) / "found.yaml"
         path.write_text(yaml.safe_dump({"material": "ck15", "mesh": MESH, **entries}), encoding="utf-8")
@@ -101,9 +102,10 @@ def wish(study: Study, name: str, entries: dict[str, Any]) -> tuple[int, int, fl
         found = find(search)
         seconds = time.perf_counter() - began
         written.write_text(yaml.safe_dump(found_data(search, found)), encoding="utf-8")
-        for condition, value in zip(search.conditions, forward(search, written), strict=True):
-            quantity = f"{name}: {condition.words.removeprefix('such_that.')}, {condition.unit}"
-            study.check(quantity, value, condition.wish, "the wish", CLOSE)
+        if study is not None:
+            for condition, value in zip(search.conditions, forward(search, written), strict=True):
+                quantity = f"{name}: {condition.words.removeprefix('such_that.')}, {condition.unit}"
+                study.check(quantity, value, condition.wish, "the wish", CLOSE)
     off = [float(np.abs(search.off(one.values)).max()) for one in search.evaluations if not one.failed]
     return len(search.width), search.evaluator.count, round(seconds, 1), off
 
