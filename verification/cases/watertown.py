@@ -111,9 +111,9 @@ def run(study: Study) -> None:
                 "Watertown Arsenal 1900, heights", 0.1, "absolute")  # fmt: skip
     study.check("force when closed, rod with this yield stress, N", force, middle, "Watertown Arsenal 1900, loads", half,
                 "absolute")  # fmt: skip
-    study.table("Yield stress, N/mm², for the least, mean and greatest height after; force when closed for the mean, N",
+    study.table("Yield stress, N/mm², for least, mean and greatest height after; force when closed for the mean, N",
                 ["H in N/mm²", "least", "mean", "greatest", "force"], rows)  # fmt: skip
-    study.figure("watertown", draw())
+    study.figure("watertown", draw(after, force, stress))
 
 
 def rod_explaining(mean: float) -> tuple[float, float, float, float]:
@@ -138,20 +138,21 @@ def rod_explaining(mean: float) -> tuple[float, float, float, float]:
     return *seen[-1], float(spring.pitch(0.5 * spring.turns)) - WIRE
 
 
-def draw() -> Figure:
-    """Force at closing over the height after, along the yield stress; and the springs."""
+def draw(height: float, force_closed: float, stress_found: float) -> Figure:
+    """Force at closing over the height after, along the yield stress; the springs; the rod with the stress found."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(5.8, 3.8), layout="constrained")
         axes = figure.add_subplot()
         stresses = np.arange(1000.0, 1801.0, 100.0)
         for number, hardening in enumerate(HARDENING):
             force, after = np.array([closed_once(stress, hardening) for stress in stresses]).T
-            axes.plot(after, 1e-3 * force, f"C{number}.-", lw=1, label=f"H = {hardening:g} N/mm²")
+            axes.plot(after, 1e-3 * force, f"C{number}.-", lw=1, label=f"uniform rod, H = {hardening:g} N/mm²")
             if number == 0:
                 for x, y, stress in list(zip(after, 1e-3 * force, stresses, strict=True))[::2]:
                     axes.annotate(f"{stress:g}", (x, y), (3, -10), textcoords="offset points", fontsize=8)
         low, high = 1e-3 * LOADS.min(), 1e-3 * LOADS.max()
         axes.fill_between([AFTER.min(), AFTER.max()], low, high, color="0.85", label="the springs of 1900")
+        axes.plot(height, 1e-3 * force_closed, "k*", ms=9, label=f"rod between seats, {stress_found:.0f} N/mm²")
         axes.vlines(AFTER.mean(), low, high, "0.5", lw=1)
         axes.set(xlabel="height after closing in mm (6.30 in = 160.02 mm before)", ylabel="force at closing in kN",
                  title="Yield stresses in N/mm² that explain the set")  # fmt: skip
