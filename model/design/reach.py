@@ -47,8 +47,9 @@ def refuse(search: Search, found: Found) -> None:
     """
     good = [one for one in search.evaluations if not one.failed]
     for number, one in enumerate(search.conditions):
-        low, high = (min(good, key=lambda run, sign=sign: sign * run.values[number]) for sign in (1.0, -1.0))
-        least, most = low.values[number], high.values[number]
+        values = np.array([run.values[number] for run in good])
+        low, high = good[int(values.argmin())], good[int(values.argmax())]
+        least, most = float(values.min()), float(values.max())
         if not least <= one.wish <= most:
             near, end = (high, "greatest") if one.wish > most else (low, "least")
             reason = plastic_reason(search, near) if one.wish > most and "free_length_after" in one.name else ""

@@ -109,8 +109,8 @@ def run(study: Study) -> None:
                 "Watertown Arsenal 1900, distance between coils", 0.05)  # fmt: skip
     study.check("height after, rod with the yield stress that explains it, mm", after, mean,
                 "Watertown Arsenal 1900, heights", 0.1, "absolute")  # fmt: skip
-    study.check("force when closed, rod with this yield stress, N", force, middle, "Watertown Arsenal 1900, loads", half,
-                "absolute")  # fmt: skip
+    study.check("force when closed, rod with this yield stress, N", force, middle, "Watertown Arsenal 1900, loads",
+                half, "absolute")  # fmt: skip
     study.table("Yield stress, N/mm², for least, mean and greatest height after; force when closed for the mean, N",
                 ["H in N/mm²", "least", "mean", "greatest", "force"], rows)  # fmt: skip
     study.figure("watertown", draw(after, force, stress))
