@@ -91,6 +91,8 @@ def _press(case: Case, spring: Spring, law: Law) -> tuple[dict[str, float], floa
     state: UniformState | np.ndarray = one
     travel, force, greatest, torque = 0.0, 0.0, 0.0, 0.0
     for number, phase in enumerate(case.loading):
+        if not isinstance(phase, Phase):  # time passes: the uniform rod does not know of it
+            continue
         by_force, end = _target(phase, spring)
         begin = force if by_force else travel
         way = np.linspace(begin, end, STEPS + 1)[1:]
