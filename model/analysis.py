@@ -17,6 +17,7 @@ from coilset.model.case.phases import AnyPhase, Phase, TimePhase
 from coilset.model.case.targets import check_targets, check_times
 from coilset.model.contact.base import BearsOnWire
 from coilset.model.contact.build import build_contacts, seats_at
+from coilset.model.contact.coarse_mesh import coarse_mesh_warnings
 from coilset.model.effort import Effort, machine_memory
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
@@ -113,7 +114,7 @@ class Analysis:
             ContactRecord(one.name, one.end, one.points.turns if isinstance(one, BearsOnWire) else np.empty(0))
             for one in contacts
         )
-        warnings = *case_warnings(case, spring, self.law), *effort.warnings()
+        warnings = *case_warnings(case, spring, self.law), *coarse_mesh_warnings(spring, turns), *effort.warnings()
         self.setup = Setup(spring, self.law.name, case.ends, tuple(p.label for p in case.loading), turns, radius,
                            self.rod.rule, records, section.kind, placement,
                            buckling_travel(spring, self.law.G / self.law.E), self._limits(float(radius.min())),

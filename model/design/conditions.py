@@ -88,9 +88,9 @@ def _numbers(wished: Conditions) -> list[tuple[str, float]]:
 def _phase(program: Sequence[Mapping[str, Any]], height: float) -> int | None:
     """Number of the last phase that goes to a height, None if there is none."""
     there = [number for number, phase in enumerate(program)
-             if isinstance(phase["to"], dict) and phase["to"].get("height") == height]  # fmt: skip
+             if isinstance(phase.get("to"), dict) and phase["to"].get("height") == height]  # fmt: skip
     return there[-1] if there else None
 
 
 def _is_release(phase: Mapping[str, Any]) -> bool:
-    return isinstance(phase["to"], dict) and phase["to"].get("force") == 0
+    return isinstance(phase.get("to"), dict) and phase["to"].get("force") == 0

@@ -24,7 +24,7 @@ from coilset.meshes.errors import InputError, SolveError
 from coilset.model.design.conditions import Condition
 from coilset.model.design.evaluation import Evaluation, Evaluator, Plan
 
-TOLERANCE = 1e-8  # relative, to which conditions are met
+TOLERANCE = 1e-7  # relative, to which conditions are met
 SETTLED = 1e-7  # of the bounds' width: a step below it ends a search that can only come near
 MOST = 40  # evaluations
 PATIENCE = 5  # evaluations, in which the distance from the wish must shrink by the factor

@@ -14,7 +14,7 @@ import numpy as np
 from coilset.meshes.errors import SolveError
 from coilset.meshes.geometry import Spring
 from coilset.model.case.case import Case
-from coilset.model.case.phases import Phase, TimePhase
+from coilset.model.case.phases import Phase
 from coilset.model.case.targets import check_targets
 from coilset.model.design.conditions import Condition
 from coilset.model.material import library
@@ -91,8 +91,7 @@ def _press(case: Case, spring: Spring, law: Law) -> tuple[dict[str, float], floa
     state: UniformState | np.ndarray = one
     travel, force, greatest, torque = 0.0, 0.0, 0.0, 0.0
     for number, phase in enumerate(case.loading):
-        if isinstance(phase, TimePhase):  # the guess knows of no time
-            found[f"force {number}"] = force
+        if not isinstance(phase, Phase):  # time passes: the uniform rod does not know of it
             continue
         by_force, end = _target(phase, spring)
         begin = force if by_force else travel

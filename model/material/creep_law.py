@@ -13,7 +13,7 @@ import numpy as np
 
 from coilset.model.material.creep import Creeping
 from coilset.model.material.file import Creep
-from coilset.model.material.functions import B1, K0, ROW_LENGTH, ROWS_START
+from coilset.model.material.functions import B1, K0, N_ROWS, NODES, ROW_LENGTH, ROWS_START
 
 GAS_CONSTANT = 8.31446261815324  # J/(mol K)
 # The clock of a body: hours since the start, temperature (K), and hours at T₀ that they are worth.
@@ -72,6 +72,7 @@ class CreepLaw:
 def without_yield(plastic: np.ndarray) -> np.ndarray:
     """A parameter array whose first yield lies at infinity."""
     elastic = plastic.copy()
-    rows = elastic[ROWS_START:].reshape(-1, ROW_LENGTH)
+    rows = elastic[ROWS_START : ROWS_START + int(plastic[N_ROWS]) * ROW_LENGTH].reshape(-1, ROW_LENGTH)
     rows[:, [K0, B1]] = np.inf
+    rows[:, NODES] = 0.0
     return elastic
