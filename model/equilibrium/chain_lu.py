@@ -9,14 +9,13 @@ At a cut of the wire s are the unknowns of a node; coils that touch across it ad
 the last rank has, are among them. S is gathered, and every rank eliminates it in the same order: all of them find the
 same bits, and so does the next run.
 
-Where most unknowns couple ranks, as in short springs of many elements whose coils touch, the blocks of S would cost more
-than they save. Every unknown then counts as one of the interface: each rank eliminates the whole matrix.
+Where most unknowns couple ranks, as in short springs of many elements whose coils touch, the blocks of S would cost
+more than they save. Every unknown then counts as one of the interface: each rank eliminates the whole matrix.
 """
 
 import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
-from scipy import sparse
 
 from coilset.model.equilibrium.elimination import Plan, plan_elimination
 from coilset.model.equilibrium.multifrontal import PartialLU
@@ -147,7 +146,7 @@ class ChainLU:
 
 
 def ascending_pattern(mat: PETSc.Mat) -> tuple[np.ndarray, np.ndarray, np.ndarray | slice]:
-    """CSR pattern of a matrix with ascending columns, and how to bring its entries, as PETSc gives them, in that order."""
+    """CSR pattern of a matrix with ascending columns, and how to bring entries, as PETSc gives them, in that order."""
     indptr, indices, _ = mat.getValuesCSR()
     rows = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
     entries = rows * mat.getSize()[1] + indices

@@ -163,7 +163,7 @@ def find_fronts(indptr, indices, sequence, eliminated, size):
         ranges; the front that takes its update.
     """
     n = len(sequence)
-    at, head, before = np.empty(n, np.int64), np.empty(eliminated, np.int64), np.full(eliminated, -1)
+    at, before = np.empty(n, np.int64), np.full(eliminated, -1)
     at[sequence] = np.arange(n)
     start, beyond, count = np.zeros(eliminated + 1, np.int64), np.empty(4 * len(indices) + 16, np.int64), 0
     first_child, sibling, weight = np.full(n, -1), np.full(eliminated, -1), np.zeros(eliminated, np.int64)

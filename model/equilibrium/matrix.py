@@ -14,9 +14,8 @@ from coilset.model.body import Body
 from coilset.model.contact.base import Contribution
 from coilset.model.equilibrium.layout import Layout, LineLayout
 
-
-# Contacts lead out of the band of a line. Up to SMALL unknowns the fill of the natural order costs less than to look for
-# a better one; beyond, minimum degree: 2,560 elements in 2.5 windings take 17 ms a factorisation where the band takes
+# Contacts lead out of the band of a line. Up to SMALL unknowns the fill of the natural order costs less than looking
+# for a better one; beyond, minimum degree: 2,560 elements in 2.5 windings take 17 ms a factorisation where the band takes
 # 2.8 s, and 25 ms where it takes 54 ms in 160 windings.
 SMALL = 1500
 NATURAL, MINIMUM_DEGREE = "natural", "qmd"

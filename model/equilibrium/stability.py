@@ -2,8 +2,8 @@
 
 A state of equilibrium is stable where the symmetric part of the tangent of the free unknowns is positive definite. By
 Sylvester's law it has as many negative eigenvalues as its factors L D Lᵀ have negative pivots. Newton's own factors L U
-show the signs of the pivots at the last iterate for nothing; where one of them is negative, and with methods that keep a
-matrix, the symmetric part is factorised at the state itself.
+show the signs of the pivots at the last iterate for nothing; where one of them is negative, and with methods that keep
+a matrix, the symmetric part is factorised at the state itself.
 """
 
 import math
