@@ -15,8 +15,8 @@ from coilset.model.contact.base import Contribution
 from coilset.model.equilibrium.layout import Layout, LineLayout
 
 # Contacts lead out of the band of a line. Up to SMALL unknowns the fill of the natural order costs less than looking
-# for a better one; beyond, minimum degree: 2,560 elements in 2.5 windings take 17 ms a factorisation where the band takes
-# 2.8 s, and 25 ms where it takes 54 ms in 160 windings.
+# for a better one; beyond, minimum degree: 2,560 elements in 2.5 windings take 17 ms a factorisation, in the band
+# 2.8 s; in 160 windings 25 ms and 54 ms.
 SMALL = 1500
 NATURAL, MINIMUM_DEGREE = "natural", "qmd"
 
