@@ -6,6 +6,8 @@ Each spring goes to block and back to zero force, once a variant. A number with 
 halfway to 1; of a growth, which is at least 1, the excess over 1 is halved and doubled; the travel of the probe and the
 numbers of automatic steps are tried like all others. Counted are iterations, states that were evaluated (the body's
 updates, those of line searches included), failed solves and cuts. Each row is written as soon as it is known.
+`--page FILE.csv …` prints the table of docs/methods.md from such files: over all springs in them, the least and the
+greatest number of states, as shares of those with the number as it is, and what all springs failed and cut more.
 """
 
 import argparse
@@ -136,6 +138,37 @@ def table(springs: Iterable[str], names: Iterable[str], steps: str | int, given:
             out.flush()
 
 
+Rows = dict[str, dict[str, dict[str, str]]]
+
+
+def page(files: Iterable[Path]) -> None:
+    """Print the table of docs/methods.md from files that `table` has written."""
+    springs: Rows = {}
+    for path in files:
+        with path.open(encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                springs.setdefault(row["spring"], {})[row["variant"]] = row
+    print("| number | value | halved | doubled | failed solves more | cuts more |\n|---|---|---|---|---|---|")
+    for control in CONTROLS.values():
+        for field in fields(control):
+            low, high = halved_and_doubled(field.name, value := getattr(control(), field.name))
+            cells = [_compared(springs, f"{field.name} = {tried:g}") for tried in (low, high)]
+            shown = FREE_PENETRATION if value is None and field.name not in SWITCHES else value
+            worse = (", ".join(str(cell[k]) for cell in cells) for k in (1, 2))
+            print(f"| `{field.name}` | {shown} | {cells[0][0]} | {cells[1][0]} | {' | '.join(worse)} |")
+
+
+def _compared(springs: Rows, variant: str) -> tuple[str, int, int]:
+    """States beside those of the number as it is, least and greatest over the springs; failures and cuts more."""
+    base = "automatic steps" if variant.split(" = ")[0] in AUTOMATIC else "as shipped"
+    pairs = [(rows[variant], rows[base]) for rows in springs.values() if variant in rows and base in rows]
+    if any(row["ended"] != "True" for row, _ in pairs):
+        return "some ended early", 0, 0
+    shares = [int(row["evaluations"]) / int(as_is["evaluations"]) for row, as_is in pairs]
+    more = [sum(int(row[name]) - int(as_is[name]) for row, as_is in pairs) for name in ("failures", "cuts")]
+    return f"{min(shares):.2f} … {max(shares):.2f}", more[0], more[1]
+
+
 def main() -> None:
     """Read the command line and write the table."""
     parser = argparse.ArgumentParser(description=str(__doc__).splitlines()[0])
@@ -144,8 +177,13 @@ def main() -> None:
     parser.add_argument("--steps", default="12", help="equal steps of each phase, or auto")
     parser.add_argument("--set", nargs="+", default=[], dest="settings", help="settings of all runs")
     parser.add_argument("--out", type=Path, help="CSV file (default: the screen)")
+    parser.add_argument(
+        "--page", nargs="+", type=Path, metavar="FILE", help="print the table of these files; run nothing"
+    )
     given = parser.parse_args()
-    if given.out is None:
+    if given.page:
+        page(given.page)
+    elif given.out is None:
         table(given.springs, given.fields, given.steps, given.settings, sys.stdout)
     else:
         with given.out.open("w", encoding="utf-8") as out:
