@@ -15,7 +15,7 @@ from rich.table import Table
 from coilset.meshes.errors import CoilsetError, InputError, SolveError
 from coilset.model.agreement import on_first_rank
 from coilset.model.analysis import Analysis
-from coilset.model.case import read_case
+from coilset.model.case import Case, read_case
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.folder import clear, prepare, write_history, write_seats, write_summary
 from coilset.model.results.pictures import Run
@@ -59,10 +59,18 @@ def solve(
             analysis = Analysis(case, comm)
         except InputError as error:
             raise InputError(error.problem, error.place, error.file or case_file) from None
-        on_first_rank(comm, lambda: prepare(folder, force or resume))
+        on_first_rank(comm, lambda: _prepare(folder, analysis.case, force, resume))
         on_first_rank(comm, lambda: _begin(stack.enter_context(run_log(folder)), folder, resume))
         drawings = (drawings or stack.enter_context(Drawings(os.environ))) if pictures else None
         _solve(console, analysis, case_file, folder, drawings, resume, interactive, interrupt)
+
+
+def _prepare(folder: Path, case: Case, force: bool, resume: bool) -> None:
+    if resume:
+        if force:
+            raise InputError("goes on with a run, and --force throws it away; give one of the two", "--resume")
+        Checkpoint(folder, case).require()
+    prepare(folder, force or resume)
 
 
 def _begin(log: logging.FileHandler, out: Path, resume: bool) -> None:

@@ -13,6 +13,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from coilset.meshes.errors import InputError, SolveError
+from coilset.model.results.folder import refuse_obstacles
 from coilset.model.sweep import dataset
 from coilset.model.sweep.figures import draw
 from coilset.model.sweep.journal import Journal
@@ -76,6 +77,9 @@ def _on_first_rank(comm: "MPI.Comm", prepare: Callable[[], Plan]) -> Plan | None
 
 
 def _prepare(sweep_file: str, out: Path, force: bool, resume: bool) -> Plan:
+    if force and resume:
+        raise InputError("throws away what --resume and --retry go on with; give one of them", "--force")
+    refuse_obstacles(out, ["journal.jsonl", "sweep.nc", "workers.log"])
     plan = Plan(sweep_file)
     journal = out / "journal.jsonl"
     if journal.exists() and not (force or resume):
@@ -84,7 +88,7 @@ def _prepare(sweep_file: str, out: Path, force: bool, resume: bool) -> Plan:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot be made: {error.strerror}", "--out", out) from None
-    if force and not resume:
+    if force:
         journal.unlink(missing_ok=True)
     return plan
 

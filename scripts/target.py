@@ -15,8 +15,10 @@ def folder_target(out: str | None) -> str | None:
     Raises:
         InputError: if the folder cannot be made or written to.
     """
-    if out is not None:
-        _check(Path(out), "--out")
+    if out is None:
+        return None
+    out = os.path.expanduser(out)  # shells leave the ~ of --out=~/x to us
+    _check(Path(_named(out, "--out")), "--out")
     return out
 
 
@@ -44,11 +46,19 @@ def file_targets(paths: list[str] | None) -> list[str]:
     Raises:
         InputError: if one is a folder, or its folder cannot be made or written to.
     """
-    for path in map(Path, paths or []):
+    found = [os.path.expanduser(_named(path, "--write")) for path in paths or []]
+    for path in map(Path, found):
         if os.path.isdir(path):  # of a path, as Path.is_dir fails on a name that is too long
             raise InputError("is a folder; give a file", "--write", path)
         _check(path.parent, "--write", path)
-    return list(paths or [])
+    return found
+
+
+def _named(path: str, option: str) -> str:
+    """A path that is not empty: Path would make the folder that we are in of it."""
+    if not path:
+        raise InputError("is empty; give a name", option)
+    return path
 
 
 def _is_there(path: Path) -> bool:

@@ -93,6 +93,11 @@ class Checkpoint:
         for path in (*self.folder.glob("*.npz"), self.journal.path):
             path.unlink(missing_ok=True)
 
+    def require(self) -> None:
+        """Raise InputError where there is nothing to go on from."""
+        if not (self.folder / "state.npz").exists():
+            raise InputError("there is no checkpoint to go on from; run it without --resume", "", self.folder)
+
     # ---- resuming --------------------------------------------------------------------------------------------------
 
     def load(self, comm: MPI.Comm) -> Saved:
@@ -115,9 +120,8 @@ class Checkpoint:
 
     def _read(self) -> Saved:
         """On rank 0; a file that is damaged can fail in any way: as zip, as array, as JSON, as record."""
+        self.require()
         path = self.folder / "state.npz"
-        if not path.exists():
-            raise InputError("there is no checkpoint to go on from; run it without --resume", "", self.folder)
         try:
             loaded = _arrays(path)
             about = json.loads(str(loaded["about"]))

@@ -5,7 +5,7 @@ import csv
 import errno
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
@@ -63,12 +63,31 @@ RESULTS = ("summary.json", "history.csv", "seats.csv", "points.nc", "fields/*.vt
            "seat_pressure.png", "report.html")  # fmt: skip
 
 
+def refuse_obstacles(folder: str | Path, files: Iterable[str], folders: Iterable[str] = ()) -> None:
+    """Look whether files can be put to their places, before any is.
+
+    Raises:
+        InputError: if a folder has the name of a file, or a file that of a folder.
+    """
+    names = [
+        *((name, os.path.isdir, "folder") for name in files),
+        *((name, os.path.isfile, "file") for name in folders),
+    ]
+    for name, is_other, kind in names:
+        if is_other(os.path.join(folder, name)):
+            raise InputError(f"there is a {kind} named {name} in it, in the way of a result; move it, or give another "
+                             "--out", "--out", folder)  # fmt: skip
+
+
 def prepare(folder: str | Path, force: bool) -> Path:
     """Make the results folder.
 
     Raises:
         InputError: if it holds results or an interrupted run already and `force` is not given, or cannot be made.
     """
+    plain = [name for name in RESULTS if "*" not in name]
+    refuse_obstacles(folder, [*plain, "log.txt", "checkpoint/state.npz", "checkpoint/steps.jsonl"],
+                     ["checkpoint", "fields"])  # fmt: skip
     folder = Path(folder)
     try:
         if (folder / "summary.json").exists() and not force:

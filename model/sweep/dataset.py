@@ -97,4 +97,4 @@ def write(path: str | Path, data: xr.Dataset) -> None:
     packed = {name: {"zlib": True, "complevel": 1} for name in data.data_vars if data[name].dtype.kind == "f"}
     with whole(path) as partial:
         reserve(partial, data.nbytes)
-        data.to_netcdf(partial, engine="h5netcdf", encoding=packed)
+        data.to_netcdf(partial.absolute(), engine="h5netcdf", encoding=packed)

@@ -177,6 +177,42 @@ def test_damage_at_every_array_gets_one_line(example, folder):
     assert analysis.continuation.number == 1
 
 
+@pytest.mark.parametrize("name", ["summary.json", "points.nc", "log.txt", "springs.png", "checkpoint/state.npz"])
+@pytest.mark.parametrize("force", [False, True])
+def test_a_folder_in_the_way_of_a_file_is_seen_before_the_run(example, tmp_path, name, force):
+    (tmp_path / "out" / name).mkdir(parents=True)
+    with pytest.raises(InputError, match=f"--out: there is a folder named {name} in it"):
+        solve(example, tmp_path / "out", force, SMALL, False, comm=COMM)
+    assert not [path for path in tmp_path.rglob("*") if path.is_file()]
+
+
+@pytest.mark.parametrize("name", ["checkpoint", "fields"])
+def test_a_file_in_the_way_of_a_folder_is_seen_before_the_run(example, tmp_path, name):
+    (tmp_path / name).write_text("mine")
+    with pytest.raises(InputError, match=f"--out: there is a file named {name} in it"):
+        solve(example, tmp_path, True, SMALL, False, comm=COMM)
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+def test_nothing_to_go_on_from_leaves_nothing(example, tmp_path):
+    with pytest.raises(InputError, match="no checkpoint to go on from"):
+        resume(example, tmp_path / "out")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_resume_and_force_are_not_both(example, folder):
+    with pytest.raises(InputError, match="--resume: goes on with a run, and --force throws it away"):
+        solve(example, folder, True, SMALL, False, resume=True, comm=COMM)
+    assert (folder / "checkpoint" / STATE).exists()
+
+
+def test_a_folder_may_begin_with_a_tilde(example, tmp_path, monkeypatch):
+    """It is not another user's home folder: libraries would look for it."""
+    monkeypatch.chdir(tmp_path)
+    solve(example, "~out", False, SMALL, False, comm=COMM)
+    assert (tmp_path / "~out" / "points.nc").exists()
+
+
 def test_an_interrupted_run_is_not_thrown_away(example, folder):
     with pytest.raises(InputError, match=r"--resume.*--force"):
         solve(example, folder, False, SMALL, False, comm=COMM)

@@ -4,9 +4,20 @@ import pytest
 
 from coilset.meshes.errors import InputError
 from coilset.scripts.main import app
+from coilset.scripts.target import file_targets, folder_target
 
 COMMANDS = ["solve CASE", "slice CASE", "mesh CASE", "sheet CASE", "sweep CASE", "verify", "bench",
             "material show ck15", "examples ck15_presetting"]  # fmt: skip
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_an_empty_name_of_a_folder_is_not_where_we_are(example, tmp_path, monkeypatch, command):
+    """As `--out "$NOWHERE"`."""
+    monkeypatch.chdir(tmp_path)
+    words = [str(example) if word == "CASE" else word for word in command.split()]
+    with pytest.raises(InputError, match="--out: is empty; give a name"):
+        app([*words, "--out", ""], prog_name="coilset", standalone_mode=False)
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -37,3 +48,10 @@ def test_a_mesh_that_cannot_be_written_gets_one_line(example, tmp_path, monkeypa
     (tmp_path / "taken").write_text("mine")
     with pytest.raises(InputError, match="--write"):
         app(["mesh", str(example), "--no-pictures", "--write", target], prog_name="coilset", standalone_mode=False)
+
+
+def test_a_home_folder_that_the_shell_left_is_found(tmp_path, monkeypatch):
+    """As in `--out=~/runs`."""
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert folder_target("~/runs") == str(tmp_path / "runs")
+    assert file_targets(["~/wire.vtu", "wire.vtu"]) == [str(tmp_path / "wire.vtu"), "wire.vtu"]
