@@ -100,6 +100,32 @@ def test_any_number_of_ranks_goes_on(example, tmp_path_factory):
         np.testing.assert_allclose(ours, reference, rtol=0, atol=1e-10 * np.abs(reference).max())
 
 
+@pytest.mark.mpi
+def test_what_is_restored_is_what_was_there(example, tmp_path_factory):
+    """On each rank and to the bit, what other ranks own included: state, places on the path, records."""
+    comm = MPI.COMM_WORLD
+    folder = comm.bcast(str(tmp_path_factory.mktemp("ranks")) if comm.rank == 0 else None)
+    loading = "loading=[{to: block, steps: 4}, {to: {force: 0}, steps: 3}]"
+    friction = ["contact.friction.seats=0.1", "contact.friction.coils=0.1"]
+    settings = [SETTINGS[0], "mesh.elements_per_turn=10", *friction, loading]
+    case = read_case(example, settings)
+    begun, resumed = Analysis(case, comm), Analysis(case, comm)
+    run_until(begun, Checkpoint(folder, case), 4)
+    comm.barrier()
+    begun.system.restore()  # as before the next step, and as a resumed run begins
+    resumed.resume(Checkpoint(folder, case).load(comm))
+    assert begun.result.steps[-1].contacts > 2
+    for name, field in begun.system.state.items():
+        now = resumed.system.state[name]
+        assert now.equilibrium.tobytes() == field.equilibrium.tobytes(), name
+        assert now.trial.tobytes() == field.trial.tobytes(), name
+    for name in ("triads", "s"):
+        assert getattr(resumed.rod, name).values.tobytes() == getattr(begun.rod, name).values.tobytes(), name
+    assert resumed.program.position == begun.program.position
+    assert resumed.continuation.steps.position == begun.continuation.steps.position
+    assert resumed.result.steps == begun.result.steps
+
+
 def test_every_step_can_be_the_last_one_before_a_crash(example, tmp_path):
     """One chain of processes, each stopped after its next step: the same bits as without a stop.
 
