@@ -7,7 +7,7 @@ from coilset.scripts.main import app
 from coilset.scripts.target import file_targets, folder_target
 
 COMMANDS = ["solve CASE", "slice CASE", "mesh CASE", "sheet CASE", "sweep CASE", "verify", "bench",
-            "material show ck15", "examples ck15_presetting"]  # fmt: skip
+            "material show ck15", "examples ck15_presetting", "design DESIGN"]  # fmt: skip
 
 
 @pytest.mark.parametrize("command", COMMANDS)
