@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from coilset.meshes.errors import InputError
-from coilset.model.processes import mpi_environment, mpirun
+from coilset.model.processes import end_with_parent, mpi_environment, mpirun
 from coilset.model.sweep.pools import usable_cores
 
 REPOSITORY = Path(__file__).resolve().parent.parent
@@ -50,7 +50,8 @@ def beside(title: str, command: list[str]) -> Iterator[list[int]]:
     """Run a command while the block runs; what it says comes after the block, and its exit code into the list."""
     status: list[int] = []
     with tempfile.TemporaryFile() as said:
-        process = subprocess.Popen(command, cwd=REPOSITORY, stdout=said, stderr=subprocess.STDOUT)
+        process = subprocess.Popen(command, cwd=REPOSITORY, stdout=said, stderr=subprocess.STDOUT,
+                                   preexec_fn=end_with_parent)  # fmt: skip
         try:
             yield status
             status.append(process.wait())
@@ -66,4 +67,5 @@ def beside(title: str, command: list[str]) -> Iterator[list[int]]:
 def run(title: str, command: list[str], environment: dict[str, str] | None = None) -> int:
     """Say what is run, and run it from the repository's folder."""
     print(f"coilset: {title}", flush=True)
-    return subprocess.run(command, cwd=REPOSITORY, check=False, env=environment).returncode
+    done = subprocess.run(command, cwd=REPOSITORY, check=False, env=environment, preexec_fn=end_with_parent)
+    return done.returncode

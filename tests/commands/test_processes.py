@@ -130,6 +130,17 @@ def judge_gentle_end(running):
     assert not summary["complete"]
 
 
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
+def test_tests_end_with_the_command_that_runs_them(start, tmp_path, number):
+    slow = tmp_path / "test_slow.py"
+    slow.write_text(f"import pathlib, time\ndef test():\n    pathlib.Path({str(tmp_path / 'begun')!r}).touch()\n"
+                    "    time.sleep(1000)\n")  # fmt: skip
+    running = start(coilset("test", slow))
+    running.until((tmp_path / "begun").exists)
+    os.kill(running.process.pid, number)
+    running.until(lambda: not running.alive())
+
+
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_stopped_in_an_environment_without_a_root(start, example, ranks):
     running = start(coilset("-n", ranks, "solve", example, "--out", "out", *LONG))

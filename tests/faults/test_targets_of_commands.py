@@ -7,7 +7,17 @@ from coilset.scripts.main import app
 from coilset.scripts.target import file_targets, folder_target
 
 COMMANDS = ["solve CASE", "slice CASE", "mesh CASE", "sheet CASE", "sweep CASE", "verify", "bench",
-            "material show ck15", "examples ck15_presetting"]  # fmt: skip
+            "material show ck15", "examples ck15_presetting", "design DESIGN"]  # fmt: skip
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_an_empty_name_of_a_folder_is_not_where_we_are(example, tmp_path, monkeypatch, command):
+    """As `--out "$NOWHERE"`."""
+    monkeypatch.chdir(tmp_path)
+    words = [str(example) if word == "CASE" else word for word in command.split()]
+    with pytest.raises(InputError, match="--out: is empty; give a name"):
+        app([*words, "--out", ""], prog_name="coilset", standalone_mode=False)
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -77,7 +77,7 @@ def test_words_of_the_glossary_are_explained(page):
 
 
 def test_the_tube_is_round_the_wire(folder):
-    """Each point of the surface is a wire radius from the centre line, the first of a ring towards the spring's axis."""
+    """Each point of the surface is a wire radius from the centre line, the first of a ring towards the axis."""
     places, stress = tubes(open_run(folder))
     centre = places[:, :, :-1].mean(axis=2)
     assert np.linalg.norm(places - centre[:, :, None], axis=-1) == pytest.approx(2.5, rel=1e-9)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from coilset.meshes.errors import CoilsetError
-from coilset.model.processes import MPI_SETTINGS, mpirun
+from coilset.model.processes import MPI_SETTINGS, end_with_parent, mpirun
 from coilset.verification.benchmarks.everyday import everyday
 from coilset.verification.benchmarks.target import targets
 
@@ -38,7 +38,8 @@ def measure(environment: dict[str, str], job: str, *arguments: int, ranks: int =
     command = [sys.executable, "-m", MODULE, job, *map(str, arguments)]
     if ranks > 1:
         command = [*mpirun(ranks), *command]
-    done = subprocess.run(command, env=MPI_SETTINGS | environment, capture_output=True, text=True)
+    done = subprocess.run(command, env=MPI_SETTINGS | environment, capture_output=True, text=True,
+                          preexec_fn=end_with_parent)  # fmt: skip
     if done.returncode:
         reason = (done.stderr.strip() or "no message").splitlines()[-1]
         raise CoilsetError(f"the measurement '{' '.join(map(str, (job, *arguments)))}' failed: {reason}")
