@@ -270,7 +270,7 @@ class Analysis:
         pulls = self.case.ends == "seats" and force < -faint_force(self.rod, greatest)
         lift_off = max(clearance(self.system, x), 0.0) if pulls else 0.0
         bears = 0.0 if lift_off else force  # what a seat that is left bears; the tip springs' pull is no force of it
-        hours, temperature, loss = self._time(phase, force)
+        hours, temperature, _ = self.rod.clock
         step = Step(taken.number, phase, taken.progress, height, self.spring.free_length - height, bears,
                     taken.outcome.iterations, taken.outcome.evaluations, taken.outcome.failed_solves, taken.cuts,
                     contacts, self.system.max_penetration,
@@ -278,7 +278,8 @@ class Analysis:
                     axis_offset(x, self.rod.line.stations, turns), self._least_eigenvalue(),
                     self._greatest_plastic_work(), lift_off,
                     least_rise(x, turns, self.spring), *self._errors(taken.outcome),
-                    hours, temperature, loss)  # fmt: skip
+                    hours=float(hours), temperature_K=float(temperature),
+                    load_loss_percent=self._load_loss(phase, force))  # fmt: skip
         seats = self._seat_reactions(step.number, greatest)
         known = {warning.name for warning in step_warnings(self.setup, self.result)}
         self.result = replace(self.result, steps=(*self.result.steps, step), seats=(*self.result.seats, seats))
@@ -302,17 +303,15 @@ class Analysis:
         work = surface.component(self.rod.surface_state, self.rod.sections.components, "b")
         return float(self.comm.allreduce(work.max(initial=0.0), op=MPI.MAX))
 
-    def _time(self, phase: int, force: float) -> tuple[float, float, float | None]:
-        """Hours, temperature (K), and per cent of the force lost since time began to pass, at the last equilibrium."""
+    def _load_loss(self, phase: int, force: float) -> float | None:
+        """Per cent of the force lost since time began to pass at constant height; None where it does not."""
         loading, first = self.case.loading, phase
         while first >= 0 and isinstance(one := loading[first], TimePhase) and one.duration.keep == "height":
             first -= 1
         before = next((step.force_N for step in reversed(self.result.steps) if step.phase <= first), 0.0)
-        loss = None
-        if first < phase and abs(before) > faint_force(self.rod, self.result.greatest_force):
-            loss = 100.0 * (1.0 - force / before)
-        hours, temperature, _ = self.rod.clock
-        return float(hours), float(temperature), loss
+        if first == phase or abs(before) <= faint_force(self.rod, self.result.greatest_force):
+            return None
+        return 100.0 * (1.0 - force / before)
 
     def _errors(self, outcome: Outcome) -> tuple[float | None, float | None]:
         """Estimated errors of force and height by the steps' length, N and mm; None where they are not known."""
