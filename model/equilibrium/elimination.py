@@ -66,7 +66,7 @@ def plan_elimination(indptr: np.ndarray, indices: np.ndarray, keep: np.ndarray) 
     graph = group_graph(indptr, indices, group, members, size)
     kept = np.zeros(len(size), dtype=bool)
     kept[group[keep]] = True
-    order = _order(*graph, np.flatnonzero(kept))
+    order = _order(graph[0], graph[1], np.flatnonzero(kept))
     sequence, eliminated = np.concatenate([order[~kept[order]], order[kept[order]]]), int((~kept).sum())
     fronts = find_fronts(*graph, sequence, eliminated, size)
     order, first, rest_start, rest, child_start, child, stack, multiplications = number_places(*fronts, size, members)
@@ -317,11 +317,11 @@ def number_places(
         if takes[f] >= 0:
             child_start[takes[f] + 1] += 1
         if f < fronts - 1:
-            k, m = float(first[f + 1] - first[f]), float(out_start[f + 1] - out_start[f])
-            multiplications += k**3 / 3.0 + k * k * m + k * m * m
+            pivots, others = float(first[f + 1] - first[f]), float(out_start[f + 1] - out_start[f])
+            multiplications += pivots**3 / 3.0 + pivots**2 * others + pivots * others**2
     child_start = np.cumsum(child_start)
     child, filled = np.empty(child_start[fronts], np.int64), child_start.copy()
-    top = highest = 0
+    top, highest = 0, 0
     for f in range(fronts):
         for e in range(child_start[f], child_start[f + 1]):
             top -= (out_start[child[e] + 1] - out_start[child[e]]) ** 2
