@@ -146,7 +146,7 @@ class ChainLU:
 
 
 def ascending_pattern(mat: PETSc.Mat) -> tuple[np.ndarray, np.ndarray, np.ndarray | slice]:
-    """CSR pattern of a matrix with ascending columns, and how to bring entries, as PETSc gives them, in that order."""
+    """CSR pattern of a matrix with ascending columns, and the order that brings PETSc's entries there."""
     indptr, indices, _ = mat.getValuesCSR()
     rows = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
     entries = rows * mat.getSize()[1] + indices

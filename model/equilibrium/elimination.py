@@ -66,7 +66,7 @@ def plan_elimination(indptr: np.ndarray, indices: np.ndarray, keep: np.ndarray) 
     graph = group_graph(indptr, indices, group, members, size)
     kept = np.zeros(len(size), dtype=bool)
     kept[group[keep]] = True
-    order = _order(*graph, np.flatnonzero(kept))
+    order = _order(graph[0], graph[1], np.flatnonzero(kept))
     sequence, eliminated = np.concatenate([order[~kept[order]], order[kept[order]]]), int((~kept).sum())
     fronts = find_fronts(*graph, sequence, eliminated, size)
     order, first, rest_start, rest, child_start, child, stack, multiplications = number_places(*fronts, size, members)
@@ -99,7 +99,7 @@ def _order(indptr: np.ndarray, indices: np.ndarray, kept: np.ndarray) -> np.ndar
 
 
 @njit(cache=True)
-def mirrored_entries(indptr, indices):
+def mirrored_entries(indptr: np.ndarray, indices: np.ndarray) -> np.ndarray:
     """Entry (j, i) for each entry (i, j); nothing if one is missing."""
     mirror, next_in_row = np.empty(len(indices), np.int64), indptr[:-1].astype(np.int64)
     for i in range(len(indptr) - 1):
@@ -113,7 +113,7 @@ def mirrored_entries(indptr, indices):
 
 
 @njit(cache=True)
-def fingerprints(indptr, indices, keep):
+def fingerprints(indptr: np.ndarray, indices: np.ndarray, keep: np.ndarray) -> np.ndarray:
     """A number for each row by the set of its columns, and by whether it is kept (Steele's SplitMix64, summed)."""
     found = np.empty(len(indptr) - 1, np.uint64)
     for i in range(len(found)):
@@ -128,7 +128,9 @@ def fingerprints(indptr, indices, keep):
 
 
 @njit(cache=True)
-def group_graph(indptr, indices, group, members, size):
+def group_graph(
+    indptr: np.ndarray, indices: np.ndarray, group: np.ndarray, members: np.ndarray, size: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Neighbours of each group, itself among them, CSR; the rows of a group are all alike."""
     n = len(size)
     out_ptr, out, seen, row = np.zeros(n + 1, np.int64), np.empty(len(indices), np.int64), np.full(n, -1), 0
@@ -146,7 +148,9 @@ def group_graph(indptr, indices, group, members, size):
 
 
 @njit(cache=True)
-def find_fronts(indptr, indices, sequence, eliminated, size):
+def find_fronts(
+    indptr: np.ndarray, indices: np.ndarray, sequence: np.ndarray, eliminated: int, size: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Fronts by groups.
 
     A group joins the front of one that is eliminated before it if they are coupled with the same groups then, or nearly
@@ -224,9 +228,8 @@ def find_fronts(indptr, indices, sequence, eliminated, size):
     last = np.empty(fronts, np.int64)  # group of each front that is eliminated last
     number = 0
     for root in range(eliminated - 1, -1, -1):
-        if absorbed[root] or (
-            start[root + 1] > start[root] and np.min(beyond[start[root] : start[root + 1]]) < eliminated
-        ):
+        above = beyond[start[root] : start[root + 1]]
+        if absorbed[root] or (len(above) and np.min(above) < eliminated):
             continue
         stack[height] = root
         height += 1
@@ -275,7 +278,15 @@ def find_fronts(indptr, indices, sequence, eliminated, size):
 
 
 @njit(cache=True)
-def number_places(own_start, own, rest_start, rest, takes, size, members):
+def number_places(
+    own_start: np.ndarray,
+    own: np.ndarray,
+    rest_start: np.ndarray,
+    rest: np.ndarray,
+    takes: np.ndarray,
+    size: np.ndarray,
+    members: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, int, float]:
     """From groups to unknowns: see Plan for what comes back."""
     fronts, groups = len(own_start) - 1, len(size)
     begin = np.zeros(groups + 1, np.int64)
@@ -306,11 +317,11 @@ def number_places(own_start, own, rest_start, rest, takes, size, members):
         if takes[f] >= 0:
             child_start[takes[f] + 1] += 1
         if f < fronts - 1:
-            k, m = float(first[f + 1] - first[f]), float(out_start[f + 1] - out_start[f])
-            multiplications += k**3 / 3.0 + k * k * m + k * m * m
+            pivots, others = float(first[f + 1] - first[f]), float(out_start[f + 1] - out_start[f])
+            multiplications += pivots**3 / 3.0 + pivots**2 * others + pivots * others**2
     child_start = np.cumsum(child_start)
     child, filled = np.empty(child_start[fronts], np.int64), child_start.copy()
-    top = highest = 0
+    top, highest = 0, 0
     for f in range(fronts):
         for e in range(child_start[f], child_start[f + 1]):
             top -= (out_start[child[e] + 1] - out_start[child[e]]) ** 2
@@ -323,7 +334,17 @@ def number_places(own_start, own, rest_start, rest, takes, size, members):
 
 
 @njit(cache=True)
-def place_entries(indptr, indices, mirror, order, first, rest_start, rest, child_start, child):
+def place_entries(
+    indptr: np.ndarray,
+    indices: np.ndarray,
+    mirror: np.ndarray,
+    order: np.ndarray,
+    first: np.ndarray,
+    rest_start: np.ndarray,
+    rest: np.ndarray,
+    child_start: np.ndarray,
+    child: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Where the updates and the matrix's entries go: `into`, `entry_start`, `entry`, `position` of Plan."""
     n, fronts = len(order), len(first) - 1
     place, row = np.empty(n, np.int64), np.zeros(n, np.int64)

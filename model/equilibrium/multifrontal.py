@@ -63,8 +63,20 @@ class PartialLU:
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
 def eliminate(
-    first, rest_start, into, child_start, child, entry_start, entry, position, values, work, stack, factors, schur
-):  # fmt: skip
+    first: np.ndarray,
+    rest_start: np.ndarray,
+    into: np.ndarray,
+    child_start: np.ndarray,
+    child: np.ndarray,
+    entry_start: np.ndarray,
+    entry: np.ndarray,
+    position: np.ndarray,
+    values: np.ndarray,
+    work: np.ndarray,
+    stack: np.ndarray,
+    factors: np.ndarray,
+    schur: np.ndarray,
+) -> int:
     """Factors of all fronts, each k rows of U over m rows of L; number of negative pivots, −1 where one is no pivot."""
     fronts, top, written, negative = len(first) - 1, 0, 0, 0
     for f in range(fronts):
@@ -101,7 +113,7 @@ def eliminate(
 
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
-def eliminate_pivots(F, k):
+def eliminate_pivots(F: np.ndarray, k: int) -> int:
     """Eliminate the first k unknowns of a front, row after row; number of negative pivots, −1 where one is no pivot."""
     w, negative = len(F), 0
     for i in range(w):
@@ -128,7 +140,7 @@ def eliminate_pivots(F, k):
 
 
 @njit(cache=True, error_model="numpy")
-def go_forward(first, rest_start, rest, factors, x):
+def go_forward(first: np.ndarray, rest_start: np.ndarray, rest: np.ndarray, factors: np.ndarray, x: np.ndarray) -> None:
     """L⁻¹ b of the eliminated places, and what it leaves of the others, in place."""
     at = 0
     for f in range(len(first) - 2):
@@ -149,7 +161,9 @@ def go_forward(first, rest_start, rest, factors, x):
 
 
 @njit(cache=True, error_model="numpy")
-def go_backward(first, rest_start, rest, factors, x):
+def go_backward(
+    first: np.ndarray, rest_start: np.ndarray, rest: np.ndarray, factors: np.ndarray, x: np.ndarray
+) -> None:
     """U⁻¹ of the eliminated places, where the others are known, in place."""
     at = len(factors)
     for f in range(len(first) - 3, -1, -1):
