@@ -46,7 +46,7 @@ def design(wish_file: str, out: str | None, force: bool, resume: bool) -> None:
                 assert log.stream is not None  # it is open from the start
                 log.stream.truncate(0)
                 _clear(folder)
-            with closing(Journal(folder / "journal.jsonl")) as journal:
+            with closing(Journal(folder / "evaluations.jsonl")) as journal:
                 _design(console, wish, folder, journal)
     except InputError as error:
         if error.place != "--out":  # the folder is another's
@@ -140,7 +140,7 @@ def _prepare(folder: Path, force: bool, resume: bool) -> bool:
                 raise InputError(
                     "holds a design already; give --force to replace it, or another --out", "--out", folder
                 )
-            if (folder / "journal.jsonl").exists():
+            if (folder / "evaluations.jsonl").exists():
                 raise InputError("holds an unfinished search; give --resume to go on with it, --force to begin "
                                  "anew, or another --out", "--out", folder)  # fmt: skip
         folder.mkdir(parents=True, exist_ok=True)

@@ -12,7 +12,6 @@ from coilset.model.design.search import Found, Search
 from coilset.model.design.wish import Wish
 
 NEARER = 0.8  # of the distance from the wish, for a place seen later to be worth a search of its own
-REPLANS = 2  # how often the steps are planned anew where their error is larger than the case allows
 
 
 def make_search(
@@ -49,10 +48,6 @@ def find(search: Search) -> Found:
         SolveError: the search does not end.
     """
     found = search.run()
-    for _ in range(REPLANS):
-        if not any(warning["name"] == "step error" for warning in found.best.summary["warnings"]):
-            break
-        found = search.run(found.x, found.error[2])
     if not found.met and len(search.conditions) == len(found.x):
         look_around(search, found)
         near = nearest_seen(search)

@@ -48,6 +48,11 @@ class Evaluation:
     wrong: bool = False
 
     @property
+    def rough(self) -> bool:
+        """Whether the error of its steps is larger than the case allows."""
+        return any(warning["name"] == "step error" for warning in self.summary["warnings"])
+
+    @property
     def failed(self) -> bool:
         """Whether there are no values."""
         return bool(self.reason)

@@ -16,7 +16,7 @@ from coilset.model.design.wish import Wish
 from coilset.model.results.folder import whole
 from coilset.model.results.provenance import origin
 
-FILES = ("design.json", "found.yaml", "trade_offs.csv", "journal.jsonl")  # the first one says that all is there
+FILES = ("design.json", "found.yaml", "trade_offs.csv", "evaluations.jsonl")  # the first one says that all is there
 HEAD = (
     "# Found by coilset design from {file}: {found}.\n# Its steps are recorded, so that it gives just these numbers.\n"
 )

@@ -31,6 +31,8 @@ PATIENCE = 5  # evaluations, in which the distance from the wish must shrink by 
 ENOUGH = 0.7
 DIFFERENCE = 0.02  # of the bounds' width, for slopes by runs
 FLAT = 1e-9  # slope below which the surrogate does not feel an unknown
+REPLANS = 2  # how often the steps are planned anew where their error is larger than the case allows
+REPLAN = 1e-2  # relative, as near as a place must be to the wish for that
 CAREFUL = 0.25  # of the bounds' width: longest first step where only differences of runs show the way
 SLOPE_STEP = 1e-4  # of the bounds' width, for slopes of the surrogate
 FAR = 10.0  # in place of the answer where the surrogate has none
@@ -86,6 +88,7 @@ class Search:
         self.low, self.width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
         self._start = np.clip((start - self.low) / self.width, 0.0, 1.0)
         self.plan: Plan | None = None
+        self._replans = REPLANS
         self.evaluations: list[Evaluation] = []
 
     # ---- shares -----------------------------------------------------------------------------------------------------
@@ -121,13 +124,12 @@ class Search:
 
     # ---- the way ----------------------------------------------------------------------------------------------------
 
-    def run(self, again: np.ndarray | None = None, slopes: np.ndarray | None = None) -> Found:
+    def run(self, again: np.ndarray | None = None) -> Found:
         """Go on until the conditions are met, or no step comes nearer.
 
         Args:
             again: values of the unknowns, shape (n,), from which to go on with steps that are planned anew; default:
                 where the uniform rod meets the wish.
-            slopes: of the surrogate's error there, if they are known, shape (m, n).
 
         Raises:
             InputError: no spring between the bounds can be run, or no condition feels an unknown.
@@ -136,11 +138,15 @@ class Search:
         u, best = self._first() if again is None else self._planned(again)
         off = self.off(best.values)
         base = self.surrogate(u)
-        E = self._unknown_slopes(u, off, base) if slopes is None else slopes
-        blind = slopes is None and bool(np.any(E))  # nothing is known but differences
+        E = self._unknown_slopes(u, off, base)
+        blind = bool(np.any(E))  # nothing is known but differences
         reach, square = CAREFUL if blind else 1.0, len(off) == len(u)
         ended, norms = len(self.evaluations) + MOST, [float(np.linalg.norm(off))]
         while len(self.evaluations) < ended:
+            if np.abs(off).max() <= REPLAN and self._replans > 0 and best.rough:
+                self._replans -= 1
+                u, best = self._planned(self.value(u))
+                off = self.off(best.values)
             if np.abs(off).max() <= TOLERANCE:
                 return self._found(u, best, off, base, E, True)
             to = self._nearest(u, off, base, E, reach)

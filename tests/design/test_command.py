@@ -24,14 +24,16 @@ def test_a_folder_is_not_overwritten_unasked_and_a_cut_journal_is_gone_on_from(w
     assert "off by" in capsys.readouterr().out
     with pytest.raises(InputError, match="holds a design already"):
         design(path, str(out), False, False)
-    lines = (out / "journal.jsonl").read_text(encoding="utf-8").splitlines(keepends=True)
-    (out / "journal.jsonl").write_text("".join(lines[:2]) + lines[2][:40], encoding="utf-8")  # a kill while writing
+    lines = (out / "evaluations.jsonl").read_text(encoding="utf-8").splitlines(keepends=True)
+    (out / "evaluations.jsonl").write_text("".join(lines[:2]) + lines[2][:40], encoding="utf-8")  # a kill while writing
     (out / "design.json").unlink()
     with pytest.raises(InputError, match="holds an unfinished search"):
         design(path, str(out), False, False)
     design(path, str(out), False, True)
     assert "(known)" in capsys.readouterr().out
-    assert [record["x"] for record in read_records(out / "journal.jsonl")] == [json.loads(line)["x"] for line in lines]
+    assert [record["x"] for record in read_records(out / "evaluations.jsonl")] == [
+        json.loads(line)["x"] for line in lines
+    ]
     again = json.loads((out / "design.json").read_text(encoding="utf-8"))
     assert again["found"] == said["found"]
 

@@ -17,7 +17,7 @@ from coilset.model.standards.wires.law import case_law
 from coilset.model.warning import Warning
 from coilset.scripts.solve import solve
 
-COARSE = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9"]
+COARSE = ["mesh.elements_per_turn=10", "mesh.section.rule=abramowitz9"]
 LIFTED = "loading=[{to: {travel: 8}, steps: 4}, {to: {force: 0}, steps: 2}, {to: {travel: 0}, steps: 2}]"
 
 
