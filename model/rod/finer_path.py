@@ -59,8 +59,10 @@ class FinerPath:
         start = {name: field.equilibrium for name, field in self._fields.items()} | {"strain": strain.equilibrium}
         middle = strain.equilibrium + 0.5 * change + bend
         end = {name: field.trial for name, field in self._fields.items()}
-        good = self._sections.update(middle, start, self._half, self._s, self._D)
-        good = good and self._sections.update(strain.trial, self._half | {"strain": middle}, end, self._s, self._D)
+        good = self._sections.update(middle, start, self._half, self._s, self._D, False)
+        good = good and self._sections.update(
+            strain.trial, self._half | {"strain": middle}, end, self._s, self._D, False
+        )
         if good:
             self._error.trial[:] = RICHARDSON * (self._s - s)
         else:

@@ -82,8 +82,9 @@ class WarpingSections:
         trial: dict[str, np.ndarray],
         s: np.ndarray,
         D: np.ndarray,
+        with_tangent: bool = True,
     ) -> bool:
-        """Bring all sections to the end of the increment; as `PlaneSections.update`."""
+        """Bring all sections to the end of the increment; as `PlaneSections.update`, but always with the tangent."""
         place = self.placement
         status = update_sections(
             self.parameters, *self.points, self.weights, self.radius, place.curvature, place.torsion,
