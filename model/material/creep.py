@@ -31,7 +31,8 @@ import numpy as np
 from numba import njit
 
 from coilset.model.material.creep_flow import POWER, TEMPERATURE, TIME, direction, equivalent, flow, rate
-from coilset.model.material.functions import KERNEL, elasticity
+from coilset.model.material.functions import elasticity
+from coilset.model.material.kernel import KERNEL
 from coilset.model.material.rod import return_map as rod_return_map
 from coilset.model.material.solid import return_map as solid_return_map
 

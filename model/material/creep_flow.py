@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
-from coilset.model.material.functions import KERNEL
+from coilset.model.material.kernel import KERNEL
 
 # The array of creep. TIME: the increment of t, or of t^p for time hardening; POWER: p, or 1; FORM: 0 power law, 1 sinh;
 # STRAIN, STRESS, EXPONENT: c₀, σ₀ in N/mm², N; TEMPERATURE: at the increment's end, K.

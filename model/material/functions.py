@@ -10,10 +10,8 @@ import math
 import numpy as np
 from numba import njit
 
-# How the kernels are compiled: no checks of divisors, multiply-add contracted; the inner ones are put into their
-# caller.
-KERNEL = {"cache": True, "error_model": "numpy", "fastmath": {"contract"}}
-INLINE = KERNEL | {"forceinline": True}
+from coilset.model.material.exponential import exp
+from coilset.model.material.kernel import INLINE, KERNEL
 
 # k², ∂k²/∂b*, ζ, ∂ζ/∂b*, κ, ∂κ/∂b*.
 Functions = tuple[float, float, float, float, float, float]
@@ -62,21 +60,43 @@ def row_functions(p: np.ndarray, o: int, b: float) -> Functions:
     """k², ∂k²/∂b*, ζ, ∂ζ/∂b*, κ, ∂κ/∂b* of the temperature whose row starts at `o` of `p`, (6.2.2)."""
     if p[o + NODES] > 0.0:
         k2, dk2 = curve(p, o, b)
-    elif b < p[o + B1]:
-        e = math.exp(-p[o + A3] * b)
-        k2 = p[o + K0] + p[o + A1] * (1.0 + p[o + A2] * b - e)
-        dk2 = p[o + A1] * (p[o + A2] + p[o + A3] * e)
     else:
-        e = (p[o + KINF] - p[o + K1]) * math.exp(-p[o + A4] * (b - p[o + B1]))
-        k2 = p[o + KINF] - e
-        dk2 = p[o + A4] * e
+        k2, dk2 = hardening(p, o, b)
+    return with_deviation(p, o, b, k2, dk2)
+
+
+@njit(**INLINE)
+def row_constants(p: np.ndarray, o: int, b: float) -> Functions:
+    """As `row_functions` where k² has constants and no curve: loops over points can take several of them at once."""
+    k2, dk2 = hardening(p, o, b)
+    return with_deviation(p, o, b, k2, dk2)
+
+
+@njit(**INLINE)
+def hardening(p: np.ndarray, o: int, b: float) -> tuple[float, float]:
+    """k² and ∂k²/∂b* by the constants of (6.2.2)."""
+    # all constants are read before anything branches, so that loops over points can take several of them at once
+    k0, a1, a2, a3, b1 = p[o + K0], p[o + A1], p[o + A2], p[o + A3], p[o + B1]
+    k1, kinf, a4 = p[o + K1], p[o + KINF], p[o + A4]
+    first = b < b1
+    e = exp(-a3 * b if first else -a4 * (b - b1))
+    rest = (kinf - k1) * e
+    low, high = k0 + a1 * (1.0 + a2 * b - e), kinf - rest
+    low_slope, high_slope = a1 * (a2 + a3 * e), a4 * rest
+    return low if first else high, low_slope if first else high_slope
+
+
+@njit(**INLINE)
+def with_deviation(p: np.ndarray, o: int, b: float, k2: float, dk2: float) -> Functions:
+    """All functions, from k² and its slope."""
+    a5, a6, a7 = p[o + A5], p[o + A6], p[o + A7]
     zeta = 0.0
     dzeta = 0.0
-    if p[o + A5] != 0.0:
-        e = p[o + A7] * math.exp(-p[o + A7] * b)
+    if a5 != 0.0:
+        e = a7 * exp(-a7 * b)
         root = math.sqrt(6.0 * k2)
-        zeta = p[o + A5] * (p[o + A6] + e) * root
-        dzeta = p[o + A5] * (3.0 * (p[o + A6] + e) * dk2 / root - p[o + A7] * e * root)
+        zeta = a5 * (a6 + e) * root
+        dzeta = a5 * (3.0 * (a6 + e) * dk2 / root - a7 * e * root)
     kappa = p[o + KAPPA] * b * b * b
     return k2, dk2, zeta, dzeta, kappa, 3.0 * p[o + KAPPA] * b * b
 

@@ -19,7 +19,6 @@ from numba import njit
 from coilset.model.material.functions import (
     CHANGE,
     HEATING,
-    KERNEL,
     SPIN,
     TEMPERATURE,
     TOLERANCE,
@@ -28,6 +27,7 @@ from coilset.model.material.functions import (
     inside_table,
     thermal_slope,
 )
+from coilset.model.material.kernel import KERNEL
 from coilset.model.material.local import TOO_HOT, yield_crossing
 
 MAX_SUBSTEPS = 20000

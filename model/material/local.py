@@ -41,7 +41,9 @@ from collections import namedtuple
 import numpy as np
 from numba import njit
 
-from coilset.model.material.functions import CHANGE, INLINE, KERNEL, Functions, functions, inside_table
+from coilset.model.material.exponential import expm1
+from coilset.model.material.functions import CHANGE, Functions, functions, inside_table
+from coilset.model.material.kernel import INLINE, KERNEL
 
 MAX_ITERATIONS = 60
 FAILED, TOO_HOT = -1, -2  # in the place of a number of iterations; TOO_HOT: heated out of the material's table
@@ -57,6 +59,10 @@ Start = namedtuple("Start", "b temperature heating ca na ea dea cc nn ne ee")
 Group = namedtuple("Group", "s ds x dx")
 # n = φ n₀ + y e in a group, y = ψ x, and the derivatives of φ and y with respect to b* and Λ (κ if neutral).
 Turn = namedtuple("Turn", "phi y phi_b y_b phi_l y_l")
+# The residuals of the two equations (see Local), their Jacobian in (b*, Λ), and the work ½ (n₀ + n):p.
+Equations = namedtuple("Equations", "r1 r2 r1b r1l r2b r2l work")
+# Newton's correction of b* and Λ, one over the Jacobian's determinant, and r2 where r1 is made zero by Λ alone.
+Correction = namedtuple("Correction", "b multiplier inverse g")
 # The solution, and the Jacobian of the two equations (r1: n:n − k², r2: b* − b*₀ − ½ (n₀ + n):p) in (b*, Λ), or in
 # (b*, κ) if neutral, divided by its determinant; ζ at half of the increment's plastic work, dζ/db* of its end.
 Local = namedtuple("Local", "iterations neutral b multiplier zeta dzeta a c r1b r1l r2b r2l")
@@ -90,7 +96,8 @@ def yield_crossing(nn: float, ne: float, ee: float, k2: float) -> float:
 
 
 @njit(**INLINE)
-def _group(c: float, zeta: float, dzeta: float, kappa: float, dkappa: float) -> Group:
+def group(c: float, zeta: float, dzeta: float, kappa: float, dkappa: float) -> Group:
+    """s and x of a group with the modulus c; ζ and κ with their slopes in b*."""
     x = 1.0 / (1.0 + kappa * (zeta + c))
     dx = -x * x * (dkappa * (zeta + c) + kappa * dzeta)
     return Group((c + zeta) * x, dzeta * x + (c + zeta) * dx, x, dx)
@@ -99,13 +106,16 @@ def _group(c: float, zeta: float, dzeta: float, kappa: float, dkappa: float) -> 
 @njit(**INLINE)
 def _decay(z: float) -> tuple[float, float, float]:
     """φ = exp(−z), ψ = (1 − φ)/z and dψ/dz."""
-    phi = math.exp(-z)
-    if abs(z) < SMALL:  # Σ (−z)ᵏ/(k + 1)! and its derivative
-        psi = 1.0 - z / 2.0 * (1.0 - z / 3.0 * (1.0 - z / 4.0 * (1.0 - z / 5.0 * (1.0 - z / 6.0 * (1.0 - z / 7.0)))))
-        slope = -0.5 + z / 3.0 - z * z / 8.0 * (1.0 - z * 4.0 / 15.0 * (1.0 - z * 5.0 / 24.0 * (1.0 - z * 6.0 / 35.0)))
-        return phi, psi, slope
-    psi = -math.expm1(-z) / z
-    return phi, psi, (phi - psi) / z
+    rest = expm1(-z)
+    phi = 1.0 + rest
+    # Σ (−z)ᵏ/(k + 1)! and its derivative
+    near = 1.0 - z * (1 / 4) * (1.0 - z * (1 / 5) * (1.0 - z * (1 / 6) * (1.0 - z * (1 / 7))))
+    near = 1.0 - z * (1 / 2) * (1.0 - z * (1 / 3) * near)
+    slope = 1.0 - z * (4 / 15) * (1.0 - z * (5 / 24) * (1.0 - z * (6 / 35)))
+    slope = -0.5 + z * (1 / 3) - z * z * (1 / 8) * slope
+    inverse = 1.0 / z
+    psi = near if abs(z) < SMALL else -rest * inverse
+    return phi, psi, slope if abs(z) < SMALL else (phi - psi) * inverse
 
 
 @njit(**INLINE)
@@ -119,6 +129,12 @@ def turn(g: Group, multiplier: float, neutral: bool = False) -> Turn:
 
 
 @njit(**INLINE)
+def turn_at_rest(g: Group) -> Turn:
+    """`turn` at Λ = 0."""
+    return Turn(1.0, g.x, 0.0, g.dx, -g.s, -0.5 * g.s * g.x)
+
+
+@njit(**INLINE)
 def _square(t: Turn, nn: float, ne: float, ee: float) -> tuple[float, float]:
     """A group's n:n, and its derivative in Λ."""
     left, right = t.phi * nn + t.y * ne, t.phi * ne + t.y * ee  # n:n₀, n:e
@@ -128,17 +144,26 @@ def _square(t: Turn, nn: float, ne: float, ee: float) -> tuple[float, float]:
 @njit(**INLINE)
 def _multiplier(ga: Group, gc: Group, a: Products, c: Products, k2: float, start: float, precision: float) -> float:
     """Root Λ of n:n = k² at given s, x of both groups; a, c: their inner products n₀:n₀, n₀:e, e:e."""
-    unit = 1.0 / max(ga.s, gc.s)
-    multiplier = max(start, -unit)
+    multiplier = max(start, -1.0 / max(ga.s, gc.s))
     for _ in range(MAX_ITERATIONS):
-        ya, la = _square(turn(ga, multiplier), *a)
-        yc, lc = _square(turn(gc, multiplier), *c)
-        y, slope = ya + yc, la + lc
+        y, closer = nearer(ga, gc, turn(ga, multiplier), turn(gc, multiplier), a, c, k2, multiplier)
         if abs(y - k2) < 2.0 * precision * k2:
             break
-        step = -2.0 * y * (math.sqrt(y / k2) - 1.0) / slope if slope < 0.0 else unit  # Newton for 1/|n| = 1/k
-        multiplier = max(multiplier + step, 0.5 * (multiplier - unit))
+        multiplier = closer
     return multiplier
+
+
+@njit(**INLINE)
+def nearer(
+    ga: Group, gc: Group, ta: Turn, tc: Turn, a: Products, c: Products, k2: float, multiplier: float
+) -> tuple[float, float]:
+    """n:n of both groups' turns at Λ = `multiplier`, and a Λ nearer to the root of n:n = k²."""
+    ya, la = _square(ta, *a)
+    yc, lc = _square(tc, *c)
+    y, slope = ya + yc, la + lc
+    unit = 1.0 / max(ga.s, gc.s)
+    step = -2.0 * y * (math.sqrt(y / k2) - 1.0) / slope if slope < 0.0 else unit  # Newton for 1/|n| = 1/k
+    return y, max(multiplier + step, 0.5 * (multiplier - unit))
 
 
 @njit(**INLINE)
@@ -167,27 +192,55 @@ def _group_terms(
 
 
 @njit(**INLINE)
-def _equations(
-    start: Start, values: Functions, middle: Functions, ga: Group, gc: Group, b: float, multiplier: float
-) -> tuple[float, ...]:
-    """Residuals n:n − k² and b* − b*₀ − ½ (n₀ + n):p, their Jacobian in (b*, Λ), Λ, and the work ½ (n₀ + n):p.
+def axial_products(start: Start, b: float) -> Products:
+    """n₀:n₀, n₀:e, e:e of group a."""
+    ea = start.ea + start.dea * (b - start.b)
+    return 1.5 * start.na * start.na, 1.5 * start.na * ea, 1.5 * ea * ea
 
-    Λ is made coarsely right first. `values` are the material functions at the end, `middle` half way, with their slopes
-    in the end's b*.
+
+@njit(**INLINE)
+def equations(start: Start, values: Functions, middle: Functions, ta: Turn, tc: Turn, b: float) -> Equations:
+    """The two equations, n:n − k² and b* − b*₀ − ½ (n₀ + n):p, at b* and at the Λ of both groups' turns.
+
+    `values` are the material functions at the end, `middle` half way, with their slopes in the end's b*.
     """
-    k2, dk2 = values[0], values[1]
     zeta, dzeta = middle[2], middle[3]
-    na, ea = start.na, start.ea + start.dea * (b - start.b)
-    a = (1.5 * na * na, 1.5 * na * ea, 1.5 * ea * ea)
-    c = (start.nn, start.ne, start.ee)
-    if b > start.b:
-        multiplier = _multiplier(ga, gc, a, c, k2, multiplier, COARSE)
-    slopes = (1.5 * na * start.dea, 3.0 * ea * start.dea)
-    nna, nnab, nnal, wa, wab, wal = _group_terms(turn(ga, multiplier), start.ca, zeta, dzeta, a, slopes)
-    nnc, nncb, nncl, wc, wcb, wcl = _group_terms(turn(gc, multiplier), start.cc, zeta, dzeta, c, (0.0, 0.0))
-    work = wa + wc
-    r1, r2 = nna + nnc - k2, b - start.b - work
-    return r1, r2, nnab + nncb - dk2, nnal + nncl, 1.0 - wab - wcb, -wal - wcl, multiplier, work
+    a, c = axial_products(start, b), (start.nn, start.ne, start.ee)
+    slopes = (1.5 * start.na * start.dea, 3.0 * (start.ea + start.dea * (b - start.b)) * start.dea)
+    nna, nnab, nnal, wa, wab, wal = _group_terms(ta, start.ca, zeta, dzeta, a, slopes)
+    nnc, nncb, nncl, wc, wcb, wcl = _group_terms(tc, start.cc, zeta, dzeta, c, (0.0, 0.0))
+    r1, r2 = nna + nnc - values[0], b - start.b - wa - wc
+    return Equations(r1, r2, nnab + nncb - values[1], nnal + nncl, 1.0 - wab - wcb, -wal - wcl, wa + wc)
+
+
+@njit(**INLINE)
+def correction(at: Equations) -> Correction:
+    """Newton's correction."""
+    g = at.r2 - at.r2l * at.r1 / at.r1l
+    inverse = 1.0 / (at.r1b * at.r2l - at.r1l * at.r2b)  # positive as r1l < 0 where dg/db* is
+    b = (at.r1l * at.r2 - at.r2l * at.r1) * inverse
+    return Correction(b, (at.r2b * at.r1 - at.r1b * at.r2) * inverse, inverse, g)
+
+
+@njit(**INLINE)
+def is_last(start: Start, k2: float, at: Equations, newton: Correction, b: float) -> bool:
+    """Does this correction end the iteration? What it leaves is of the order FINE²."""
+    # the second term is the rounding of b* and of n:(n_trial − n)
+    small = abs(newton.g) <= FINE * at.work + 1e-15 * (b + k2 / start.cc)
+    return small & (abs(at.r1) <= FINE * k2) & (newton.inverse > 0.0)
+
+
+@njit(**INLINE)
+def corrected(g: Group, step: float) -> Group:
+    """A group after b* has changed by the last correction."""
+    return Group(g.s + g.ds * step, g.ds, g.x + g.dx * step, g.dx)
+
+
+@njit(**INLINE)
+def halved(values: Functions) -> Functions:
+    """Material functions half way, with their slopes in the end's b*."""
+    k2, dk2, zeta, dzeta, kappa, dkappa = values
+    return k2, 0.5 * dk2, zeta, 0.5 * dzeta, kappa, 0.5 * dkappa
 
 
 @njit(**INLINE)
@@ -195,8 +248,7 @@ def _half_way(p: np.ndarray, start: Start, b: float) -> Functions:
     """The material functions at half of the plastic work, their slopes those in the end's b*."""
     half = 0.5 * (b - start.b)
     temperature = start.temperature - 0.5 * p[CHANGE] + start.heating * half
-    k2, dk2, zeta, dzeta, kappa, dkappa = functions(p, start.b + half, temperature)
-    return k2, 0.5 * dk2, zeta, 0.5 * dzeta, kappa, 0.5 * dkappa
+    return halved(functions(p, start.b + half, temperature))
 
 
 @njit(**KERNEL)
@@ -245,8 +297,7 @@ def _neutral(p: np.ndarray, start: Start, values: Functions) -> Local:
 @njit(**KERNEL)
 def _frozen(start: Start, values: Functions, ga: Group, gc: Group) -> Local:
     """On the edge of the cone spin can make the work negative by a trifle: b* is kept, only n:n = k² solved."""
-    a = (1.5 * start.na * start.na, 1.5 * start.na * start.ea, 1.5 * start.ea * start.ea)
-    c = (start.nn, start.ne, start.ee)
+    a, c = axial_products(start, start.b), (start.nn, start.ne, start.ee)
     multiplier = _multiplier(ga, gc, a, c, values[0], 0.0, 1e-15)
     slope = _square(turn(ga, multiplier), *a)[1] + _square(turn(gc, multiplier), *c)[1]
     ga, gc = Group(ga.s, 0.0, ga.x, 0.0), Group(gc.s, 0.0, gc.x, 0.0)
@@ -280,36 +331,36 @@ def solve(p: np.ndarray, start: Start, values: Functions) -> Local:
         middle = _half_way(p, start, b)
         if not (values[0] > 0.0 and middle[0] > 0.0):
             break
-        ga = _group(start.ca, middle[2], middle[3], middle[4], middle[5])
-        gc = _group(start.cc, middle[2], middle[3], middle[4], middle[5])
-        r1, r2, r1b, r1l, r2b, r2l, multiplier, work = _equations(start, values, middle, ga, gc, b, multiplier)
-        g = r2 - r2l * r1 / r1l
-        inverse = 1.0 / (r1b * r2l - r1l * r2b)  # positive as r1l < 0 where dg/db* is
-        step = (r1l * r2 - r2l * r1) * inverse
-        follow = (r2b * r1 - r1b * r2) * inverse
-        if iteration == 1 and r1 < 0.0:
+        ga = group(start.ca, middle[2], middle[3], middle[4], middle[5])
+        gc = group(start.cc, middle[2], middle[3], middle[4], middle[5])
+        if b > start.b:
+            c = (start.nn, start.ne, start.ee)
+            multiplier = _multiplier(ga, gc, axial_products(start, b), c, values[0], multiplier, COARSE)
+        at = equations(start, values, middle, turn(ga, multiplier), turn(gc, multiplier), b)
+        newton = correction(at)
+        step, inverse = newton.b, newton.inverse
+        if iteration == 1 and at.r1 < 0.0:
             return _neutral(p, start, values)
-        if iteration == 1 and g > 0.0:
+        if iteration == 1 and newton.g > 0.0:
             return _frozen(start, values, ga, gc)
-        # The second term is the rounding of b* and of n:(n_trial − n).
-        if abs(g) <= FINE * work + 1e-15 * (b + values[0] / start.cc) and abs(r1) <= FINE * values[0] and inverse > 0.0:
+        if is_last(start, values[0], at, newton, b):
             if start.heating > 0.0 and not inside_table(p, start.temperature + start.heating * (b - start.b)):
                 return _failed(start, TOO_HOT)
-            # The last Newton step is taken in everything: what it leaves is of the order FINE².
+            # The last Newton step is taken in everything.
             return Local(
-                iteration, False, b + step, multiplier + follow, middle[2] + middle[3] * step, middle[3],
-                Group(ga.s + ga.ds * step, ga.ds, ga.x + ga.dx * step, ga.dx),
-                Group(gc.s + gc.ds * step, gc.ds, gc.x + gc.dx * step, gc.dx),
-                r1b * inverse, r1l * inverse, r2b * inverse, r2l * inverse,
+                iteration, False, b + step, multiplier + newton.multiplier, middle[2] + middle[3] * step, middle[3],
+                corrected(ga, step), corrected(gc, step),
+                at.r1b * inverse, at.r1l * inverse, at.r2b * inverse, at.r2l * inverse,
             )  # fmt: skip
-        if abs(g) > 10.0 * COARSE * work or abs(r1) <= FINE * values[0]:  # else Λ is too coarse for a sure sign
-            if g < 0.0:
+        # else Λ is too coarse for a sure sign
+        if abs(newton.g) > 10.0 * COARSE * at.work or abs(at.r1) <= FINE * values[0]:
+            if newton.g < 0.0:
                 low = b
             else:
                 high = b
         # Newton, unless it leaves the bracket or swings to and fro across a bend.
         if inverse > 0.0 and low < b + step < high and (step * last > 0.0 or abs(step) <= 0.5 * abs(last)):
-            multiplier += follow
+            multiplier += newton.multiplier
         else:
             step = 0.5 * (low + high) - b
         last = step

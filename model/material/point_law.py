@@ -8,14 +8,24 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import types
+from numba import njit, types
 from numba.extending import overload
 
-from coilset.model.material import creep, rod, solid
+from coilset.model.material import creep, solid
+from coilset.model.material.kernel import KERNEL
+from coilset.model.material.rod_points import return_map_points
 
 
-def rod_point(law: Any, old: np.ndarray, de11: float, dg12: float, dg13: float, new: np.ndarray, C: np.ndarray) -> int:
-    """One increment of the rod's law; arguments as in `rod.return_map`, or a Creeping in the place of the array."""
+def rod_points(
+    law: Any,
+    old: np.ndarray,
+    de: np.ndarray,
+    new: np.ndarray,
+    tangent: np.ndarray,
+    with_tangent: bool,
+    count: np.ndarray,
+) -> bool:
+    """One increment of the rod's law at many points, as `rod_points.return_map_points`, or with a Creeping."""
     raise NotImplementedError("only compiled loops call it")
 
 
@@ -25,11 +35,30 @@ def solid_point(law: Any, old: np.ndarray, dD: np.ndarray, new: np.ndarray, C: n
 
 
 # strict: would compare annotations, which a lambda has not
-@overload(rod_point, strict=False, inline="always")
-def _rod_point(law: Any, old: Any, de11: Any, dg12: Any, dg13: Any, new: Any, C: Any) -> Callable[..., int]:
+@overload(rod_points, strict=False)
+def _rod_points(
+    law: Any, old: Any, de: Any, new: Any, tangent: Any, with_tangent: Any, count: Any
+) -> Callable[..., bool]:
     if not isinstance(law, types.BaseNamedTuple):
-        return lambda law, old, de11, dg12, dg13, new, C: rod.return_map(law, old, de11, dg12, dg13, new, C)
-    return lambda law, old, de11, dg12, dg13, new, C: creep.rod_map(law, old, de11, dg12, dg13, new, C)
+        return lambda law, old, de, new, tangent, with_tangent, count: return_map_points(
+            law, old, de, new, tangent, with_tangent, count
+        )
+    return lambda law, old, de, new, tangent, with_tangent, count: creep_points(law, old, de, new, tangent, count)
+
+
+@njit(**KERNEL)
+def creep_points(
+    law: creep.Creeping, old: np.ndarray, de: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
+) -> bool:
+    """One increment over time at many points, one after the other."""
+    good, c = True, np.empty((3, 3))
+    for k in range(old.shape[0]):
+        count[k] = creep.rod_map(law, old[k], de[0, k], de[1, k], de[2, k], new[k], c)
+        good = good and count[k] >= 0
+        for i in range(3):
+            for j in range(3):
+                tangent[3 * i + j, k] = c[i, j]
+    return good
 
 
 @overload(solid_point, strict=False, inline="always")

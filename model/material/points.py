@@ -8,11 +8,12 @@ import numpy as np
 from numba import njit
 
 from coilset.meshes.errors import InputError, SolveError
-from coilset.model.material.functions import CHANGE, KERNEL, TOLERANCE
+from coilset.model.material.functions import CHANGE, TOLERANCE
 from coilset.model.material.heun import rod_heun, solid_heun
+from coilset.model.material.kernel import KERNEL
 from coilset.model.material.law import Law
 from coilset.model.material.local import FAILED, TOO_HOT
-from coilset.model.material.rod import return_map as rod_return_map
+from coilset.model.material.rod_points import return_map_points
 from coilset.model.material.solid import return_map as solid_return_map
 
 INTEGRATORS = ("return_mapping", "heun")
@@ -24,9 +25,11 @@ SMALLEST_SUBSTEP = 1e-9
 def _rod_return_map(
     p: np.ndarray, state: np.ndarray, increments: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
 ) -> None:
+    by_rows = np.empty((9, state.shape[0]))
+    return_map_points(p, state, increments.T.copy(), new, by_rows, True, count)
     for i in range(state.shape[0]):
-        de = increments[i]
-        count[i] = rod_return_map(p, state[i], de[0], de[1], de[2], new[i], tangent[i])
+        for k in range(9):
+            tangent[i, k // 3, k % 3] = by_rows[k, i]
 
 
 @njit(**KERNEL)

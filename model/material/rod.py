@@ -13,20 +13,22 @@ from numba import njit
 from coilset.model.material.functions import (
     CHANGE,
     HEATING,
-    INLINE,
-    KERNEL,
     SPIN,
     TEMPERATURE,
     Functions,
     elasticity,
     functions,
 )
-from coilset.model.material.local import Start, solve, surface, turn, yield_crossing
+from coilset.model.material.kernel import INLINE, KERNEL
+from coilset.model.material.local import Local, Start, solve, surface, turn, yield_crossing
 from coilset.model.material.spin import WHOLE, Crossing, Vector, spun
 
 # Where the increment starts, and by columns how its spin changes that with ε11, γ12, γ13.
 Point = namedtuple("Point", "stress back spin_stress spin_back")
 NOTHING = (0.0, 0.0, 0.0)
+# Where the plastic part of an increment starts: elastic fraction before it, n₀:e − ½Δk² there, n₀, e of the whole
+# increment, and the Start.
+Beginning = namedtuple("Beginning", "beta crossing n0 whole start")
 # The plastic part of an increment: elastic fraction before it, n₀:e − ½Δk² where it starts, e of the whole increment
 # and of the plastic part, n at its end, p, m = 1/(c + ζ) by component, and the Turns of both groups.
 Plastic = namedtuple("Plastic", "local beta crossing n0 whole e n p m a c heating dea")
@@ -35,26 +37,27 @@ Gradients = namedtuple("Gradients", "bn be ln le db dl")
 
 
 @njit(**INLINE)
-def _inner(a: Vector, b: Vector) -> float:
+def inner(a: Vector, b: Vector) -> float:
     """n:m of two deviators (5.2.28)."""
     return 1.5 * a[0] * b[0] + 2.0 * (a[1] * b[1] + a[2] * b[2])
 
 
 @njit(**INLINE)
-def _active(s: Vector, b: Vector) -> Vector:
+def active(s: Vector, b: Vector) -> Vector:
+    """n of a stress and a back stress."""
     return (s[0] / 1.5 - b[0], s[1] - b[1], s[2] - b[2])
 
 
 @njit(**INLINE)
 def _crossing(s: Vector, B: Vector, k2: float, E: float, G: float, e: Vector) -> Crossing:
     """Where Hooke's law alone leads out of the yield surface; e is the increment of the active deviator."""
-    n = _active(s, B)
-    nn, ne, ee = _inner(n, n), _inner(n, e), _inner(e, e)
+    n = active(s, B)
+    nn, ne, ee = inner(n, n), inner(n, e), inner(e, e)
     if nn + 2.0 * ne + ee <= k2 * (1.0 + 1e-12):
         return WHOLE
     beta = yield_crossing(nn, ne, ee, k2)
     at = _add(n, _scaled(e, beta))
-    slope = _inner(at, e)
+    slope = inner(at, e)
     if beta <= 0.0 or beta >= 1.0 or slope <= 0.0:
         return Crossing(beta, NOTHING)
     f = -beta / slope
@@ -99,9 +102,9 @@ def return_map(
     point = _start(p, old, values[0], E, G, de11, dg12, dg13)
     s = (point.stress[0] + E * de11, point.stress[1] + G * dg12, point.stress[2] + G * dg13)
     _elastic(old, s, point, E, G, new, C)
-    n0 = _active(point.stress, point.back)
-    trial = _active(s, point.back)
-    if _inner(trial, trial) <= values[0] * (1.0 + 1e-12):
+    n0 = active(point.stress, point.back)
+    trial = active(s, point.back)
+    if inner(trial, trial) <= values[0] * (1.0 + 1e-12):
         return 0
 
     e = (E * de11 / 1.5, G * dg12, G * dg13)
@@ -154,33 +157,57 @@ def _plastic(
     e: Vector,
     values: Functions,
 ) -> Plastic:
-    """Solve the plastic part: n and p at its end, from n₀ where it starts (n0 + β e) with e reduced to it."""
+    """Solve the plastic part: n and p at its end."""
     k2, growth = surface(p, b, temperature, values[0])
-    ne = _inner(n0, e) - 0.5 * growth
-    ee = _inner(e, e)
-    beta = yield_crossing(_inner(n0, n0), ne, ee, k2)
+    beginning = begin(b, temperature, heating, alpha, E, G, n0, e, k2, growth)
+    local = solve(p, beginning.start, values)
+    if local.neutral:
+        heating = 0.0
+    return end(beginning, local, heating, alpha * heating)
+
+
+@njit(**INLINE)
+def begin(
+    b: float,
+    temperature: float,
+    heating: float,
+    alpha: float,
+    E: float,
+    G: float,
+    n0: Vector,
+    e: Vector,
+    k2: float,
+    growth: float,
+) -> Beginning:
+    """Where the plastic part starts: n₀ there (n0 + β e), with e reduced to it."""
+    ne = inner(n0, e) - 0.5 * growth
+    ee = inner(e, e)
+    beta = yield_crossing(inner(n0, n0), ne, ee, k2)
     n0 = (n0[0] + beta * e[0], n0[1] + beta * e[1], n0[2] + beta * e[2])
-    crossing = _inner(n0, e) - 0.5 * growth
+    crossing = inner(n0, e) - 0.5 * growth
     rest = 1.0 - beta
     ca = E / 1.5
-    cc = 2.0 * G
-    dea = -ca * alpha * heating
-    local = solve(p, Start(
-        b, temperature, heating, ca, n0[0], rest * e[0], dea, cc,
+    start = Start(
+        b, temperature, heating, ca, n0[0], rest * e[0], -ca * alpha * heating, 2.0 * G,
         2.0 * (n0[1] * n0[1] + n0[2] * n0[2]),
         2.0 * rest * (n0[1] * e[1] + n0[2] * e[2]),
         2.0 * rest * rest * (e[1] * e[1] + e[2] * e[2]),
-    ), values)  # fmt: skip
-    if local.neutral:
-        heating, dea = 0.0, 0.0
-    whole = e
-    e = (rest * e[0] + dea * (local.b - b), rest * e[1], rest * e[2])
+    )  # fmt: skip
+    return Beginning(beta, crossing, n0, e, start)
+
+
+@njit(**INLINE)
+def end(beginning: Beginning, local: Local, heating: float, expansion: float) -> Plastic:
+    """n and p at the end of the plastic part; `expansion` is thermal strain per b*."""
+    n0, e, start = beginning.n0, beginning.whole, beginning.start
+    rest, dea = 1.0 - beginning.beta, -start.ca * expansion
+    e = (rest * e[0] + dea * (local.b - start.b), rest * e[1], rest * e[2])
     a, c = turn(local.a, local.multiplier, local.neutral), turn(local.c, local.multiplier, local.neutral)
-    ma, mc = 1.0 / (ca + local.zeta), 1.0 / (cc + local.zeta)
+    ma, mc = 1.0 / (start.ca + local.zeta), 1.0 / (start.cc + local.zeta)
     m = (ma, mc, mc)
     n = _add(_times((a.phi, c.phi, c.phi), n0), _times((a.y, c.y, c.y), e))
     pl = _times(m, (n0[0] + e[0] - n[0], n0[1] + e[1] - n[1], n0[2] + e[2] - n[2]))
-    return Plastic(local, beta, crossing, n0, whole, e, n, pl, m, a, c, heating, dea)
+    return Plastic(local, beginning.beta, beginning.crossing, n0, beginning.whole, e, n, pl, m, a, c, heating, dea)
 
 
 @njit(**INLINE)
@@ -201,13 +228,34 @@ def _scaled(a: Vector, f: float) -> Vector:
 @njit(**INLINE)
 def _tangent(plastic: Plastic, point: Point, E: float, G: float, expansion: float, C: np.ndarray) -> None:
     """Subtract from the elastic tangent in C what the plastic strain takes; `expansion` is thermal strain per b*."""
+    axial = active(point.spin_stress[0], point.spin_back[0])
+    first = active(point.spin_stress[1], point.spin_back[1])
+    second = active(point.spin_stress[2], point.spin_back[2])
+    taken = softening(plastic, axial, first, second, E, G, expansion)
+    for i in range(3):
+        C[i, 0] -= taken[0][i]
+        C[i, 1] -= taken[1][i]
+        C[i, 2] -= taken[2][i]
+
+
+@njit(**INLINE)
+def softening(
+    plastic: Plastic, axial: Vector, first: Vector, second: Vector, E: float, G: float, expansion: float
+) -> tuple[Vector, Vector, Vector]:
+    """What the plastic strain takes off the elastic tangent, by columns.
+
+    Args:
+        plastic: the plastic part.
+        axial, first, second: change of n₀ by ε11, γ12, γ13, where the material spins.
+        E, G: moduli.
+        expansion: thermal strain per b*.
+    """
     gradients = _gradients(plastic)
-    axial = _active(point.spin_stress[0], point.spin_back[0])
-    first = _active(point.spin_stress[1], point.spin_back[1])
-    second = _active(point.spin_stress[2], point.spin_back[2])
-    _subtract(_sensitivity(plastic, gradients, axial, (E / 1.5, 0.0, 0.0)), 0, E, G, expansion, C)
-    _subtract(_sensitivity(plastic, gradients, first, (0.0, G, 0.0)), 1, E, G, expansion, C)
-    _subtract(_sensitivity(plastic, gradients, second, (0.0, 0.0, G)), 2, E, G, expansion, C)
+    return (
+        _stress(_sensitivity(plastic, gradients, axial, (E / 1.5, 0.0, 0.0)), E, G, expansion),
+        _stress(_sensitivity(plastic, gradients, first, (0.0, G, 0.0)), E, G, expansion),
+        _stress(_sensitivity(plastic, gradients, second, (0.0, 0.0, G)), E, G, expansion),
+    )
 
 
 @njit(**INLINE)
@@ -244,11 +292,11 @@ def _sensitivity(plastic: Plastic, g: Gradients, dn: Vector, de: Vector) -> tupl
     trial = _add(dn, de)
     if plastic.beta > 0.0 and plastic.crossing > 0.0:
         dn = _add(dn, _scaled(de, plastic.beta))
-        dbeta = -_inner(plastic.n0, dn) / plastic.crossing  # of |n₀ + β e|² = k² + β Δk²
+        dbeta = -inner(plastic.n0, dn) / plastic.crossing  # of |n₀ + β e|² = k² + β Δk²
         dn = _add(dn, _scaled(plastic.whole, dbeta))
         de = _add(trial, _scaled(dn, -1.0))
-    b = _inner(g.bn, dn) + _inner(g.be, de)
-    multiplier = _inner(g.ln, dn) + _inner(g.le, de)
+    b = inner(g.bn, dn) + inner(g.be, de)
+    multiplier = inner(g.ln, dn) + inner(g.le, de)
     phi, y = _by_component(plastic.a.phi, plastic.c.phi), _by_component(plastic.a.y, plastic.c.y)
     end = _add(_times(phi, dn), _times(y, de))
     end = _add(end, _add(_scaled(g.db, b), _scaled(g.dl, multiplier)))
@@ -258,8 +306,7 @@ def _sensitivity(plastic: Plastic, g: Gradients, dn: Vector, de: Vector) -> tupl
 
 
 @njit(**INLINE)
-def _subtract(change: tuple[Vector, float], j: int, E: float, G: float, expansion: float, C: np.ndarray) -> None:
+def _stress(change: tuple[Vector, float], E: float, G: float, expansion: float) -> Vector:
+    """Stress that a change of the plastic strain and of b* takes."""
     p, b = change
-    C[0, j] -= E * (p[0] + expansion * b)
-    C[1, j] -= 2.0 * G * p[1]
-    C[2, j] -= 2.0 * G * p[2]
+    return (E * (p[0] + expansion * b), 2.0 * G * p[1], 2.0 * G * p[2])

@@ -12,7 +12,8 @@ Either the caller works in such a frame, or it rotates the point's state by the 
 import numpy as np
 from numba import njit
 
-from coilset.model.material.functions import CHANGE, HEATING, INLINE, KERNEL, TEMPERATURE, elasticity, functions
+from coilset.model.material.functions import CHANGE, HEATING, TEMPERATURE, elasticity, functions
+from coilset.model.material.kernel import INLINE, KERNEL
 from coilset.model.material.local import Local, Start, Turn, solve, surface, turn, yield_crossing
 
 Six = tuple[float, float, float, float, float, float]  # components 11, 22, 33, 12, 13, 23

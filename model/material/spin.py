@@ -25,7 +25,7 @@ from collections import namedtuple
 
 from numba import njit
 
-from coilset.model.material.functions import INLINE
+from coilset.model.material.kernel import INLINE
 
 Vector = tuple[float, float, float]
 Columns = tuple[Vector, Vector, Vector]

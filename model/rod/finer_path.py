@@ -67,8 +67,8 @@ class FinerPath:
             start, end = start | {"clock": clock.equilibrium}, end | {"clock": clock.trial}
             half = half | {"clock": self._state["halfway_clock"].trial}
         middle = strain.equilibrium + 0.5 * change + bend
-        good = self._sections.update(middle, start, half, self._s, self._D)
-        good = good and self._sections.update(strain.trial, half | {"strain": middle}, end, self._s, self._D)
+        good = self._sections.update(middle, start, half, self._s, self._D, False)
+        good = good and self._sections.update(strain.trial, half | {"strain": middle}, end, self._s, self._D, False)
         if good:
             self._error.trial[:] = RICHARDSON * (self._s - s)
         else:

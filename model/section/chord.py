@@ -22,12 +22,15 @@ def to_chord(
     work: np.ndarray,
     s: np.ndarray,
     D: np.ndarray,
+    with_tangent: bool = True,
 ) -> None:
-    """s = Pᵀ s_true ds/dx, D = Pᵀ D_true P ds/dx; `work` is 6 × 6."""
+    """s = Pᵀ s_true ds/dx and, if `with_tangent`, D = Pᵀ D_true P ds/dx; `work` is 6 × 6."""
     for i in range(6):
         s[i] = 0.0
         for k in range(6):
             s[i] += P[k, i] * resultant[k] * stretch
+    if not with_tangent:
+        return
     for i in range(6):
         for j in range(6):
             work[i, j] = 0.0

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
-from coilset.model.material.functions import KERNEL
+from coilset.model.material.kernel import KERNEL
 from coilset.model.material.point_law import solid_point
 
 # A change of the warping, a strain, that ends the iteration. What it would change in the resultants is added to them,

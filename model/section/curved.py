@@ -22,10 +22,10 @@ from collections.abc import Mapping
 import numpy as np
 from numba import njit
 
-from coilset.model.material.functions import INLINE
-from coilset.model.material.point_law import rod_point
+from coilset.model.material.kernel import INLINE, KERNEL
 from coilset.model.section.chord import to_chord, to_section
-from coilset.model.section.plane import PlaneSections
+from coilset.model.section.integration import SHAPE, section, update_points
+from coilset.model.section.plane import PlaneSections, spoil_failed
 
 WARPING = 3.0 / 7.0  # of the transverse shear strain
 LEVEL = 2.0 / 3.0  # ρ² where the warping vanishes
@@ -41,14 +41,14 @@ class CurvedSections(PlaneSections):
         trial: dict[str, np.ndarray],
         s: np.ndarray,
         D: np.ndarray,
+        with_tangent: bool = True,
     ) -> bool:
         """Bring all sections to the end of the increment; as `PlaneSections.update`."""
         place, law = self.placement, self.law_over_time.over(start, trial)
-        status = update_sections(
+        return bool(update_sections(
             law, self.y, self.z, self.weights, self.radius, place.curvature, strain - start["strain"],
-            place.matrices, place.stretch, start["point_state"], trial["point_state"], s, D,
-        )  # fmt: skip
-        return status == 0
+            place.matrices, place.stretch, start["point_state"], trial["point_state"], s, D, with_tangent,
+        ))  # fmt: skip
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
         """Bring the points on the wire's surface to the end of the increment; as `PlaneSections.update_surface`."""
@@ -57,47 +57,6 @@ class CurvedSections(PlaneSections):
             law, self.rim_y, self.rim_z, self.radius, place.curvature, strain - start["strain"],
             place.matrices, start["surface_state"], trial["surface_state"],
         )  # fmt: skip
-
-
-@njit(cache=True)
-def update_sections(
-    p: np.ndarray,
-    y: np.ndarray,
-    z: np.ndarray,
-    w: np.ndarray,
-    radius: np.ndarray,
-    curvature: np.ndarray,
-    de: np.ndarray,
-    placement: np.ndarray,
-    stretch: np.ndarray,
-    old: np.ndarray,
-    new: np.ndarray,
-    s: np.ndarray,
-    D: np.ndarray,
-) -> int:
-    """Bring all sections to the end of the increment; as `plane.update_sections`, and
-
-    Args:
-        curvature: κ of the wire, towards y, shape (cells, 2), 1/mm.
-    """
-    d, C = np.empty(6), np.empty((3, 3))
-    resultant, tangent, work = np.empty(6), np.empty((6, 6)), np.empty((6, 6))
-    for c in range(len(radius)):
-        R = radius[c]
-        area = math.pi * R * R
-        for g in range(2):
-            P = placement[c, g]
-            to_section(P, de[c, g], d)
-            resultant[:] = 0.0
-            tangent[:] = 0.0
-            for k in range(len(w)):
-                if not integrate_point(p, R, y[k], z[k], area * w[k], curvature[c, g] * R, d, old[c, g, k],
-                                       new[c, g, k], C, resultant, tangent):  # fmt: skip
-                    return -1
-            if not math.isfinite(resultant.sum()):
-                return -1
-            to_chord(P, stretch[c, g], resultant, tangent, work, s[c, g], D[c, g])
-    return 0
 
 
 @njit(**INLINE)
@@ -113,72 +72,54 @@ def shear_by_force(y: float, z: float, bend: float, g: float) -> tuple[float, fl
     )
 
 
-@njit(**INLINE)
-def strains(
-    y: float, z: float, g: float, shear: tuple[float, float, float, float], d: np.ndarray
-) -> tuple[float, float, float]:
-    """ε11, γ12, γ13 at y, z, mm, of the section strains `d`; `shear` as `shear_by_force` gives it."""
-    a22, a23, a32, a33 = shear
-    return (
-        (d[0] + d[4] * z - d[5] * y) / g,
-        (a22 * d[1] + a23 * d[2] - d[3] * z) / g,
-        (a32 * d[1] + a33 * d[2] + d[3] * y) / g,
-    )
+@njit(**KERNEL)
+def curved_shape(y: np.ndarray, z: np.ndarray, bend: float, shape: np.ndarray) -> None:
+    """Write g, a22, a23, a32, a33 at the points of the unit disk, shape (5, points); see `integration`."""
+    for k in range(len(y)):
+        g = 1.0 - bend * y[k]
+        a22, a23, a32, a33 = shear_by_force(y[k], z[k], bend, g)
+        shape[0, k], shape[1, k], shape[2, k], shape[3, k], shape[4, k] = g, a22, a23, a32, a33
 
 
-@njit(**INLINE)
-def integrate_point(
+@njit(**KERNEL)
+def update_sections(
     p: np.ndarray,
-    radius: float,
-    y: float,
-    z: float,
-    dA: float,
-    bend: float,
-    d: np.ndarray,
+    y: np.ndarray,
+    z: np.ndarray,
+    w: np.ndarray,
+    radius: np.ndarray,
+    curvature: np.ndarray,
+    de: np.ndarray,
+    placement: np.ndarray,
+    stretch: np.ndarray,
     old: np.ndarray,
     new: np.ndarray,
-    C: np.ndarray,
-    resultant: np.ndarray,
-    tangent: np.ndarray,
+    s: np.ndarray,
+    D: np.ndarray,
+    with_tangent: bool,
 ) -> bool:
-    """Add one point's share to the section; y, z on the unit disk, `bend` is κ r."""
-    g = 1.0 - bend * y
-    shear = shear_by_force(y, z, bend, g)
-    a22, a23, a32, a33 = shear
-    y, z = radius * y, radius * z
-    e11, g12, g13 = strains(y, z, g, shear, d)
-    if rod_point(p, old, e11, g12, g13, new, C) < 0:
-        return False
-    sigma, t2, t3 = new[0] * dA, new[1] * dA, new[2] * dA
-    resultant[0] += sigma
-    resultant[1] += t2 * a22 + t3 * a32
-    resultant[2] += t2 * a23 + t3 * a33
-    resultant[3] += t3 * y - t2 * z
-    resultant[4] += sigma * z
-    resultant[5] -= sigma * y
-    # tangent = Zᵀ C Z dA/g with Z = g ∂(ε11, γ12, γ13)/∂e; only the entries of Z that are not zero
-    dA /= g
-    for i in range(3):
-        c0, c1, c2 = C[i, 0] * dA, C[i, 1] * dA, C[i, 2] * dA
-        row1, row2, row3 = c1 * a22 + c2 * a32, c1 * a23 + c2 * a33, c2 * y - c1 * z
-        row4, row5 = c0 * z, -c0 * y
-        if i == 0:
-            rows = ((0, 1.0), (4, z), (5, -y))
-        elif i == 1:
-            rows = ((1, a22), (2, a23), (3, -z))
-        else:
-            rows = ((1, a32), (2, a33), (3, y))
-        for row, f in rows:
-            tangent[row, 0] += f * c0
-            tangent[row, 1] += f * row1
-            tangent[row, 2] += f * row2
-            tangent[row, 3] += f * row3
-            tangent[row, 4] += f * row4
-            tangent[row, 5] += f * row5
+    """Bring all sections to the end of the increment; as `plane.update_sections`, and
+
+    Args:
+        curvature: κ of the wire, towards y, shape (cells, 2), 1/mm.
+    """
+    points = len(w)
+    d, resultant, tangent, work = np.empty(6), np.empty(6), np.empty((6, 6)), np.empty((6, 6))
+    strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
+    shape = np.empty((SHAPE, points))
+    for c in range(len(radius)):
+        R = radius[c]
+        for g in range(2):
+            to_section(placement[c, g], de[c, g], d)
+            curved_shape(y, z, curvature[c, g] * R, shape)
+            if not section(p, R * y, R * z, math.pi * R * R * w, shape, d, old[c, g], new[c, g], strain, C,
+                           with_tangent, count, resultant, tangent):  # fmt: skip
+                return False
+            to_chord(placement[c, g], stretch[c, g], resultant, tangent, work, s[c, g], D[c, g], with_tangent)
     return True
 
 
-@njit(cache=True)
+@njit(**KERNEL)
 def update_surface(
     p: np.ndarray,
     y: np.ndarray,
@@ -191,14 +132,12 @@ def update_surface(
     new: np.ndarray,
 ) -> None:
     """Bring the points y, z of the unit circle to the end of the increment; arguments as in `update_sections`."""
-    d, C = np.empty(6), np.empty((3, 3))
+    points, d, shape = len(y), np.empty(6), np.empty((SHAPE, len(y)))
+    strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
     for c in range(len(radius)):
         R = radius[c]
         for g in range(2):
             to_section(placement[c, g], de[c, g], d)
-            for k in range(len(y)):
-                length = 1.0 - curvature[c, g] * R * y[k]
-                shear = shear_by_force(y[k], z[k], curvature[c, g] * R, length)
-                e11, g12, g13 = strains(R * y[k], R * z[k], length, shear, d)
-                if rod_point(p, old[c, g, k], e11, g12, g13, new[c, g, k], C) < 0:
-                    new[c, g, k, :] = math.nan
+            curved_shape(y, z, curvature[c, g] * R, shape)
+            update_points(p, R * y, R * z, shape, d, old[c, g], new[c, g], strain, C, False, count)
+            spoil_failed(count, new[c, g])

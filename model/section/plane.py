@@ -7,10 +7,10 @@ import numpy as np
 from numba import njit
 
 from coilset.meshes.placement import Placement
-from coilset.model.material.functions import INLINE
+from coilset.model.material.kernel import KERNEL
 from coilset.model.material.law import Law
-from coilset.model.material.point_law import rod_point
 from coilset.model.section.chord import to_chord, to_section
+from coilset.model.section.integration import SHAPE, section, update_points
 from coilset.model.section.law_over_time import LawOverTime
 from coilset.model.section.rules import DiskRule, rim
 
@@ -63,6 +63,7 @@ class PlaneSections:
         trial: dict[str, np.ndarray],
         s: np.ndarray,
         D: np.ndarray,
+        with_tangent: bool = True,
     ) -> bool:
         """Bring all sections to the end of the increment.
 
@@ -71,17 +72,16 @@ class PlaneSections:
             start: state at the last equilibrium, with its `strain`; not changed.
             trial: state at the end of the increment; written.
             s: written, resultants about the chords, shape (cells, 2, 6), N and N mm.
-            D: written, ds/de, shape (cells, 2, 6, 6).
+            D: written, ds/de, shape (cells, 2, 6, 6), if `with_tangent`.
 
         Returns:
             False if the law found no solution at some point or the strains are no numbers.
         """
         place, law = self.placement, self.law_over_time.over(start, trial)
-        status = update_sections(
+        return bool(update_sections(
             law, self.y, self.z, self.weights, self.radius, strain - start["strain"], place.matrices,
-            place.stretch, start["point_state"], trial["point_state"], s, D,
-        )  # fmt: skip
-        return status == 0
+            place.stretch, start["point_state"], trial["point_state"], s, D, with_tangent,
+        ))  # fmt: skip
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
         """Bring the points on the wire's surface to the end of the increment; they bear no weight in the section.
@@ -95,7 +95,15 @@ class PlaneSections:
         )  # fmt: skip
 
 
-@njit(cache=True)
+@njit(**KERNEL)
+def straight_shape(points: int) -> np.ndarray:
+    """g, a22, a23, a32, a33 of a section that stays plane in a straight wire, shape (5, points); see `integration`."""
+    shape = np.zeros((SHAPE, points))
+    shape[0, :] = shape[1, :] = shape[4, :] = 1.0
+    return shape
+
+
+@njit(**KERNEL)
 def update_sections(
     p: np.ndarray,
     y: np.ndarray,
@@ -109,7 +117,8 @@ def update_sections(
     new: np.ndarray,
     s: np.ndarray,
     D: np.ndarray,
-) -> int:
+    with_tangent: bool,
+) -> bool:
     """Bring all sections to the end of the increment.
 
     The strains of the chord axis are carried to the true section by `placement` (identity for a straight rod), the
@@ -124,89 +133,27 @@ def update_sections(
         old: state at the last equilibrium, shape (cells, 2, points, n_state); not changed.
         new: written, the state at the end of the increment.
         s: written, N, Q2, Q3 in N and Mt, M2, M3 in N mm, shape (cells, 2, 6), about the chord axis.
-        D: written, section tangent ds/de, shape (cells, 2, 6, 6).
+        D: written if `with_tangent`, section tangent ds/de, shape (cells, 2, 6, 6).
 
     Returns:
-        0, or -1 if the law found no solution at some point or the strains are no numbers: then the step must be cut.
+        False if the law found no solution at some point or the strains are no numbers: then the step must be cut.
     """
-    d = np.empty(6)
-    C = np.empty((3, 3))
-    resultant = np.empty(6)
-    tangent = np.empty((6, 6))
-    work = np.empty((6, 6))
+    points = len(w)
+    d, resultant, tangent, work = np.empty(6), np.empty(6), np.empty((6, 6)), np.empty((6, 6))
+    strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
+    shape = straight_shape(points)
     for c in range(len(radius)):
         R = radius[c]
-        area = math.pi * R * R
         for g in range(2):
-            P = placement[c, g]
-            to_section(P, de[c, g], d)
-            resultant[:] = 0.0
-            tangent[:] = 0.0
-            for k in range(len(w)):
-                if not integrate_point(
-                    p, R * y[k], R * z[k], area * w[k], d, old[c, g, k], new[c, g, k], C, resultant, tangent
-                ):
-                    return -1
-            if not math.isfinite(resultant.sum()):
-                return -1
-            to_chord(P, stretch[c, g], resultant, tangent, work, s[c, g], D[c, g])
-    return 0
-
-
-@njit(**INLINE)
-def strain_point(
-    p: np.ndarray, y: float, z: float, d: np.ndarray, old: np.ndarray, new: np.ndarray, C: np.ndarray
-) -> int:
-    """The law at one point: ε11 = ε + κ2 z − κ3 y, γ12 = γ2 − φ′ z, γ13 = γ3 + φ′ y (5.2.4)."""
-    return rod_point(p, old, d[0] + d[4] * z - d[5] * y, d[1] - d[3] * z, d[2] + d[3] * y, new, C)
-
-
-@njit(**INLINE)
-def integrate_point(
-    p: np.ndarray,
-    y: float,
-    z: float,
-    dA: float,
-    d: np.ndarray,
-    old: np.ndarray,
-    new: np.ndarray,
-    C: np.ndarray,
-    resultant: np.ndarray,
-    tangent: np.ndarray,
-) -> bool:
-    """Add one point's share to the section."""
-    if strain_point(p, y, z, d, old, new, C) < 0:
-        return False
-    sigma, t2, t3 = new[0] * dA, new[1] * dA, new[2] * dA
-    resultant[0] += sigma
-    resultant[1] += t2
-    resultant[2] += t3
-    resultant[3] += t3 * y - t2 * z
-    resultant[4] += sigma * z
-    resultant[5] -= sigma * y
-    # tangent = Zᵀ C Z dA with Z = ∂(ε11, γ12, γ13)/∂e; only the entries of Z that are not zero
-    for i in range(3):
-        c0, c1, c2 = C[i, 0] * dA, C[i, 1] * dA, C[i, 2] * dA
-        row3 = c2 * y - c1 * z
-        row4 = c0 * z
-        row5 = -c0 * y
-        if i == 0:
-            a, b, fa, fb = 4, 5, z, -y
-        elif i == 1:
-            a, b, fa, fb = 3, 3, -z, 0.0
-        else:
-            a, b, fa, fb = 3, 3, y, 0.0
-        for row, f in ((i, 1.0), (a, fa), (b, fb)):
-            tangent[row, 0] += f * c0
-            tangent[row, 1] += f * c1
-            tangent[row, 2] += f * c2
-            tangent[row, 3] += f * row3
-            tangent[row, 4] += f * row4
-            tangent[row, 5] += f * row5
+            to_section(placement[c, g], de[c, g], d)
+            if not section(p, R * y, R * z, math.pi * R * R * w, shape, d, old[c, g], new[c, g], strain, C,
+                           with_tangent, count, resultant, tangent):  # fmt: skip
+                return False
+            to_chord(placement[c, g], stretch[c, g], resultant, tangent, work, s[c, g], D[c, g], with_tangent)
     return True
 
 
-@njit(cache=True)
+@njit(**KERNEL)
 def update_surface(
     p: np.ndarray,
     y: np.ndarray,
@@ -218,12 +165,19 @@ def update_surface(
     new: np.ndarray,
 ) -> None:
     """Bring the points y, z of the unit circle to the end of the increment; arguments as in `update_sections`."""
-    d = np.empty(6)
-    C = np.empty((3, 3))
+    points, d = len(y), np.empty(6)
+    strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
+    shape = straight_shape(points)
     for c in range(len(radius)):
-        R = radius[c]
         for g in range(2):
             to_section(placement[c, g], de[c, g], d)
-            for k in range(len(y)):
-                if strain_point(p, R * y[k], R * z[k], d, old[c, g, k], new[c, g, k], C) < 0:
-                    new[c, g, k, :] = math.nan
+            update_points(p, radius[c] * y, radius[c] * z, shape, d, old[c, g], new[c, g], strain, C, False, count)
+            spoil_failed(count, new[c, g])
+
+
+@njit(**KERNEL)
+def spoil_failed(count: np.ndarray, new: np.ndarray) -> None:
+    """Make states NaN where the law found no solution."""
+    for k in range(len(count)):
+        if count[k] < 0:
+            new[k, :] = math.nan

@@ -9,7 +9,7 @@ from collections import namedtuple
 import numpy as np
 from numba import njit
 
-from coilset.model.material.functions import INLINE
+from coilset.model.material.kernel import INLINE
 from coilset.model.material.rod import return_map
 from coilset.model.section.curved import shear_by_force
 

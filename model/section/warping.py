@@ -85,8 +85,9 @@ class WarpingSections:
         trial: dict[str, np.ndarray],
         s: np.ndarray,
         D: np.ndarray,
+        with_tangent: bool = True,
     ) -> bool:
-        """Bring all sections to the end of the increment; as `PlaneSections.update`."""
+        """Bring all sections to the end of the increment; as `PlaneSections.update`, but always with the tangent."""
         place, law = self.placement, self.law_over_time.over(start, trial)
         status = update_sections(
             law, *self.points, self.weights, self.radius, place.curvature, place.torsion,

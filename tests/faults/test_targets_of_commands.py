@@ -21,16 +21,6 @@ def test_an_empty_name_of_a_folder_is_not_where_we_are(example, tmp_path, monkey
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_an_empty_name_of_a_folder_is_not_where_we_are(example, tmp_path, monkeypatch, command):
-    """As `--out "$NOWHERE"`."""
-    monkeypatch.chdir(tmp_path)
-    words = [str(example) if word == "CASE" else word for word in command.split()]
-    with pytest.raises(InputError, match="--out: is empty; give a name"):
-        app([*words, "--out", ""], prog_name="coilset", standalone_mode=False)
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize("command", COMMANDS)
 @pytest.mark.parametrize("target", ["taken", "taken/below", "n" * 300, "a\0b"])
 def test_a_target_that_cannot_be_gets_one_line(example, tmp_path, monkeypatch, command, target):
     monkeypatch.chdir(tmp_path)

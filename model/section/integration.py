@@ -1,0 +1,142 @@
+"""Resultants and tangent of one section from the law at all of its points.
+
+With S = g ∂(ε11, γ12, γ13)/∂(ε, γ2, γ3, φ′, κ2, κ3) at a point y, z,
+
+        1  0    0    0  z −y
+    S = 0  a22  a23 −z  0  0
+        0  a32  a33  y  0  0
+
+the strains are S d/g, the resultants ∫ Sᵀ σ dA and their tangent ∫ Sᵀ C S dA/g. The kinds of sections differ in g and
+in the a. Sums over points are made of several partial ones, so that the processor adds neighbouring points at once.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from coilset.model.material.kernel import KERNEL
+from coilset.model.material.point_law import rod_points
+
+SUMS = KERNEL | {"fastmath": {"contract", "reassoc", "nsz"}, "forceinline": True}
+SHAPE = 5  # rows of `shape`: g, a22, a23, a32, a33
+Six = tuple[float, float, float, float, float, float]
+NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@njit(**KERNEL)
+def update_points(
+    p: np.ndarray,
+    y: np.ndarray,
+    z: np.ndarray,
+    shape: np.ndarray,
+    d: np.ndarray,
+    old: np.ndarray,
+    new: np.ndarray,
+    strain: np.ndarray,
+    C: np.ndarray,
+    with_tangent: bool,
+    count: np.ndarray,
+) -> bool:
+    """Bring the points of a section to the end of an increment.
+
+    Args:
+        p: parameters of the material law, or a Creeping.
+        y, z: of the points, shape (points,), mm.
+        shape: g, a22, a23, a32, a33 of the points, shape (5, points).
+        d: increments of the section strains, shape (6,).
+        old, new: states of the points at the start, and at the end, which is written, shape (points, n_state).
+        strain: room, shape (3, points).
+        C, with_tangent, count: as in `rod_points.return_map_points`.
+
+    Returns:
+        Whether the law found a solution at all points.
+    """
+    for k in range(len(y)):
+        inverse = 1.0 / shape[0, k]
+        strain[0, k] = (d[0] + d[4] * z[k] - d[5] * y[k]) * inverse
+        strain[1, k] = (shape[1, k] * d[1] + shape[2, k] * d[2] - d[3] * z[k]) * inverse
+        strain[2, k] = (shape[3, k] * d[1] + shape[4, k] * d[2] + d[3] * y[k]) * inverse
+    return rod_points(p, old, strain, new, C, with_tangent, count)
+
+
+@njit(**SUMS)
+def resultants(y: np.ndarray, z: np.ndarray, dA: np.ndarray, shape: np.ndarray, new: np.ndarray, s: np.ndarray) -> None:
+    """Write N, Q2, Q3, Mt, M2, M3 of the stresses in `new`; dA: shape (points,), mm²."""
+    n = q2 = q3 = mt = m2 = m3 = 0.0
+    for k in range(len(y)):
+        sigma, t2, t3 = new[k, 0] * dA[k], new[k, 1] * dA[k], new[k, 2] * dA[k]
+        n += sigma
+        q2 += t2 * shape[1, k] + t3 * shape[3, k]
+        q3 += t2 * shape[2, k] + t3 * shape[4, k]
+        mt += t3 * y[k] - t2 * z[k]
+        m2 += sigma * z[k]
+        m3 -= sigma * y[k]
+    s[0], s[1], s[2], s[3], s[4], s[5] = n, q2, q3, mt, m2, m3
+
+
+@njit(**SUMS)
+def _row(y: np.ndarray, z: np.ndarray, dA: np.ndarray, shape: np.ndarray, C: np.ndarray, i: int, k: int) -> Six:
+    """Row i of C S dA/g at the point k."""
+    w = dA[k] / shape[0, k]
+    c0, c1, c2 = C[3 * i, k] * w, C[3 * i + 1, k] * w, C[3 * i + 2, k] * w
+    return (
+        c0, c1 * shape[1, k] + c2 * shape[3, k], c1 * shape[2, k] + c2 * shape[4, k], c2 * y[k] - c1 * z[k],
+        c0 * z[k], -c0 * y[k],
+    )  # fmt: skip
+
+
+@njit(**SUMS)
+def _added(total: Six, f: float, row: Six) -> Six:
+    """total + f row."""
+    return (
+        total[0] + f * row[0], total[1] + f * row[1], total[2] + f * row[2],
+        total[3] + f * row[3], total[4] + f * row[4], total[5] + f * row[5],
+    )  # fmt: skip
+
+
+@njit(**SUMS)
+def tangents(y: np.ndarray, z: np.ndarray, dA: np.ndarray, shape: np.ndarray, C: np.ndarray, D: np.ndarray) -> None:
+    """Write ∂s/∂d of the points' tangents C, shape (9, points), into D, shape (6, 6)."""
+    t0 = t4 = t5 = NOTHING
+    for k in range(len(y)):
+        row = _row(y, z, dA, shape, C, 0, k)
+        t0, t4, t5 = _added(t0, 1.0, row), _added(t4, z[k], row), _added(t5, -y[k], row)
+    t1 = t2 = t3 = NOTHING
+    for k in range(len(y)):
+        second, third = _row(y, z, dA, shape, C, 1, k), _row(y, z, dA, shape, C, 2, k)
+        t1 = _added(_added(t1, shape[1, k], second), shape[3, k], third)
+        t2 = _added(_added(t2, shape[2, k], second), shape[4, k], third)
+        t3 = _added(_added(t3, -z[k], second), y[k], third)
+    for j in range(6):
+        D[0, j], D[1, j], D[2, j], D[3, j], D[4, j], D[5, j] = t0[j], t1[j], t2[j], t3[j], t4[j], t5[j]
+
+
+@njit(**KERNEL)
+def section(
+    p: np.ndarray,
+    y: np.ndarray,
+    z: np.ndarray,
+    dA: np.ndarray,
+    shape: np.ndarray,
+    d: np.ndarray,
+    old: np.ndarray,
+    new: np.ndarray,
+    strain: np.ndarray,
+    C: np.ndarray,
+    with_tangent: bool,
+    count: np.ndarray,
+    s: np.ndarray,
+    D: np.ndarray,
+) -> bool:
+    """Resultants s and, if `with_tangent`, their tangent D; arguments as in `update_points` and below.
+
+    Returns:
+        False if the law found no solution at some point or the strains are no numbers.
+    """
+    if not update_points(p, y, z, shape, d, old, new, strain, C, with_tangent, count):
+        return False
+    resultants(y, z, dA, shape, new, s)
+    if with_tangent:
+        tangents(y, z, dA, shape, C, D)
+    return math.isfinite(s.sum())
