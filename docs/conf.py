@@ -41,7 +41,7 @@ html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_show_copyright = False
 html_theme_options = {
-    "description": "How far does a coil spring set, and what stress stays in it?",
+    "description": "How far does a coil spring set, and what stress remains in it?",
     "page_width": "1180px",
     "sidebar_width": "250px",
     "fixed_sidebar": True,

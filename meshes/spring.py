@@ -46,7 +46,7 @@ class SpringSpec(Strict):
     free_length: Annotated[
         Length | None, Field(description="outer length of the unloaded spring, mm; or give pitch")
     ] = None
-    hand: Annotated[Literal["right", "left"], Field(description="the way the coils turn")] = "right"
+    hand: Annotated[Literal["right", "left"], Field(description="direction of the helix")] = "right"
     end_coils: Ends = OPEN
 
     @model_validator(mode="after")

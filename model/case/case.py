@@ -26,13 +26,16 @@ class SectionSpec(Strict):
 
     kind: Annotated[
         Literal["plane", "curved", "warping"],
-        Field(description="plane as in the thesis; curved: fibres as long as the curved wire makes them, and the shear "
-                          "of the transverse force; warping: free to warp, with all six stresses"),
+        Field(description="plane: as in the thesis; curved: fibre lengths of a curved wire, and warping under the "
+                          "transverse shear; warping: free warping, all six stresses"),
     ] = "curved"  # fmt: skip
     spin: Annotated[
-        bool, Field(description="whether stress turns with the material against the section, as in the thesis (5.2.33)")
+        bool,
+        Field(
+            description="whether stress rotates with the material relative to the section, as in the thesis (5.2.33)"
+        ),
     ] = False
-    degree: Annotated[Whole, Field(ge=1, le=7, description="of the polynomials of a section that warps")] = 3
+    degree: Annotated[Whole, Field(ge=1, le=7, description="degree of the polynomials of a warping section")] = 3
     rule: Annotated[Literal["polar", "abramowitz9"], Field(description="polar, or abramowitz9 as in the thesis")] = (
         "polar"
     )
@@ -78,7 +81,7 @@ class MeshSpec(Strict):
     sagitta: Annotated[
         float | None,
         Unit("mm"),
-        Field(gt=0, description="greatest distance of a rod from the wire's axis, mm; makes more rods"),
+        Field(gt=0, description="maximum distance of a rod from the wire's axis, mm; adds rods"),
     ] = None
     axis: Annotated[
         Literal["curved", "chords"],
@@ -96,8 +99,8 @@ class MeshSpec(Strict):
 class FrictionSpec(Strict):
     """Coefficients of Coulomb friction; 0 is none."""
 
-    seats: Annotated[float, Unit("1"), Field(ge=0, lt=2, description="of the wire on the seats")] = 0.0
-    coils: Annotated[float, Unit("1"), Field(ge=0, lt=2, description="of coils on coils")] = 0.0
+    seats: Annotated[float, Unit("1"), Field(ge=0, lt=2, description="friction coefficient, wire on seats")] = 0.0
+    coils: Annotated[float, Unit("1"), Field(ge=0, lt=2, description="friction coefficient, coils on coils")] = 0.0
 
 
 class ContactSpec(Strict):
@@ -112,17 +115,17 @@ class ContactSpec(Strict):
     bedding: Annotated[
         float | None,
         Unit("N/mm²"),
-        Field(gt=0, description="force per length and penetration, N/mm per mm; default E/40"),
+        Field(gt=0, description="contact stiffness: force per length and penetration, N/mm per mm; default E/40"),
     ] = None
     penetration_limit: Annotated[
         float,
         Unit("wire diameters"),
-        Field(gt=0, description="penetration in wire diameters beyond which a step is no equilibrium"),
+        Field(gt=0, description="penetration in wire diameters beyond which a step is rejected"),
     ] = 0.02
     augmentation_tolerance: Annotated[
         float | None,
         Unit("mm"),
-        Field(gt=0, description="greatest penetration, mm, reached by augmented Lagrange; default: any"),
+        Field(gt=0, description="maximum penetration, mm, enforced by augmented Lagrange; default: not enforced"),
     ] = None
     friction: FrictionSpec = FrictionSpec()
 
@@ -158,7 +161,7 @@ class SolverSpec(Strict):
     options: Annotated[
         dict[Annotated[str, Field(pattern="^[a-z]\\w*$")], Option],
         Unit("of the option"),
-        Field(description="any PETSc options, without the leading hyphen; they win"),
+        Field(description="PETSc options, without the leading hyphen; they take precedence"),
     ] = Field(default_factory=dict)
     control: ControlSpec = ControlSpec()
 
@@ -196,7 +199,7 @@ class Case(Strict):
     temperature: Annotated[
         float | None,
         Unit("K"),
-        Field(gt=0, description="of the spring throughout, K; default: the material file's first"),
+        Field(gt=0, description="temperature of the whole spring, K; default: the first in the material file"),
     ] = None
     ends: Annotated[Literal["seats", "clamped"], Field(description="seats or clamped")] = "seats"
     seats: SeatsSpec = SeatsSpec()
@@ -206,8 +209,8 @@ class Case(Strict):
     accuracy: Annotated[
         Part,
         Unit("1"),
-        Field(gt=0, lt=1, description="error of force that the length of automatic steps may cause, over the greatest "
-                                      "force, as in 0.2 %"),
+        Field(gt=0, lt=1, description="error of the force that automatic steps may cause, relative to the maximum "
+                                      "force, such as 0.2 %"),
     ] = 0.002  # fmt: skip
     loading: Annotated[
         list[AnyPhase], Field(strict=False, min_length=1, description="targets and times, one after the other")
