@@ -21,7 +21,7 @@ if TYPE_CHECKING:  # commands load what they need
 
 app = typer.Typer(help="Show a material, test it at one point, or fit it to test data.", no_args_is_help=True)
 MATERIAL = typer.Argument(help="name in the library, or path of a material file")
-DATA = typer.Argument(help="tests (CSV): columns eps11, gamma12, sigma11, tau12; of tension eps11, sigma11")
+DATA = typer.Argument(help="tests (CSV): columns eps11, gamma12, sigma11, tau12; of tension strain, stress")
 OUT = typer.Option(None, callback=folder_target, help="results folder [default: results/material/NAME]")
 FORCE = typer.Option(False, "--force", help="overwrite existing files")
 
@@ -85,7 +85,7 @@ def fit(
         "--saturation/--no-saturation",
         help="fit the second branch of k², which the tests must reach [default: not for tension tests alone]",
     ),
-    nominal: bool = typer.Option(False, help="tension tests are nominal strain and stress"),
+    engineering: bool = typer.Option(False, "--engineering", help="tension tests have engineering strain and stress"),
     name: str = typer.Option("fitted", help="name of the material"),
     out: str = OUT,
     force: bool = FORCE,
@@ -104,7 +104,7 @@ def fit(
     announce_compiling()
     folder = _folder(out, name)
     _refuse([folder / f"{name}.yaml"], force)
-    tests = [experiments.read_test(path, nominal) for path in data]
+    tests = [experiments.read_test(path, engineering) for path in data]
     result = fitting.fit(tests, shear_modulus, poisson, saturation, temperature)
     console = Console(highlight=False)
     table = Table("constant", "value", "standard deviation", "± (95 %, all together)", "unit", box=None, padding=(0, 2))

@@ -72,7 +72,7 @@ def flow_curve(plastic):
 
 
 def write_tension(path):
-    """A tension test of the wire to 3 % as a laboratory gives it: nominal, 4 N/mm² of scatter, torn at the end."""
+    """A tension test to 3 % as a laboratory gives it: engineering readings, 4 N/mm² of scatter, torn at the end."""
     plastic = np.geomspace(2e-5, 0.03, 140)
     stress = np.concatenate([np.linspace(50, 1240, 25), flow_curve(plastic)])
     strain = np.concatenate([np.zeros(25), plastic]) + stress / (2 * 81500 * 1.26)
@@ -80,17 +80,17 @@ def write_tension(path):
     readings = stress / (1 + nominal) + np.random.default_rng(7).normal(0, 4, stress.size)
     torn = [(nominal[-1] + 0.001 * i, 1500 - 100 * i) for i in range(1, 5)]
     rows = "\n".join(f"{e:.6f},{s:.1f}" for e, s in [*zip(nominal, readings, strict=True), *torn])
-    path.write_text(f"# synthetic\neps11,sigma11\n{rows}\n", encoding="utf-8")
+    path.write_text(f"# synthetic\nstrain,stress\n{rows}\n", encoding="utf-8")
     return strain, stress
 
 
 def test_tension_alone_gives_isotropic_hardening(tmp_path):
-    """The material from nominal readings follows the curve behind them, through scatter of 0.3 %.
+    """The material from engineering readings follows the curve behind them, through scatter of 0.3 %.
 
     The curve is not one of the law's: with four constants it comes to 0.2 % of it.
     """
     write_tension(tmp_path / "wire.csv")
-    test = experiments.read_test(tmp_path / "wire.csv", nominal=True)
+    test = experiments.read_test(tmp_path / "wire.csv", engineering=True)
     found = fit.fit([test], 81500, 0.26)
     assert list(found.constants) == ["k0_squared", "a1", "a2", "a3"]
     assert found.constants["k0_squared"] == pytest.approx(2 / 3 * 1250**2, rel=0.01)
@@ -104,19 +104,19 @@ def test_tension_alone_gives_isotropic_hardening(tmp_path):
             assert state[0, 0] == pytest.approx(flow_curve(plastic), rel=4e-3)
 
 
-def test_nominal_readings_become_true_ones(tmp_path):
+def test_engineering_readings_become_true_ones(tmp_path):
     """Up to the maximum force, beyond which a specimen necks; the readings are written with 0.05 N/mm² and scatter."""
     strain, stress = write_tension(tmp_path / "wire.csv")
-    test = experiments.read_test(tmp_path / "wire.csv", nominal=True)
+    test = experiments.read_test(tmp_path / "wire.csv", engineering=True)
     rows = len(test.strain)
     assert len(strain) - 20 < rows <= len(strain)
     np.testing.assert_allclose(test.strain[:, 0], strain[:rows], atol=1e-6)
     np.testing.assert_allclose(test.stress[:, 0], stress[:rows], atol=16)
 
 
-def test_nominal_readings_of_torsion_are_refused():
+def test_engineering_readings_of_torsion_are_refused():
     with pytest.raises(InputError, match="is not a tension test"):
-        experiments.read_test(DATA / "reversed_torsion.csv", nominal=True)
+        experiments.read_test(DATA / "reversed_torsion.csv", engineering=True)
 
 
 @pytest.mark.parametrize(("gone", "kind"), [("tension", "tension"), ("reversed_torsion", "torsion")])

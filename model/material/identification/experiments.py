@@ -13,6 +13,7 @@ from coilset.model.entries.entry import shortened
 
 COLUMNS = ("eps11", "gamma12", "sigma11", "tau12")
 SHEAR = ("gamma12", "tau12")  # a tension test may leave these columns out
+PLAIN = {"eps11": "strain", "sigma11": "stress"}  # and may have these names, which a table of hardening has
 LARGEST_STRAIN = 2.0  # of a test; above it the numbers are per cent
 
 
@@ -34,17 +35,17 @@ class Test:
         return "torsion" if tension < 0.1 * torsion else "combined"
 
 
-def read_test(path: str | Path, nominal: bool = False) -> Test:
+def read_test(path: str | Path, engineering: bool = False) -> Test:
     """Read a test from a CSV file.
 
     Lines at the top that begin with # are remarks. Of the columns, eps11, gamma12 (1) and sigma11, tau12 (N/mm²) are
-    read; a tension test needs eps11 and sigma11 only. The first row is the unloaded start or the first reading after
-    it.
+    read; a tension test needs two only, strain and stress, or eps11 and sigma11. The first row is the unloaded start or
+    the first reading after it.
 
     Args:
         path: the file.
-        nominal: whether a tension test is given by nominal strain and stress, e and s; it is then converted,
-            ε = ln(1 + e), σ = s (1 + e), up to the maximum force, beyond which the specimen necks.
+        engineering: whether a tension test is given by engineering strain and stress, e and s, of the first length and
+            area; it is then converted, ε = ln(1 + e), σ = s (1 + e), up to the maximum force, beyond which it necks.
 
     Raises:
         InputError: if the file cannot be read, or a column or a number is missing or wrong.
@@ -60,15 +61,16 @@ def read_test(path: str | Path, nominal: bool = False) -> Test:
                 remarks += 1
             reader = csv.DictReader(lines)
             given = reader.fieldnames or ()
+            names = {name: name if name in given else PLAIN.get(name, name) for name in COLUMNS}
             sheared = any(name in given for name in SHEAR)
-            missing = [name for name in COLUMNS if name not in given and (sheared or name not in SHEAR)]
+            missing = [name for name in COLUMNS if names[name] not in given and (sheared or name not in SHEAR)]
             if missing:
-                needed = f"{', '.join(COLUMNS)}; of a tension test eps11 and sigma11"
+                needed = f"{', '.join(COLUMNS)}; of a tension test strain, stress"
                 raise InputError(f"is missing; the columns are {needed}", f"column {missing[0]}", str(path))
             rows = [
                 [
-                    _number(row[name], name, remarks + reader.line_num, path) if name in given else 0.0
-                    for name in COLUMNS
+                    _number(row[column], column, remarks + reader.line_num, path) if column in given else 0.0
+                    for column in names.values()
                 ]
                 for row in reader
             ]
@@ -81,13 +83,15 @@ def read_test(path: str | Path, nominal: bool = False) -> Test:
     if largest > LARGEST_STRAIN:
         raise InputError(f"goes up to {largest:g}; give strain as a number, 0.02 for 2 %", "strain", str(path))
     test = Test(path.stem, values[:, :2], values[:, 2:])
-    return _true(test, path) if nominal else test
+    return _true(test, path) if engineering else test
 
 
 def _true(test: Test, path: Path) -> Test:
-    """A tension test from nominal strain and stress, up to its maximum force."""
+    """A tension test from engineering strain and stress, up to its maximum force."""
     if test.kind != "tension":
-        raise InputError("is not a tension test; only tension tests can be nominal", "--nominal", str(path))
+        raise InputError(
+            "is not a tension test; only tension tests have engineering strain and stress", "--engineering", str(path)
+        )
     end = int(test.stress[:, 0].argmax()) + 1
     strain, stress = test.strain[:end].copy(), test.stress[:end].copy()
     stress[:, 0] *= 1 + strain[:, 0]
