@@ -183,6 +183,8 @@ def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
     for rate in summary["rates"]:
         table.add_row(f"rate at {rate['travel_mm']:g} mm", number(rate["rate_N_per_mm"], "N/mm"))
     table.add_row("maximum force", number(summary["force_max_N"], "N", 2))
+    if summary["load_loss_percent"] is not None:
+        table.add_row("load lost in time", number(summary["load_loss_percent"], "%", 2))
     table.add_row("block height", number(summary["block_height_mm"], "mm"))
     table.add_row("maximum residual shear stress", number(summary["residual_shear_max_MPa"], "MPa", 2))
     table.add_row("residual shear stress, coil's inside", number(summary["residual_shear_inside_MPa"], "MPa", 2))

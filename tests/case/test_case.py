@@ -71,7 +71,7 @@ def test_wrong_entries_are_told_in_words(entries, message):
 
 
 def test_a_required_entry_says_what_it_is():
-    assert problem({"spring": SPRING}) == "loading: this entry is required; give targets, one after the other"
+    assert problem({"spring": SPRING}) == "loading: this entry is required; give targets and times, one after the other"
 
 
 def test_long_values_are_shortened():
