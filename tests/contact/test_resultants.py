@@ -68,7 +68,8 @@ def test_what_one_seat_does_the_other_undoes(example_runs):
 def test_pressure_adds_up_to_the_force(example_runs, tmp_path):
     """On level seats the pressure, times the length each point bears with, is the axial force while the tip bears."""
     analysis, _ = example_runs["closed_and_ground"]
-    data, seat = pressure_along_wire(analysis.setup, analysis.result), analysis.system.contacts[1]
+    data = pressure_along_wire(analysis.setup, analysis.result).to_xarray()
+    seat = analysis.system.contacts[1]
     assert list(data.contact.values) == ["coils", "bottom seat", "top seat"]
     place = np.searchsorted(seat.points.turns, data.wire_turn.values)
     lengths = seat.lengths[place]

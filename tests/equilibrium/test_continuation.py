@@ -63,7 +63,7 @@ def test_the_steps_of_an_automatic_run_give_its_numbers_again(make):
     marks = [[step.progress for step in one if step.phase == phase] for phase in range(2)]
     recorded = f"[{{to: {{travel: 15}}, steps: {marks[0]}}}, {{to: {{force: 0}}, steps: {marks[1]}}}]"
     other = make(recorded).run().steps
-    for name in ("progress", "travel_mm", "force_N", "estimated_force_error_N"):
+    for name in ("progress", "travel_mm", "force_N"):
         np.testing.assert_allclose(
             [getattr(s, name) for s in other], [getattr(s, name) for s in one], rtol=1e-6, atol=1e-7
         )

@@ -20,7 +20,10 @@ def table(turns, values, **more):
 WRONG = [
     ({"wire_diameter": -5.0}, "spring.wire_diameter: -5.0: must be greater than 0"),
     ({"wire_diameter": 0}, "spring.wire_diameter: 0: must be greater than 0"),
-    ({"wire_diameter": "5 mm"}, "spring.wire_diameter: '5 mm': must be a number"),
+    (
+        {"wire_diameter": "5 mm"},
+        "spring.wire_diameter: '5 mm': must be a number without its unit; units are N, mm, MPa and K everywhere",
+    ),
     ({"wire_diameter": float("nan")}, "spring.wire_diameter: nan: must be a finite number"),
     ({"wire_diameter": 1e9}, "spring.wire_diameter: 1e+09 is no length of a spring; must be 0.001 to 100000"),
     ({"wire_diameter": True}, "spring.wire_diameter: True: must be a number"),

@@ -40,7 +40,7 @@ def test_points_hold_the_same(folder):
         assert json.loads(data.attrs["case"]) == made_with["case"]
         assert json.loads(data.attrs["material_file"]) == made_with["material"]
         assert {name: data.attrs[name] for name in ("date", "platform", "versions")}.items() <= made_with.items()
-        (warning,) = json.loads(data.attrs["warnings"])
+        warning = next(one for one in json.loads(data.attrs["warnings"]) if one["name"] != "contact mesh")
     assert warning["name"] == "index"  # D/d = 22
     assert __version__ in made_with["versions"]
     assert np.datetime64(made_with["date"].removesuffix("+00:00")) > np.datetime64("2020-01-01")
