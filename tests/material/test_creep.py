@@ -226,7 +226,7 @@ def test_creep_of_a_bar_that_yields():
 
 
 def test_no_time_is_the_return_mapping():
-    """Without time and change of temperature: the same bits."""
+    """Without time and change of temperature: the same numbers; the full form, which goes the same way, to the bit."""
     law = library.load("ck15")
     creeping = law_of(CREEP)
     creeping = Law(law.data.model_copy(update={"creep": creeping.creep}))
@@ -240,8 +240,12 @@ def test_no_time_is_the_return_mapping():
             de = 1e-3 * rng.normal(size=components)
             state, tangent, _ = points.update(law, state, de[None])
             row, C = advance(creeping, row, de, clock, clock)
-            assert (row[:-2] == state[0]).all()
-            assert (tangent[0] == C).all()
+            if components == 6:
+                assert (row[:-2] == state[0]).all()
+                assert (tangent[0] == C).all()
+            else:  # points without time go several at a time, and as far as the last of them needs
+                np.testing.assert_allclose(row[:-2], state[0], rtol=1e-9, atol=1e-9 * law.yield_stress)
+                np.testing.assert_allclose(tangent[0], C, rtol=0, atol=1e-5 * law.E)
         assert row[-2:].tolist() == [COLD, 1e-4]
 
 
