@@ -9,6 +9,10 @@ from pathlib import Path
 from coilset.meshes.errors import CoilsetError, InputError
 
 
+# Without one, Python would print warnings of ranks that keep no log.
+logging.getLogger("coilset").addHandler(logging.NullHandler())
+
+
 class _Handler(logging.FileHandler):
     def handleError(self, record: logging.LogRecord) -> None:
         """A full disk is said where the results are written; the log only loses lines."""

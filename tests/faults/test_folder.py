@@ -195,7 +195,7 @@ def test_a_file_in_the_way_of_a_folder_is_seen_before_the_run(example, tmp_path,
 
 
 def test_nothing_to_go_on_from_leaves_nothing(example, tmp_path):
-    with pytest.raises(InputError, match="no checkpoint to go on from"):
+    with pytest.raises(InputError, match="no checkpoint to continue from"):
         resume(example, tmp_path / "out")
     assert list(tmp_path.iterdir()) == []
 

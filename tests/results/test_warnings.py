@@ -110,7 +110,7 @@ def test_stress_above_the_wires_strength(example):
     analysis.run()
     strength = analysis.setup.limits.strength
     assert strength == pytest.approx(1656.8, abs=0.1)  # 2230 − 820 lg 5
-    assert names(analysis.setup.warnings) == ["gap", "contact mesh"]
+    assert names(analysis.setup.warnings) == ["gap"]
     assert "strength" not in names(run_warnings(analysis.setup, analysis.result))
     lower = replace(analysis.setup, limits=replace(analysis.setup.limits, strength=300.0))
     assert "strength" in names(run_warnings(lower, analysis.result))
@@ -138,7 +138,7 @@ def test_little_presetting(example):
 def test_they_are_in_the_log_the_summary_and_the_checkpoint(example, tmp_path, capsys):
     solve(example, tmp_path / "out", False, [*COARSE, LIFTED, "contact.deepest=0.02"], False, comm=MPI.COMM_SELF)
     found = json.loads((tmp_path / "out" / "summary.json").read_text())["warnings"]
-    assert [one["name"] for one in found] == ["earlier name", "contact mesh", "lift-off"]
+    assert [one["name"] for one in found] == ["earlier name", "lift-off"]
     log = (tmp_path / "out" / "log.txt").read_text()
     printed = " ".join(capsys.readouterr().out.split())
     for one in found:

@@ -60,7 +60,9 @@ def test_cases_are_those_of_single_runs_and_a_wrong_spring_stops_nothing(write_s
         result = analysis.run()
         expected = summarise(analysis.setup, result)
         for name in ("set_mm", "force_max_N", "rate_N_per_mm"):
-            assert data[name].values[k] == expected[name]  # the same code on the same data: to the last bit
+            # the same code on the same data; where one process compiled it and the other loaded it, the last
+            # bits of sums over several points at once were seen to differ (2e-13)
+            assert data[name].values[k] == pytest.approx(expected[name], rel=1e-11)
         curve = [step.force_N for step in result.steps]
         assert data.curve_force_N.values[k, : len(curve)].tolist() == curve
     assert data.set_mm.isnull().values.tolist() == [False, False, True]
