@@ -8,7 +8,6 @@ from pathlib import Path
 
 from coilset.meshes.errors import CoilsetError, InputError
 
-
 # Without one, Python would print warnings of ranks that keep no log.
 logging.getLogger("coilset").addHandler(logging.NullHandler())
 
