@@ -1,4 +1,4 @@
-"""What no spring can be: a wire too thick for its coils, coils inside each other, no travel."""
+"""What rules a spring out: a wire too thick for its coils, overlapping coils, no travel."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,19 +12,19 @@ if TYPE_CHECKING:
     from coilset.meshes.geometry import Spring
 
 INDEX_LEAST = 3.0
-TOUCH = 0.01  # of a wire's diameter: what tables and the pitch of closed ends leave of exact touching
+TOUCH = 0.01  # tolerance over the wire diameter: tables and the pitch of closed ends make touching inexact
 
 
 @dataclass(frozen=True)
 class Fault:
-    """One thing that forbids a spring: the entry it is about, and the text."""
+    """One reason why a spring is impossible: the entry concerned, and the text."""
 
     place: str
     text: str
 
 
 def faults(spring: "Spring") -> Iterator[Fault]:
-    """What forbids a spring, one after the other."""
+    """The reasons why a spring is impossible, one after the other."""
     for check in (_index, _coils, _block):
         yield from check(spring)
 
@@ -34,7 +34,7 @@ def refuse(spring: "Spring", place: str | None = None, file: str = "") -> "Sprin
 
     Args:
         spring: `Spring`.
-        place: said in the place of the fault's own, for a spring that was not drawn.
+        place: reported instead of the fault's own, for a spring not defined by drawing entries.
         file: the file that the spring came from.
     """
     for fault in faults(spring):
@@ -43,7 +43,7 @@ def refuse(spring: "Spring", place: str | None = None, file: str = "") -> "Sprin
 
 
 def coil_distances(spring: "Spring") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Distance of the centre lines of neighbouring coils in the plane through the axis.
+    """Distances between the centre lines of neighbouring coils in the plane through the axis.
 
     Returns:
         Turns t, the distances between the turns t and t + 1, and the sums of the wire's radii there, mm; each of shape

@@ -1,4 +1,4 @@
-"""What differs between DOLFINx 0.9 and 0.11 and their PETSc, probed once at import; else 0.9 is written against."""
+"""Differences between DOLFINx 0.9 and 0.11 and their PETSc, probed once at import; all other code targets 0.9."""
 
 import inspect
 from collections.abc import Callable
@@ -13,11 +13,11 @@ from petsc4py import PETSc
 
 # 0.10 renamed the module and returns a named tuple in place of a triple; both begin with mesh, cell tags, facet tags.
 _gmsh = dolfinx.io.gmsh if hasattr(dolfinx.io, "gmsh") else dolfinx.io.gmshio
-# 0.11 asks how many cells may meet at a facet.
+# 0.11 requires the number of cells that may meet at a facet.
 _LINKS = (2,) if "max_facet_to_cell_links" in inspect.signature(dolfinx.mesh.create_cell_partitioner).parameters else ()
 _Reason = PETSc.SNES.ConvergedReason
 
-# PETSc 3.25 has another name for a residual that is not a number.
+# PETSc 3.25 renamed the reason for a residual that is not a number.
 NOT_A_NUMBER: int = getattr(_Reason, "DIVERGED_FNORM_NAN", None) or _Reason.DIVERGED_FUNCTION_NANORINF
 
 
@@ -32,12 +32,12 @@ def mesh_from_gmsh(
 
 
 def unghosted() -> Callable:
-    """Partitioner of a mesh whose ranks share no cells."""
+    """Partitioner for a mesh whose ranks share no cells."""
     return dolfinx.mesh.create_cell_partitioner(dolfinx.mesh.GhostMode.none, *_LINKS)
 
 
 def to_ranks(ranks: np.ndarray) -> Any:
-    """What a partitioner gives back: the rank of each cell, shape (cells,); 0.10 renamed and wrapped it."""
+    """What a partitioner returns: the rank of each cell, shape (cells,); 0.10 renamed and wrapped it."""
     make = getattr(dolfinx.graph, "adjacencylist", None) or dolfinx.graph.adjacency_list
     found = make(ranks.astype(np.int32)[:, None])
     return getattr(found, "_cpp_object", found)
@@ -50,6 +50,6 @@ def geometry_dofs(mesh: dolfinx.mesh.Mesh) -> np.ndarray:
 
 
 def interpolation_points(space: Any) -> np.ndarray:
-    """Points of the reference cell where a function of this space is evaluated; a method up to 0.9, then a property."""
+    """Points of the reference cell where functions of this space are evaluated; a method up to 0.9, then a property."""
     points = space.element.interpolation_points
     return points() if callable(points) else points

@@ -27,7 +27,7 @@ def drawing(spring: Spring, title: str = "") -> Figure:
         title: of the figure.
 
     Returns:
-        A `matplotlib.figure.Figure`; to keep the wire's thickness to scale its size must not change.
+        A `matplotlib.figure.Figure`; its size must not change, so that the wire's thickness stays to scale.
     """
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.6, 5.4))
@@ -60,7 +60,7 @@ def _over_turn(
 
 
 def _side_view(axes: Axes, spring: Spring) -> None:
-    """The spring seen against the y axis, its far half turns behind the near ones, cut where its ends are ground."""
+    """The spring seen along the y axis, far half turns behind the near ones, its ends cut where they are ground."""
     t = spring.breaks
     reach = np.max(spring.mean_radius(t) + 0.5 * spring.wire_diameter(t))
     length, size = spring.free_length, max(spring.free_length, 2 * reach)
@@ -89,7 +89,7 @@ def _side_view(axes: Axes, spring: Spring) -> None:
 
 
 def _half_turns(spring: Spring) -> Iterator[tuple[int, np.ndarray]]:
-    """Order of drawing and turns of the pieces between which the wire changes from the far side to the near one."""
+    """Drawing order and turns of the pieces of the wire, split where it changes between the far and the near side."""
     half = np.pi * spring.hand
     first = spring.phase / half
     marks = (np.arange(np.ceil(min(first, first + 2 * spring.turns)), max(first, first + 2 * spring.turns)) - first) / 2

@@ -1,4 +1,4 @@
-"""End coils: how a spring begins and ends, and what that makes of its pitch."""
+"""End coils: how a spring begins and ends, and how that shapes its pitch."""
 
 from collections.abc import Callable
 from typing import Annotated, Any, Literal, Self
@@ -19,10 +19,10 @@ _Turns = Annotated[float, Unit("turns"), Field(ge=0.01, allow_inf_nan=False, str
 class EndCoils(Strict):
     """One end of a spring, or both.
 
-    Open: the wire is cut off. Closed: the end turns lie on each other and bear no load of their own; a transition
+    Open: the wire is cut off. Closed: the end turns touch each other and carry no load of their own; a transition
     leads from their pitch to that of the body. Closed and ground: the closed end is ground flat, so that the wire's tip
-    keeps only a part of its thickness. A quarter of the diameter is the usual tip: with end turns that lie on each
-    other it means a flat over three quarters of a turn.
+    keeps only part of its thickness. A tip of a quarter of the diameter is usual: with end turns that touch each
+    other, it means a flat over three quarters of a turn.
     """
 
     form: Annotated[Literal["open", "closed", "closed and ground"], Field(description="how the end is made")] = "open"
@@ -40,7 +40,7 @@ class EndCoils(Strict):
     @model_validator(mode="before")
     @classmethod
     def _from_word(cls, value: Any) -> Any:
-        """`closed` in short for `{form: closed}`."""
+        """`closed` is short for `{form: closed}`."""
         return {"form": value} if isinstance(value, str) else value
 
     @model_validator(mode="after")
@@ -53,7 +53,7 @@ class EndCoils(Strict):
 
     @property
     def is_closed(self) -> bool:
-        """Whether the end turns lie on each other."""
+        """Whether the end turns touch each other."""
         return self.form != "open"
 
     @property
@@ -63,12 +63,12 @@ class EndCoils(Strict):
 
     @property
     def transition_turns(self) -> float:
-        """Number of turns over which the pitch goes from the end coil's to the body's, 0 for open ends."""
+        """Number of turns over which the pitch changes from the end coil's to the body's, 0 for open ends."""
         return (self.transition or CLOSED_TRANSITION) if self.is_closed else 0.0
 
     @property
     def tip_thickness(self) -> float:
-        """What is left of the wire at its end, in wire diameters; 1 where it is not ground."""
+        """Thickness of the wire left at its tip, in wire diameters; 1 if it is not ground."""
         return (self.tip or GROUND_TIP) if self.form == "closed and ground" else 1.0
 
 
@@ -101,9 +101,9 @@ def bottom_and_top(ends: EndCoils | BothEnds) -> tuple[EndCoils, EndCoils]:
 
 
 def touching_pitch(diameter: np.ndarray, slope: np.ndarray) -> np.ndarray:
-    """Pitch at which a coil lies on its neighbour: the centres are a wire's diameter apart, d² = p² + r′².
+    """Pitch at which a coil touches its neighbour: the centres are a wire diameter apart, d² = p² + r′².
 
-    Coils whose radius changes by more than a wire's diameter in a turn pass each other: 0.
+    0 for coils whose radius changes by more than a wire diameter per turn: they pass each other.
 
     Args:
         diameter: wire diameter, mm.
@@ -121,7 +121,7 @@ def pitch_with_ends(
         body: pitch of a spring without end turns, a function of the turn, mm.
         bottom: `EndCoils` at turn 0.
         top: `EndCoils` at the last turn.
-        touching: function that gives the greatest touching pitch between two turns, mm.
+        touching: function that gives the maximum touching pitch between two turns, mm.
 
     Returns:
         The pitch as a function of the turn, mm per turn.

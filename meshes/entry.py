@@ -1,4 +1,4 @@
-"""What every group of entries of an input file is built on: unknown names are refused, numbers are numbers."""
+"""Base of every group of entries of an input file: unknown names are rejected, numbers must be numbers."""
 
 from collections.abc import Iterator
 from difflib import get_close_matches
@@ -10,7 +10,7 @@ from pydantic_core import PydanticCustomError
 
 
 def _whole(value: Any) -> Any:
-    """A whole number that came as 12.0, or as one of numpy's, as 12; what is none is left to be refused."""
+    """Convert a whole number given as 12.0 or as a numpy number to 12; anything else is left to be rejected."""
     if isinstance(value, bool | str):
         return value
     try:
@@ -20,20 +20,20 @@ def _whole(value: Any) -> Any:
 
 
 Whole = Annotated[int, BeforeValidator(_whole)]
-"""A whole number; 12.0 is one, too, as ranges of a sweep make it."""
+"""A whole number; 12.0 counts as one, since ranges of a sweep produce it."""
 
 WORD_OR_NUMBER = Discriminator(lambda value: "(word)" if isinstance(value, str) else "(number)")
-"""Tells a number, tagged `(number)`, from one of some words, tagged `(word)`."""
+"""Distinguishes a number, tagged `(number)`, from one of several words, tagged `(word)`."""
 
 
 class Strict(BaseModel):
     """A group of entries.
 
-    Unknown entries are refused, values do not change, numbers are finite, and nothing is converted: neither a word nor
-    a truth value is a number.
+    Unknown entries are rejected, values are immutable, numbers are finite, and nothing is converted: neither a word
+    nor a truth value is accepted as a number.
 
     Attributes:
-        RENAMED: earlier names of entries and their names now; both are taken, but not both at once.
+        RENAMED: earlier names of entries and their current names; either is accepted, but not both together.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True, defer_build=True)
@@ -57,7 +57,7 @@ class Strict(BaseModel):
         return group
 
     def notices(self) -> Iterator[str]:
-        """What the user should know about the entries: one line for each that has an earlier name, with its place."""
+        """Notices about the entries: one line, with its place, for each that was given by its earlier name."""
         for name in self._earlier:
             yield f"{name}: this entry is now called {self.RENAMED[name]}"
         for name, value in self:
@@ -66,7 +66,7 @@ class Strict(BaseModel):
 
 
 def _check_names(group: type[BaseModel], data: dict) -> None:
-    """Refuse the first unknown entry, and then the first missing one: a misspelt entry leaves another one missing."""
+    """Report the first unknown entry before the first missing one: a misspelt entry leaves another one missing."""
     known = {field.alias or name: field for name, field in group.model_fields.items()}
     for name in data:
         if name not in known:

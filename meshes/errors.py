@@ -1,19 +1,19 @@
-"""What can go wrong, in words: every error that a user may see is one of these, and its text is one line."""
+"""All errors that a user may see; the text of each is one line."""
 
 
 def printable(text: str) -> str:
-    """A line with those letters escaped that no screen shows, or that are orders to it; names of files may hold any."""
+    """A line with unprintable and control characters escaped; names of files may contain any."""
     return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text)
 
 
 class CoilsetError(Exception):
-    """Base of the errors that end a run with one clear line; `exit_code` is that of the command."""
+    """Base of the errors that end a run with one clear line; `exit_code` is the command's exit code."""
 
     exit_code = 1
 
 
 class InputError(CoilsetError):
-    """Wrong input: says the file, the place in it, the value, and what would be right.
+    """Wrong input: names the file, the place in it, the value, and what would be right.
 
     Args:
         problem: what is wrong and what would be right, without a full stop.
@@ -30,6 +30,6 @@ class InputError(CoilsetError):
 
 
 class SolveError(CoilsetError):
-    """A solve that did not converge or cannot go on; results up to there are kept."""
+    """A solve that did not converge or cannot continue; the results up to that point are kept."""
 
     exit_code = 3

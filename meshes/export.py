@@ -12,29 +12,33 @@ from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
 from coilset.meshes.measured import WIRE_DIAMETER
 
+SURFACES = (".stl",)  # formats of surfaces, which hold no line elements
+
 
 def check_format(path: str | Path) -> None:
-    """Refuse a file whose suffix says no format of a mesh, before anything is made.
+    """Reject a file whose suffix names no mesh format, or one for surfaces, before anything is written.
 
     Raises:
-        InputError: with formats that hold a wire.
+        InputError: with a list of formats that can hold a wire.
     """
     suffix = Path(path).suffix.lower()
     if suffix != ".msh" and suffix not in meshio.extension_to_filetypes:
         named = f"'{suffix}' is no format of a mesh" if suffix else "has no suffix to say its format"
         raise InputError(f"{named}; take .vtu, .msh, .inp or .xdmf", "--write", path)
+    if suffix in SURFACES:
+        raise InputError(f"{suffix} files hold no line elements; take .vtu, .msh, .inp or .xdmf", "--write", path)
 
 
 def write_mesh(spring: Spring, turns: np.ndarray, path: str | Path) -> None:
     """Write the nodes on the centre line and the elements between them.
 
-    The file holds the turn and the wire diameter of every node, where its format holds data, and the groups wire,
-    bottom end, top end and end coils (the elements whose middle lies in an end turn), where it holds groups.
+    If its format can hold data, the file contains the turn and the wire diameter of every node; if it can hold groups,
+    it contains wire, bottom end, top end and end coils (the elements whose middle lies in an end turn).
 
     Args:
         spring: `Spring`.
         turns: increasing turns of the nodes, shape (n + 1,).
-        path: the file; its suffix says the format.
+        path: the file; its suffix determines the format.
 
     Raises:
         InputError: a suffix that meshio does not know, or a format without line elements.
@@ -55,7 +59,7 @@ def _write_meshio(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarr
     lines = np.stack([nodes[:-1], nodes[1:]], axis=1)
     mesh = meshio.Mesh(points, [("line", lines)], point_data=data, cell_data={"end_coil": [(coil != 1).astype(int)]})
     options = {"data_format": "XML"} if path.suffix == ".xdmf" else {}
-    if path.suffix == ".inp":  # Abaqus has sets in the place of data, with names without spaces
+    if path.suffix == ".inp":  # Abaqus has sets instead of data, with names without spaces
         elements = {"wire": [nodes[:-1]], "end_coils": [nodes[:-1][coil != 1]]}
         mesh = meshio.Mesh(
             points, [("line", lines)], cell_sets=elements, point_sets={"bottom_end": nodes[:1], "top_end": nodes[-1:]}
@@ -63,24 +67,31 @@ def _write_meshio(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarr
     try:
         mesh.write(path, **options)
         kept = sum(len(block.data) for block in meshio.read(path).cells if block.type == "line")
-    except (meshio.WriteError, meshio.ReadError, KeyError, ValueError, SystemExit) as error:
+    except (
+        meshio.WriteError,
+        meshio.ReadError,
+        KeyError,
+        ValueError,
+        AssertionError,
+        ImportError,
+        SystemExit,
+    ) as error:
         path.unlink(missing_ok=True)
-        raise InputError(
-            f"meshio cannot write a wire so: {' '.join(str(error).split())}; take .vtu, .msh, .inp or .xdmf", "", path
-        ) from None
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise InputError(f"meshio cannot write a wire so: {reason}; take .vtu, .msh, .inp or .xdmf", "", path) from None
     if kept != len(lines):
         path.unlink()
         raise InputError(f"{path.suffix} files hold no line elements; take .vtu, .msh, .inp or .xdmf", "", path)
 
 
 def _write_gmsh(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarray], path: Path) -> None:
-    """The model has one curve for the body and one for each closed end; the group wire is all of them."""
+    """The model has one curve for the body and one for each closed end; the group wire comprises them all."""
     started = gmsh.isInitialized()
     if not started:
         gmsh.initialize(interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
-        gmsh.option.setNumber("PostProcessing.SaveMesh", 0)  # the data are added to a file that has the mesh
+        gmsh.option.setNumber("PostProcessing.SaveMesh", 0)  # the data are appended to a file that has the mesh already
         gmsh.model.add("spring")
         tags = np.arange(1, len(points) + 1)
         curves = {part: gmsh.model.addDiscreteEntity(1) for part in np.unique(coil).tolist()}
@@ -110,7 +121,7 @@ def _write_gmsh(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarray
 
 
 def _check_end(path: Path) -> None:
-    """Refuse a file that breaks off: gmsh says nothing where a disk is full."""
+    """Reject a truncated file: gmsh reports nothing if the disk is full."""
     with open(path, "rb") as file:
         end = file.seek(0, os.SEEK_END)
         file.seek(max(end - 32, 0))

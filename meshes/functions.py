@@ -29,7 +29,7 @@ def polynomial(coefficients: Sequence[float] | np.ndarray, start: float, end: fl
 
 
 def constant(value: float, turns: float) -> PiecewisePolynomial:
-    """The same value at every turn from 0 to `turns`."""
+    """A constant from turn 0 to `turns`."""
     return polynomial([value], 0.0, turns)
 
 
@@ -48,7 +48,7 @@ def tabulated(turn: np.ndarray, value: np.ndarray, interpolation: str) -> Piecew
     if interpolation == "linear" or len(turn) == 2:
         slope = np.diff(value) / np.diff(turn)
         return PiecewisePolynomial(np.vstack([np.zeros((DEGREE - 1, len(slope))), slope, value[:-1]]), turn)
-    from scipy.interpolate import CubicSpline, PchipInterpolator  # a quarter of a second, where they are needed
+    from scipy.interpolate import CubicSpline, PchipInterpolator  # takes a quarter of a second, so only where needed
 
     if interpolation == "monotone":
         pieces = PchipInterpolator(turn, value)
@@ -78,7 +78,7 @@ def smoothed(turn: np.ndarray, value: np.ndarray, noise: float) -> PiecewisePoly
 
 
 def added(left: PiecewisePolynomial, right: PiecewisePolynomial, factor: float = 1.0) -> PiecewisePolynomial:
-    """The function `left` + `factor` · `right`; both begin and end at the same turns."""
+    """The function `left` + `factor` · `right`; both must begin and end at the same turns."""
     breaks = np.union1d(left.x, right.x)
     return PiecewisePolynomial(_coefficients(left, breaks) + factor * _coefficients(right, breaks), breaks)
 
@@ -90,13 +90,13 @@ def restricted(function: PiecewisePolynomial, start: float, end: float) -> Piece
 
 
 def _coefficients(function: PiecewisePolynomial, breaks: np.ndarray) -> np.ndarray:
-    """Of a function between breaks, its own among them, by Taylor's expansion at the left of every piece."""
+    """Coefficients of a function between breaks that include its own, by Taylor expansion at the left of each piece."""
     terms = [function.derivative(k)(breaks[:-1]) / factorial(k) for k in range(DEGREE, 0, -1)]
     return np.array([*terms, function(breaks[:-1])])
 
 
 def blended(left: PiecewisePolynomial, right: PiecewisePolynomial, start: float, end: float) -> PiecewisePolynomial:
-    """A cubic from one function to another, with the values and slopes of both at the two ends."""
+    """A cubic from one function to another that matches value and slope of each at its end."""
     length = end - start
     y0, s0 = left(start), left.derivative()(start) * length
     y1, s1 = right(end), right.derivative()(end) * length
@@ -105,19 +105,19 @@ def blended(left: PiecewisePolynomial, right: PiecewisePolynomial, start: float,
 
 
 def joined(parts: Iterable[PiecewisePolynomial]) -> PiecewisePolynomial:
-    """Functions that follow each other, as one; parts of no length are left out."""
+    """Consecutive functions as a single one; parts of zero length are left out."""
     parts = [part for part in parts if part.x[-1] > part.x[0]]
     breaks = np.concatenate([parts[0].x[:1], *(part.x[1:] for part in parts)])
     return PiecewisePolynomial(np.hstack([part.c for part in parts]), breaks)
 
 
 def integral(integrand: Callable[[np.ndarray], np.ndarray], breaks: np.ndarray, points: int = 6) -> np.ndarray:
-    """Integrals over every interval between breaks, by Gauss's rule.
+    """Integrals over every interval between breaks by Gauss quadrature.
 
     Args:
         integrand: function of arrays of turns.
         breaks: increasing turns, shape (n + 1,); the integrand is smooth between them.
-        points: of Gauss's rule in every interval.
+        points: number of Gauss points in every interval.
 
     Returns:
         The integrals, shape (n,).

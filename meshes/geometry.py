@@ -11,7 +11,7 @@ from coilset.meshes.piecewise import PiecewisePolynomial
 from coilset.meshes.stations import ElementsPerTurn, stations
 
 INTERVALS_PER_TURN = 64
-STRAIGHT = 1e-9  # of |c′ × c″| over |c′|²: below it a wire has no normal
+STRAIGHT = 1e-9  # |c′ × c″| over |c′|² below which a wire has no normal
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +23,7 @@ class Spring:
 
     Args:
         radius: mean radius over the turn, a `PiecewisePolynomial` from 0 to the number of turns.
-        height: rise of the centre line over the turn, from any level.
+        height: height of the centre line over the turn, from any level.
         wire: wire diameter over the turn.
         hand: +1 right, −1 left.
         bottom: `EndCoils` at turn 0.
@@ -46,7 +46,7 @@ class Spring:
 
     @cached_property
     def slope(self) -> PiecewisePolynomial:
-        """Change of the mean radius over the turn, mm per turn."""
+        """Slope of the mean radius, mm per turn."""
         return self.radius.derivative()
 
     @cached_property
@@ -55,7 +55,7 @@ class Spring:
 
     @cached_property
     def _planes(self) -> tuple[float, float]:
-        """Levels of the seats in the coordinate of `height`: against the outermost wire, or where the end is ground."""
+        """Levels of the seats in the coordinate of `height`: touching the outermost wire, or the ground surface."""
         t = self.breaks
         z, d = self.height(t), self.wire(t)
         bottom, top = self.bottom.tip_thickness, self.top.tip_thickness
@@ -66,7 +66,7 @@ class Spring:
 
     @cached_property
     def breaks(self) -> np.ndarray:
-        """Turns between which every function is one polynomial, `INTERVALS_PER_TURN` or more in a turn."""
+        """Turns between which every function is a single polynomial, at least `INTERVALS_PER_TURN` per turn."""
         even = np.linspace(0.0, self.turns, int(np.ceil(INTERVALS_PER_TURN * self.turns)) + 1)
         t = np.unique(np.concatenate([even, self.radius.x, self.height.x, self.wire.x]))
         return t[np.concatenate([[True], np.diff(t) > 1e-9])]
@@ -94,19 +94,19 @@ class Spring:
         return self.phase + self.hand * 2 * np.pi * np.asarray(turn, dtype=float)
 
     def velocity(self, turn: np.ndarray | float) -> np.ndarray:
-        """First derivative of the centre line by the turn, mm, shape (..., 3)."""
+        """First derivative of the centre line with respect to the turn, mm, shape (..., 3)."""
         θ = self.angle(turn)
         r, dr, dθ = self.radius(turn), self.slope(turn), self.hand * 2 * np.pi
         return _in_plane(θ, dr, r * dθ, self._pitch(turn))
 
     def acceleration(self, turn: np.ndarray | float) -> np.ndarray:
-        """Second derivative of the centre line by the turn, mm, shape (..., 3)."""
+        """Second derivative of the centre line with respect to the turn, mm, shape (..., 3)."""
         θ = self.angle(turn)
         r, dr, ddr, dθ = self.radius(turn), self.slope(turn), self.slope.derivative()(turn), self.hand * 2 * np.pi
         return _in_plane(θ, ddr - r * dθ**2, 2 * dr * dθ, self._pitch.derivative()(turn))
 
     def jerk(self, turn: np.ndarray | float) -> np.ndarray:
-        """Third derivative of the centre line by the turn, mm, shape (..., 3); it jumps where two polynomials meet."""
+        """Third derivative with respect to the turn, mm, shape (..., 3); it jumps where two polynomials meet."""
         θ = self.angle(turn)
         r, dr, dθ = self.radius(turn), self.slope(turn), self.hand * 2 * np.pi
         ddr, dddr = self.slope.derivative()(turn), self.slope.derivative(2)(turn)
@@ -167,15 +167,15 @@ class Spring:
 
     @property
     def free_length(self) -> float:
-        """Distance of the seats that touch the unloaded spring, mm."""
+        """Distance between the seats that touch the unloaded spring, mm."""
         return float(self._planes[1] - self._planes[0])
 
     @property
     def block_height(self) -> float:
-        """Distance of the seats when every coil lies on the next, mm.
+        """Distance between the seats when every coil touches the next, mm.
 
-        Coils of one radius rise by a wire's diameter in a turn, coils of a cone by less: `touching_pitch`. At the ends
-        there remains what the wire and its grinding make of the free length.
+        Coils of equal radius rise by a wire diameter per turn, coils of a cone by less: `touching_pitch`. The ends
+        contribute what the wire and its grinding contribute to the free length.
         """
         ends = self.free_length - (self.height(self.turns) - self.height(0.0))
         rise = functions.integral(lambda t: touching_pitch(self.wire(t), self.slope(t)), self.breaks)
@@ -183,13 +183,13 @@ class Spring:
 
     @property
     def active_turns(self) -> float:
-        """Turns that bear load: all but the end turns of closed ends."""
+        """Active turns: all but the end turns of closed ends."""
         return self.turns - self.bottom.end_turns - self.top.end_turns
 
     def seat_distance(self, turn: np.ndarray | float, end: str) -> np.ndarray:
-        """Distance from the centre line to the wire's surface that meets a seat, mm, in the shape of `turn`.
+        """Distance from the centre line to the wire's surface that faces a seat, mm, in the shape of `turn`.
 
-        Half of the wire's diameter, and less where the end is ground.
+        Half the wire diameter, or less where the end is ground.
 
         Args:
             turn: turns, any shape.

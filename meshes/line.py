@@ -13,7 +13,7 @@ from coilset.meshes.compat import geometry_dofs, to_ranks
 
 @dataclass
 class LineMesh:
-    """A distributed line mesh and the way back to the order of its stations, which no partition changes.
+    """A distributed line mesh with the mapping back to the order of its stations, whatever the partition.
 
     Attributes:
         mesh: DOLFINx mesh of two-node intervals in space, mm.
@@ -30,7 +30,7 @@ class LineMesh:
     owned_cells: int
 
     def in_order(self, values: np.ndarray) -> np.ndarray:
-        """A copy of the owned cells' values in the order of the elements, on rank 0; elsewhere none; collective.
+        """A copy of the owned cells' values in the order of the elements on rank 0, empty elsewhere; collective.
 
         Args:
             values: shape (owned cells, ...).
@@ -48,7 +48,7 @@ class LineMesh:
 
 
 def _pieces(elements: int) -> Callable[..., object]:
-    """Partitioner that cuts the wire in contiguous pieces of as many elements each, the first for the first rank."""
+    """Partitioner that cuts the wire into contiguous pieces of equally many elements, the first for the first rank."""
 
     def partition(comm: MPI.Comm, ranks: int, kinds: Sequence[object], nodes: Sequence[np.ndarray]) -> object:
         element = nodes[0].reshape(-1, 2).min(axis=1)
@@ -60,7 +60,7 @@ def _pieces(elements: int) -> Callable[..., object]:
 def line_mesh(stations: np.ndarray, comm: MPI.Comm) -> LineMesh:
     """Distribute the polygon through the stations over the ranks of `comm`.
 
-    Nobody has to find such a mesh: DOLFINx takes the stations and the pairs of neighbours as they are.
+    No mesh generator is needed: DOLFINx takes the stations and the pairs of neighbours as they are.
 
     Args:
         stations: shape (n + 1, 3), mm; the same on every rank.

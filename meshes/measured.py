@@ -15,19 +15,19 @@ from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
 from coilset.meshes.shapes import Length
 
-if TYPE_CHECKING:  # at run time only where a mesh is read
+if TYPE_CHECKING:  # imported at run time only when a mesh is read
     import meshio
 
 LEAST_POINTS = 5
-WIDEST_STEP = 1 / 3  # of a turn between neighbouring points
+WIDEST_STEP = 1 / 3  # maximum turn between neighbouring points
 WIRE_DIAMETER = "wire_diameter"
 
 
 class MeasuredSpec(Strict):
     """A spring whose centre line was measured. The file's z axis is the axis of the spring, lengths in mm.
 
-    The points become mean radius and height over the polar angle, which the cubic spline joins: a helix stays exactly
-    a helix. The wire diameter is joined without overshoot.
+    The points become mean radius and height over the polar angle, interpolated by a cubic spline: a helix remains
+    exactly a helix. The wire diameter is interpolated without overshoot.
     """
 
     file: Annotated[str, Field(description="CSV with the columns x, y, z, wire_diameter, or a mesh that meshio reads")]
@@ -42,7 +42,7 @@ class MeasuredSpec(Strict):
     @field_validator("file")
     @classmethod
     def _from_folder(cls, file: str, info: ValidationInfo) -> str:
-        """The path counts from the folder of the case file, where the validation's context has one."""
+        """The path is relative to the folder of the case file if the validation context has one."""
         return str(Path((info.context or {}).get("folder", "")) / file)
 
     def build(self) -> Spring:
@@ -52,7 +52,7 @@ class MeasuredSpec(Strict):
             `Spring`.
 
         Raises:
-            InputError: a file that cannot be read or is no spring, with the file and the point.
+            InputError: a file that cannot be read or does not describe a spring, with the file and the point.
         """
         path = Path(self.file)
         points, wire = read_centre_line(path)
@@ -64,7 +64,7 @@ class MeasuredSpec(Strict):
         if points[-1, 2] < points[0, 2]:  # the bottom end comes first
             points, wire = points[::-1], wire[::-1]
         turn, hand, phase = _turns(points, path)
-        # the noise of a coordinate is that of radius and height
+        # radius and height have the same noise as a coordinate
         fit = functions.smoothed if self.noise > 0 else lambda t, y, noise: functions.tabulated(t, y, "spline")
         radius = fit(turn, np.hypot(points[:, 0], points[:, 1]), self.noise)
         height = fit(turn, points[:, 2], self.noise)
@@ -131,7 +131,7 @@ def _read_csv(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
 
 
 def _read_mesh(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
-    """The only chain of line elements in a mesh; points of other elements and loose points do not count."""
+    """The only chain of line elements in a mesh; points of other elements and loose points are ignored."""
     import meshio
 
     try:
@@ -150,7 +150,7 @@ def _read_mesh(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
 
 
 def _straight(block: "meshio.CellBlock") -> np.ndarray:
-    """Line elements of two nodes; those of three are halved at their middle node."""
+    """Two-node line elements; three-node ones are split at their middle node."""
     return block.data if block.type == "line" else np.concatenate([block.data[:, [0, 2]], block.data[:, [2, 1]]])
 
 

@@ -1,4 +1,4 @@
-"""Piecewise polynomials. `scipy.interpolate.PPoly` is the same, to the last bit, but takes long to load."""
+"""Piecewise polynomials: bit for bit the same as `scipy.interpolate.PPoly`, which takes long to load."""
 
 from collections.abc import Sequence
 from functools import cached_property
@@ -8,10 +8,10 @@ import numpy as np
 
 
 class PiecewisePolynomial:
-    """Polynomials that follow each other; the first and the last go on beyond the ends.
+    """Consecutive polynomials; the first and the last extend beyond the ends.
 
     Args:
-        coefficients: of the powers of (x − left end of the piece), the highest first, shape (degree + 1, pieces).
+        coefficients: of the powers of (x − left end of the piece), highest first, shape (degree + 1, pieces).
         breaks: increasing ends of the pieces, shape (pieces + 1,).
 
     Attributes:
@@ -29,7 +29,7 @@ class PiecewisePolynomial:
         return np.asarray(_values(self.c[:, piece], x - self.x[piece]))
 
     def derivative(self, order: int = 1) -> "PiecewisePolynomial":
-        """The derivative of some order; each is found once."""
+        """The derivative of the given order; each is computed once."""
         if order not in self._derivatives:
             kept = self.c[:-order] if order else self.c
             powers = range(len(kept), 0, -1)  # of the derivative, and 1
@@ -43,7 +43,7 @@ class PiecewisePolynomial:
         return {}
 
     def antiderivative(self) -> "PiecewisePolynomial":
-        """The integral from the first break on."""
+        """The integral from the first break."""
         powers = np.arange(len(self.c), 0, -1)
         c = np.vstack([self.c / powers[:, None], np.zeros(self.c.shape[1])])
         length = np.diff(self.x)

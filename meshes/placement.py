@@ -1,4 +1,4 @@
-"""Where straight rods and their Gauss points stand so that they represent the curved wire between the nodes."""
+"""Placement of straight rods and their Gauss points so that they represent the curved wire between the nodes."""
 
 from typing import NamedTuple
 
@@ -15,9 +15,8 @@ def gauss_points(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Gauss points on the true centre line between pairs of nodes.
 
-    The abscissa is the part of the turns from one node to the other, not of the chord: functions of the turn are
-    smooth, so that two points of Gauss's rule integrate along the wire with an error of fourth order in the element's
-    length.
+    The abscissa is the fraction of the turns from one node to the other, not of the chord: functions of the turn are
+    smooth, so that two Gauss points integrate along the wire with an error of fourth order in the element length.
 
     Args:
         spring: `Spring`.
@@ -37,16 +36,16 @@ def gauss_points(
 def polygon_nodes(spring: Spring, turns: np.ndarray, keep: str = "points", poisson: float = 0.3) -> np.ndarray:
     """Nodes of a polygon of straight rods that represents the wire.
 
-    A chord over the angle φ is shorter than its arc and nearer to the axis. Under an axial force F it bears the torque
-    F r cos(φ/2) and bending up to F r sin(φ/2), with EI = (1 + ν) GJ for a round wire, so that inscribed rods are
-    too stiff by `1 − sin(φ/2)/(φ/2) · (cos²(φ/2) + sin²(φ/2)/(3 (1 + ν)))`: 3.5 % at 16 elements a turn. Nodes moved
-    outwards mend that.
+    A chord over the angle φ is shorter than its arc and closer to the axis. Under an axial force F it carries the
+    torque F r cos(φ/2) and bending up to F r sin(φ/2), with EI = (1 + ν) GJ for a round wire, so that inscribed rods
+    are too stiff by `1 − sin(φ/2)/(φ/2) · (cos²(φ/2) + sin²(φ/2)/(3 (1 + ν)))`: 3.5 % at 16 elements per turn. Moving
+    the nodes outwards corrects this.
 
     Args:
         spring: `Spring`.
         turns: increasing turns of the nodes, shape (n + 1,).
         keep: ``points``, the nodes lie on the centre line; ``length``, the chords are as long as their arcs;
-            ``compliance``, they give as much to an axial force.
+            ``compliance``, they are as compliant as the arcs under an axial force.
         poisson: ν, for ``compliance``.
 
     Returns:
@@ -56,7 +55,7 @@ def polygon_nodes(spring: Spring, turns: np.ndarray, keep: str = "points", poiss
     if keep == "points":
         return nodes
     φ = 2 * np.pi * np.diff(turns)
-    # between elements of different length, the mean of what both ask for
+    # between elements of different lengths, the mean of what both require
     half = 0.5 * np.concatenate([φ[:1], 0.5 * (φ[1:] + φ[:-1]), φ[-1:]])
     shortening = np.sin(half) / half
     if keep == "length":
@@ -70,13 +69,12 @@ def polygon_nodes(spring: Spring, turns: np.ndarray, keep: str = "points", poiss
 
 
 class Placement(NamedTuple):
-    """Where the true sections of a curved wire lie in relation to the chords, and how the wire is curved there.
+    """Positions of the true sections of a curved wire relative to the chords, and the wire's curvature there.
 
     Attributes:
         matrices: from the chord's strains (ε, γ12, γ13, φ′, κ2, κ3) to the section's, shape (n, g, 6, 6).
         stretch: ds/dx, length of wire over length of chord, shape (n, g).
-        curvature: κ of the wire, 1/mm, towards the section's y axis, shape (n, g); 0 for sections that know nothing of
-            it.
+        curvature: κ of the wire, 1/mm, towards the section's y axis, shape (n, g); 0 for sections that ignore it.
         torsion: τ of the wire, 1/mm, shape (n, g).
     """
 
@@ -87,7 +85,7 @@ class Placement(NamedTuple):
 
 
 def straight(elements: int) -> Placement:
-    """The placement of sections that lie on their straight rods, two for each."""
+    """The placement of sections on their straight rods, two for each."""
     zero = np.zeros((elements, 2))
     return Placement(np.tile(np.eye(6), (elements, 2, 1, 1)), np.ones_like(zero), zero, zero.copy())
 
@@ -95,7 +93,7 @@ def straight(elements: int) -> Placement:
 def section_placement(
     spring: Spring, turns: np.ndarray, triads: np.ndarray, abscissae: np.ndarray, curved: bool = False
 ) -> Placement:
-    """How the sections of the curved wire hang on the chords between the nodes.
+    """How the sections of the curved wire depend on the chords between the nodes.
 
     A section of the true centre line is rigidly tied to the section of the chord at the same ξ, by the offset o. With
     the chord's strains Γ = (ε, γ12, γ13) and K = (φ′, κ2, κ3) and the triad Q of the true section in the chord's
@@ -103,17 +101,16 @@ def section_placement(
 
         Γ_true = Qᵀ (Γ + K × o) dx/ds,    K_true = Qᵀ K dx/ds,
 
-    so that a rigid motion strains nothing, whatever o and Q are. Q is the smallest rotation that brings the chord's
-    axis to the true tangent t; of a curved wire it is followed by the rotation about t that brings the section's
-    y axis to the normal n, the direction of the centre of curvature. Where the wire is straight there is no normal, and
-    none is needed.
+    so that a rigid motion causes no strain, whatever o and Q are. Q is the smallest rotation that takes the chord's
+    axis to the true tangent t; for a curved wire it is followed by the rotation about t that takes the section's
+    y axis to the normal n, the direction of the centre of curvature. A straight wire has no normal and needs none.
 
     Args:
         spring: `Spring`.
         turns: increasing turns of the nodes, shape (n + 1,); the nodes lie on the centre line.
         triads: the chords' triads, columns, shape (n, 3, 3).
         abscissae: ξ of the Gauss sections, from 0 to 1, shape (g,).
-        curved: whether the sections know of the wire's curvature and torsion, and stand with y along the normal.
+        curved: whether the sections account for the wire's curvature and torsion, with y along the normal.
 
     Returns:
         Placement.
@@ -142,11 +139,11 @@ def section_placement(
 
 
 def refuse_sharp_bends(placement: Placement, radius: np.ndarray, turns: np.ndarray) -> None:
-    """A wire bent to a radius below its own has no length left at the inside: 1 − κ y is negative there.
+    """Reject a wire bent to a radius below its own: no length is left at the inside, where 1 − κ y is negative.
 
     Args:
         placement: of the sections.
-        radius: of the wire, each element's, mm, shape (n,).
+        radius: wire radius of each element, mm, shape (n,).
         turns: of the nodes, shape (n + 1,).
 
     Raises:
@@ -163,7 +160,7 @@ def refuse_sharp_bends(placement: Placement, radius: np.ndarray, turns: np.ndarr
 
 
 def _least_turn(t: np.ndarray) -> np.ndarray:
-    """The least turn that brings the first axis to the unit vectors `t`, shape (..., 3) → (..., 3, 3)."""
+    """The smallest rotation that takes the first axis to the unit vectors `t`, shape (..., 3) → (..., 3, 3)."""
     Q = np.zeros((*t.shape, 3))
     Q[..., :, 0] = t
     Q[..., 0, 1:] = -t[..., 1:]
@@ -172,7 +169,7 @@ def _least_turn(t: np.ndarray) -> np.ndarray:
 
 
 def _to_normal(normal: np.ndarray, curvature: np.ndarray) -> np.ndarray:
-    """The turn about the first axis that brings the second to κ n = `normal`, shape (..., 2) → (..., 3, 3)."""
+    """The rotation about the first axis that takes the second to κ n = `normal`, shape (..., 2) → (..., 3, 3)."""
     straight = curvature < STRAIGHT
     cos, sin = np.moveaxis(normal, -1, 0) / np.where(straight, np.inf, curvature)
     cos = np.where(straight, 1.0, cos)

@@ -11,20 +11,20 @@ from coilset.meshes.compat import mesh_from_gmsh
 from coilset.meshes.errors import InputError
 from coilset.meshes.section_shapes import Outline
 
-SAMPLES = 4001  # of each curve, in the search for the section's extent
+SAMPLES = 4001  # points on each curve in the search for the section's extent
 
 
 @dataclass(frozen=True, eq=False)
 class SectionMesh:
-    """A section's mesh, whole on this rank.
+    """A section's mesh, complete on this rank.
 
     Attributes:
-        mesh: DOLFINx mesh of triangles with sides of the degree of `degree`, coordinates (ξ, η), mm.
+        mesh: DOLFINx mesh of triangles with sides of degree `degree`, coordinates (ξ, η), mm.
         facets: facets on the section's surface.
         degree: of the sides and of the displacements.
         area: mm².
-        size: length of the triangles' sides that was asked for, mm.
-        extent: least and greatest ξ, least and greatest η of the section, mm.
+        size: requested length of the triangles' sides, mm.
+        extent: minimum and maximum ξ, minimum and maximum η of the section, mm.
     """
 
     mesh: dolfinx.mesh.Mesh
@@ -50,14 +50,14 @@ def section_mesh(
         across: triangles across the round section of the same area.
         degree: of the triangles' sides and of the displacements, 2 or 3.
         surface: how much finer the triangles are at the surface than in the middle.
-        inside: how much finer they are at the inside of the coil, where stress is greatest and steep: from the place of
-            least ξ to the middle their size grows in proportion to the distance.
+        inside: how much finer they are at the inside of the coil, where stress is highest and varies most: from the
+            point of minimum ξ to the middle their size grows in proportion to the distance.
 
     Returns:
         SectionMesh.
 
     Raises:
-        InputError: values that make no mesh.
+        InputError: values that do not define a mesh.
     """
     if not (np.isfinite(across) and across >= 1):
         raise InputError(f"{across:g} is not possible; give 1 or more triangles across the section", "section.across")
@@ -85,7 +85,7 @@ def section_mesh(
 
 
 def _extent(curves: list[int]) -> tuple[float, float, float, float]:
-    """Least and greatest ξ, least and greatest η of curves in the current gmsh model, from points on them."""
+    """Minimum and maximum ξ and η of curves in the current gmsh model, from points on them."""
     along = []
     for tag in curves:
         (start,), (end,) = gmsh.model.getParametrizationBounds(1, tag)
@@ -97,7 +97,7 @@ def _extent(curves: list[int]) -> tuple[float, float, float, float]:
 def _sizes(
     size: float, surface: float, inside: float, curves: list[int], extent: tuple[float, float, float, float]
 ) -> None:
-    """Triangles of a size, of size/surface at the curves and size/inside at the inside, in the current gmsh model."""
+    """Set the triangle size in the current gmsh model: size/surface at the curves, size/inside at the inside."""
     field, options = gmsh.model.mesh.field, gmsh.option
     for name in ("MeshSizeFromPoints", "MeshSizeFromCurvature", "MeshSizeExtendFromBoundary"):
         options.setNumber(f"Mesh.{name}", 0)

@@ -1,7 +1,7 @@
 """Outlines of a wire's cross-section, drawn as curves of a gmsh model.
 
 Coordinates (ξ, η), mm: ξ points away from the coil's axis, η upwards along the spring. The origin lies on the centre
-line, whose radius is half of the mean diameter; shapes are drawn about it by the middle of their width and height.
+line, whose radius is half the mean diameter; shapes are centred on it by the middle of their width and height.
 """
 
 import csv
@@ -17,10 +17,10 @@ from coilset.meshes.errors import InputError
 
 
 class Outline(Protocol):
-    """A closed curve round a section."""
+    """A closed curve around a section."""
 
     def draw(self) -> list[int]:
-        """Draw the curve in the current gmsh model (OpenCASCADE); tags of its pieces, in their order round it."""
+        """Draw the curve in the current gmsh model (OpenCASCADE); returns the tags of its pieces in order around it."""
         ...
 
 
@@ -48,14 +48,14 @@ class Oval:
 
 
 def round_wire(diameter: float) -> Oval:
-    """The section of a round wire of a diameter, mm."""
+    """The section of a round wire of the given diameter, mm."""
     _positive(diameter=diameter)
     return Oval(diameter, diameter)
 
 
 @dataclass(frozen=True)
 class Trapezoid:
-    """A trapezium with two sides parallel to the coil's axis, as keystone wire has before coiling, corners rounded.
+    """A trapezium with two sides parallel to the coil's axis and rounded corners, like keystone wire before coiling.
 
     Attributes:
         width: radial, mm.
@@ -85,16 +85,16 @@ class Trapezoid:
 
 
 def rectangle(width: float, height: float, corner: float = 0.0) -> Trapezoid:
-    """A rectangle of radial `width` and axial `height`, its corners rounded with a radius, mm."""
+    """A rectangle of radial `width` and axial `height` with rounded corners, mm."""
     return Trapezoid(width, height, height, corner)
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A closed curve through points.
+    """A closed curve through given points.
 
     Attributes:
-        points: shape (n, 2), mm, in their order round the section; the last one is joined to the first.
+        points: shape (n, 2), mm, in order around the section; the last one is joined to the first.
         smooth: a cubic spline through them instead of straight sides.
     """
 
@@ -117,7 +117,7 @@ class Curve:
 
     @classmethod
     def read(cls, path: str | Path, smooth: bool = False) -> "Curve":
-        """Read a CSV file with two columns ξ, η in mm; a line that is not a pair of numbers may only be the first.
+        """Read a CSV file with two columns ξ, η in mm; only the first line may be other than a pair of numbers.
 
         Raises:
             InputError: if it cannot be read, with the line.
@@ -157,7 +157,7 @@ def signed_area(points: np.ndarray) -> float:
 
 
 def crosses_itself(points: np.ndarray) -> bool:
-    """Whether two sides of a closed polygon that do not follow each other cross, shape (n, 2)."""
+    """Whether two non-adjacent sides of a closed polygon cross, shape (n, 2)."""
     a, b = points, np.roll(points, -1, axis=0)
 
     def side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> np.ndarray:
@@ -172,7 +172,7 @@ def crosses_itself(points: np.ndarray) -> bool:
 
 
 def _rounded(corners: np.ndarray, radius: float) -> list[int]:
-    """Straight sides between corners that run anticlockwise, joined by arcs of a radius that touch them."""
+    """Straight sides between anticlockwise corners, joined by tangent arcs of the given radius."""
     occ, n = gmsh.model.occ, len(corners)
     ends, arcs = [], []
     for i in range(n):
@@ -194,7 +194,7 @@ def _rounded(corners: np.ndarray, radius: float) -> list[int]:
     return [piece for i in range(n) for piece in (arcs[i], sides[i])]
 
 
-# what makes them, and the least and the greatest number of lengths
+# constructor, and the minimum and maximum number of lengths
 WORDS: dict[str, tuple[Callable[..., Outline], int, int]] = {
     "round": (round_wire, 1, 1), "oval": (Oval, 2, 2), "rectangle": (rectangle, 2, 3), "trapezoid": (Trapezoid, 3, 4),
 }  # fmt: skip
@@ -202,7 +202,7 @@ FORMS = "round:d, oval:width:height, rectangle:width:height[:corner], trapezoid:
 
 
 def parse(text: str) -> Outline:
-    """A section in words, as `rectangle:4:5:0.5`, or a CSV file of its outline; `smooth:FILE` takes a curved one.
+    """A section in words, such as `rectangle:4:5:0.5`, or a CSV file of its outline; `smooth:FILE` for a curved one.
 
     Raises:
         InputError: if it is none of these.

@@ -1,4 +1,4 @@
-"""How a quantity runs over the turns: a number, a table, or one of the shapes that spring makers draw."""
+"""How a quantity varies over the turns: a number, a table, or one of the shapes that spring makers draw."""
 
 from typing import Annotated, Any, Literal, Self
 
@@ -26,7 +26,7 @@ Turn = Annotated[float, Unit("turns"), Field(ge=0, allow_inf_nan=False, strict=T
 
 
 class Table(Strict):
-    """Values at chosen turns, the first at turn 0 and the last at the last turn."""
+    """Values at selected turns, the first at turn 0 and the last at the last turn."""
 
     turns: Annotated[
         tuple[Turn, ...], Field(strict=False, min_length=2, description="turns from the bottom end, increasing")
@@ -81,7 +81,7 @@ class Cone(Strict):
 
 
 class Funnel(Strict):
-    """A cone on the bottom end that goes on as a cylinder (the funnel's neck) to the top end."""
+    """A cone at the bottom end that continues as a cylinder (the funnel's neck) to the top end."""
 
     shape: Literal["funnel"]
     bottom: Annotated[Length, Field(description="mean coil diameter at the bottom end, mm")]
@@ -108,7 +108,7 @@ class _Waisted(Strict):
 
 
 class DoubleCone(_Waisted):
-    """Two equal cones, base on base or tip on tip; the diameter has its greatest or least value in the middle."""
+    """Two equal cones, base on base or tip on tip; the diameter has its maximum or minimum in the middle."""
 
     shape: Literal["double cone"]
 
@@ -167,7 +167,7 @@ SHAPES = {
 
 
 def form_of_entry(value: Any) -> str:
-    """Tag of the form of an entry; tags are in brackets because they are no part of its place in the case file."""
+    """Tag of the form of an entry; brackets mark tags, which are not part of its place in the case file."""
     if isinstance(value, dict):
         return f"({value['shape']})" if "shape" in value else "(table)"
     if isinstance(value, Strict):

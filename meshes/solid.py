@@ -12,16 +12,16 @@ from coilset.meshes.compat import mesh_from_gmsh, unghosted
 from coilset.meshes.errors import InputError
 from coilset.meshes.solid_grid import SectionGrid, gmsh_cylinder
 
-GRID = SectionGrid()  # of a wire for which nothing else is asked
+GRID = SectionGrid()  # default for a wire
 
 
 @dataclass(frozen=True)
 class Helix:
-    """The centre line of a coil of constant diameter and pitch about the z axis, and the wire's frame along it.
+    """The centre line of a coil with constant diameter and pitch about the z axis, and the wire's frame along it.
 
     Attributes:
         mean_diameter: D, mm.
-        pitch: p, rise in one turn, mm; 0 is a ring with a cut.
+        pitch: p, rise per turn, mm; 0 is a split ring.
         degrees: how far the wire goes round.
     """
 
@@ -42,7 +42,7 @@ class Helix:
     def frame(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Centre and axes (outward radius, t × radius, tangent t) at the arc lengths, each of shape (..., 3).
 
-        The axes are right-handed and the second one looks down the axis of a coil that rises.
+        The axes are right-handed; the second one points down the axis of a rising coil.
         """
         s = np.asarray(s, dtype=float)
         R, α = 0.5 * self.mean_diameter, self.slope
@@ -54,7 +54,7 @@ class Helix:
         return centre, outward, np.cross(tangent, outward), tangent
 
     def place(self, straight: np.ndarray) -> np.ndarray:
-        """Where points (y, z, s) of the straight wire lie on the coil, shape (n, 3); sections stay plane and normal."""
+        """Map points (y, z, s) of the straight wire onto the coil, shape (n, 3); sections stay plane and normal."""
         centre, outward, second, _ = self.frame(straight[:, 2])
         return centre + straight[:, :1] * outward + straight[:, 1:2] * second
 
@@ -69,8 +69,8 @@ class SolidMesh:
         groups: tag of each group of facets: ``bottom``, ``top`` (the two heads) and ``surface``.
         wire_diameter: d, mm.
         length: length of the centre line, mm.
-        straight: where each geometry node of this rank lay in the straight wire, (y, z, s), shape (nodes, 3), mm.
-        place: maps points (y, z, s) of the straight wire, shape (n, 3), to where they lie in the mesh, shape (n, 3).
+        straight: position (y, z, s) of each geometry node of this rank in the straight wire, shape (nodes, 3), mm.
+        place: maps points (y, z, s) of the straight wire, shape (n, 3), to their positions in the mesh, shape (n, 3).
     """
 
     mesh: dolfinx.mesh.Mesh
@@ -143,7 +143,7 @@ def coil_section(
     Args:
         wire_diameter: d, mm.
         mean_diameter: D, mm, greater than d.
-        pitch: rise of the centre line in one turn, mm.
+        pitch: rise of the centre line per turn, mm.
         degrees: how far the wire goes round, any positive number; it begins at the x axis.
         layers: number of elements along the wire.
         comm: MPI communicator.
@@ -154,7 +154,7 @@ def coil_section(
         SolidMesh.
 
     Raises:
-        InputError: sizes that are no coil.
+        InputError: sizes that do not define a coil.
     """
     if not mean_diameter > wire_diameter:
         raise InputError(f"{mean_diameter} mm is not more than the wire's {wire_diameter} mm", "mean_diameter")

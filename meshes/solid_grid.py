@@ -13,10 +13,10 @@ class SectionGrid:
     """Elements of a wire's cross-section: a square core in the middle, and rings from there to the surface.
 
     Attributes:
-        core: elements along a side of the core; there are 4 core elements round the surface.
+        core: elements along a side of the core; there are 4 · core elements around the surface.
         rings: elements from the core to the surface.
-        core_size: distance of the core's corners from the centre over the wire's radius.
-        grading: each ring's thickness over that of the ring inside it.
+        core_size: distance of the core's corners from the centre, over the wire radius.
+        grading: thickness of each ring over that of the ring inside it.
     """
 
     core: int = 4
@@ -25,7 +25,7 @@ class SectionGrid:
     grading: float = 1.0
 
     def __post_init__(self) -> None:
-        """Refuse what is no grid."""
+        """Reject values that do not define a grid."""
         if self.core < 1 or self.rings < 1:
             raise InputError(f"core {self.core} and rings {self.rings} must be at least 1", "grid")
         if not 0 < self.core_size < 1:
@@ -37,7 +37,7 @@ class SectionGrid:
         return self.core * self.core + 4 * self.core * self.rings
 
 
-# The sides of the core bulge outwards by this part of their length, which evens out the angles at its corners.
+# The sides of the core bulge outwards by this fraction of their length, which evens out the angles at its corners.
 BULGE = 0.08
 
 
@@ -86,7 +86,7 @@ def gmsh_disk(radius: float, grid: SectionGrid, recombine: bool) -> list[int]:
 
 
 def gmsh_cylinder(radius: float, length: float, layers: int, grid: SectionGrid, cell: str) -> dict[str, int]:
-    """Mesh a straight wire along z in the current gmsh model with elements of second order.
+    """Mesh a straight wire along z in the current gmsh model with second-order elements.
 
     Args:
         radius, length: mm.

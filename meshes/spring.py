@@ -17,7 +17,7 @@ from coilset.meshes.measured import MeasuredSpec
 from coilset.meshes.piecewise import PiecewisePolynomial
 from coilset.meshes.shapes import DiameterProfile, Length, Profile, profile_function
 
-DIAMETERS = {"mean_diameter": 0, "outer_diameter": -1, "inner_diameter": 1}  # wires to add for the mean diameter
+DIAMETERS = {"mean_diameter": 0, "outer_diameter": -1, "inner_diameter": 1}  # wire diameters to add for the mean one
 
 __all__ = ["MeasuredSpec", "Spring", "SpringEntry", "SpringSpec"]
 
@@ -48,6 +48,11 @@ class SpringSpec(Strict):
     ] = None
     hand: Annotated[Literal["right", "left"], Field(description="direction of the helix")] = "right"
     end_coils: Ends = OPEN
+    made_by: Annotated[
+        Literal["coiling"] | None,
+        Field(description="coiling: straight wire is bent and twisted, and springs back to this drawing, which leaves "
+                          "residual stress; left out: the wire is free of stress"),
+    ] = None  # fmt: skip
 
     @model_validator(mode="after")
     def _has_one_diameter(self) -> Self:
@@ -75,7 +80,7 @@ class SpringSpec(Strict):
             `Spring`.
 
         Raises:
-            InputError: entries that contradict each other, with their place.
+            InputError: contradictory entries, with their place.
         """
         wire = self._function("wire_diameter")
         mean = self._mean_diameter(wire)
@@ -103,7 +108,7 @@ class SpringSpec(Strict):
         return self._refuse(built)
 
     def _refuse(self, spring: Spring) -> Spring:
-        """Refuse what cannot be a spring; what is wrong with the diameter is said of the entry that gives it."""
+        """Reject impossible springs; faults of the diameter are reported at the entry that gives it."""
         try:
             return refuse(spring)
         except InputError as error:
@@ -139,7 +144,7 @@ class SpringSpec(Strict):
         return pitch_with_ends(pitch, *bottom_and_top(self.end_coils), touching)
 
     def _with_free_length(self, spring: Callable[[PiecewisePolynomial], Spring], body_turns: float) -> Spring:
-        """The spring whose body has the pitch that makes the free length; this grows with the pitch."""
+        """The spring whose body pitch yields the free length, which grows with the pitch."""
 
         free_length = self.free_length
         assert free_length is not None
@@ -155,7 +160,7 @@ class SpringSpec(Strict):
             )
         from scipy.optimize import brentq
 
-        # the body alone rises by the greatest pitch times its turns
+        # at the maximum pitch the body alone rises by the free length
         pitch = brentq(too_long, 0.0, free_length / body_turns, xtol=1e-12, rtol=1e-14)
         return spring(functions.constant(pitch, self.turns))
 
@@ -168,4 +173,4 @@ def _origin(value: Any) -> str:
 SpringEntry = Annotated[
     Annotated[SpringSpec, Tag("(drawn)")] | Annotated[MeasuredSpec, Tag("(measured)")], Discriminator(_origin)
 ]
-"""The `spring:` section of the case file; a spring with the entry `file` was measured."""
+"""The `spring:` section of the case file; a spring with the entry `file` is a measured one."""

@@ -1,6 +1,6 @@
-"""Where the nodes of a line mesh stand along the wire."""
+"""Positions of the nodes of a line mesh along the wire."""
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Protocol
 
 import numpy as np
 from annotated_types import Unit
@@ -10,36 +10,51 @@ from coilset.meshes import functions
 from coilset.meshes.errors import InputError
 from coilset.meshes.shapes import Table, form_of_entry
 
-if TYPE_CHECKING:
-    from coilset.meshes.geometry import Spring
-
-LEAST, MOST = 3, 1_000_000  # elements in a turn
-ALL = 10_000_000  # elements of a spring
+LEAST, MOST = 3, 1_000_000  # elements per turn
+ALL = 10_000_000  # elements of a whole spring
 
 ElementsPerTurn = Annotated[
     Annotated[float, Unit("1"), Field(ge=LEAST, le=MOST, strict=True), Tag("(number)")]
     | Annotated[Table, Tag("(table)")],
     Discriminator(form_of_entry, custom_error_type="form", custom_error_message="must be a number or a table"),
 ]
-"""Number of elements in a turn, or a table of it over the turns where the mesh is graded."""
+"""Number of elements per turn, or a table of it over the turns for a graded mesh."""
 
 
-def stations(spring: "Spring", elements_per_turn: ElementsPerTurn = 16, sagitta: float | None = None) -> np.ndarray:
-    """Turns at which the nodes stand.
+class CentreLine(Protocol):
+    """The properties of a spring that determine where its nodes are; turns t, shape (n,)."""
 
-    The number of elements in a turn is a density over the turn; its integral, rounded up, is the number of elements,
-    and every element has an equal part of it.
+    @property
+    def turns(self) -> float:
+        """The last turn."""
+
+    @property
+    def breaks(self) -> np.ndarray:
+        """Turns at which some function of the spring is not smooth, including the first and the last."""
+
+    def speed(self, t: np.ndarray) -> np.ndarray:
+        """Length of wire per turn, mm."""
+
+    def curvature(self, t: np.ndarray) -> np.ndarray:
+        """1/mm."""
+
+
+def stations(spring: CentreLine, elements_per_turn: ElementsPerTurn = 16, sagitta: float | None = None) -> np.ndarray:
+    """Turns at which the nodes are.
+
+    The number of elements per turn is a density over the turn; its integral, rounded up, is the number of elements,
+    and every element has an equal share of it.
 
     Args:
-        spring: `Spring`.
+        spring: its centre line.
         elements_per_turn: a number, or a `Table` of numbers over the turns.
-        sagitta: if given, elements are also so short that their chord leaves the centre line by no more than this, mm.
+        sagitta: if given, elements are also short enough that their chord deviates no more than this, mm, from the arc.
 
     Returns:
         Increasing turns from 0 to the last turn, shape (elements + 1,).
 
     Raises:
-        InputError: a table that does not end at the last turn, or too few or too many elements in a turn.
+        InputError: a table that does not end at the last turn, or too few or too many elements per turn.
     """
     try:
         given = (
@@ -53,7 +68,7 @@ def stations(spring: "Spring", elements_per_turn: ElementsPerTurn = 16, sagitta:
     def density(t: np.ndarray) -> np.ndarray:
         if sagitta is None:
             return given(t)
-        # sagitta = κ h²/8, h the element's length
+        # sagitta = κ h²/8 with the element length h
         return np.maximum(given(t), spring.speed(t) * np.sqrt(spring.curvature(t) / (8 * sagitta)))
 
     breaks = np.unique(np.concatenate([spring.breaks, given.x]))

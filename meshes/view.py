@@ -11,11 +11,11 @@ STATIONS_PER_TURN = 64
 
 
 def tube(spring: Spring, sides: int = 32) -> pv.PolyData:
-    """The wire's surface as a `pyvista.PolyData`, with the turn as its data.
+    """The wire's surface as a `pyvista.PolyData` that carries the turn as data.
 
     Args:
         spring: `Spring`.
-        sides: corners of the cross-section.
+        sides: number of corners of the cross-section.
     """
     turns = np.linspace(0.0, spring.turns, int(np.ceil(STATIONS_PER_TURN * spring.turns)) + 1)
     line = pv.PolyData(spring.centre_line(turns), lines=[len(turns), *range(len(turns))])
@@ -28,7 +28,7 @@ def tube(spring: Spring, sides: int = 32) -> pv.PolyData:
 
 
 def picture(spring: Spring, path: str | Path) -> None:
-    """Draw the spring from the side and a little above as a PNG; needs a display."""
+    """Draw the spring as a PNG, seen from the side and slightly above; needs a display."""
     plotter = pv.Plotter(off_screen=True, window_size=(900, 900))
     plotter.set_background("white")
     plotter.add_mesh(tube(spring), color="lightsteelblue", smooth_shading=True, specular=0.3)

@@ -3,7 +3,6 @@
 import logging
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
@@ -13,6 +12,7 @@ from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.line import line_mesh
 from coilset.meshes.placement import refuse_sharp_bends, section_placement, straight
 from coilset.model.case import Case
+from coilset.model.case.heat import HeatSpec
 from coilset.model.case.phases import AnyPhase, Phase, TimePhase
 from coilset.model.case.targets import check_targets, check_times
 from coilset.model.contact.base import BearsOnWire
@@ -22,32 +22,28 @@ from coilset.model.effort import Effort, machine_memory
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
 from coilset.model.equilibrium.continuation import Continuation
-from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.methods import Method, rod_method
 from coilset.model.equilibrium.newton import Newton
-from coilset.model.equilibrium.program import LoadProgram, ProgramPosition, Stage, StepTaken
+from coilset.model.equilibrium.program import LoadProgram, ProgramPosition, Stage
 from coilset.model.equilibrium.stability import Stability
 from coilset.model.equilibrium.step_error import StepError
 from coilset.model.equilibrium.system import System
+from coilset.model.recorder import Recorder
 from coilset.model.results.balance import imbalance
-from coilset.model.results.buckling import axis_offset, buckling
 from coilset.model.results.checkpoint import Saved
-from coilset.model.results.record import ContactRecord, Limits, Result, SeatReactions, Setup, Snapshot, Step
-from coilset.model.results.seat_reactions import faint_force, mean_torque, seat_reactions
-from coilset.model.results.shape import clearance, least_rise
-from coilset.model.results.warnings import step_warnings
+from coilset.model.results.record import ContactRecord, Limits, Result, Setup, Snapshot, Step
+from coilset.model.rod.heat import WireHeat, heat_constants
 from coilset.model.rod.kinematics import GAUSS, chord_triads
+from coilset.model.rod.past import coil_wire
 from coilset.model.rod.rod import Rod
-from coilset.model.section import surface
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.standards.wires.law import case_law, case_strength
-from coilset.model.state import State, Where
-from coilset.model.warning import Warning
+from coilset.model.state import State
 
 log = logging.getLogger("coilset.steps")
-PENETRATION = 0.02  # usual greatest penetration in wire diameters; a case may allow more
+PENETRATION = 0.02  # usual maximum penetration in wire diameters; a case may allow more
 
 
 class Save(Protocol):
@@ -92,12 +88,12 @@ class Analysis:
             refuse_sharp_bends(placement, radius, turns)
         self.rod = Rod(line, radius, self.law, section.build(), placement, case.temperature, section.kind,
                        section.degree)  # fmt: skip
+        self.heat = None if case.heat is None else self._wire_heat(case.heat)
+        coiling_diameter = coil_wire(self.rod) if getattr(case.spring, "made_by", None) else None
         seats = case.seats if case.ends == "seats" else None
         contacts = build_contacts(case.contact, seats, spring, turns, line.stations, self.law.E)
         self.layout = LineLayout(self.rod)
         self.system = System(self.rod, self.layout, contacts, seats_at(spring.free_length))
-        self.torque = self.system.state.add("torque", mean_torque(self.rod), Where.ELEMENT)
-        self.torque_force = self.system.state.add("torque_force", np.zeros(1), Where.SHARED)
         self.newton = self._newton(2.0 * self.rod.largest_radius)
         self.control = AxialControl(
             self.system, spring.free_length, case.ends == "clamped", case.seats.hold == "tips",
@@ -118,8 +114,17 @@ class Analysis:
         self.setup = Setup(spring, self.law.name, case.ends, tuple(p.label for p in case.loading), turns, radius,
                            self.rod.rule, records, section.kind, placement,
                            buckling_travel(spring, self.law.G / self.law.E), self._limits(float(radius.min())),
-                           tuple(case.rates_at), warnings)  # fmt: skip
-        self.result = Result()
+                           tuple(case.rates_at), warnings, coiling_diameter)  # fmt: skip
+        self.recorder = Recorder(self.setup, self.rod, self.system, self.control, self.newton, self.stability)
+
+    @property
+    def result(self) -> Result:
+        """What is kept of the run up to now."""
+        return self.recorder.result
+
+    def snapshot(self, name: str) -> Snapshot:
+        """The spring as it stands, gathered on rank 0; collective."""
+        return self.recorder.snapshot(name)
 
     def _newton(self, wire_diameter: float) -> Newton:
         solver, contact = self.case.solver, self.case.contact
@@ -138,7 +143,7 @@ class Analysis:
         return sum(phase.count(automatic) for phase in self.case.loading)
 
     def _passed(self) -> str | None:
-        """Why the state on trial is none of a spring: its heads have passed each other; collective."""
+        """Why the trial state is impossible: the heads have passed each other; collective."""
         height, wire = self.control.trial_height, 2.0 * self.rod.largest_radius
         if height >= wire:
             return None
@@ -149,10 +154,10 @@ class Analysis:
                       self.case.accuracy)  # fmt: skip
 
     def use_method(self, name: str) -> None:
-        """Go on with another iteration method.
+        """Switch to another iteration method.
 
         Raises:
-            InputError: if there is no such method, or PETSc refuses an option; the method stays what it was.
+            InputError: if there is no such method, or PETSc rejects an option; the method is then unchanged.
         """
         self.newton.use(self._method(name))
 
@@ -164,7 +169,7 @@ class Analysis:
         save: Save | None = None,
         touched: Callable[[], object] = lambda: None,
     ) -> Result:
-        """Go through the load program; a resumed analysis goes on where its checkpoint was; collective.
+        """Run the load program; a resumed analysis continues from its checkpoint; collective.
 
         Args:
             report: called with each converged Step.
@@ -172,40 +177,48 @@ class Analysis:
             touched: called after the first touch, which gives the initial rate.
 
         Returns:
-            Result; it is also `self.result`, with all steps up to there if the run is interrupted.
+            Result, also available as `self.result`, with all steps so far if the run is interrupted.
 
         Raises:
             SolveError: no equilibrium was found; the state is that of the last converged step.
         """
         try:
             if not self.result.snapshots:
-                self.result = replace(self.result, rate=self.initial_rate(), snapshots=(self.snapshot("start"),))
-                if math.isnan(self.result.rate):
-                    problem = "the initial rate is not known: no equilibrium was found at the first touch"
-                    unknown = Warning("initial rate", "start", problem)
-                    self.result = replace(self.result, warnings=(unknown,))
+                self.recorder.begin(self.initial_rate())
             touched()
             for number in range(self.program.number, len(self.case.loading)):
                 phase = self.case.loading[number]
                 for taken in self.program.run(self.stage(phase)):
-                    step = self._record(number, taken)
+                    self._flow_of_heat(number, taken.progress)
+                    step = self.recorder.record(number, taken, self.case.loading)
                     self._keep(save)
                     report(step)
-                self._add_snapshot(self.program.stage.label)
+                self.recorder.add_snapshot(self.program.stage.label)
                 self.program.begin(number + 1)
                 self._keep(save)
         except (SolveError, KeyboardInterrupt):
             self.system.restore()
-            self._add_snapshot("last equilibrium")
+            self.recorder.add_snapshot("last equilibrium")
             raise
-        self.result = replace(self.result, complete=True)
+        self.recorder.end()
         return self.result
 
+    def _wire_heat(self, spec: HeatSpec) -> WireHeat:
+        start = self.rod.temperature if spec.surroundings is None else spec.surroundings
+        return WireHeat(self.rod, heat_constants(self.law, spec.conductivity, spec.convection, spec.tips, start))
+
+    def _flow_of_heat(self, number: int, progress: float) -> None:
+        """Let heat flow for the part of the phase's time that the last step took."""
+        phase = self.case.loading[number]
+        if self.heat is not None and isinstance(phase, Phase) and phase.seconds is not None:
+            before = max((step.progress for step in self.result.steps if step.phase == number), default=0.0)
+            self.heat.advance((progress - before) * phase.seconds)
+
     def redirect(self, phase: Phase) -> None:
-        """Go to another target from here on, in place of the phase in progress; the case holds it from now on.
+        """Change the target of the phase in progress; the case holds the new one from now on.
 
         Raises:
-            InputError: if no spring can reach it; nothing is changed then.
+            InputError: if no spring can reach it; then nothing changes.
         """
         number = min(self.program.number, len(self.case.loading) - 1)
         loading = [phase if k == number else other for k, other in enumerate(self.case.loading)]
@@ -215,20 +228,20 @@ class Analysis:
         self.program.redirect(self.stage(phase))
 
     def resume(self, saved: Saved) -> None:
-        """Go back to where a checkpoint was; collective.
+        """Restore the state of a checkpoint; collective.
 
         Raises:
-            InputError: if its arrays are not those of this analysis; nothing is changed then.
+            InputError: if its arrays are not those of this analysis; then nothing changes.
         """
         self._check(saved)
         for name, field in self.system.state.items():
             self.layout.take(field, saved.arrays[name])
         self.system.restore()
         self.program.position, self.continuation.number = saved.position, len(saved.result.steps)
-        self.result = saved.result
+        self.recorder.resume(saved.result)
 
     def _check(self, saved: Saved) -> None:
-        """Refuse arrays that are missing or have other shapes or numbers that are none; collective."""
+        """Reject arrays that are missing, of another shape, or not finite; collective."""
         expected = {name: self.layout.natural(field) for name, field in self.system.state.items()}
         problem, like = None, self.snapshot("like")
         if self.comm.rank == 0:
@@ -243,7 +256,7 @@ class Analysis:
                              "--resume to start again", problem)  # fmt: skip
 
     def stage(self, phase: AnyPhase) -> Stage:
-        """A phase of the case as the load program takes it."""
+        """A phase of the case in the form that the load program expects."""
         steps = tuple(phase.steps) if isinstance(phase.steps, list) else phase.steps
         if isinstance(phase, TimePhase):
             time = phase.duration
@@ -262,76 +275,10 @@ class Analysis:
         if save is not None:
             save(self.system.state, self.layout, self.program.position, self.result)
 
-    def _record(self, phase: int, taken: StepTaken) -> Step:
-        height, force, last = self.control.height, self.control.force, self.system.last
-        contacts = sum(part.closed for part in last.contributions)
-        greatest = max(self.result.greatest_force, abs(force))
-        x, turns = self.layout.gather(self.rod.x), self.setup.turns
-        pulls = self.case.ends == "seats" and force < -faint_force(self.rod, greatest)
-        lift_off = max(clearance(self.system, x), 0.0) if pulls else 0.0
-        bears = 0.0 if lift_off else force  # what a seat that is left bears; the tip springs' pull is no force of it
-        hours, temperature, _ = self.rod.clock
-        step = Step(taken.number, phase, taken.progress, height, self.spring.free_length - height, bears,
-                    taken.outcome.iterations, taken.outcome.evaluations, taken.outcome.failed_solves, taken.cuts,
-                    contacts, self.system.max_penetration,
-                    taken.outcome.negative_pivots, int(taken.outcome.left_branch), taken.outcome.released,
-                    axis_offset(x, self.rod.line.stations, turns), self._least_eigenvalue(),
-                    self._greatest_plastic_work(), lift_off,
-                    least_rise(x, turns, self.spring), *self._errors(taken.outcome),
-                    hours=float(hours), temperature_K=float(temperature),
-                    load_loss_percent=self._load_loss(phase, force))  # fmt: skip
-        seats = self._seat_reactions(step.number, greatest)
-        known = {warning.name for warning in step_warnings(self.setup, self.result)}
-        self.result = replace(self.result, steps=(*self.result.steps, step), seats=(*self.result.seats, seats))
-        for warning in step_warnings(self.setup, self.result):
-            if warning.name not in known:
-                log.warning("warning: %s", warning.message)
-        return step
-
-    def _seat_reactions(self, step: int, greatest_force: float) -> SeatReactions:
-        """At the last equilibrium, whose torque and force are kept for the next step's active turns."""
-        before = float(self.torque_force.equilibrium[0]), self.torque.equilibrium
-        reactions = seat_reactions(self.system, self.control, self.setup.turns, step, greatest_force, before)
-        for kept in (self.torque.trial, self.torque.equilibrium):
-            np.copyto(kept, mean_torque(self.rod))
-        for kept in (self.torque_force.trial, self.torque_force.equilibrium):
-            kept[0] = self.control.force
-        return reactions
-
-    def _greatest_plastic_work(self) -> float:
-        """Greatest b* on the wire's surface at the last equilibrium, N/mm²; collective."""
-        work = surface.component(self.rod.surface_state, self.rod.sections.components, "b")
-        return float(self.comm.allreduce(work.max(initial=0.0), op=MPI.MAX))
-
-    def _load_loss(self, phase: int, force: float) -> float | None:
-        """Per cent of the force lost since time began to pass at constant height; None where it does not."""
-        loading, first = self.case.loading, phase
-        while first >= 0 and isinstance(one := loading[first], TimePhase) and one.duration.keep == "height":
-            first -= 1
-        before = next((step.force_N for step in reversed(self.result.steps) if step.phase <= first), 0.0)
-        if first == phase or abs(before) <= faint_force(self.rod, self.result.greatest_force):
-            return None
-        return 100.0 * (1.0 - force / before)
-
-    def _errors(self, outcome: Outcome) -> tuple[float | None, float | None]:
-        """Estimated errors of force and height by the steps' length, N and mm; None where they are not known."""
-        if outcome.estimate is None:
-            return None, None
-        force, height = (value if math.isfinite(value) else None
-                         for value in (outcome.estimate.force, outcome.estimate.height))  # fmt: skip
-        return force, height
-
-    def _least_eigenvalue(self) -> float | None:
-        """Of the tangent, N/mm, while a spring slender enough to buckle has not done so; else None; collective."""
-        slender, setup = np.isfinite(self.setup.buckling_travel), self.setup
-        if not slender or buckling(self.result.steps, setup.mean_diameter) is not None:
-            return None
-        return self.stability.weakest(self.newton.load).value
-
     def initial_rate(self) -> float:
         """Force over the shortening of the wire from tip to tip, at a thousandth of the free length, N/mm; collective.
 
-        NaN if no equilibrium is found there: the load program takes other steps, and need not fail for it.
+        NaN if no equilibrium is found there: the load program uses other steps and may still succeed.
         """
         x = self.system.state["x"]
         travel = self.continuation.control.probe * self.spring.free_length
@@ -346,18 +293,5 @@ class Analysis:
         return float(force / (before - after))
 
     def imbalance(self) -> tuple[float, float]:
-        """Lack of balance at any cut as it stands, N and N mm; see coilset.model.results.balance; collective."""
+        """Largest imbalance over all cuts now, N and N mm; see coilset.model.results.balance; collective."""
         return imbalance(self.snapshot("balance"), self.system, self.control)
-
-    def _add_snapshot(self, name: str) -> None:
-        self.result = replace(self.result, snapshots=(*self.result.snapshots, self.snapshot(name)))
-
-    def snapshot(self, name: str) -> Snapshot:
-        """The spring as it stands, gathered on rank 0; its force is that of the last step; collective."""
-        force = self.result.steps[-1].force_N if self.result.steps else self.control.force
-        rod = self.rod
-        parts = (rod.triads.values, rod.s.values, rod.point_state, rod.surface_state)
-        cells = [rod.line.in_order(values) for values in parts]
-        x, components = self.layout.gather(rod.x), rod.sections.components
-        triads, resultants, state, surface = cells
-        return Snapshot(name, self.control.height, force, x, triads, resultants, state, surface, components)

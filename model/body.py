@@ -1,4 +1,4 @@
-"""What equilibrium asks of a body: stresses for an increment, internal forces, a tangent."""
+"""What equilibrium requires of a body: stresses for an increment, internal forces, a tangent."""
 
 from typing import NamedTuple, Protocol, runtime_checkable
 
@@ -10,7 +10,7 @@ from coilset.model.state import State
 
 
 class Moment(NamedTuple):
-    """When: hours since the start, and the temperature, K."""
+    """A point in time: hours since the start, and the temperature, K."""
 
     hours: float
     temperature: float
@@ -20,7 +20,7 @@ class Body(Protocol):
     """A structure whose unknowns are the increments since the last equilibrium.
 
     Attributes:
-        increment: the increments, mm and rad, a function of the body's space; ghosts are up to date at `update`.
+        increment: the increments, mm and rad, a function of the body's space; ghosts are up to date for `update`.
         state: State with the body's own fields.
     """
 
@@ -29,19 +29,19 @@ class Body(Protocol):
 
     @property
     def row_entries(self) -> np.ndarray | None:
-        """Entries in the tangent's row of each owned unknown; None where `create_matrix` makes the room."""
+        """Number of entries in each owned unknown's row of the tangent; None if `create_matrix` allocates them."""
         ...
 
     def update(self) -> bool:
-        """Bring the trial state to `increment`.
+        """Update the trial state to `increment`.
 
         Returns:
-            True, or False if some point of this rank has no stress; then the step must be cut.
+            True, or False if no stress is found at some point of this rank; then the step must be cut.
         """
         ...
 
     def follow(self) -> None:
-        """Bring to the end of the increment what bears no load, before it becomes the equilibrium."""
+        """Update what carries no load to the end of the increment, before that becomes the equilibrium."""
         ...
 
     def internal_forces(self, vector: np.ndarray) -> None:
@@ -49,24 +49,24 @@ class Body(Protocol):
         ...
 
     def create_matrix(self, rows: int) -> PETSc.Mat:
-        """A new matrix for the tangent with so many rows on this rank, those behind the body's own being extra ones."""
+        """A new matrix for the tangent with `rows` rows on this rank; those after the body's own are extra ones."""
         ...
 
     def tangent(self, matrix: PETSc.Mat) -> None:
-        """Add the derivative of the internal forces at the trial state to a matrix; values stay unassembled."""
+        """Add the derivative of the internal forces at the trial state to a matrix, without assembling it."""
         ...
 
     def hold(self, matrix: PETSc.Mat, rows: np.ndarray) -> None:
-        """Make the rows of prescribed increments (global numbers) those of `constraint_weight` times the identity."""
+        """Set the rows of prescribed increments (global numbers) to those of `constraint_weight` times the identity."""
         ...
 
     @property
     def constraint_weight(self) -> float:
-        """Stiffness by which a missed increment counts as a force, so that residuals are of one kind, N/mm."""
+        """Stiffness that converts a missed prescribed increment to a force, so that all residuals are forces, N/mm."""
         ...
 
     def rounding(self, increments: np.ndarray) -> float:
-        """Norm of the out-of-balance forces that rounding leaves, N; collective.
+        """Norm of the out-of-balance forces due to rounding, N; collective.
 
         Args:
             increments: this rank's part of the system's increments.
@@ -76,22 +76,22 @@ class Body(Protocol):
 
 @runtime_checkable
 class Foresees(Protocol):
-    """A body of which a Newton correction foresees inner forces better than the state tells in which it ends.
+    """A body whose internal forces a Newton correction predicts better than the state in which it ends does.
 
     Attributes:
-        correction: the correction, mm and rad, a function of the body's space; ghosts are up to date at `predict`.
-        axial_force: size of the forces that finite turns feign after a correction, N.
+        correction: mm and rad, a function of the body's space; ghosts are up to date for `predict`.
+        axial_force: size of the spurious forces that finite rotations cause after a correction, N.
     """
 
     correction: fem.Function
     axial_force: float
 
     def predict(self) -> None:
-        """Foresee the forces after `correction`, from the trial state."""
+        """Predict the forces after `correction`, from the trial state."""
         ...
 
     def foresee(self, length: float) -> None:
-        """Build the tangents with the forces foreseen after `length` of the correction, until `stop_foreseeing`."""
+        """Build the tangents with the forces predicted after `length` of the correction, until `stop_foreseeing`."""
         ...
 
     def stop_foreseeing(self) -> None:
@@ -101,35 +101,35 @@ class Foresees(Protocol):
     def forces_without_turning(self, vector: np.ndarray, length: float) -> None:
         """Add the internal forces at the trial state, which lies `length` of the correction away.
 
-        They are as in Body, but without what strains of second order in the correction add.
+        They are as in Body, but without the contribution of strains of second order in the correction.
         """
         ...
 
 
 @runtime_checkable
 class EstimatesErrors(Protocol):
-    """A body that can say what a step's length has left wrong in its inner forces."""
+    """A body that can estimate the error of its internal forces due to the step size."""
 
     def estimate_errors(self) -> None:
-        """Be ready for it from now on; adds fields to the state, so before anything is saved."""
+        """Prepare for estimates from now on; adds fields to the state, so call it before anything is saved."""
         ...
 
     def error_works(self, ratio: float, kinked: bool) -> tuple[float, float, float, float]:
-        """To be called once at a step's end, before it is committed.
+        """Works of the errors; call it once at the end of a step, before the commit.
 
         Args:
-            ratio: size of the step over that of the one before it on the same path, 0 if there is none.
-            kinked: is the path of strains kinked within the step, in its middle at worst?
+            ratio: size of the step over that of the previous one on the same path, 0 if there is none.
+            kinked: whether the path of strains has a kink within the step, in the worst case in its middle.
 
         Returns:
-            Work of the error of the inner forces on the step's deformation; of that share of the error which came in
-            with the step, the work on the step's deformation and on that of the first step of all; the work of the
-            whole error on the latter. Of this rank's cells, N mm; not a number where the error is not known.
+            Four works: of the error of the internal forces on the step's deformation; of the share of the error that
+            this step added, on the step's deformation and on that of the very first step; of the whole error on the
+            latter. For this rank's cells, N mm; not a number if the error is unknown.
         """
         ...
 
     def rejoin_finer_path(self) -> None:
-        """Estimate from the last equilibrium on: it was reached by steps that were not judged."""
+        """Estimate from the last equilibrium on, which was reached by steps without an estimate."""
         ...
 
 
@@ -144,13 +144,13 @@ class HasRotations(Protocol):
     rotation_dofs: np.ndarray
 
     def to_charts(self, values: np.ndarray) -> None:
-        """Make of moments of the fixed frame, at the owned rotations of `values`, those of the trial state's charts."""
+        """Convert the moments at the owned rotations of `values` from the fixed frame to the trial state's charts."""
         ...
 
 
 @runtime_checkable
 class PassesTime(Protocol):
-    """A body whose material knows time."""
+    """A body whose material depends on time."""
 
     @property
     def clock(self) -> np.ndarray:
@@ -158,11 +158,11 @@ class PassesTime(Protocol):
         ...
 
     def pass_time(self, middle: Moment, end: Moment) -> None:
-        """Let a step take time, from the last equilibrium to `end`, by `middle` half way; before it is solved.
+        """Let a step take time, from the last equilibrium through `middle` half way to `end`; call it before solving.
 
-        It is forgotten when the step is committed or given up.
+        This is forgotten when the step is committed or abandoned.
 
         Raises:
-            ValueError: if the material does not know time.
+            ValueError: if the material does not depend on time.
         """
         ...

@@ -1,4 +1,4 @@
-"""What a run will take, before it begins: from the cost of an element as measured in docs/scaling.md."""
+"""What a run will cost, estimated before it begins from the cost of an element measured in docs/scaling.md."""
 
 import os
 from dataclasses import dataclass
@@ -7,24 +7,24 @@ from pathlib import Path
 from coilset.meshes.errors import InputError
 from coilset.model.warning import Warning
 
-# Measured with 96 points a section, docs/scaling.md: 37 µs of 48 are the law's, 10.8 kB of 26 are the points'.
+# Measured with 96 points per section, docs/scaling.md: 37 of 48 µs for the law, 10.8 of 26 kB for the points.
 SECONDS_OF_POINT = 37e-6 / 96
 SECONDS_OF_ELEMENT = 11e-6
 BYTES_OF_POINT = 10.8e3 / 96
 BYTES_OF_ELEMENT = 15.2e3
 BYTES_OF_PROGRAM = 0.3e9  # with all its libraries
-EVALUATIONS = 6.0  # of a step, mean of the example's 24 steps to block and back
-LONG = 3600.0  # seconds from which a run is said to be long
+EVALUATIONS = 6.0  # per step, mean of the example's 24 steps to block and back
+LONG = 3600.0  # seconds from which a run is reported as long
 CGROUP = Path("/sys/fs/cgroup/memory.max")
 
 
 @dataclass(frozen=True)
 class Effort:
-    """An estimate, good to a factor of about two where steps are not cut; coils that touch cost as much again.
+    """An estimate, good to a factor of about two if no steps are cut; coils that touch double the cost.
 
     Attributes:
-        elements, steps: numbers of both.
-        seconds: of one processor.
+        elements, steps: their numbers.
+        seconds: on one processor.
         memory: bytes.
     """
 
@@ -35,13 +35,13 @@ class Effort:
 
     @classmethod
     def of(cls, elements: int, points: int, steps: int) -> "Effort":
-        """The effort for so many elements, points of a section and steps."""
+        """The effort for given numbers of elements, points per section and steps."""
         once = elements * (SECONDS_OF_ELEMENT + SECONDS_OF_POINT * points)
         memory = BYTES_OF_PROGRAM + elements * (BYTES_OF_ELEMENT + BYTES_OF_POINT * points)
         return cls(elements, steps, EVALUATIONS * steps * once, memory)
 
     def check_memory(self, present: float) -> None:
-        """Refuse a run for which the machine has not memory enough, whatever else it does.
+        """Reject a run for which the machine has not enough memory even if it does nothing else.
 
         Args:
             present: memory of the machine, bytes.
@@ -67,7 +67,7 @@ class Effort:
 
 
 def machine_memory() -> float:
-    """Memory that processes here may have, bytes: the machine's, or that of the container."""
+    """Memory available to processes here, bytes: the machine's, or that of the container."""
     present = float(os.sysconf("SC_PHYS_PAGES")) * os.sysconf("SC_PAGE_SIZE")
     try:
         return min(present, float(CGROUP.read_text()))  # "max" without a limit

@@ -20,10 +20,10 @@ def names() -> list[str]:
 
 
 def title(name: str) -> str:
-    """First line of an example's comment; empty for data."""
+    """First line of an example's comment; the columns of data without one."""
     lines = (EXAMPLES / name).read_text(encoding="utf-8").splitlines()
     comments = [line.lstrip("# ").rstrip() for line in lines if line.startswith("# ")]
-    return comments[0] if comments else ""
+    return comments[0] if comments else f"Data: {lines[0]}"
 
 
 def find(name: str) -> str:

@@ -1,16 +1,15 @@
 """Processes that a command starts: they end with it, however it ends."""
 
 import ctypes
+import functools
 import os
+import re
 import signal
+import subprocess
 import sys
 from pathlib import Path
 
 PR_SET_PDEATHSIG = 1  # of Linux's prctl
-MPI_SETTINGS = {  # of Open MPI; other kinds of MPI allow more ranks than cores by themselves and read none of these
-    "OMPI_MCA_btl": "self,sm",  # ranks of one machine talk through memory
-    "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
-}
 
 
 def end_with_parent() -> None:
@@ -29,9 +28,21 @@ def mpirun(ranks: int) -> list[str]:
     return [str(beside) if beside.exists() else "mpirun", "-n", str(ranks)]
 
 
+@functools.cache
+def mpi_settings() -> dict[str, str]:
+    """Variables for Open MPI; other kinds of MPI allow more ranks than cores by themselves and read none of these."""
+    said = subprocess.run([*mpirun(1)[:1], "--version"], capture_output=True, text=True, check=False).stdout
+    version = re.search(r"Open MPI\) (\d+)", said)
+    renamed = version is not None and int(version[1]) >= 6  # which warns of the earlier name
+    return {
+        "OMPI_MCA_btl": "self,sm",  # ranks of one machine communicate through memory
+        f"PRTE_MCA_{'mapby' if renamed else 'rmaps_default_mapping_policy'}": ":oversubscribe",
+    }
+
+
 def mpi_environment() -> dict[str, str]:
-    """Environment for `mpirun`: this process's own, with MPI_SETTINGS unless the user has set them."""
-    return MPI_SETTINGS | os.environ
+    """Environment for `mpirun`: this process's own, with `mpi_settings` unless the user has set them."""
+    return mpi_settings() | os.environ
 
 
 def first_rank() -> bool:

@@ -1,6 +1,6 @@
-"""What a step changes: named arrays at the last equilibrium and on trial, and the one way from the one to the other.
+"""What a step changes: named arrays at the last equilibrium and on trial, and the only transitions between them.
 
-Body, contacts, seats and solver register their arrays here; a checkpoint needs nothing else.
+Body, contacts, seats and solver register their arrays here; a checkpoint needs no more than these.
 """
 
 from collections.abc import Iterator, Mapping
@@ -11,7 +11,7 @@ import numpy as np
 
 
 class Where(Enum):
-    """What the first axis of an array counts; it tells how ranks share the array."""
+    """What the first axis of an array counts, which determines how ranks share the array."""
 
     STATION = "stations of the line"
     ELEMENT = "elements of the line"
@@ -25,8 +25,8 @@ class Field:
     """An array of the state.
 
     Attributes:
-        trial: written by evaluations; this object stays the same, so that others may hold it.
-        equilibrium: as it was when the last equilibrium was committed; the same shape.
+        trial: written by evaluations; always the same array object, so that others may hold a reference.
+        equilibrium: its values when the last equilibrium was committed, in the same shape.
         where: what the first axis counts.
     """
 
@@ -42,7 +42,7 @@ class State:
         self._fields: dict[str, Field] = {}
 
     def add(self, name: str, trial: np.ndarray, where: Where) -> Field:
-        """Register an array; it becomes the field's trial as it stands, and a copy of it the equilibrium.
+        """Register an array: it becomes the field's trial array itself, and a copy of it the equilibrium.
 
         Raises:
             ValueError: if the name is taken.
@@ -53,7 +53,7 @@ class State:
         return field
 
     def include(self, prefix: str, part: "State") -> None:
-        """Take over the fields of a part, their names after `prefix`; they stay the part's too."""
+        """Include the fields of a part, their names preceded by `prefix`; the part keeps them too."""
         for name, field in part.items():
             self._fields[f"{prefix}{name}"] = field
 
@@ -64,24 +64,24 @@ class State:
         return name in self._fields
 
     def items(self) -> Iterator[tuple[str, Field]]:
-        """Names and fields in the order of their registration."""
+        """Names and fields in order of registration."""
         return iter(self._fields.items())
 
     def commit(self) -> None:
-        """Make the trial arrays the equilibrium."""
+        """Make the trial arrays the new equilibrium."""
         for field in self._fields.values():
             np.copyto(field.equilibrium, field.trial)
 
     def restore(self) -> None:
-        """Make the trial arrays those of the last equilibrium again."""
+        """Reset the trial arrays to the last equilibrium."""
         for field in self._fields.values():
             np.copyto(field.trial, field.equilibrium)
 
     def copy(self) -> dict[str, np.ndarray]:
-        """The last equilibrium, to be put back later."""
+        """A copy of the last equilibrium, to be restored later."""
         return {name: field.equilibrium.copy() for name, field in self._fields.items()}
 
     def put_back(self, arrays: Mapping[str, np.ndarray]) -> None:
-        """Make what `copy` gave the last equilibrium again; the trial arrays stay as they are until `restore`."""
+        """Make the result of `copy` the last equilibrium again; the trial arrays are unchanged until `restore`."""
         for name, field in self._fields.items():
             np.copyto(field.equilibrium, arrays[name])

@@ -10,10 +10,10 @@ those of its points (y outward, z along d₃, κ = R/j², m = 1 + κ y, weight o
 
     ε₁₁ = ln(1 + (Γ₁ + K₃ y)/m),   γ₁₂ = (K₁ z − κ w)/m + ∂w/∂y,   γ₁₃ = (Γ₃ − K₁ y)/m + ∂w/∂z
 
-with the warping w = −3/7 Γ₃ z (ρ² − 2/3) of `coilset.model.section.curved`, ρ = 1 on the surface.
+with the warping w = −3/7 Γ₃ z (ρ² − 2/3) of `coilset.model.section.shape`, ρ = 1 on the surface.
 
 Equilibrium is ∂W/∂R̄ = ∂W/∂ϑ = 0 of the work W per radian; ∂W/∂h̄ = N sin ϑ + Q₃ cos ϑ is the axial force and ∂W/∂λ
-the torque. For plans, inverse design and start values; docs/slice.md says how far it is from the slice.
+the torque. It serves plans, inverse design and start values; docs/slice.md quantifies its deviation from the slice.
 """
 
 import math
@@ -28,12 +28,12 @@ from coilset.model.material.points import initial_state
 from coilset.model.section.rules import DiskRule, polar, upper_half
 from coilset.model.section.uniform import RISE, Rod, force_shear, step
 
-SMALLEST_PART = 2.0**-8  # of a step, before it is given up
+SMALLEST_PART = 2.0**-8  # of a step, below which the step is abandoned
 
 
 @dataclass
 class UniformState:
-    """Coils at an equilibrium, one a row.
+    """Coils at an equilibrium, one per row.
 
     Attributes:
         coils: wire diameter, mean diameter, pitch (mm) and number of turns, shape (n, 4).
@@ -57,7 +57,7 @@ class UniformState:
         return self.coils[:, 3] * (self.coils[:, 2] - 2.0 * np.pi * self.q[:, RISE])
 
     def copy(self) -> "UniformState":
-        """A state of its own."""
+        """An independent copy of the state."""
         return UniformState(*(getattr(self, name).copy() for name in self.__dataclass_fields__))
 
 
@@ -87,25 +87,25 @@ def press(
     temperature: float | None = None,
     plain: bool = False,
 ) -> tuple[np.ndarray, UniformState]:
-    """Take coils through travels, or through forces, one step after the other.
+    """Take coils through prescribed travels or forces, step by step.
 
     Args:
-        coils: as in `unloaded`, or the state in which an earlier call left them; it is not changed.
+        coils: as in `unloaded`, or the state in which an earlier call left them, which is not modified.
         law: material; its rod form with σ₁₁, τ₁₂, τ₁₃.
-        travels: shortening of all turns since the unloaded coil, shape (steps,) for all or (n, steps), mm.
-        forces: axial forces, compression positive, the same shapes, N; give either.
+        travels: shortening of all turns since the unloaded coil, shape (steps,) for all coils or (n, steps), mm.
+        forces: axial forces, compression positive, in the same shapes, N; give one of the two.
         rule: points of the wire's disk, the same in all calls; default is the upper half of 6 rings of 16, 48 points:
-            the coil's plane mirrors ε₁₁ and γ₁₃, and turns the sign of γ₁₂.
-        free_ends: the ends may turn about the coil's axis (no torque); else they keep the turn λ that they have.
+            ε₁₁ and γ₁₃ are symmetric about the coil's plane, and γ₁₂ is antisymmetric.
+        free_ends: the ends may turn about the coil's axis (no torque); otherwise their turn λ stays as it is.
         temperature: K; default is the law's reference temperature.
-        plain: the thesis's section, m = 1 and w = 0; for comparisons.
+        plain: the section of the thesis, m = 1 and w = 0; for comparisons.
 
     Returns:
-        What was not given, forces (N) or travels (mm), shape (n, steps), and the UniformState at the end.
+        The quantity that was not given, forces (N) or travels (mm), shape (n, steps), and the UniformState at the end.
 
     Raises:
-        SolveError: if some coil finds no equilibrium.
-        ValueError: if both or none of `travels` and `forces` are given.
+        SolveError: if no equilibrium is found for some coil.
+        ValueError: if both or neither of `travels` and `forces` are given.
     """
     if (travels is None) == (forces is None):
         raise ValueError("give either travels or forces")
@@ -116,7 +116,7 @@ def press(
     targets = np.ascontiguousarray(np.broadcast_to(targets, (len(state.coils), targets.shape[-1])))
     found = np.empty(targets.shape)
     y, z = np.ascontiguousarray(rule.points.T)
-    lost = _press(law.parameters(temperature), y, z, rule.weights, state.coils, targets, by_force, free_ends, plain,
+    lost = _press(law.point_law(temperature), y, z, rule.weights, state.coils, targets, by_force, free_ends, plain,
                   state.q, state.points, state.force, state.torque, state.sections, state.tangents, found)  # fmt: skip
     if lost >= 0:
         d, D, pitch = state.coils[lost, :3]
@@ -143,7 +143,7 @@ def _press(
     tangents: np.ndarray,
     found: np.ndarray,
 ) -> int:
-    """Take all coils through their targets; the number of the first one that finds no equilibrium, or -1."""
+    """Take all coils through their targets; returns the number of the first one without an equilibrium, or -1."""
     new = np.empty_like(points[0])
     for i in range(len(coils)):
         d, D, pitch, turns = coils[i]
@@ -162,7 +162,7 @@ def _press(
             done, part = 0.0, 1.0
             while done < 1.0:
                 value = end if done + part >= 1.0 else start + (done + part) * (end - start)
-                elastic = direction != last  # where the load turns back, and where a state is taken over
+                elastic = direction != last  # when the load reverses, and when continuing from a given state
                 good, axial, about = step(rod, value, elastic, q[i], points[i], new, sections[i], tangents[i])
                 if good:
                     force[i], torque[i] = axial, about

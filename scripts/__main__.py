@@ -12,7 +12,7 @@ def _leave(*_: object) -> None:
 def main() -> None:
     """Run the command; Ctrl-C while its libraries are still being loaded ends it at once.
 
-    scripts/coilset starts Python with SIGINT held back, or it would answer with a traceback until it gets here.
+    scripts/coilset starts Python with SIGINT blocked; otherwise Ctrl-C would cause a traceback until this point.
     """
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, _leave)

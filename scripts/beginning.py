@@ -1,4 +1,4 @@
-"""The first line of a command that will take a while, before it loads what it needs."""
+"""The first line of a command that takes a while, printed before its libraries are loaded."""
 
 import os
 from pathlib import Path
@@ -9,7 +9,7 @@ from coilset.scripts.target import results_folder
 
 
 def announce_begin(does: str, file: str, out: str | None) -> None:
-    """Say what is done with a file that is there; of one that is not, whoever reads it will complain.
+    """Announce what is done with a file, if it exists; if not, the function that reads it reports the error.
 
     Raises:
         InputError: if the results folder cannot be made or written to.

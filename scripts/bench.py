@@ -15,7 +15,7 @@ from coilset.model.results.folder import make, whole
 from coilset.verification.benchmarks.run import bench as measure_all
 from coilset.verification.benchmarks.target import ITERATION, per_element, seconds
 
-WIDTH = 140  # columns where the output goes to a file
+WIDTH = 140  # columns of output that goes to a file
 
 
 def bench(out: str, full: bool, cold: bool, against: str | None = None) -> None:
@@ -23,7 +23,7 @@ def bench(out: str, full: bool, cold: bool, against: str | None = None) -> None:
 
     Raises:
         CoilsetError: if a measurement failed.
-        InputError: if `against` is no checkout.
+        InputError: if `against` is not a checkout.
     """
     environment = dict(os.environ)  # as it was before MPI
     console = Console(highlight=False, width=None if sys.stdout.isatty() else WIDTH)
@@ -63,7 +63,7 @@ def _new(title: str, *columns: str) -> Table:
 
 
 def _commands(rows: list[dict[str, Any]]) -> Table:
-    """Medians of this checkout, and of another one where there is one."""
+    """Medians of this checkout, and of another one if given."""
     sides = ("", ", the other")[: len(rows[0]["end"])]
     table = _new("commands, medians by the clock, s", "command", *(f"first line{side}" for side in sides),
                  *(f"end{side}" for side in sides))  # fmt: skip
@@ -73,7 +73,7 @@ def _commands(rows: list[dict[str, Any]]) -> Table:
 
 
 def _stages(record: dict[str, Any]) -> Table:
-    """Time by stage of the example, warm; compilers if asked."""
+    """Time by stage of the example, warm; compilation on request."""
     example = record["example"]
     title = (f"example: {example['elements']} elements, {example['section_points']} points a section, "
              f"{example['steps']} steps, {example['iterations']} iterations")  # fmt: skip
@@ -95,7 +95,7 @@ def _stages(record: dict[str, Any]) -> Table:
 
 
 def _more(first: Sequence[float], warm: Sequence[float]) -> list[float]:
-    """By how much the first analysis of a process takes longer than the others."""
+    """How much longer the first analysis of a process takes than the others."""
     return [one - other for one, other in zip(first, warm, strict=True)]
 
 

@@ -1,19 +1,30 @@
-"""A word when something is compiled, which happens once and takes its time."""
+"""A separate process compiles forms and kernels before a command starts; a notice is printed, since it takes a while.
 
+A process that compiles a kernel and one that loads it do not compute with the same machine code: what kernels share is
+assembled in the order in which they come. The results would differ in their last digits, and a resumed run
+would not equal an uninterrupted one.
+"""
+
+import contextlib
+import fcntl
+import hashlib
 import logging
 import os
+import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
 
-from coilset.model.caches import load_without_compiler
-from coilset.model.processes import first_rank
+from coilset.model.caches import SOURCES, load_without_compiler
+from coilset.model.processes import end_with_parent, first_rank
 
-NOTICE = "coilset: compiling forms and kernels, once, about 20 s ..."
+NOTICE = "coilset: compiling forms and kernels, once, about 30 s ..."
+COMPILE = [sys.executable, "-m", "coilset.scripts", "compile"]
+OF_A_RANK = ("OMPI_", "PMI", "PRTE_")  # variables by which mpirun tells a process that it is a rank
 
 
 class Announcement(logging.Handler):
-    """Says NOTICE at the first sign of a compiler: a record of FFCx, or an event of numba.
+    """Prints NOTICE at the first sign of a compiler: a log record of FFCx, or an event of numba.
 
     Args:
         say: prints a line.
@@ -42,22 +53,48 @@ def _to_stderr(line: str) -> None:
         print(line, file=sys.stderr, flush=True)
 
 
-def announce_if_cold(say: Callable[[str], None] = _to_stderr) -> None:
-    """For commands whose work is done by other processes: say NOTICE if there are no kernels of this version yet."""
-    folder = Path(os.environ["NUMBA_CACHE_DIR"])  # see coilset.model.caches
-    if not any(folder.rglob("*.nbi")):
-        say(NOTICE)
+def compile_first(check: Callable[[], object] = bool, say: Callable[[str], None] = _to_stderr) -> None:
+    """Have another process compile all kernels of this version, if that has not been done; others that need it wait.
+
+    To be called before MPI is started, which would take that process for a rank.
+
+    Args:
+        check: checks the command's input first, so that errors in it are reported immediately.
+        say: prints a line.
+
+    Raises:
+        InputError: by `check`.
+    """
+    done = compiled()
+    if done.exists():
+        return
+    check()
+    say(NOTICE)
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(OF_A_RANK)}
+    with contextlib.suppress(OSError):  # if nothing can be stored, each process compiles for itself
+        done.parent.mkdir(parents=True, exist_ok=True)
+        with open(done.with_suffix(".lock"), "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not done.exists():
+                subprocess.run(COMPILE, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                               stderr=subprocess.DEVNULL, check=False, preexec_fn=end_with_parent)  # fmt: skip
+
+
+def compiled() -> Path:
+    """The file that marks all kernels of this version, checkout and Python as compiled; it lies beside them."""
+    kind = hashlib.sha256(repr((str(SOURCES), sys.version, sys.prefix)).encode())
+    return Path(os.environ["NUMBA_CACHE_DIR"]) / f"compiled-{kind.hexdigest()[:16]}"  # see coilset.model.caches
 
 
 def announce_compiling(say: Callable[[str], None] = _to_stderr) -> Announcement:
-    """Have the first compilation of this process announced."""
+    """Announce the first compilation of this process."""
     load_without_compiler()
     from numba.core import event
 
     announcement = Announcement(say)
 
     class Compiling(event.Listener):
-        """What numba loads from its cache makes no such event."""
+        """Functions that numba loads from its cache cause no such event."""
 
         def on_start(self, event: object) -> None:
             announcement.tell()

@@ -1,4 +1,4 @@
-"""`coilset design`: seek entries of a case so that its run meets conditions, and write the case that was found."""
+"""`coilset design`: find entries of a case so that its run meets conditions, and write the resulting case."""
 
 import os
 import time
@@ -20,15 +20,15 @@ from coilset.model.sweep.journal import Journal, read_records
 from coilset.scripts.log import run_log
 from coilset.scripts.target import results_folder
 
-WIDTH = 150  # of what is printed where there is no terminal
+WIDTH = 150  # width of printed lines without a terminal
 
 
 def design(wish_file: str, out: str | None, force: bool, resume: bool) -> None:
-    """Seek what a wish asks for; see `coilset design --help`.
+    """Find what a wish requires; see `coilset design --help`.
 
     Raises:
-        InputError: a wish that is wrong, or cannot be met; nothing is left of it then.
-        SolveError: the search does not end; --resume goes on.
+        InputError: the wish is wrong or cannot be met; then nothing is written.
+        SolveError: the search does not converge; --resume continues it.
     """
     console = Console(highlight=False)
     if not console.is_terminal:
@@ -43,17 +43,17 @@ def design(wish_file: str, out: str | None, force: bool, resume: bool) -> None:
     try:
         with run_log(folder) as log:
             if not resume:
-                assert log.stream is not None  # it is open from the start
+                assert log.stream is not None  # it is opened in advance
                 log.stream.truncate(0)
                 _clear(folder)
             with closing(Journal(folder / "evaluations.jsonl")) as journal:
                 _design(console, wish, folder, journal)
     except InputError as error:
-        if error.place != "--out":  # the folder is another's
+        if error.place != "--out":  # with --out, another run uses the folder
             _forget(folder, new)
         raise InputError(error.problem, error.place, error.file or wish_file) from None
     except KeyboardInterrupt:
-        console.print("interrupted; the same command with --resume goes on")
+        console.print("interrupted; run the same command with --resume to continue")
         raise
 
 
@@ -105,7 +105,7 @@ def _conclude(
     if not found.met:
         parts = (f"{_name(one)} {value:.6g} for {one.wish:g} {one.unit}"
                  for one, value in zip(search.conditions, found.best.values, strict=True))  # fmt: skip
-        console.print(f"as near as it can be (least squares): {', '.join(parts)}")
+        console.print(f"as close as possible (least squares): {', '.join(parts)}")
     console.print("estimates for other wishes and springs, by the uniform rod as the runs have corrected it:")
     table = Table(box=None, padding=(0, 2))
     table.add_column("", no_wrap=True)
@@ -158,7 +158,7 @@ def _clear(folder: Path) -> None:
 
 
 def _forget(folder: Path, new: bool) -> None:
-    """Nothing is left of a wish that was refused."""
+    """Remove all traces of a rejected wish."""
     _clear(folder)
     (folder / "log.txt").unlink(missing_ok=True)
     if new:

@@ -1,9 +1,9 @@
-"""Pictures are drawn by processes of their own, after the answer is printed.
+"""Pictures are drawn by separate processes, after the answer is printed.
 
     python -m coilset.scripts.drawing PART
 
-Where a core is free they are started first of all and load their libraries while the spring is being solved. They end
-with the process that started them, however it ends.
+If a core is free they are started first, and load their libraries while the spring is being solved. They end with the
+process that started them, however it ends.
 """
 
 import contextlib
@@ -25,15 +25,15 @@ if TYPE_CHECKING:  # at run time in the process that draws
     from coilset.model.results.pictures import Run
 
 PARTS = ("figures", "scene")  # of coilset.model.results.pictures
-MODEST = 5  # by how much the processes stand back behind the one that solves
-PATIENCE = 5.0  # seconds in which a process that is asked to end tidies up
+MODEST = 5  # niceness of these processes relative to the one that solves
+PATIENCE = 5.0  # seconds that a terminated process has for cleaning up
 
 
 class Drawings:
     """The processes that draw the pictures of a run; leaving this context ends them.
 
     Args:
-        environment: of the processes; from before MPI, which changes the one of a process that has started it.
+        environment: of the processes, from before MPI is started, which changes it.
     """
 
     def __init__(self, environment: Mapping[str, str]) -> None:
@@ -41,7 +41,7 @@ class Drawings:
         self.processes: dict[str, subprocess.Popen[bytes]] = {}
 
     def start_if_free(self) -> None:
-        """Start the processes now if there is a core for them, beside those of the ranks."""
+        """Start the processes now if there is a core for them besides those of the ranks."""
         if first_rank() and len(os.sched_getaffinity(0)) > number_of_ranks():
             self._start()
 
@@ -54,13 +54,13 @@ class Drawings:
                 )  # fmt: skip
 
     def draw(self, out: Path, run: "Run") -> list[str]:
-        """Draw, and wait for it; SIGTERM is a KeyboardInterrupt meanwhile, as SIGINT is.
+        """Draw, and wait for the pictures; meanwhile SIGTERM raises KeyboardInterrupt, like SIGINT.
 
         Returns:
             Warnings, one line each.
 
         Raises:
-            CoilsetError: with the first reason why not all is drawn; the other processes have come to their end.
+            CoilsetError: with the first reason why a picture is missing; all processes have ended by then.
         """
         before = signal.signal(signal.SIGTERM, signal.getsignal(signal.SIGINT))
         try:
@@ -97,7 +97,7 @@ class Drawings:
 
 def _give(process: subprocess.Popen[bytes], task: bytes) -> None:
     assert process.stdin is not None
-    with contextlib.suppress(BrokenPipeError):  # it has died, which its answer will say
+    with contextlib.suppress(BrokenPipeError):  # it has died, as its answer will show
         process.stdin.write(task)
     _close(process.stdin)
 
@@ -136,7 +136,7 @@ def draw_part(part: str, tasks: BinaryIO) -> dict[str, Any] | None:
 
 
 def _leave(*_: object) -> None:
-    """End as an error would: nothing half written is left."""
+    """End like an error, so that nothing is left half written."""
     sys.exit(128 + signal.SIGTERM)
 
 
@@ -145,7 +145,7 @@ def main(part: str) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that solves
     os.nice(MODEST)
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)  # what libraries print must not get between the answers
+    os.dup2(2, 1)  # output of libraries must not mix with the answers
     answer = draw_part(part, sys.stdin.buffer)
     if answer is not None:
         answers.write(json.dumps(answer) + "\n")

@@ -126,7 +126,8 @@ quietly() { # run with the output in a log file, a dot every five seconds, and t
         ticks=$((ticks + 1))
         [ $((ticks % 5)) -eq 0 ] && printf '.' >&2
     done
-    trap - INT TERM
+    trap 'exit 130' INT
+    trap - TERM
     [ "$ticks" -lt 5 ] || printf ' %s s\n' "$ticks" >&2
     wait "$job" || { tail -n 15 "$log" >&2; fail "that failed; the whole log is $log"; }
 }

@@ -18,7 +18,7 @@ def copy(name: str, out: str, force: bool) -> None:
     """Copy one, and what it needs, to a folder; see `coilset examples --help`.
 
     Raises:
-        InputError: for a name that is none, and for files that are there.
+        InputError: for an unknown name, or if files exist already.
     """
     for path in examples.copy(examples.find(name), Path(out), force):
         print(path)

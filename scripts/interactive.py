@@ -12,11 +12,11 @@ from coilset.model.results.record import Step
 
 HELP = """\
 Enter            the next step
-run              go on without asking
+run              continue without asking
 size S           the next step is S regular steps long, as in: size 0.25
 to TARGET        another target from here, as in: to {height: 20}, to block; append ', steps: 8' to say how many
 method NAME      another iteration method, as in: method bfgs
-stop             end here; what was found is written, and --resume goes on"""
+stop             end here; the results are written, and --resume continues"""
 
 
 class Prompt:
@@ -32,7 +32,7 @@ class Prompt:
         self.analysis, self.say, self.ask, self.free = analysis, say, ask, False
 
     def __call__(self, step: Step) -> None:
-        """Ask until the user lets the next step go."""
+        """Ask until the user starts the next step."""
         while not self.free:
             try:
                 word, _, rest = self._answer().strip().partition(" ")
@@ -46,7 +46,7 @@ class Prompt:
                 self.say(str(error))
 
     def _answer(self) -> str:
-        """The user's line. Ctrl-C ends the run at once: there is no step to be finished first."""
+        """The user's line. Ctrl-C ends the run at once, as no step is in progress."""
         before = signal.signal(signal.SIGINT, signal.default_int_handler)
         try:
             return self.ask("coilset> ")
@@ -57,7 +57,7 @@ class Prompt:
         """Carry out one command.
 
         Raises:
-            InputError, ValueError: if it is wrong; nothing was changed.
+            InputError, ValueError: if it is wrong; then nothing changes.
             KeyboardInterrupt: for `stop`.
         """
         if word == "run":
@@ -81,7 +81,7 @@ def parse_phase(text: str) -> Phase:
     """A Phase from `{height: 20}, steps: 8` or `block`.
 
     Raises:
-        InputError: if it is none.
+        InputError: if it is not a phase.
     """
     try:
         return check_entries(load_yaml(f"{{to: {text}}}"), Phase)

@@ -1,4 +1,4 @@
-"""What ends a run early, gently: Ctrl-C, a batch system's SIGTERM, and a reader that closes our output.
+"""Graceful early ends of a run: Ctrl-C, a batch system's SIGTERM, and a reader that closes our output.
 
 During a solve the step in progress is finished, then the run ends; a second Ctrl-C ends it at once.
 """
@@ -14,14 +14,14 @@ from mpi4py import MPI
 
 from coilset.scripts.output import output_closed
 
-STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1)  # SIGUSR1: how mpirun hands them on, see scripts/ranks.py
-ONE_SIGNAL = 0.5  # seconds in which several count as one: `timeout` sends to a process and to its group
+STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1)  # SIGUSR1: how mpirun passes them on, see scripts/ranks.py
+ONE_SIGNAL = 0.5  # seconds within which several signals count as one: `timeout` signals a process and its group
 
 
 class Interrupt:
     """Context in which STOPS are noted; `check` raises KeyboardInterrupt on all ranks.
 
-    PETSc's callbacks are no place for an exception out of nowhere: between steps the state is whole.
+    An exception inside PETSc's callbacks would be unsafe; between steps the state is consistent.
     """
 
     def __init__(self, comm: MPI.Comm, say: Callable[[str], Any]):
@@ -30,7 +30,7 @@ class Interrupt:
     def _note(self, number: int, frame: FrameType | None) -> None:
         now = time.monotonic()
         if self.noted and now - self.noted > ONE_SIGNAL:
-            os._exit(128 + signal.SIGINT)  # the last checkpoint is whole whatever happens
+            os._exit(128 + signal.SIGINT)  # the last checkpoint is complete in any case
         if not self.noted:
             self.noted = now
             self.say("finishing this step; once more ends at once")
@@ -43,7 +43,7 @@ class Interrupt:
         self.over()
 
     def over(self) -> None:
-        """STOPS are again what they were before."""
+        """Restore the previous handlers of STOPS."""
         for number, handler in self.before.items():
             signal.signal(number, handler)
 

@@ -1,4 +1,4 @@
-"""log.txt of a run: every decision of the step control; while it is open no other run can work in its folder."""
+"""log.txt of a run: every decision of the step control. While it is open, no other run can use its folder."""
 
 import contextlib
 import fcntl
@@ -14,7 +14,7 @@ logging.getLogger("coilset").addHandler(logging.NullHandler())
 
 class _Handler(logging.FileHandler):
     def handleError(self, record: logging.LogRecord) -> None:
-        """A full disk is said where the results are written; the log only loses lines."""
+        """A full disk is reported where results are written; the log merely loses lines."""
 
     def close(self) -> None:
         with contextlib.suppress(OSError):
@@ -23,10 +23,10 @@ class _Handler(logging.FileHandler):
 
 @contextlib.contextmanager
 def run_log(folder: Path) -> Iterator[logging.FileHandler]:
-    """Log to the folder's log.txt, and hold the folder by a lock on it; the kernel frees it however the run ends.
+    """Log to the folder's log.txt and hold a lock on it, which the kernel releases however the run ends.
 
     Raises:
-        InputError: if another run works in the folder.
+        InputError: if another run uses the folder.
         CoilsetError: if the log cannot be written.
     """
     path = folder / "log.txt"
@@ -47,7 +47,7 @@ def run_log(folder: Path) -> Iterator[logging.FileHandler]:
 
 
 def _lock(handler: logging.FileHandler, folder: Path) -> None:
-    assert handler.stream is not None  # it is open from the start
+    assert handler.stream is not None  # it is opened in advance
     try:
         fcntl.flock(handler.stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

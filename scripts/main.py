@@ -1,4 +1,4 @@
-"""The command `coilset`: its sub-commands, and how errors leave it."""
+"""The command `coilset`: its sub-commands, and the handling of errors."""
 
 import errno
 import os
@@ -10,10 +10,10 @@ from difflib import get_close_matches
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
-from coilset.meshes.errors import CoilsetError, printable
+from coilset.meshes.errors import CoilsetError, InputError, printable
 from coilset.model.processes import first_rank
 from coilset.scripts.beginning import announce_begin
-from coilset.scripts.compiling import announce_compiling, announce_if_cold
+from coilset.scripts.compiling import announce_compiling, compile_first, compiled
 from coilset.scripts.material import app as material
 from coilset.scripts.output import Output, output_closed
 from coilset.scripts.plain import typer
@@ -28,10 +28,11 @@ It needs DOLFINx >= 0.9: without root from conda (environment.yml) or pip (wheel
 Debian 13 or Ubuntu 25.04, or in a private Debian 13 on older releases (scripts/coilset installs both). See
 docs/install.md."""
 NO_ROOM = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT, errno.EROFS)
-TOGETHER = 10.0  # seconds in which all ranks meet an error that is all ranks' error
-LONGEST_MESSAGE = 400  # letters that are said of a wrong command line
+TOGETHER = 10.0  # seconds within which all ranks meet an error that concerns them all
+HEARD = 0.5  # seconds for mpirun to pass on the output of a rank, before it ends the ranks and drops the rest
+LONGEST_MESSAGE = 400  # characters of a wrong command line that a message repeats
 INTERRUPTED = 128 + signal.SIGINT
-ONE_SIGNAL = 0.5  # seconds in which several count as one: `timeout` sends to a process and to its group
+ONE_SIGNAL = 0.5  # seconds within which several signals count as one: `timeout` signals a process and its group
 
 SOON = 0.02  # seconds after which an interrupt that came during an import is tried again
 
@@ -68,7 +69,7 @@ def options(
         command = sys.argv[sys.argv.index(name) :]
         check(ranks, name)
         if ranks > 1 and not {"-h", "--help"} & set(command):
-            raise SystemExit(launch(ranks, command))  # the ranks have said why
+            raise SystemExit(launch(ranks, command))  # the ranks have reported why
 
 
 @app.command()
@@ -82,20 +83,30 @@ def solve(
     interactive: bool = typer.Option(
         False, "--interactive", help="pause after each step; Enter continues, ? shows help"
     ),
+    quiet: bool = typer.Option(False, "--quiet", help="print warnings and errors only"),
+    json: bool = typer.Option(False, "--json", help="print a line of JSON a step, for scripts"),
+    verbose: bool = typer.Option(False, "--verbose", help="also print each iteration: norm, step length"),
     method: str = typer.Option(None, help="iteration method: newton, modified-newton, bfgs, broyden, arc-length, ..."),
 ) -> None:
     """Take a spring through its load program and write the results."""
+    from coilset.model.case import read_case
     from coilset.scripts.drawing import Drawings
 
-    announce_begin("solves", case, out)
+    if quiet + json + verbose > 1:
+        raise InputError("are three ways to print a run; give one of them", "--quiet, --json, --verbose")
+    if not (quiet or json):
+        announce_begin("solves", case, out)
+    settings = [*settings, f"solver.method={method}"] if method else settings
+    compile_first(lambda: read_case(case, settings))
     with Drawings(os.environ) as drawings:
         if pictures:
             drawings.start_if_free()
         announce_compiling()
         from coilset.scripts.solve import solve as run_case
 
-        settings = [*settings, f"solver.method={method}"] if method else settings
-        run_case(case, out, force, settings, pictures, resume, interactive, drawings=drawings)
+        voice = "quiet" if quiet else "json" if json else "lines"
+        run_case(case, out, force, settings, pictures, resume, interactive, drawings=drawings, voice=voice,
+                 verbose=verbose)  # fmt: skip
 
 
 @app.command(name="slice")
@@ -161,13 +172,33 @@ def sheet(
 
 @app.command()
 def report(
-    results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
+    results: str = typer.Argument(metavar="RESULTS", help="results folder of a run, a design or a sweep"),
 ) -> None:
-    """Write a page of a run: the answer, the figures, the spring in 3D; it opens from disk without a network."""
+    """Write a page of a run, a design or a sweep; it opens from disk without a network."""
     announce_compiling()
     from coilset.scripts.report import report as write_page
 
     write_page(results)
+
+
+@app.command()
+def fields(
+    results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
+) -> None:
+    """Write time series of a run for ParaView: centre line, wire as a tube, section points."""
+    from coilset.scripts.show import fields as write_fields
+
+    write_fields(results)
+
+
+@app.command()
+def animate(
+    results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
+) -> None:
+    """Write an animation of a run: the spring through its load program, coloured by stress."""
+    from coilset.scripts.show import animate as draw
+
+    draw(results)
 
 
 @app.command()
@@ -182,8 +213,10 @@ def sweep(
     pictures: bool = typer.Option(True, help="draw the figures"),
 ) -> None:
     """Solve many variants of a case."""
+    from coilset.model.sweep.plan import Plan
+
     announce_begin("sweeps", sweep_file, out)
-    announce_if_cold()
+    compile_first(lambda: Plan(sweep_file))
     from coilset.scripts.sweep import sweep as run_sweep
 
     run_sweep(sweep_file, out, force, resume, retry, jobs, ranks_per_case, pictures)
@@ -193,10 +226,13 @@ def sweep(
 def design(
     wish: str = typer.Argument(help="wish (YAML): a case, what to find: in it, and such_that: conditions"),
     out: str = typer.Option(None, callback=folder_target, help="results folder; default results/NAME-OF-WISH"),
-    force: bool = typer.Option(False, "--force", help="replace a design that is there"),
-    resume: bool = typer.Option(False, "--resume", help="go on with a search that was not finished"),
+    force: bool = typer.Option(False, "--force", help="replace an existing design"),
+    resume: bool = typer.Option(False, "--resume", help="continue an unfinished search"),
 ) -> None:
     """Find entries of a case, such as pitch and preset height, for which its run meets conditions."""
+    from coilset.model.design.wish import read_wish
+
+    compile_first(lambda: read_wish(wish))
     announce_compiling()
     from coilset.scripts.design import design as run_design
 
@@ -231,7 +267,7 @@ def bench(
     against: str = typer.Option(None, metavar="CHECKOUT", help="also time the commands of another checkout"),
 ) -> None:
     """Measure run time by stage, number of elements and ranks, and cases per hour."""
-    announce_if_cold()
+    compile_first()
     from coilset.scripts.bench import bench as run_benchmarks
 
     run_benchmarks(out, full, cold, against)
@@ -239,11 +275,12 @@ def bench(
 
 @app.command(name="compile")
 def compile_() -> None:
-    """Compile forms and kernels now, about 20 s, so that the first run need not; nothing if they are there."""
+    """Compile forms and kernels now, about 30 s, so that the first run need not wait; skip what is compiled already."""
     announce_compiling()
     from coilset.scripts.warm import warm
 
     warm()
+    compiled().touch()
 
 
 @app.command()
@@ -276,14 +313,15 @@ def python(context: typer.Context) -> None:
 
 
 def command_line_message(error: Any) -> str:
-    """What click says of a command line, with the user's words in it, in one line that is not too long."""
+    """Click's message on a command line, with the user's words in it, in one line of limited length."""
     said = printable(error.format_message())
+    said = re.sub(r"^(No such command '.*?'\.) Did you mean .*", r"\1", said)  # the guess of newer versions of typer
     said += _hint(said)
     return said if len(said) <= LONGEST_MESSAGE else f"{said[: LONGEST_MESSAGE - 3]}..."
 
 
 def _hint(said: str) -> str:
-    """What may have been meant."""
+    """A suggestion of what may have been meant."""
     if said.startswith("No such option: -n"):
         return "; -n goes before the command, as in coilset -n 2 solve"
     if unknown := re.fullmatch(r"No such command '(.*)'\.", said):
@@ -294,9 +332,9 @@ def _hint(said: str) -> str:
 
 
 def run() -> None:
-    """Entry of the command: one line and an exit code for every error that can be foreseen."""
+    """Entry point of the command: one line and an exit code for every foreseeable error."""
     sys.stdout = Output(sys.stdout)
-    # PETSc would take a closed pipe, which Output answers, for a crash.
+    # PETSc would treat a closed pipe, which Output handles, as a crash.
     os.environ["PETSC_OPTIONS"] = f"{os.environ.get('PETSC_OPTIONS', '')} -no_signal_handler"
     _listen()
     status = 1
@@ -317,14 +355,14 @@ def run() -> None:
     except (typer.Abort, KeyboardInterrupt):
         status = INTERRUPTED
     except Exception as error:
-        if not hasattr(error, "format_message"):  # of click, which newer typers bring along under a name of their own
+        if not hasattr(error, "format_message"):  # of click, which newer versions of typer include under another name
             _crash()
             raise
         status = getattr(error, "exit_code", 1)
         _complain(command_line_message(error))
     if status == INTERRUPTED and output_closed():
-        status = 128 + signal.SIGPIPE  # as every program whose reader has gone
-    elif status == INTERRUPTED:  # typer may have made an exit code of the exception
+        status = 128 + signal.SIGPIPE  # like any program whose reader has gone
+    elif status == INTERRUPTED:  # typer may have converted the exception to an exit code
         _complain("interrupted")
     sys.stdout.flush()
     sys.exit(status)
@@ -336,7 +374,7 @@ def _listen() -> None:
 
     def interrupt(number: int, frame: FrameType | None) -> None:
         nonlocal last
-        if _imports(frame):  # where libraries make an error of their own, or a crash, of an exception out of nowhere
+        if _imports(frame):  # where an unexpected exception makes libraries fail or crash
             signal.setitimer(signal.ITIMER_REAL, SOON)
             return
         before, last = last, time.monotonic()
@@ -363,24 +401,31 @@ def _imports(frame: FrameType | None) -> bool:
 
 
 def _crash() -> None:
-    """What nobody foresaw, on one of several ranks: the others would wait for it without end."""
+    """An unforeseen error on one of several ranks: end them all, since the others would wait forever."""
     if world := _several_ranks():
         import traceback
 
         traceback.print_exc()
-        world.Abort(1)
+        _abort(world, 1)
 
 
 def _leave_together(error: CoilsetError) -> None:
-    """An error that all ranks have met is said by the first; one that came to some of them only ends them all."""
+    """An error on all ranks is reported by the first; an error on only some of them ends them all."""
     if (world := _several_ranks()) is None:
         return
     arrived, until = world.Ibarrier(), time.monotonic() + TOGETHER
     while not arrived.Test():
         if time.monotonic() > until:
             print(f"coilset: {error}", file=sys.stderr, flush=True)
-            world.Abort(error.exit_code)
+            _abort(world, error.exit_code)
         time.sleep(0.01)
+
+
+def _abort(world: "MPI.Comm", exit_code: int) -> None:
+    """End all ranks without losing their output so far."""
+    sys.stderr.flush()
+    time.sleep(HEARD)
+    world.Abort(exit_code)
 
 
 def _several_ranks() -> "MPI.Comm | None":

@@ -153,23 +153,21 @@ def _write_csv(path: Path, history: "History") -> None:
 def _constants(law: "Law") -> "Table":
     from rich.table import Table
 
-    from coilset.model.material.file import UNITS
-
     table = Table(box=None, padding=(0, 2))
     table.add_column("constant")
     for temperature in law.temperatures:
         table.add_column(f"{temperature:g} K", justify="right")
     table.add_column("unit")
     rows = [dict(law.constants(temperature)) for temperature in law.temperatures]
-    for name in (name for name in UNITS if any(name in row for row in rows)):
-        table.add_row(name, *(f"{row[name][0]:.7g}" if name in row else "–" for row in rows), UNITS[name])
+    for name, unit in {name: unit for row in rows for name, (_, unit) in row.items()}.items():
+        table.add_row(name, *(f"{row[name][0]:.7g}" if name in row else "–" for row in rows), unit)
     if law.is_adiabatic:
         table.add_row("heating", f"{law.heating:.4g}", *[""] * (len(rows) - 1), "K mm²/N")
     return table
 
 
 def _ends(program: "Program", history: "History") -> "Table":
-    """Table of the state at the end of each step: the strains and stresses that the program moves, and b*."""
+    """Table of the state at the end of each step: the strains and stresses of the program, and b*."""
     import numpy as np
     from rich.table import Table
 

@@ -35,16 +35,16 @@ def mesh(
     Args:
         case_file: the case file.
         out: folder of the pictures; default results/NAME-OF-CASE.
-        force: replace files that are there.
+        force: replace existing files.
         settings: texts `key=value` that replace entries of the case file.
-        write: mesh files to write, their suffix says the format.
+        write: mesh files to write; the suffix determines the format.
         pictures: draw the spring.
 
     Raises:
-        InputError: wrong input, or files that are there already.
+        InputError: wrong input, or files that exist already.
     """
     if MPI.COMM_WORLD.rank:
-        return  # nothing here is worth dividing
+        return  # too little work to be worth distributing
     console = Console(highlight=False)
     case = read_case(case_file, settings)
     if write:

@@ -1,4 +1,4 @@
-"""Standard output whose reader may go away, as in `coilset solve … | head -3`."""
+"""Standard output whose reader may close it, as in `coilset solve … | head -3`."""
 
 import os
 import sys
@@ -6,7 +6,7 @@ from typing import Any, TextIO
 
 
 class Output:
-    """A text stream that drops what is written once nobody reads it, in place of BrokenPipeError.
+    """A text stream that discards output once nobody reads it, instead of raising BrokenPipeError.
 
     Attributes:
         closed_by_reader: whether that has happened.
@@ -16,7 +16,7 @@ class Output:
         self.stream, self.closed_by_reader = stream, False
 
     def write(self, text: str) -> int:
-        """Write, or drop; the number of characters."""
+        """Write or discard; returns the number of characters."""
         try:
             return self.stream.write(text)
         except BrokenPipeError:
@@ -24,7 +24,7 @@ class Output:
             return len(text)
 
     def flush(self) -> None:
-        """Flush, or drop."""
+        """Flush or discard."""
         try:
             self.stream.flush()
         except BrokenPipeError:
@@ -41,5 +41,5 @@ class Output:
 
 
 def output_closed() -> bool:
-    """Whether whoever read standard output has closed it."""
+    """Whether the reader of standard output has closed it."""
     return getattr(sys.stdout, "closed_by_reader", False)

@@ -1,4 +1,4 @@
-"""Typer without rich, which would take longer to load than everything else that `--help` needs."""
+"""Typer without rich, which takes longer to load than everything else that `--help` needs."""
 
 import os
 import sys

@@ -1,9 +1,9 @@
 """`coilset -n RANKS COMMAND`: the same command on several ranks.
 
-This process stays above mpirun. Open MPI's answers SIGINT and SIGTERM by ending the ranks, but hands SIGUSR1 on to
-them: so signals become SIGUSR1, on which a solve ends after its step with results kept, as it does on one rank. A
-reader that closes our output (`| head`) counts as a signal too. What mpirun says of ranks that ended with an exit code
-of ours is left out: they have said it themselves, in one line.
+This process remains the parent of mpirun. Open MPI's mpirun ends the ranks on SIGINT and SIGTERM, but passes SIGUSR1 on
+to them. Signals are therefore converted to SIGUSR1, on which a solve ends after its step and keeps its results, as on
+one rank. A reader that closes our output (`| head`) counts as a signal too. Messages of mpirun about ranks that ended
+with one of our exit codes are suppressed, because the ranks have reported the reason in one line.
 """
 
 import contextlib
@@ -22,12 +22,12 @@ PARALLEL = ("solve", "sweep", "python")
 RANKS_A_CORE = 4
 INTERRUPTED = 128 + signal.SIGINT
 OUTPUT_CLOSED = 128 + signal.SIGPIPE
-OWN = (0, 2, 3, INTERRUPTED, OUTPUT_CLOSED)  # exit codes that come with a line of ours
-RULER = b"-" * 74  # around mpirun's messages
+OWN = (0, 2, 3, INTERRUPTED, OUTPUT_CLOSED)  # exit codes with a message of ours
+RULER = b"-" * 74  # rulers around mpirun's messages
 
 
 def check(ranks: int, command: str) -> None:
-    """Refuse ranks that make no sense.
+    """Reject an unreasonable number of ranks.
 
     Raises:
         InputError: a command that works on one rank, or more ranks than RANKS_A_CORE a core; the environment variable
@@ -50,7 +50,7 @@ def launch(ranks: int, arguments: Sequence[str]) -> int:
         command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, bufsize=0,
         env=mpi_environment() | {"COILSET_RANKS": str(ranks)}, process_group=0, preexec_fn=end_with_parent,
     )  # fmt: skip
-    stops: list[int] = []  # exit codes that what stopped it asks for
+    stops: list[int] = []  # exit codes for what stopped it
 
     def stop(code: int) -> None:
         stops.append(code)
@@ -66,7 +66,7 @@ def launch(ranks: int, arguments: Sequence[str]) -> int:
     for pump in pumps:
         pump.join()
     if stops and code:
-        if not messages.interrupted:  # the signal came too early for the ranks to end by themselves
+        if not messages.interrupted:  # the signal came too early for the ranks to handle it
             print("coilset: interrupted", file=sys.stderr)
         code = INTERRUPTED
     elif code not in OWN:
@@ -77,17 +77,17 @@ def launch(ranks: int, arguments: Sequence[str]) -> int:
 
 
 class Sink(Protocol):
-    """Where bytes can be written."""
+    """A sink for bytes."""
 
     def write(self, data: bytes, /) -> object:
-        """Take them."""
+        """Take bytes."""
 
     def flush(self) -> object:
-        """Hand them on."""
+        """Pass them on."""
 
 
 def _pump(source: IO[bytes] | None, target: Sink, closed: Callable[[], None]) -> threading.Thread:
-    """Copy until the source ends, into nothing from when the target's reader is gone."""
+    """Copy until the source ends; discard the data once the target's reader is gone."""
 
     def copy() -> None:
         broken = False
@@ -106,17 +106,17 @@ def _pump(source: IO[bytes] | None, target: Sink, closed: Callable[[], None]) ->
 
 
 class MpirunMessages:
-    """Writes lines on, but keeps what mpirun says between two rulers, and its complaints of lost connections.
+    """Passes lines on, but holds back mpirun's messages between rulers, and those about lost connections.
 
     Attributes:
-        interrupted: whether a rank has said that it was.
+        interrupted: whether a rank has reported an interruption.
     """
 
     def __init__(self, target: Sink):
         self.target, self.rest, self.kept, self.inside, self.interrupted = target, b"", b"", False, False
 
     def write(self, data: bytes) -> None:
-        """Sort whole lines; the last one waits for its end."""
+        """Sort complete lines; an incomplete last line waits for its end."""
         *lines, self.rest = (self.rest + data).split(b"\n")
         for line in lines:
             ruler = line.startswith(RULER)
@@ -128,10 +128,10 @@ class MpirunMessages:
             self.interrupted |= line == b"coilset: interrupted"
 
     def flush(self) -> None:
-        """Hand on what is written."""
+        """Flush the target."""
         self.target.flush()
 
     def tell(self) -> None:
-        """Write what was kept."""
+        """Write what was held back."""
         self.target.write(self.kept + self.rest)
         self.flush()

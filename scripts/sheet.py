@@ -1,8 +1,7 @@
-"""`coilset sheet`: the formulas of the standards for a case's spring, beside what a run found."""
+"""`coilset sheet`: the formulas of the standards for a case's spring, beside the results of a run."""
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import get_args
 
@@ -11,20 +10,17 @@ from rich.console import Console
 
 from coilset.meshes.errors import InputError
 from coilset.meshes.spring import Spring
-from coilset.model.case import Case, read_case
+from coilset.model.case import read_case
 from coilset.model.results import goodman_figure
 from coilset.model.results.folder import make
 from coilset.model.standards import found, goodman
+from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.case_warnings import sheet_warnings
-from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.en15800 import Grade
-from coilset.model.standards.found import Found
 from coilset.model.standards.rows import Row, sections
-from coilset.model.standards.sheet import Sheet, working_lengths
-from coilset.model.standards.steel import STEEL, Elastic
+from coilset.model.standards.sheet import Sheet
 from coilset.model.standards.warnings import spring_warnings
 from coilset.model.standards.wires import names, wire
-from coilset.model.standards.wires.law import case_law
 from coilset.model.standards.working import presetting_warning
 from coilset.model.warning import Warning
 from coilset.scripts.target import results_folder
@@ -49,10 +45,10 @@ def sheet(
     """Print the sheet of a spring and draw its Goodman diagram; see `coilset sheet --help`.
 
     Raises:
-        InputError: wrong input, a spring that is no cylinder, or a figure that already exists.
+        InputError: wrong input, a spring that is not cylindrical, or a figure that already exists.
     """
     if MPI.COMM_WORLD.rank:
-        return  # nothing here is worth dividing
+        return  # too little work to be worth distributing
     console = Console(highlight=False)
     if case_file is None:
         raise InputError("name a case file, or give --wires to list the wires", "coilset sheet")
@@ -61,7 +57,7 @@ def sheet(
     run = found.read(results) if results else None
     try:
         spring = case.spring.build()
-        made = _sheet(case, spring, run, wire_name, lengths, GRADES[grade], surface, dynamic)
+        made = case_sheet(case, spring, run, wire_name, lengths, GRADES[grade], surface, dynamic)
     except InputError as error:
         raise InputError(error.problem, error.place, error.file or case_file) from None
     diagram = _diagram(made) if pictures else None
@@ -82,40 +78,12 @@ def sheet(
 
 
 def list_wires() -> None:
-    """Print the wires that are known, the range of their diameters, and how sure their strength is."""
+    """Print the known wires, the range of their diameters, and how certain their strength is."""
     console = Console(highlight=False)
     for name in names():
         known = wire(name)
         ranges = ", ".join(f"{low:.4g} to {high:.4g}" for low, high in known.ranges)
         console.print(f"{name:28} {ranges + ' mm':24} {known.entry.strength.sure}", soft_wrap=True)
-
-
-def _sheet(
-    case: Case,
-    spring: Spring,
-    run: Found | None,
-    wire_name: str | None,
-    lengths: Sequence[float],
-    grade: Grade,
-    surface: str,
-    dynamic: bool,
-) -> Sheet:
-    law, cylinder = case_law(case, spring), Cylinder.of(spring)
-    named = wire_name or getattr(case.material, "wire", None)
-    known = wire(named) if named else None
-    elastic = known.elastic(cylinder.d) if known else Elastic(law.G, law.E, getattr(law, "density", STEEL.density))
-    for length in lengths:
-        if not cylinder.solid < length < cylinder.length:
-            raise InputError(
-                f"{length:g} mm is no working length; must be between the block length {cylinder.solid:.4g} and the "
-                f"free length {cylinder.length:.4g} mm", "--length",
-            )  # fmt: skip
-    made = Sheet(cylinder, elastic, spring.wire_length, known, tuple(lengths), grade, surface, dynamic, run,
-                 case.ends == "clamped", law.yield_stress)  # fmt: skip
-    if lengths:
-        return made
-    planned = working_lengths(case.targets, cylinder.length, made.rate, cylinder.solid)
-    return replace(made, lengths=tuple(planned))
 
 
 def _diagram(made: Sheet) -> tuple[str, goodman.Line, goodman.Cycle] | None:
@@ -136,7 +104,7 @@ def _warnings(spring: Spring, made: Sheet) -> list[Warning]:
 
 
 def _lines(rows: Sequence[Row], beside: bool) -> Iterator[str]:
-    """Text of a section: label, value, unit, what was found, formula and how it was checked; reasons on lines below."""
+    """Text of a section: label, value, unit, result, formula and how it was checked; reasons on lines below."""
     width = max(len(row.label) for row in rows)
     for row in rows:
         found = _number(row.found) if row.found is not None else ""

@@ -1,4 +1,4 @@
-"""`coilset slice`: a cylindrical spring by the section of its wire alone, as a three-dimensional body."""
+"""`coilset slice`: a cylindrical spring as a 3D body, from a single section of its wire."""
 
 import os
 from collections.abc import Sequence
@@ -34,17 +34,17 @@ def slice_case(
     Args:
         case_file: the case file.
         out: results folder; default results/NAME-OF-CASE-slice.
-        force: replace results that are there.
+        force: replace existing results.
         settings: texts `key=value` that replace entries of the case file.
         section: the section in words or a CSV file of its outline, see `meshes.section_shapes.parse`; default is round.
         across: triangles across the section.
         pictures: draw the figure.
 
     Raises:
-        InputError, SolveError: the latter after the results up to there are written.
+        InputError, SolveError: the latter after the results so far are written.
     """
     if MPI.COMM_WORLD.rank:
-        return  # a section is too small to be divided
+        return  # a section is too small to be distributed
     console = Console(highlight=False)
     case = read_case(case_file, settings)
     folder = results_folder(out, f"{Path(case_file).stem}-slice")

@@ -1,4 +1,4 @@
-"""`coilset sweep`: run what a sweep file asks for, keep every case as it ends, and draw what was found."""
+"""`coilset sweep`: run a sweep file, keep every case as soon as it ends, and draw the results."""
 
 import os
 import signal
@@ -22,10 +22,10 @@ from coilset.model.sweep.pools import Pool, local_pool, usable_cores
 from coilset.model.sweep.run import finished, missing, run
 from coilset.scripts.target import results_folder
 
-if TYPE_CHECKING:  # at run time not before the environment is kept
+if TYPE_CHECKING:  # at run time only after the environment is saved
     from mpi4py import MPI
 
-REPORT_SECONDS = 30.0  # between two lines of progress where there is no terminal
+REPORT_SECONDS = 30.0  # seconds between progress lines without a terminal
 SHOWN_FAILURES = 5
 
 
@@ -36,9 +36,9 @@ def sweep(
     """Run a sweep; see `coilset sweep --help`.
 
     Raises:
-        InputError: before anything is run, if a file is wrong or the folder holds a sweep already.
-        SolveError: cases failed; after what was found is written.
-        KeyboardInterrupt: after the cases that have ended are brought together.
+        InputError: before anything is run, if a file is wrong or the folder already holds a sweep.
+        SolveError: cases failed; after the results are written.
+        KeyboardInterrupt: after the finished cases are collected.
     """
     environment = dict(os.environ)  # as it was before MPI
     from mpi4py import MPI
@@ -56,14 +56,14 @@ def sweep(
         interrupted = True
     failed = comm.bcast(0 if plan is None else _conclude(plan, folder, pictures, console))
     if interrupted:
-        console.print("interrupted; the same command with --resume goes on")
+        console.print("interrupted; run the same command with --resume to continue")
         raise KeyboardInterrupt
     if failed:
         raise SolveError(f"{failed} case(s) failed; their reasons are in the journal, --retry runs them again")
 
 
 def _on_first_rank(comm: "MPI.Comm", prepare: Callable[[], Plan]) -> Plan | None:
-    """What `prepare` gives on rank 0, None elsewhere; its InputError on all ranks."""
+    """The result of `prepare` on rank 0, None elsewhere; its InputError is raised on all ranks."""
     plan, problem = None, None
     if comm.rank == 0:
         try:
@@ -78,7 +78,7 @@ def _on_first_rank(comm: "MPI.Comm", prepare: Callable[[], Plan]) -> Plan | None
 
 def _prepare(sweep_file: str, out: Path, force: bool, resume: bool) -> Plan:
     if force and resume:
-        raise InputError("throws away what --resume and --retry go on with; give one of them", "--force")
+        raise InputError("discards what --resume and --retry continue; give one of them", "--force")
     refuse_obstacles(out, ["journal.jsonl", "sweep.nc", "workers.log"])
     plan = Plan(sweep_file)
     journal = out / "journal.jsonl"
@@ -108,22 +108,22 @@ def _pool(
 
 
 def _lead(plan: Plan, out: Path, retry: bool, pool: Pool, console: Console) -> None:
-    """Run the missing cases with a bar of their progress."""
-    signal.signal(signal.SIGTERM, signal.getsignal(signal.SIGINT))  # what a job's scheduler sends at its end
+    """Run the missing cases, with a progress bar."""
+    signal.signal(signal.SIGTERM, signal.getsignal(signal.SIGINT))  # a batch system's signal at the end of a job
     path = out / "journal.jsonl"
     with closing(Journal(path)) as journal:
         todo = list(missing(plan, finished(path, retry)))
         there = len(set(plan.keys)) - len(todo)
         for notice in plan.notices:
             console.print(f"[yellow]warning:[/] {notice}")
-        console.print(f"{plan.path.name}: {len(plan)} cases, {there} there already, {pool.workers} at a time")
+        console.print(f"{plan.path.name}: {len(plan)} cases, {there} done already, {pool.workers} at a time")
         progress = Bar(len(todo), console)
         with progress.bar:
             run(plan, todo, pool, journal, progress.report)
 
 
 class Bar:
-    """Progress bar with cases a minute and time left; a line now and then where there is no terminal."""
+    """Progress bar with cases per minute and time left; an occasional line without a terminal."""
 
     def __init__(self, total: int, console: Console) -> None:
         self.total, self.console, self.done, self.failed = total, console, 0, 0
@@ -150,8 +150,9 @@ class Bar:
 
 
 def _conclude(plan: Plan, out: Path, pictures: bool, console: Console) -> int:
-    """Data set, figures, and what was found in words; returns how many cases failed."""
+    """Data set, figures and a summary in words; returns the number of failed cases."""
     data = dataset.collect(plan, out / "journal.jsonl")
+    (out / "report.html").unlink(missing_ok=True)  # of other cases
     dataset.write(out / "sweep.nc", data)
     files, problems = draw(out, plan, data) if pictures else ([], [])
     counts = {status: int((data.status == status).sum()) for status in ("done", "failed", "missing")}

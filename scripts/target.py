@@ -1,4 +1,4 @@
-"""Where a command will write, looked at before it works: a folder or file that cannot be is said at once."""
+"""Where a command will write, checked before it starts: an impossible folder or file is reported immediately."""
 
 import os
 import re
@@ -10,7 +10,7 @@ UNFIT = re.compile(r"[/\0]|^\.+$")  # in the name of a folder
 
 
 def folder_target(out: str | None) -> str | None:
-    """Callback of an option that names a folder; gives it back.
+    """Callback of an option that names a folder; returns it.
 
     Raises:
         InputError: if the folder cannot be made or written to.
@@ -23,25 +23,25 @@ def folder_target(out: str | None) -> str | None:
 
 
 def results_folder(out: str | Path | None, name: str, *above: str) -> Path:
-    """The folder that the user names, or results/ABOVE/NAME where none is named.
+    """The folder that the user names, or results/ABOVE/NAME if none is named.
 
     Args:
         out: what the user named.
-        name: of the case, the material or whatever the results are of; what is no name of a folder in it becomes `_`.
-        above: folders between.
+        name: of the case, the material or whatever the results belong to; what no folder name may contain becomes `_`.
+        above: folders in between.
 
     Raises:
         InputError: if the folder cannot be made or written to.
     """
     if out is not None:
-        return Path(out)  # `folder_target` has looked at it
+        return Path(out)  # `folder_target` has checked it
     folder = Path("results", *above, UNFIT.sub("_", name) or "_")
     _check(folder, "--out")
     return folder
 
 
 def file_targets(paths: list[str] | None) -> list[str]:
-    """Callback of `--write`, which names files; gives them back.
+    """Callback of `--write`, which names files; returns them.
 
     Raises:
         InputError: if one is a folder, or its folder cannot be made or written to.
@@ -55,14 +55,14 @@ def file_targets(paths: list[str] | None) -> list[str]:
 
 
 def _named(path: str, option: str) -> str:
-    """A path that is not empty: Path would make the folder that we are in of it."""
+    """A path that is not empty: Path would turn an empty one into the current folder."""
     if not path:
         raise InputError("is empty; give a name", option)
     return path
 
 
 def _is_there(path: Path) -> bool:
-    """Does it exist? Path.exists says no to a name that is too long from Python 3.14 on; here that is an OSError."""
+    """Does it exist? From Python 3.14 on, Path.exists is False for a name that is too long; here that is an OSError."""
     try:
         path.stat()
     except (FileNotFoundError, NotADirectoryError):
@@ -75,7 +75,7 @@ def _check(folder: Path, option: str, target: Path | None = None) -> None:
     try:
         there = next(one for one in (folder, *folder.absolute().parents) if _is_there(one))
         _is_there(target)
-    except (OSError, ValueError) as error:  # a ValueError: there is a null character in the name
+    except (OSError, ValueError) as error:  # ValueError: the name contains a null character
         shown = str(target) if len(str(target)) <= 80 else f"{str(target)[:77]}..."
         raise InputError(f"cannot be made: {getattr(error, 'strerror', error)}", option, shown) from None
     if not there.is_dir():

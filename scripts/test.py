@@ -12,16 +12,16 @@ from coilset.model.processes import end_with_parent, mpi_environment, mpirun
 from coilset.model.sweep.pools import usable_cores
 
 REPOSITORY = Path(__file__).resolve().parent.parent
-# tests that solve springs or solids to their end, or start the command: minutes, where most others take seconds; those
+# tests that solve springs or solids to the end, or start the command: minutes, where most others take seconds; those
 # of sweeps run with the others, so that both take about as long
 SOLVES = ["benchmarks", "commands", "examples", "install", "meshes/test_solved_springs.py", "solid", "spring",
           "verification"]  # fmt: skip
 
 
 def test(arguments: list[str]) -> int:
-    """Run pytest, with arguments once, else stage by stage; returns the exit code of the first that fails, else 0.
+    """Run pytest, once with arguments, else stage by stage; returns the exit code of the first failure, else 0.
 
-    Where there are two cores, the tests of parts and those of whole solves, which take a core each, run side by side.
+    With two cores, the tests of parts and those of whole solves, which take one core each, run in parallel.
 
     Raises:
         InputError: in an installation, which has no tests.
@@ -48,7 +48,7 @@ def test(arguments: list[str]) -> int:
 
 @contextlib.contextmanager
 def beside(title: str, command: list[str]) -> Iterator[list[int]]:
-    """Run a command while the block runs; what it says comes after the block, and its exit code into the list."""
+    """Run a command in parallel with the block; then print its output and append its exit code to the list."""
     status: list[int] = []
     with tempfile.TemporaryFile() as said:
         process = subprocess.Popen(command, cwd=REPOSITORY, stdout=said, stderr=subprocess.STDOUT,

@@ -1,4 +1,4 @@
-"""`coilset verify`: run cases of verification, print and keep what they found, all numbers in one table at the end."""
+"""`coilset verify`: run verification cases, print and keep their results, with all numbers in one final table."""
 
 import os
 import sys
@@ -17,7 +17,7 @@ from coilset.verification import registry
 from coilset.verification.page import page, percent
 from coilset.verification.study import Check, Study
 
-WIDTH = 200  # columns where the output goes to a file
+WIDTH = 200  # columns of output that goes to a file
 
 
 def verify(names: Sequence[str] | None, out: str | Path, fast: bool, page_file: str | None = None) -> int:
@@ -27,10 +27,11 @@ def verify(names: Sequence[str] | None, out: str | Path, fast: bool, page_file: 
         names: of cases.
         out: folder of the records and figures.
         fast: only cases that take seconds.
-        page_file: where the page of all records in `out` goes, those of earlier runs included.
+        page_file: where to write the page of all records in `out`, including those of earlier runs; its rows of cases
+            without a record stay.
 
     Raises:
-        InputError: for a name that is no case.
+        InputError: for an unknown case.
     """
     if MPI.COMM_WORLD.size > 1:
         raise InputError("works on one rank only; omit -n", "verify")
@@ -48,7 +49,8 @@ def verify(names: Sequence[str] | None, out: str | Path, fast: bool, page_file: 
                   f"{met} met, {len(judged) - met} not met; {shown} shown but not judged")  # fmt: skip
     if page_file:
         with whole(Path(page_file)) as path:
-            path.write_text(page(out), encoding="utf-8")
+            before = Path(page_file).read_text(encoding="utf-8") if Path(page_file).exists() else ""
+            path.write_text(page(out, before), encoding="utf-8")
     off = [name for name, (study, problem) in found.items() if problem or not study.passed]
     console.print(f"[red]off: {', '.join(off)}[/]" if off else "[green]all judged numbers within tolerance[/]")
     return 1 if off else 0
@@ -65,7 +67,7 @@ def show() -> None:
 
 
 def _run(case: registry.Case, folder: Path, console: Console) -> tuple[Study, str]:
-    """The Study of a case, and what went wrong, in words."""
+    """The Study of a case, and a description of what went wrong."""
     console.rule(f"[bold]{case.name}[/]: {case.title}", align="left")
     study, began, problem = Study(folder), time.perf_counter(), ""
     try:

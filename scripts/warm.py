@@ -1,14 +1,20 @@
-"""`coilset compile`: what a first run would compile, compiled before it."""
+"""`coilset compile`: compile in advance what a first run would compile."""
 
 from mpi4py import MPI
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
+from coilset.model.design.surrogate import guess
 from coilset.model.examples import EXAMPLES
 
-SHORT = ("mesh.elements_per_turn=8", "loading=[{to: {travel: 14}, steps: 4}, {to: {force: 0}, steps: 1}]")
+LOADING = "loading=[{to: {travel: 14}, steps: 4}, {to: {force: 0}, steps: 1}]"
+CREEPING = "loading=[{to: {force: 650}, steps: 2}, {hold: {hours: 1}, steps: 1}]"
+SHORT = {"ck15_presetting.yaml": LOADING, "time/relaxation.yaml": CREEPING}  # examples, and what they go through
 
 
 def warm() -> None:
-    """Press the example until coils touch and the wire yields, and release it; nothing of it is kept."""
-    Analysis(read_case(EXAMPLES / "ck15_presetting.yaml", SHORT), MPI.COMM_SELF).run()
+    """Compress an example until coils touch and yield, release it, let one creep, press a uniform rod; keep nothing."""
+    cases = [read_case(EXAMPLES / example, ("mesh.elements_per_turn=8", loading)) for example, loading in SHORT.items()]
+    for case in cases:
+        Analysis(case, MPI.COMM_SELF).run()
+    guess(cases[0], [])

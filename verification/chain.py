@@ -1,4 +1,4 @@
-"""Chains of rods, as most benchmarks have them: nodes one after the other, driven in equal steps."""
+"""Chains of rods, as in most benchmarks: nodes one after the other, driven in equal steps."""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
@@ -17,7 +17,7 @@ X, Y, Z, ROTATION_X, ROTATION_Y, ROTATION_Z = ALL
 
 
 def elastic(E: float, nu: float) -> Law:
-    """An elastic law of other moduli than the library's; E in MPa."""
+    """An elastic law with moduli other than the library's; E in MPa."""
     data = library.load("elastic").data.model_dump()
     data["temperatures"][0]["elasticity"] |= {"G": E / (2.0 * (1.0 + nu)), "nu": nu}
     return Law(MaterialFile.model_validate(data))

@@ -1,13 +1,14 @@
-"""How much each number of `solver.control` matters: halved and doubled, and counted over shipped springs.
+"""How much each number of `solver.control` matters: each is halved and doubled, and the work counted.
 
     scripts/coilset python verification/control_sensitivity.py [--springs NAME …] [--steps N] [--fields NAME …] …
 
-Each spring goes to block and back to zero force, once a variant. A number with an upper bound of 1 is doubled as far as
-halfway to 1; of a growth, which is at least 1, the excess over 1 is halved and doubled; the travel of the probe and the
-numbers of automatic steps are tried like all others. Counted are iterations, states that were evaluated (the body's
-updates, those of line searches included), failed solves and cuts. Each row is written as soon as it is known.
-`--page FILE.csv …` prints the table of docs/methods.md from such files: over all springs in them, the least and the
-greatest number of states, as shares of those with the number as it is, and what all springs failed and cut more.
+Each spring goes to block and back to zero force, once per variant. A number with an upper bound of 1 is doubled at most
+halfway to 1; for a growth factor, which is at least 1, the excess over 1 is halved and doubled; the travel of the probe
+and the numbers of automatic steps are varied like all others. Iterations, evaluated states (updates of the body, those
+of line searches included), failed solves and cuts are counted. Each row is written as soon as it is known. `--page
+FILE.csv …` prints the table of docs/methods.md from such files: the minimum and the maximum number of states over all
+springs in them, relative to those with the number as it is, and how many more failed solves and cuts all springs had
+together.
 """
 
 import argparse
@@ -51,7 +52,7 @@ class Counts:
         failures: solves without an equilibrium.
         cuts: of steps.
         steps: converged ones.
-        ended: did the run come to its end?
+        ended: did the run finish?
     """
 
     iterations: int = 0
@@ -90,7 +91,7 @@ def count(name: str, settings: Iterable[str]) -> Counts:
 
 
 def halved_and_doubled(name: str, value: float | None) -> tuple[float, float]:
-    """The two values at which a field is tried; of a switch both ways."""
+    """The two values at which a field is tried; for a switch, both settings."""
     if name in SWITCHES:
         return False, True
     if value is None:
@@ -148,7 +149,9 @@ def page(files: Iterable[Path]) -> None:
         with path.open(encoding="utf-8") as file:
             for row in csv.DictReader(file):
                 springs.setdefault(row["spring"], {})[row["variant"]] = row
-    print("| number | value | halved | doubled | failed solves more | cuts more |\n|---|---|---|---|---|---|")
+    print(
+        "| number | value | halved | doubled | additional failed solves | additional cuts |\n|---|---|---|---|---|---|"
+    )
     for control in CONTROLS.values():
         for field in fields(control):
             low, high = halved_and_doubled(field.name, value := getattr(control(), field.name))
@@ -159,7 +162,7 @@ def page(files: Iterable[Path]) -> None:
 
 
 def _compared(springs: Rows, variant: str) -> tuple[str, int, int]:
-    """States beside those of the number as it is, least and greatest over the springs; failures and cuts more."""
+    """States relative to the number as it is, minimum and maximum over the springs; more failures and cuts."""
     base = "automatic steps" if variant.split(" = ")[0] in AUTOMATIC else "as shipped"
     pairs = [(rows[variant], rows[base]) for rows in springs.values() if variant in rows and base in rows]
     if any(row["ended"] != "True" for row, _ in pairs):

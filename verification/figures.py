@@ -1,4 +1,4 @@
-"""Pictures that several cases share."""
+"""Figures shared by several cases."""
 
 from collections.abc import Sequence
 
@@ -31,6 +31,6 @@ def iterations(axes: Axes, labels: Sequence[str], columns: Sequence[Column], tit
                 axes.plot((place + shift)[lost], np.full(lost.sum(), top), "x", color=colour, ms=6,
                           label=f"{method}, {name}: diverged")  # fmt: skip
     axes.set_xticks(place, labels, rotation=90)
-    axes.set(ylabel="iterations, one step a row", title=title, ylim=(-0.05 * top, 1.06 * top))
+    axes.set(ylabel="iterations, one step per row", title=title, ylim=(-0.05 * top, 1.06 * top))
     axes.grid(lw=0.3)
     axes.legend(fontsize=7)

@@ -1,4 +1,4 @@
-"""Small frames of rods, driven step by step: what the thesis's tables are computed with."""
+"""Small frames of rods, driven step by step: used to compute the tables of the thesis."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -37,8 +37,9 @@ class Frame:
         radius: of all rods, or of each, shape (m,), mm.
         law: material law.
         rule: DiskRule.
-        held: (node, components) pairs that stay where they are; components are 0-2 for x, y, z, 3-5 for turns.
-        method, options: of coilset.model.equilibrium.methods, and more of PETSc's; the tolerance is the thesis's 1e-7.
+        held: (node, components) pairs that stay fixed; components are 0-2 for x, y, z, 3-5 for rotations.
+        method, options: of coilset.model.equilibrium.methods, and further PETSc options; the tolerance is the thesis's
+            1e-7.
         contacts: kinds of contact.
         placement: of sections beside the chords, as for Rod.
 
@@ -87,7 +88,7 @@ class Frame:
             moves: dof → displacement added in this step, mm or rad.
             forces: dof → force at the end of the step, N or N mm.
             predictor_scale: this step's size over the last one's, to start from the last step's increments; None: from
-                rest, as after steps that have turned a node far.
+                rest, as after steps that have rotated a node far.
 
         Returns:
             Outcome; where it has not converged, the frame is back at the last equilibrium.
@@ -101,7 +102,7 @@ class Frame:
         return outcome
 
     def _has_turned_far(self) -> bool:
-        """Did a node turn by more than FAR in the last step? Its increments then point elsewhere than the next ones."""
+        """Did a node rotate by more than FAR in the last step? Its increments then point elsewhere than the next."""
         increments = self.layout.to_order(self.system.state["increments"].equilibrium)
         nodes = len(self.layout.station_dofs)
         turns = increments[: 6 * nodes].reshape(nodes, 6)[:, 3:]
@@ -112,7 +113,7 @@ class Frame:
         return self.layout.gather(self.rod.x)[node] - self.rod.line.stations[node]
 
     def rotation(self, node: int) -> np.ndarray:
-        """Rotation vector of a node since the start, up to a whole turn, rad."""
+        """Rotation vector of a node since the start, up to a full turn, rad."""
         return Rotation.from_matrix(self.layout.gather(self.system.state["R"].trial)[node]).as_rotvec()
 
     def force(self, dof: int) -> float:

@@ -6,36 +6,39 @@ from typing import Any
 
 from coilset.verification import registry
 
-HEAD = """# Verification: what is compared, and how far it is off
+HEAD = """# Verification: what is compared, and with what deviation
 
-`coilset verify` runs these cases, or those that are named; `--fast` those that take seconds, which are part of
-the tests; `--list` names them. It ends with one table of every number: computed, reference, deviation,
-tolerance and verdict. A number that is shown for reading but cannot be judged says why. The references are
-closed solutions, published tables, integrals, or integrations of other equations by other means
-(`verification/references/`); each case's docstring says where they come from and what its tolerance rests on.
+`coilset verify` runs these cases, or those that are named; `--fast` those that take seconds, which are part of the
+tests; `--list` names them. It ends with one table of every number: computed, reference, deviation, tolerance and
+verdict. For a number that is shown but cannot be judged, the reason is given. The references are closed solutions,
+published tables, integrals, or integrations of other equations by other means (`verification/references/`); each case's
+docstring says where they come from and what its tolerance is based on.
 
-This page is written by `coilset verify --page docs/verification.md` from the records in `results/verify/`. Of the
-numbers with one source the one that uses most of its tolerance is given; *n* counts them.
+This page is written by `coilset verify --page docs/verification.md` from the records in `results/verify/`; a case
+without a record there keeps its previous rows. Of the *n* numbers with one source, the one that uses most of its
+tolerance is given.
 
-| case | against | n | the closest number | computed | reference | deviation | tolerance | verdict |
+| case | against | n | number nearest its limit | computed | reference | deviation | tolerance | verdict |
 |---|---|---|---|---|---|---|---|---|
 """
 
 
-def page(folder: str | Path) -> str:
+def page(folder: str | Path, before: str = "") -> str:
     """The page in Markdown.
 
     Args:
-        folder: with a record.json for each case, in a folder of its name; a case without one is named as not run.
+        folder: with a record.json for each case, in a folder of its name.
+        before: the page as it was: a case without a record keeps its rows, or is listed as not run if it has none.
     """
-    rows, texts = [], []
+    lines, texts = [], []
     for name in registry.names():
         case, file = registry.load(name), Path(folder) / name / "record.json"
         speed = "" if case.fast else " *(slow)*"
         texts.append(f"- **{name}**{speed}: {case.title}")
         checks = json.loads(file.read_text(encoding="utf-8"))["checks"] if file.exists() else []
-        if not checks or "verdict" not in checks[0]:  # a record of before there were verdicts is as good as none
-            rows.append([f"`{name}`", "", "", "", "", "", "", "", "not run"])
+        if not checks or "verdict" not in checks[0]:  # a record from before there were verdicts counts as none
+            kept = [line for line in before.splitlines() if line.startswith(f"| `{name}` |")]
+            lines += kept or [_line(f"`{name}`", "", "", "", "", "", "", "", "not run")]
             continue
         groups: dict[tuple[str, bool], list[dict[str, Any]]] = {}
         for check in checks:
@@ -44,13 +47,17 @@ def page(folder: str | Path) -> str:
             worst = max(group, key=_used)
             failed = sum(check["verdict"] == "not met" for check in group)
             verdict = f"{failed} of {len(group)} not met" if failed else worst["verdict"]
-            rows.append([f"`{name}`", source, str(len(group)), worst["quantity"], *_numbers(worst), verdict])
-    lines = ["| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in rows]
+            lines.append(_line(f"`{name}`", source, str(len(group)), worst["quantity"], *_numbers(worst), verdict))
     return HEAD + "\n".join(lines) + "\n\n## The cases\n\n" + "\n".join(texts) + "\n"
 
 
+def _line(*cells: str) -> str:
+    """A row of the table."""
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
+
+
 def _used(check: dict[str, Any]) -> float:
-    """The share of its tolerance that a number uses; of a number that is not judged, its deviation."""
+    """The share of its tolerance that a number uses; for a number that is not judged, its deviation."""
     deviation = check["deviation"]
     if deviation is None:
         return float("inf")
@@ -71,5 +78,5 @@ def _numbers(check: dict[str, Any]) -> tuple[str, str, str, str]:
 
 
 def percent(value: float) -> str:
-    """A part of one in percent, signed."""
+    """A fraction in percent, signed."""
     return f"{100.0 * value:+.3g} %"

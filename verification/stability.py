@@ -32,6 +32,6 @@ def negative_pivots(matrix: sparse.csc_array) -> int:
 
 
 def lowest_eigenvalue(matrix: sparse.csc_array) -> float:
-    """The least eigenvalue of a symmetric matrix with not more than three negative ones; its zero is what is sought."""
+    """The lowest eigenvalue of a symmetric matrix with at most three negative ones."""
     start = np.random.default_rng(0).standard_normal(matrix.shape[0])
     return float(eigsh(matrix, k=4, sigma=0.0, v0=start, return_eigenvectors=False).min())

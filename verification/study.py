@@ -1,4 +1,4 @@
-"""What a case of verification leaves behind: judged numbers, tables, notes and figures."""
+"""The output of a verification case: judged numbers, tables, notes and figures."""
 
 import json
 import math
@@ -24,7 +24,7 @@ class Check:
         quantity: what it is, with its unit.
         ours, reference: the numbers.
         source: where the reference comes from.
-        tolerance: greatest deviation.
+        tolerance: maximum deviation.
         kind: `relative`: |ours/reference − 1|; `absolute`: |ours − reference|; `at_most`: ours − reference.
         reason: why the number is shown but not judged; empty if it is judged.
     """
@@ -45,7 +45,7 @@ class Check:
 
     @property
     def deviation(self) -> float:
-        """As the kind says; signed, but for its use in `passed`."""
+        """According to the kind; signed, except for its use in `passed`."""
         difference = self.ours - self.reference
         return difference / abs(self.reference) if self.kind == "relative" else difference
 
@@ -57,7 +57,7 @@ class Check:
 
     @property
     def judged(self) -> bool:
-        """Does the verdict hang on it?"""
+        """Does the verdict depend on it?"""
         return not self.reason
 
     @property
@@ -72,7 +72,7 @@ class Study:
     """Collects what a case finds; numbers may be NumPy's.
 
     Args:
-        folder: where figures and record.json go; made if it is not there.
+        folder: where figures and record.json go; created if missing.
     """
 
     def __init__(self, folder: str | Path) -> None:
@@ -96,12 +96,12 @@ class Study:
         self.checks.append(Check(quantity, float(ours), float(reference), source, float(tolerance), kind))
 
     def shown(self, quantity: str, ours: SupportsFloat, reference: SupportsFloat, source: str, reason: str) -> None:
-        """Keep a number beside its reference that is not judged, with the reason; see Check."""
+        """Keep a number and its reference without judging it, with the reason; see Check."""
         kind = "relative" if reference else "absolute"
         self.checks.append(Check(quantity, float(ours), float(reference), source, float("nan"), kind, reason))
 
     def table(self, title: str, columns: Iterable[str], rows: Iterable[Iterable[object]]) -> None:
-        """Keep a table for reading; its rows hold numbers and texts, None for an empty place."""
+        """Keep a table for information; its rows hold numbers and texts, None for an empty cell."""
         self.tables.append(
             {"title": title, "columns": list(columns), "rows": [[plain(value) for value in row] for row in rows]}
         )

@@ -9,8 +9,9 @@ from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
 from annotated_types import Unit
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
-from coilset.meshes.spring import SpringEntry
+from coilset.meshes.spring import SpringEntry, SpringSpec
 from coilset.meshes.stations import ElementsPerTurn
+from coilset.model.case.heat import HeatSpec
 from coilset.model.case.phases import AnyPhase, Phase
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.case.settings import assign, located
@@ -167,7 +168,7 @@ class SolverSpec(Strict):
 
 
 class NamedWire(Strict):
-    """A wire of a standard in the place of a material; it takes the wire's diameter from the spring."""
+    """A wire of a standard instead of a material; it takes the wire's diameter from the spring."""
 
     wire: Annotated[str, Field(description="name of a wire, such as EN 10270-1 SH; `coilset sheet --wires` lists them")]
 
@@ -206,6 +207,9 @@ class Case(Strict):
     mesh: MeshSpec = MeshSpec()
     contact: ContactSpec = ContactSpec()
     solver: SolverSpec = SolverSpec()
+    heat: Annotated[
+        HeatSpec | None, Field(description="where the heat of plastic work goes; left out: it stays where it arises")
+    ] = None
     accuracy: Annotated[
         Part,
         Unit("1"),
@@ -245,6 +249,25 @@ class Case(Strict):
         shapes = {self.seats.bottom.shape, self.seats.top.shape} - {"flat"}
         if shapes and any(phase.to == "block" for phase in self.targets):
             raise ValueError(f"block is known for flat seats; with {shapes.pop()} ones give height, travel or force")
+        return self
+
+    @model_validator(mode="after")
+    def _coiling_knows_the_curvature(self) -> Self:
+        if isinstance(self.spring, SpringSpec) and self.spring.made_by and self.mesh.section.kind != "curved":
+            raise ValueError("spring.made_by: coiling is known for sections of fibres in a curved wire; give "
+                             "mesh.section.kind: curved")  # fmt: skip
+        return self
+
+    @model_validator(mode="after")
+    def _heat_takes_time(self) -> Self:
+        if self.heat and self.mesh.section.kind == "warping":
+            raise ValueError("heat is known for sections of fibres; give mesh.section.kind: curved or plane")
+        for number, phase in enumerate(self.loading):
+            timed = isinstance(phase, Phase) and phase.seconds is not None
+            if self.heat and not timed:
+                raise ValueError(f"loading.{number} takes no time, but heat flows; give a target and seconds")
+            if timed and not self.heat:
+                raise ValueError(f"loading.{number}.seconds: no heat flows; give the entry heat, or leave seconds out")
         return self
 
     @property

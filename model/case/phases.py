@@ -75,6 +75,12 @@ class Phase(Stepped):
         Field(description="block, {travel: mm}, {height: mm} or {force: N}"),
     ]
 
+    seconds: Annotated[
+        float | None,
+        Unit("s"),
+        Field(gt=0, le=1e9, description="how long it takes, in a case with the entry `heat`: heat flows meanwhile"),
+    ] = None
+
     @property
     def label(self) -> str:
         """The target in words, for progress and logs."""

@@ -46,6 +46,13 @@ def check_times(case: Case, law: Law) -> None:
     Raises:
         InputError: with the phase.
     """
+    if case.heat and not law.is_adiabatic:
+        raise InputError(f"plastic work does not warm '{law.name}'; give a material with heating", "heat")
+    if case.heat and case.heat.surroundings is not None:
+        try:
+            law.known(case.heat.surroundings)
+        except InputError as error:
+            raise InputError(error.problem, "heat.surroundings") from None
     for number, phase in enumerate(case.loading):
         if not isinstance(phase, TimePhase):
             continue

@@ -78,8 +78,8 @@ class Contribution:
 def one_sided(g: np.ndarray, c: np.ndarray, onset: float) -> tuple[np.ndarray, np.ndarray]:
     """Compressive force and stiffness of one-sided springs whose contact sets in over a short distance.
 
-    Touching surfaces come to bear gradually: with the penetration p = −g the force is c p²/(4w) up to p = 2w and
-    c (p − w) beyond. Without such an onset the tangent jumps, and a line search can be caught on the kink.
+    Contact pressure builds up gradually: with the penetration p = −g the force is c p²/(4w) up to p = 2w and
+    c (p − w) beyond. Without such an onset the tangent jumps, and a line search can get stuck at the kink.
 
     Args:
         g: gaps, negative where the bodies overlap, shape (m,), mm; may be complex.
@@ -108,7 +108,7 @@ class Contact(Protocol):
 
     @property
     def needs_rotations(self) -> bool:
-        """Does it ask for `TrialPositions.rotations`?"""
+        """Whether it needs `TrialPositions.rotations`."""
         ...
 
     def evaluate(self, trial: TrialPositions) -> Contribution:
@@ -118,7 +118,7 @@ class Contact(Protocol):
 
 @runtime_checkable
 class BearsOnWire(Contact, Protocol):
-    """A contact that bears on points of the wire."""
+    """A contact that acts on points of the wire."""
 
     @property
     def points(self) -> WirePoints:
@@ -127,16 +127,16 @@ class BearsOnWire(Contact, Protocol):
 
     @property
     def lengths(self) -> np.ndarray:
-        """Wire on which each point bears, shape (m,), mm."""
+        """Length of wire assigned to each point, shape (m,), mm."""
         ...
 
 
 @runtime_checkable
 class LimitsStep(Contact, Protocol):
-    """A contact into which no correction of the iteration is to press bodies deeply."""
+    """A contact that limits the penetration caused by a correction of the iteration."""
 
     def max_penetration(self, trial: TrialPositions) -> float:
-        """Greatest penetration, mm; 0 where nothing touches. Cheaper than `evaluate`, and writes nothing."""
+        """Maximum penetration, mm; 0 where nothing touches. Cheaper than `evaluate`, and writes nothing."""
         ...
 
 
@@ -146,19 +146,19 @@ class HasMemory(Contact, Protocol):
 
     @property
     def memory(self) -> Memory:
-        """The arrays; whoever owns the state commits and restores them."""
+        """The arrays; the owner of the state commits and restores them."""
         ...
 
 
 @runtime_checkable
 class Augmented(HasMemory, Protocol):
-    """A contact whose penetration can be worked off by augmented Lagrange."""
+    """A contact whose penetration can be reduced by an augmented Lagrangian."""
 
     @property
     def multiplier_offset(self) -> np.ndarray:
-        """The distance by which each point is pressed although it has not sunk in by it, mm; part of its memory."""
+        """The offset by which each point is pressed in addition to its penetration, mm; part of its memory."""
         ...
 
     def augment(self, trial: TrialPositions) -> None:
-        """Raise each point's offset by what it has sunk in, so that the next equilibrium needs less penetration."""
+        """Increase each point's offset by its penetration, so that the next equilibrium needs less penetration."""
         ...

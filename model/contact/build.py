@@ -14,8 +14,8 @@ from coilset.model.contact.gap import Gaps
 from coilset.model.contact.hold import Groove, Mount
 from coilset.model.contact.seat import Seat
 
-MODULUS_OF_BEDDING = 40.0  # default bedding is E/40: steel wire sinks in by some thousandths of its diameter at block
-FREE_TILT_OF_BEDDING = 1e-7  # stiffness of a joint that is free to tilt, against that of the coil's bedding, b r³
+MODULUS_OF_BEDDING = 40.0  # default bedding is E/40: steel wire penetrates by some thousandths of its diameter at block
+FREE_TILT_OF_BEDDING = 1e-7  # stiffness of a joint that is free to tilt, relative to that of the coil's bedding, b r³
 ONSET_OF_DIAMETER = 1e-3  # distance over which contact sets in, in wire diameters
 
 
@@ -58,7 +58,7 @@ def seats_at(level: float) -> np.ndarray:
 
 
 def frictions(friction: Any, contacts: list[Contact], stations: np.ndarray, seats: np.ndarray) -> list[Contact]:
-    """The frictions of contacts, where there are any."""
+    """Friction of the contacts, if any."""
     found: list[Contact] = []
     for contact in contacts:
         if isinstance(contact, Seat) and friction.seats:
@@ -89,7 +89,7 @@ def build_seat(
         onset: mm.
 
     Raises:
-        InputError: if its step is longer than the wire.
+        InputError: if a seat's step is longer than the wire.
     """
     side, start = getattr(seats, end), seats_at(spring.free_length)
     for turns, entry in ((side.turns, f"seats.{end}.turns"), (seats.groove, "seats.groove")):
@@ -114,7 +114,7 @@ def build_seat(
 def gaps_one_turn_apart(
     turns: np.ndarray, radius: np.ndarray, lengths: np.ndarray, bedding: float, onset: float
 ) -> Gaps:
-    """The thesis's gap elements between stations that lie above each other."""
+    """The thesis's gap elements between stations one turn apart."""
     stiffness = bedding * 0.5 * (np.append(lengths, 0.0) + np.append(0.0, lengths))  # of each station
     lower = np.flatnonzero(turns <= turns[-1] - 1.0 + 1e-9)
     upper = np.searchsorted(turns, turns[lower] + 1.0 - 1e-9)

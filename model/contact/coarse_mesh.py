@@ -1,4 +1,4 @@
-"""Whether the mesh is fine enough for contact: how far the curve that it sees lies from the wire's axis."""
+"""Whether the mesh is fine enough for contact: the distance of the contact curve from the wire's axis."""
 
 import numpy as np
 
@@ -6,11 +6,11 @@ from coilset.meshes.geometry import Spring
 from coilset.model.contact.curve import CentreLine
 from coilset.model.warning import Warning
 
-USUAL = 0.02  # wire diameters: as deep as coils and seats are usually pressed into each other
+USUAL = 0.02  # wire diameters: usual penetration of coils and seats
 
 
 def distance(spring: Spring, turns: np.ndarray) -> tuple[float, float]:
-    """Greatest distance of contact's curve from the wire's axis across it, in wire diameters, and the turn there.
+    """Maximum transverse distance of the contact curve from the wire's axis, in wire diameters, and the turn there.
 
     Args:
         spring: Spring.
@@ -26,12 +26,12 @@ def distance(spring: Spring, turns: np.ndarray) -> tuple[float, float]:
 
 
 def coarse_mesh_warnings(spring: Spring, turns: np.ndarray) -> list[Warning]:
-    """A mesh on which contact is off by more than coils and seats are usually pressed into each other."""
+    """Warning about a mesh whose contact curve deviates by more than the usual penetration."""
     part, turn = distance(spring, turns)
     if part <= USUAL:
         return []
     message = (
-        f"on this mesh the curve that contact sees is off the wire's axis by {100 * part:.2g} % of the wire's diameter "
+        f"on this mesh the contact curve deviates from the wire's axis by {100 * part:.2g} % of the wire's diameter "
         f"at turn {turn:.3g}, more than {100 * USUAL:g} %; more elements_per_turn make it less"
     )
     return [Warning("contact mesh", "mesh.elements_per_turn", message, part, USUAL, "wire diameters")]

@@ -1,9 +1,9 @@
-"""The wire's centre line as contact sees it: a smooth curve through the stations, and points along it.
+"""The wire's centre line for contact: a smooth curve through the stations, and points along it.
 
-Chords would make a coil that slides over another one stumble over their corners. Between the stations a and a + 1 the
-curve is Hermite's cubic, c(ξ) = H1 x_a + H2 m_a + H3 x_a+1 + H4 m_a+1; the slope m of a station is that of the parabola
+With chords, a coil that slides over another would catch on their corners. Between the stations a and a + 1 the curve is
+a Hermite cubic, c(ξ) = H1 x_a + H2 m_a + H3 x_a+1 + H4 m_a+1; the slope m of a station is that of the parabola
 through it and its two neighbours. So every point is a fixed linear combination of four stations, the slope is
-continuous, and a circle of 16 chords is met within 5e-4 of its radius where the chords are off by 2e-2.
+continuous, and a circle of 16 chords is approximated within 5e-4 of its radius, against 2e-2 for the chords.
 
 The four weights are cubics in ξ. They are evaluated in two ways: `station_weight` one by one in compiled loops,
 `curve_weights` for many points at once, also at complex ξ.
@@ -12,7 +12,7 @@ The four weights are cubics in ξ. They are evaluated in two ways: `station_weig
 import numpy as np
 from numba import njit
 
-STENCIL = 4  # stations that a point hangs on
+STENCIL = 4  # stations that a point depends on
 POINTS_PER_ELEMENT = 2  # points of the bedding in an element: its station and its middle
 
 
@@ -99,7 +99,7 @@ class CentreLine:
         first: first of the four stations of each element's cubic, shape (n − 1,).
         cubic: coefficients of 1, ξ, ξ², ξ³ of each station's weight, shape (n − 1, 4, 4).
         stations, dofs: the four stations and the degrees of freedom of their displacements, shapes (n − 1, 4) and
-            (n − 1, 12); where the wire has fewer stations some stand twice, without weight.
+            (n − 1, 12); if the wire has fewer stations some occur twice, without weight.
     """
 
     def __init__(self, turns: np.ndarray, radius: np.ndarray, lengths: np.ndarray):
@@ -119,6 +119,11 @@ class CentreLine:
             for k in range(min(3, n)):
                 column = first[a + end] + k - self.first
                 self.cubic[a, column] += (step * weights[a + end, k])[:, None] * hermite[2 * end + 1]
+
+    def amplification(self) -> float:
+        """How much farther than the stations a point can move: a bound of Σ |weight|, from Bernstein's form."""
+        to_bernstein = np.array([[1, 0, 0, 0], [1, 1 / 3, 0, 0], [1, 2 / 3, 1 / 3, 0], [1, 1, 1, 1]])
+        return float(np.abs(self.cubic @ to_bernstein.T).sum(axis=1).max())
 
     def points(self) -> "WirePoints":
         """Points that bear the bedding, POINTS_PER_ELEMENT in an element and one at the wire's end.
@@ -140,7 +145,7 @@ class WirePoints:
     Args:
         line: CentreLine.
         element, xi: where they are, shape (m,).
-        length: of the wire that each stands for, shape (m,), mm.
+        length: of wire assigned to each, shape (m,), mm.
 
     Attributes:
         turns, radius: shape (m,), radius in mm.

@@ -1,14 +1,14 @@
-"""Coulomb friction of wire on a seat and of wire on wire: regularised, its traction kept from step to step.
+"""Coulomb friction of wire on a seat and of wire on wire: regularised, with tractions kept from step to step.
 
-Since the last equilibrium the surfaces have slipped past each other where they touch by s: the difference of the
-displacements of both centre lines, and of what the rotations θ of the sections add at the arms a between centre line
-and surface, in the plane across the normal n. With P = 1 − n nᵀ, the traction t0 of that equilibrium, the pressure p
-and the stiffness c of the bedding along the surface, the traction sticks or slides:
+Since the last equilibrium the surfaces in contact have moved relative to each other by s: the difference of the
+displacements of both centre lines, plus the contribution of the sections' rotations θ at the arms a between centre line
+and surface, in the plane normal to n. With P = 1 − n nᵀ, the traction t0 of that equilibrium, the pressure p
+and the tangential stiffness c of the bedding, the contact sticks or slides:
 
     t* = P t0 + c s,   t = t*  if |t*| ≤ μ p,  else  μ p t*/|t*|.
 
-The forces on both bodies do the work t · s. Their derivative is taken by the complex step, f′ = Im f(u + i h)/h, which
-is exact to rounding; it is not symmetric where the traction slides, and follows p.
+The forces on both bodies do the work t · s. Their derivative is computed by the complex step, f′ = Im f(u + i h)/h,
+which is exact to rounding; it includes the change of p, and is not symmetric where the contact slides.
 """
 
 from abc import ABC, abstractmethod
@@ -23,16 +23,16 @@ from coilset.model.contact.seat import Seat
 from coilset.model.rotations.vectors import moment_to_chart, rotate, rotate_back
 
 COMPLEX_STEP = 1e-30  # in mm and rad
-NODAL = 3 * STENCIL  # displacements, or rotations, of the four stations that a point hangs on
+NODAL = 3 * STENCIL  # displacements, or rotations, of the four stations that a point depends on
 
 
 def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Scalar products of the last axis, which stays; also for complex numbers."""
+    """Scalar products over the last axis, which is kept; also for complex numbers."""
     return (a * b).sum(axis=-1, keepdims=True)
 
 
 def spread(weights: np.ndarray, vectors: np.ndarray) -> np.ndarray:
-    """Share vectors of points, shape (m, 3), out over their stations, shape (m, 12)."""
+    """Distribute vectors of points, shape (m, 3), over their stations, shape (m, 12)."""
     return (weights[:, :, None] * vectors[:, None, :]).reshape(len(vectors), NODAL)
 
 
@@ -47,10 +47,10 @@ def mean(weights: np.ndarray, vectors: np.ndarray) -> np.ndarray:
 
 
 class Friction(ABC):
-    """What both kinds share.
+    """Common parts of both kinds.
 
     Args:
-        normal: the contact whose pressure it goes with.
+        normal: the contact that provides the pressure.
         mu: coefficient of friction.
         stations: stress-free positions, shape (n, 3), mm.
         seats: of both seats at the start, shape (12,), mm and rad.
@@ -75,7 +75,7 @@ class Friction(ABC):
         Args:
             u: variables of each point that bears, shape (m, k), mm and rad.
             before: tractions of the last equilibrium, shape (m, 3), N.
-            constants: what `touching` gave.
+            constants: as returned by `touching`.
         """
 
     def evaluate(self, trial: TrialPositions) -> Contribution:
@@ -143,7 +143,7 @@ class SeatFriction(Friction):
 class CoilFriction(Friction):
     """Wire on wire; variables are the stations of the point and of the element that it touches, and their rotations.
 
-    The arms reach from both centre lines to one point between them, so that no moment is left over.
+    The arms reach from both centre lines to a common point between them, so that moments balance.
     """
 
     normal: Coils

@@ -16,7 +16,7 @@ class Gaps:
         onset: distance over which contact sets in, mm.
     """
 
-    # gap elements are few: they limit no step, but close and open by the iteration alone, as in the thesis
+    # gap elements are few: they do not limit steps, but open and close in the iteration alone, as in the thesis
     name, end, needs_rotations = "gap", None, False
 
     def __init__(self, pairs: ArrayLike, free_length: ArrayLike, stiffness: ArrayLike, onset: float):

@@ -1,4 +1,4 @@
-"""How a seat holds the end coil sideways, and how it is itself held: linear springs without gaps."""
+"""Lateral support of the end coil by a seat, and support of the seat itself: linear springs without gaps."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,8 +12,10 @@ class Groove:
     """The end coil lies in a smooth round groove of its seat, its tip against the groove's end.
 
     Each point keeps its stress-free distance from the seat's axis by the potential ½ c (ρ − ρ0)², the tip its position
-    along the groove by ½ c (s − s0)². Both sides of the groove bear, whether the wire lies on its ground or not. Along
-    the groove and off the seat the wire is free, and it may roll and tilt: the seat takes no moment but that of forces.
+    along the groove by ½ c (s − s0)². Both sides of the groove support the wire, whether it lies on the bottom or not.
+    Along
+    the groove and away from the seat the wire is free, and it may roll and tilt: the seat takes no moment except that
+    of forces.
 
     Args:
         end: `bottom` or `top`.

@@ -1,4 +1,4 @@
-"""What a contact carries from one equilibrium to the next: its part of the state."""
+"""Data that a contact carries from one equilibrium to the next: its part of the state."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ from coilset.model.state import State, Where
 
 
 class Memory:
-    """Named arrays of a contact: it writes those on trial and reads, besides, those of the last equilibrium.
+    """Named arrays of a contact: it writes the trial arrays and also reads those of the last equilibrium.
 
     Args:
         arrays: name → values at the start, the same on every rank.

@@ -5,7 +5,8 @@ A plate has six degrees of freedom: its centre c = (x, y, z) and the rotation ve
     q = Rᵀ (p − c),   R = exp([θ]),   [θ] a = θ × a.
 
 Every kind of seat is a function of q alone, so that the force on the wire and the force and moment on the plate come
-from one potential. To θ belongs Tᵀ M with the moment M about c and the tangent T of the chart: both vanish together.
+from one potential. The force conjugate to θ is Tᵀ M, with the moment M about c and the tangent T of the chart; both
+vanish together.
 """
 
 import numpy as np

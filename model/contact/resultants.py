@@ -1,4 +1,4 @@
-"""What acts on the wire from outside: forces of the contacts, gathered to wrenches, and where their resultant goes."""
+"""External actions on the wire: forces of the contacts, their resultant wrenches and lines of action."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ def station_forces(parts: Iterable[Contribution], stations: int) -> np.ndarray:
 
 
 def station_moments(parts: Iterable[Contribution], charts: np.ndarray) -> np.ndarray:
-    """Moments of friction on the wire's sections, which its work on their rotations gives: M · δω = f · δv, δω = T δv.
+    """Moments of friction on the wire's sections, from its work on their rotations: M · δω = f · δv, δω = T δv.
 
     Args:
         parts: Contributions.

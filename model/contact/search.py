@@ -1,4 +1,4 @@
-"""Where a wire comes near itself: for its points the closest points of the other coils, in linear time."""
+"""Contact search: the closest points of the other coils for points of the wire, in linear time."""
 
 import math
 
@@ -9,7 +9,7 @@ from coilset.model.contact.curve import point_on_curve
 
 LEAST_TURNS_BETWEEN = 0.5  # turns between two points of the wire that may touch
 MOST_CELLS_PER_STATION = 16  # cells of the grid
-LEAST_POST_DISTANCE = 0.5  # distance of the stations that are sorted, in wire radii
+LEAST_POST_DISTANCE = 0.5  # distance between the sorted stations, in wire radii
 
 
 @njit(cache=True)
@@ -79,7 +79,7 @@ def closest(
     last = len(first)
     direction = -1 if station_slope(p, y, first, cubic, j, work) > 0.0 else 1
     near, stride = j, 1
-    while True:  # in growing steps to where the gap no longer falls
+    while True:  # in growing steps until the gap no longer decreases
         far = min(max(near + direction * stride, 0), last)
         if far == near:
             return (0, 0.0, False) if near == 0 else (last - 1, 1.0, False)
@@ -93,7 +93,7 @@ def closest(
         else:
             far = middle
     e, xi, low, high = min(near, far), 0.5, 0.0, 1.0
-    for _ in range(60):  # Newton, kept between bounds where the slope changes its sign
+    for _ in range(60):  # Newton's method, bracketed by the change of sign of the slope
         slope, curvature = slope_and_curvature(p, y, first, cubic, e, xi, work)
         if slope > 0.0:
             high = xi
@@ -123,14 +123,14 @@ def near_locations(
     pair: np.ndarray,
     where: np.ndarray,
 ) -> int:
-    """All locations where a point of the wire and another coil are nearer than `margin`.
+    """All locations where a point of the wire and another coil are closer than `margin`.
 
     Args:
         p: points, shape (m, 3), with radius and turn, shape (m,).
         y: stations with their radii, shape (n, 4); station_turns: shape (n,).
         first, cubic: of the CentreLine.
         overlap: what counts as touching though the bodies overlap, for the coil before and after, shape (m, 2), mm.
-        margin: greatest gap, mm.
+        margin: maximum gap, mm.
         pair: written, point, element and whether the location is inside the wire, shape (capacity, 3).
         where: written, ξ and gap, shape (capacity, 2).
 
@@ -142,7 +142,7 @@ def near_locations(
         widest = max(widest, y[i, 3])
         if i:
             longest = max(longest, distance2(y[i], y, i - 1))
-    # where elements are much shorter than the wire is thick, only every so many stations are sorted: the posts
+    # if elements are much shorter than the wire diameter, only every so many stations are sorted: the posts
     stride = max(1, int(LEAST_POST_DISTANCE * widest / math.sqrt(longest)))
     posts = np.empty((n - 2) // stride + 2, np.int64)
     for k in range(len(posts)):

@@ -1,4 +1,4 @@
-"""Wire against a seat: its underside bedded along the wire, touching where it is (7.1.1, Bettung).
+"""Wire against a seat: bedding along the underside of the wire, in its current position (7.1.1, Bettung).
 
 In the coordinates q of its plate (plate.py) a flat seat is the plane qz = 0; a conical one rises outwards with tan β.
 """
@@ -7,20 +7,21 @@ import numpy as np
 
 from coilset.model.contact.base import LEVEL, Contribution, TrialPositions, one_sided
 from coilset.model.contact.curve import STENCIL, WirePoints
+from coilset.model.contact.elements import flat_seat_elements
 from coilset.model.contact.memory import Memory
 from coilset.model.contact.plate import Plate, radial
 
-# Stiffness of the spring that holds a tip which lifts off, as a part of the bedding of a wire diameter. 1e-3 changed
-# the set of a spring whose tips lift off at the end of the release by 0.24 mm of 37.7 mm, 1e-5 by less than 0.01 mm.
+# Stiffness of the spring that holds a lifted tip, as a fraction of the bedding of one wire diameter. 1e-3 changed the
+# set of a spring whose tips lift off at the end of the release by 0.24 mm of 37.7 mm, 1e-5 by less than 0.01 mm.
 TIP_SPRING_OF_BEDDING = 1e-5
 
 
 class Seat:
-    """The bottom or the top seat: where the underside sinks in, it is pushed out in proportion to the penetration.
+    """The bottom or the top seat: it pushes the wire's underside out in proportion to the penetration.
 
-    The wire's tip bears from its first touch, and a soft spring holds it: where it lifts off farther than it did in the
-    stress-free state it is pulled back, so that "zero force" is the one position in which both ends just touch,
-    and the spring cannot float between the seats.
+    The wire's tip is in contact from first touch, and a soft spring holds it: if it lifts off farther than in the
+    stress-free state it is pulled back, so that "zero force" is the single position in which both ends just touch, and
+    the spring cannot float between the seats.
 
     Args:
         end: `bottom` or `top`.
@@ -32,7 +33,7 @@ class Seat:
         onset: distance over which contact sets in, mm.
         slope: tan β of a conical seat that rises outwards, 0 for a flat one.
         stepped: turns from the tip over which the seat follows the wire's underside; beyond it goes on level.
-        moves: has the seat degrees of freedom besides its level?
+        moves: whether the seat has degrees of freedom besides its axial position.
     """
 
     needs_rotations = False
@@ -53,11 +54,11 @@ class Seat:
         self.name, self.end, self.points, self.onset, self.slope = f"{end} seat", end, points, onset, slope
         self.side = 1.0 if end == "bottom" else -1.0  # the wire lies above the bottom seat
         self.plate = Plate(end, len(stations))
-        # on a flat seat that moves along the axis only, z of wire and seat take part, and the gap is linear in them
+        # on a flat seat that moves along the axis only, the gap depends on z of wire and seat alone, linearly
         self.linear = not (moves or slope)
         self.tip = points.tip(end)
         self.stiffness = bedding * points.length
-        # a wire that stands on its tip bears by its end face, whatever the mesh
+        # a wire that stands on its tip is supported by its end face, whatever the mesh
         self.stiffness[self.tip] = bedding * 2.0 * points.radius[self.tip]
         self.lengths = self.stiffness / bedding
         self.tip_spring = TIP_SPRING_OF_BEDDING * self.stiffness[self.tip]
@@ -78,11 +79,11 @@ class Seat:
 
     @property
     def multiplier_offset(self) -> np.ndarray:
-        """Distance by which each point is pressed although it has not sunk in by it, shape (m,), mm."""
+        """Offset by which each point is pressed in addition to its penetration, shape (m,), mm."""
         return self.memory["multiplier_offset"]
 
     def gaps(self, p: np.ndarray, seats: np.ndarray) -> np.ndarray:
-        """Gap of the underside at the points `p`, shape (m, 3), negative where it sinks in, shape (m,), mm."""
+        """Gap of the underside at the points `p`, shape (m, 3), negative for penetration, shape (m,), mm."""
         if self.linear:
             return self.side * (p[:, 2] - seats[self.plate.own][LEVEL]) - self.reach
         return self.surface(self.plate.to_seat_frame(p, seats))[1] - self.reach
@@ -98,7 +99,7 @@ class Seat:
         return n, above
 
     def pressures(self, i: np.ndarray, pressed: np.ndarray) -> np.ndarray:
-        """Forces on the points `i` that are pressed in by so much, mm, N; also if complex."""
+        """Forces on the points `i` for given penetrations, mm, N; also if complex."""
         tip = self.stiffness[self.tip] * np.where(pressed.real > 0.0, pressed, 0.0)
         return np.where(i == self.tip, tip, one_sided(-pressed, self.stiffness[i], self.onset)[0])
 
@@ -112,11 +113,24 @@ class Seat:
         return g, H
 
     def max_penetration(self, trial: TrialPositions) -> float:
-        """Greatest penetration, mm."""
+        """Maximum penetration, mm."""
         return -self.gaps(self.points.at(trial.x), trial.seats).min(initial=0.0)
 
     def evaluate(self, trial: TrialPositions) -> Contribution:
         """Forces across the seat's surface, for the points that touch, and for the tip on its spring."""
+        return self._flat(trial) if self.linear else self._curved(trial)
+
+    def _flat(self, trial: TrialPositions) -> Contribution:
+        """On a flat seat that moves along the axis only."""
+        points = self.points
+        i, forces, k, pressure, penetration = flat_seat_elements(
+            trial.x[:, 2], points.stations, points.weights, trial.seats[self.plate.own][LEVEL], self.side, self.reach,
+            self.multiplier_offset, self.stiffness, self.onset, self.tip, self.tip_spring, self.slack,
+        )  # fmt: skip
+        return Contribution(self.dofs[i], forces, k, pressure, penetration, i, self.stiffness[i] * self.onset)
+
+    def _curved(self, trial: TrialPositions) -> Contribution:
+        """On a cone, or on a seat that moves in any way."""
         p = self.points.at(trial.x)
         gap = self.gaps(p, trial.seats)
         bearing = np.flatnonzero((gap < self.multiplier_offset) | (np.arange(len(gap)) == self.tip))
@@ -128,16 +142,12 @@ class Seat:
         c[tip] = np.where(gap[tip] > 0.0, self.tip_spring * (gap[tip] >= self.slack), self.stiffness[self.tip])
         force[tip] = -c[tip] * taut
         pressure[tip] = np.maximum(force[tip], 0.0)
-        if self.linear:
-            grad = self.side * np.column_stack([self.points.weights[bearing], np.full(len(p), -1.0)])
-            k = c[:, None, None] * grad[:, :, None] * grad[:, None, :]
-        else:
-            derivatives = self._gap_derivatives(self.plate.to_seat_frame(p, trial.seats))
-            grad, hessian = self.plate.derivatives(p, trial.seats, self.points.weights[bearing], *derivatives)
-            k = c[:, None, None] * grad[:, :, None] * grad[:, None, :] - force[:, None, None] * hessian
+        derivatives = self._gap_derivatives(self.plate.to_seat_frame(p, trial.seats))
+        grad, hessian = self.plate.derivatives(p, trial.seats, self.points.weights[bearing], *derivatives)
+        k = c[:, None, None] * grad[:, :, None] * grad[:, None, :] - force[:, None, None] * hessian
         return Contribution(self.dofs[bearing], -force[:, None] * grad, k, pressure, penetration, bearing, onset_force)
 
     def augment(self, trial: TrialPositions) -> None:
-        """Press each point by as much more as it has sunk in."""
+        """Increase each point's offset by its penetration."""
         gap = self.gaps(self.points.at(trial.x), trial.seats)
         self.memory["multiplier_offset"] = np.maximum(self.multiplier_offset - gap, 0.0)

@@ -1,1 +1,1 @@
-"""Inverse design: entries of a case sought so that its run meets conditions; `design` is the way in."""
+"""Inverse design: find entries of a case so that its run meets conditions; `design` is the entry point."""

@@ -1,4 +1,4 @@
-"""Conditions of a wish: which number of a run each is about, where it is read, and how far off it is."""
+"""Conditions of a wish: the number of a run that each concerns, where it is read, and its deviation."""
 
 import copy
 from collections.abc import Mapping, Sequence
@@ -8,7 +8,7 @@ from typing import Any
 from coilset.meshes.errors import InputError
 from coilset.model.design.wish import Conditions, WishSpec
 
-MEASURING_STEPS = 2  # equal steps to a height at which a force is measured, and back: the way is elastic, or nearly so
+MEASURING_STEPS = 2  # equal steps to a height at which a force is measured, and back: the path is elastic, or nearly so
 UNITS = {"_mm": "mm", "_N": "N", "_MPa": "MPa", "_N_per_mm": "N/mm", "_N_per_mm2": "N/mm²"}
 
 
@@ -18,8 +18,8 @@ class Condition:
 
     Attributes:
         name: as in the wish, with a number if it is one of several forces.
-        wish: the value that is wished.
-        height: at which a force is wished, mm; None for numbers of the summary.
+        wish: the target value.
+        height: at which a force is prescribed, mm; None for numbers of the summary.
         phase: of the load program, at whose end the force is read; None for numbers of the summary.
     """
 
@@ -42,12 +42,12 @@ class Condition:
                     if self.name.endswith(ending))  # fmt: skip
 
     def off(self, value: float) -> float:
-        """How far a value is from the wish, relative to it."""
+        """Deviation of a value from its target, relative to the target."""
         return (value - self.wish) / abs(self.wish)
 
 
 def conditions(spec: WishSpec, base: Mapping[str, Any]) -> tuple[list[Condition], dict[str, Any]]:
-    """The conditions of a wish, and its case with all that they need to be read.
+    """The conditions of a wish, and its case extended by what is needed to evaluate them.
 
     Args:
         spec: WishSpec.
@@ -57,7 +57,7 @@ def conditions(spec: WishSpec, base: Mapping[str, Any]) -> tuple[list[Condition]
         Conditions in the order of the wish; raw data of the case, whose load program goes to all the heights.
 
     Raises:
-        InputError: a condition that needs a released spring, and the program does not release it.
+        InputError: a condition needs a released spring, but the program does not release it.
     """
     data = copy.deepcopy(dict(base))
     program = data["loading"]

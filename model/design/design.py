@@ -1,4 +1,4 @@
-"""From a wish to what was found: conditions, evaluations, search, and the reason where there is none."""
+"""From a wish to its solution: conditions, evaluations, search, or the reason why there is none."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -11,7 +11,7 @@ from coilset.model.design.reach import look_around, nearest_seen, refuse
 from coilset.model.design.search import Found, Search
 from coilset.model.design.wish import Wish
 
-NEARER = 0.8  # of the distance from the wish, for a place seen later to be worth a search of its own
+NEARER = 0.8  # of the deviation, for a point seen later to be worth a new search
 
 
 def make_search(
@@ -30,7 +30,7 @@ def make_search(
     bounds = np.array([[one.low, one.high] for one in wish.spec.find.values()])
     start = np.array([_given(data, name) for name in wish.spec.find])
     search = Search(evaluator, bounds, sought, start)
-    evaluator.data(bounds[:, 0])  # names of unknowns that are no entries
+    evaluator.data(bounds[:, 0])  # names of unknowns that are not entries
     for name, values in wish.spec.trade_offs.items():
         for value in values:
             wish.check(evaluator.data(bounds.mean(axis=1), None, {name: value}))
@@ -38,14 +38,14 @@ def make_search(
 
 
 def find(search: Search) -> Found:
-    """What a search finds.
+    """Run a search.
 
     Returns:
-        Found; `met`, or with more conditions than unknowns as near as it can be.
+        Found; `met`, or, with more conditions than unknowns, as close as possible.
 
     Raises:
         InputError: the wish cannot be met, with the reason.
-        SolveError: the search does not end.
+        SolveError: the search does not converge.
     """
     found = search.run()
     if not found.met and len(search.conditions) == len(found.x):
@@ -59,7 +59,7 @@ def find(search: Search) -> Found:
 
 
 def _given(data: Any, name: str) -> float:
-    """The case's own value of an entry; NaN if it has none that is a number."""
+    """The case's own value of an entry; NaN if it is missing or not a number."""
     for part in name.split("."):
         try:
             data = data[int(part)] if isinstance(data, list) else data[part]

@@ -1,4 +1,4 @@
-"""One evaluation: the case with values for its unknowns is run, and kept in the journal under its key."""
+"""One evaluation: run the case with values for its unknowns, and keep the result in the journal under its key."""
 
 import copy
 import json
@@ -27,16 +27,16 @@ Plan = tuple[tuple[float, ...] | None, ...]
 
 @dataclass(frozen=True)
 class Evaluation:
-    """What a run came to.
+    """Result of a run.
 
     Attributes:
         x: values of the unknowns, shape (n,).
-        values: of the conditions, shape (m,); not a number if the run failed.
+        values: of the conditions, shape (m,); NaN if the run failed.
         reason: why it failed; empty if it did not.
-        plan: the steps that it took.
+        plan: its steps.
         summary: its numbers and warnings, as in summary.json.
-        seconds: that it took.
-        wrong: whether no such spring can be built, or run: its entries contradict each other.
+        seconds: its duration.
+        wrong: whether such a spring cannot be built or run because its entries contradict each other.
     """
 
     x: np.ndarray
@@ -65,12 +65,12 @@ class Evaluator:
         wish: Wish.
         conditions, data: see `coilset.model.design.conditions.conditions`.
         known: records of earlier evaluations by their keys.
-        keep: writes a record of a new one.
+        keep: writes the record of a new one.
         report: called with every Evaluation, and whether it was known.
 
     Attributes:
         names: of the unknowns.
-        count: number of evaluations, those among them that were known.
+        count: number of evaluations, and of those that were known.
     """
 
     def __init__(
@@ -107,11 +107,11 @@ class Evaluator:
         return data
 
     def guess(self, x: np.ndarray, others: Mapping[str, Any] | None = None) -> Guess:
-        """What the uniform rod comes to; raises InputError if there is no such spring."""
+        """The uniform rod's estimate; raises InputError if there is no such spring."""
         return guess(self.wish.check(self.data(x, None, others)), self.conditions)
 
     def run(self, x: np.ndarray, plan: Plan | None = None) -> Evaluation:
-        """Run it, or take what the journal holds of it."""
+        """Run it, or take its result from the journal."""
         x, self.count = np.array(x, float), self.count + 1
         began = time.perf_counter()
         try:
@@ -166,7 +166,7 @@ def _plain(found: Evaluation) -> dict[str, Any]:
 
 
 def _of_record(record: Mapping[str, Any]) -> Evaluation:
-    """The Evaluation that a line of the journal holds."""
+    """The Evaluation in a line of the journal."""
     values = np.array([np.nan if value is None else value for value in record["values"]])
     plan = tuple(tuple(marks) for marks in record["plan"])
     return Evaluation(np.array(record["x"]), values, record["reason"], plan, record["summary"], record["seconds"],

@@ -1,4 +1,4 @@
-"""What a search leaves in its folder: found.yaml, design.json and trade_offs.csv."""
+"""Files of a search: found.yaml, design.json and trade_offs.csv."""
 
 import csv
 import json
@@ -16,19 +16,25 @@ from coilset.model.design.wish import Wish
 from coilset.model.results.folder import whole
 from coilset.model.results.provenance import origin
 
-FILES = ("design.json", "found.yaml", "trade_offs.csv", "evaluations.jsonl")  # the first one says that all is there
+FILES = (
+    "design.json",
+    "found.yaml",
+    "trade_offs.csv",
+    "evaluations.jsonl",
+    "report.html",
+)  # the first shows that all are complete
 HEAD = (
-    "# Found by coilset design from {file}: {found}.\n# Its steps are recorded, so that it gives just these numbers.\n"
+    "# Found by coilset design from {file}: {found}.\n# Its steps are recorded, so that it reproduces these numbers.\n"
 )
 
 
 def found_data(search: Search, found: Found) -> dict[str, Any]:
-    """Raw data of the case that was found; `coilset solve` takes it as a file."""
+    """Raw data of the case found; `coilset solve` accepts it as a file."""
     return search.evaluator.data(found.x, search.plan)
 
 
 def report(wish: Wish, search: Search, found: Found, rows: Sequence[TradeOff], seconds: float) -> dict[str, Any]:
-    """The content of design.json, plain data."""
+    """The content of design.json, as plain data."""
     case = wish.check(found_data(search, found))
     values = zip(search.conditions, found.best.values.tolist(), found.off.tolist(), strict=True)
     return {
@@ -50,7 +56,7 @@ def report(wish: Wish, search: Search, found: Found, rows: Sequence[TradeOff], s
 
 
 def condition(one: Condition, value: float, off: float) -> dict[str, Any]:
-    """A condition and how well it is met; `residual` is relative to the wish."""
+    """A condition and its deviation; `residual` is relative to the target."""
     return {"name": one.name, "height_mm": one.height, "wish": one.wish, "unit": one.unit, "value": value,
             "residual": off, "met": abs(off) <= TOLERANCE}  # fmt: skip
 

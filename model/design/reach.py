@@ -1,4 +1,4 @@
-"""Why a wish is not met: what its bounds reach, computed by runs, and the reason where it is known."""
+"""Why a wish is not met: the range reached within its bounds, from runs, and the reason if it is known."""
 
 import itertools
 from collections.abc import Callable
@@ -11,17 +11,17 @@ from coilset.model.design.conditions import Condition
 from coilset.model.design.evaluation import Evaluation
 from coilset.model.design.search import Found, Search
 
-LOOKS = {1: 7, 2: 3}  # runs along each of so many unknowns
-SAMPLES = 200  # corners looked at by the surrogate for more unknowns
-WINDING = ("spring.pitch", "spring.free_length")  # entries that say how long a spring is wound
-BACK = 0.05  # of the bounds' width, by which it is wound less for the slope
-STIFF = 0.2  # mm of length after it for a mm of winding: below it winding makes no longer spring
+LOOKS = {1: 7, 2: 3}  # runs along each unknown, by the number of unknowns
+SAMPLES = 200  # corners evaluated by the surrogate for more unknowns
+WINDING = ("spring.pitch", "spring.free_length")  # entries that determine the length of the spring as wound
+BACK = 0.05  # of the bounds' width, step of the finite difference
+STIFF = 0.2  # mm of final length per mm of length as wound, below which winding longer no longer helps
 FULLY_PLASTIC = 4.0 / 3.0  # of the yield torque of a round wire: ∫ τ r 2π r dr = (2π/3) r³ τ over (π/2) r³ τ
-DEAD = 1e-4  # singular value over the greatest one, below which no condition feels a direction
+DEAD = 1e-4  # singular value over the largest one, below which no condition depends on a direction
 
 
 def look_around(search: Search, found: Found) -> None:
-    """Run springs all over the bounds, and where the mapped surrogate is least and greatest for each condition."""
+    """Run springs over all the bounds, and where the mapped surrogate is lowest and highest for each condition."""
     n = len(search.width)
     if n in LOOKS:
         for place in itertools.product(np.linspace(0.0, 1.0, LOOKS[n]), repeat=n):
@@ -34,13 +34,13 @@ def look_around(search: Search, found: Found) -> None:
 
 
 def nearest_seen(search: Search) -> Evaluation:
-    """The run that came nearest to the wish."""
+    """The run with the smallest deviation."""
     good = [one for one in search.evaluations if not one.failed]
     return min(good, key=lambda one: float(np.linalg.norm(search.off(one.values))))
 
 
 def refuse(search: Search, found: Found) -> None:
-    """Say why the conditions cannot be met, from all that was run.
+    """Explain why the conditions cannot be met, from all runs.
 
     Raises:
         InputError: always.
@@ -66,7 +66,7 @@ def refuse(search: Search, found: Found) -> None:
 
 
 def unfelt(search: Search, found: Found) -> str:
-    """Names of unknowns that no condition feels where the search has ended; empty if there are none."""
+    """Names of unknowns on which no condition depends where the search ended; empty if there are none."""
     _, sizes, directions = np.linalg.svd(found.slopes)
     if sizes[-1] > DEAD * sizes[0]:
         return ""
@@ -99,13 +99,13 @@ def plastic_reason(search: Search, near: Evaluation) -> str:
 
 
 def mapped(search: Search, found: Found) -> Callable[[np.ndarray], np.ndarray]:
-    """The surrogate as the runs have corrected it."""
+    """The surrogate, corrected by the runs."""
     about, error, E = found.error
     return lambda u: search.surrogate(u) + error + E @ (u - about)
 
 
 def _with_others_met(search: Search, found: Found, worst: int) -> str:
-    """The range of a condition where the others are met, by the mapped surrogate; empty if there is no such place."""
+    """The range of a condition where the others are met, by the mapped surrogate; empty if there is no such point."""
     answer, others = mapped(search, found), np.arange(len(found.off)) != worst
     values = []
     for sign in (1.0, -1.0):

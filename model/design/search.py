@@ -1,16 +1,17 @@
-"""The search: a surrogate shows the way, a few runs correct it.
+"""The search: a surrogate provides the direction, a few runs correct it.
 
-A run's answer f(x) is taken as the uniform rod's s(x) and an error that is linear about the best place b so far,
+The result f(x) of a run is modelled as the uniform rod's s(x) plus an error that is linear about the best point b so
+far,
 
     m(x) = s(x) + f(b) − s(b) + E (x − b),
 
-and the next place is where m(x) meets the wish, or comes nearest to it, between the bounds (space mapping). What the
-run there says of the error, y = f(x) − s(x) − (f(b) − s(b)), goes into its slopes by Broyden's update,
+and the next point is where m(x) meets the conditions, or comes closest to them, within the bounds (space mapping). The
+error found by the run there, y = f(x) − s(x) − (f(b) − s(b)), improves its slopes by Broyden's update,
 
     E ← E + (y − E Δ) Δᵀ/(ΔᵀΔ),   Δ = x − b,
 
-which makes the way to the end as fast as a secant's. Slopes that the uniform rod cannot know begin as differences of
-runs. All is in shares: x between its bounds, f − wish over the wish.
+which converges as fast as a secant method. Slopes that the uniform rod cannot provide start as differences of runs.
+Everything is relative: x between its bounds, f − target over the target.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -25,32 +26,32 @@ from coilset.model.design.conditions import Condition
 from coilset.model.design.evaluation import Evaluation, Evaluator, Plan
 
 TOLERANCE = 1e-7  # relative, to which conditions are met
-SETTLED = 1e-7  # of the bounds' width: a step below it ends a search that can only come near
+SETTLED = 1e-7  # of the bounds' width: a smaller step ends a least-squares search
 MOST = 40  # evaluations
-PATIENCE = 5  # evaluations, in which the distance from the wish must shrink by the factor
+PATIENCE = 5  # evaluations in which the deviation must shrink by the factor
 ENOUGH = 0.7
 DIFFERENCE = 0.02  # of the bounds' width, for slopes by runs
-FLAT = 1e-9  # slope below which the surrogate does not feel an unknown
-REPLANS = 2  # how often the steps are planned anew where their error is larger than the case allows
-REPLAN = 1e-2  # relative, as near as a place must be to the wish for that
-CAREFUL = 0.25  # of the bounds' width: longest first step where only differences of runs show the way
+FLAT = 1e-9  # slope below which the surrogate does not depend on an unknown
+REPLANS = 2  # how often the steps are chosen again if their error is larger than the case allows
+REPLAN = 1e-2  # relative deviation below which that is done
+CAREFUL = 0.25  # of the bounds' width: longest first step if only differences of runs are known
 SLOPE_STEP = 1e-4  # of the bounds' width, for slopes of the surrogate
-FAR = 10.0  # in place of the answer where the surrogate has none
-START_GRID = 5  # places along an unknown, from which the surrogate is sought through
+FAR = 10.0  # in place of the surrogate's result where it has none
+START_GRID = 5  # starting points along each unknown for the search with the surrogate
 
 
 @dataclass
 class Found:
-    """What a search has come to.
+    """Result of a search.
 
     Attributes:
         x: values of the unknowns, shape (n,).
         best: Evaluation there.
         off: of the conditions, relative, shape (m,).
-        slopes: ∂ off/∂(x in shares), shape (m, n).
+        slopes: ∂ off/∂(relative x), shape (m, n).
         met: whether all conditions are met to `TOLERANCE`.
-        error: of the surrogate there, and its slopes: what makes it the mapped one.
-        evaluations: all of them, in their order.
+        error: of the surrogate there, and its slopes, which define the mapped surrogate.
+        evaluations: all of them, in order.
     """
 
     x: np.ndarray
@@ -63,17 +64,17 @@ class Found:
 
 
 class Search:
-    """Seeks the unknowns of a wish.
+    """Finds the unknowns of a wish.
 
     Args:
         evaluator: Evaluator.
-        bounds: least and greatest values, shape (n, 2).
+        bounds: minimum and maximum values, shape (n, 2).
         conditions: Conditions.
-        start: where to begin if the uniform rod does not help, shape (n,); NaN where nothing is known.
+        start: where to start if the uniform rod does not help, shape (n,); NaN where unknown.
 
     Attributes:
         low, width: of the bounds, shape (n,).
-        plan: steps of all runs but the first, whose automatic ones they are.
+        plan: steps of all runs after the first, which chose them automatically.
         evaluations: of all runs.
     """
 
@@ -94,18 +95,18 @@ class Search:
     # ---- shares -----------------------------------------------------------------------------------------------------
 
     def value(self, u: np.ndarray) -> np.ndarray:
-        """Values of unknowns in shares; of their bounds to the last digit."""
+        """Values of unknowns from relative ones; exact at their bounds."""
         return np.where(u >= 1.0, self.low + self.width, self.low + u * self.width)
 
     def off(self, values: np.ndarray) -> np.ndarray:
-        """How far values are from the conditions, relative, shape (m,)."""
+        """Relative deviations of values from the conditions, shape (m,)."""
         return np.array([one.off(value) for one, value in zip(self.conditions, values, strict=True)])
 
     def surrogate(self, u: np.ndarray, others: Mapping[str, Any] | None = None) -> np.ndarray:
-        """How far the uniform rod is from the conditions; 0 for those that it does not know, shape (m,).
+        """Relative deviations of the uniform rod from the conditions; 0 for those that it does not know, shape (m,).
 
         Args:
-            u: unknowns, in shares.
+            u: unknowns, relative to their bounds.
             others: other entries of the case, and their values.
         """
         try:
@@ -117,7 +118,7 @@ class Search:
         return np.nan_to_num(self.off(values), nan=0.0)
 
     def full(self, u: np.ndarray) -> Evaluation:
-        """A run, with the steps that are planned; the first one that succeeds plans them."""
+        """A run, with the planned steps; the first one that succeeds plans them."""
         found = self.evaluator.run(self.value(u), self.plan)
         self.evaluations.append(found)
         return found
@@ -125,21 +126,21 @@ class Search:
     # ---- the way ----------------------------------------------------------------------------------------------------
 
     def run(self, again: np.ndarray | None = None) -> Found:
-        """Go on until the conditions are met, or no step comes nearer.
+        """Iterate until the conditions are met, or no step comes closer.
 
         Args:
-            again: values of the unknowns, shape (n,), from which to go on with steps that are planned anew; default:
-                where the uniform rod meets the wish.
+            again: values of the unknowns, shape (n,), from which to continue with newly planned steps; default:
+                where the uniform rod meets the conditions.
 
         Raises:
-            InputError: no spring between the bounds can be run, or no condition feels an unknown.
-            SolveError: the search does not end.
+            InputError: no spring within the bounds can be run, or no condition depends on an unknown.
+            SolveError: the search does not converge.
         """
         u, best = self._first() if again is None else self._planned(again)
         off = self.off(best.values)
         base = self.surrogate(u)
         E = self._unknown_slopes(u, off, base)
-        blind = bool(np.any(E))  # nothing is known but differences
+        blind = bool(np.any(E))  # only differences are known
         reach, square = CAREFUL if blind else 1.0, len(off) == len(u)
         ended, norms = len(self.evaluations) + MOST, [float(np.linalg.norm(off))]
         while len(self.evaluations) < ended:
@@ -184,7 +185,7 @@ class Search:
         )
 
     def _first(self) -> tuple[np.ndarray, Evaluation]:
-        """The place where the uniform rod meets the wish, or one near it at which a spring can be run."""
+        """The point where the uniform rod meets the conditions, or one near it at which a spring can be run."""
         middle = np.full(len(self.width), 0.5)
         given = np.where(np.isnan(self._start), 0.5, self._start)
         places = [given, middle, *np.random.default_rng(0).random((START_GRID ** min(len(middle), 2), len(middle)))]
@@ -238,19 +239,19 @@ class Search:
     def mapped(
         self, about: np.ndarray, off: np.ndarray, base: np.ndarray, E: np.ndarray
     ) -> Callable[[np.ndarray], np.ndarray]:
-        """The surrogate with what runs have shown of its error."""
+        """The surrogate, corrected by the error found in runs."""
         return lambda u: self.surrogate(u) + (off - base) + E @ (u - about)
 
     def _nearest(self, u: np.ndarray, off: np.ndarray, base: np.ndarray, E: np.ndarray, reach: float) -> np.ndarray:
-        """Where the mapped surrogate comes nearest to the wish, no farther than `reach`."""
+        """Where the mapped surrogate comes closest to the conditions, no farther away than `reach`."""
         low, high = np.maximum(u - reach, 0.0), np.minimum(u + reach, 1.0)
-        if np.abs(off).max() < 1e-3:  # the surrogate is as good as straight over such a way, and has rounding
+        if np.abs(off).max() < 1e-3:  # the surrogate is practically linear over this distance, and has rounding errors
             slopes = self.slopes(self.surrogate, u) + E
             return self._solve(lambda v: off + slopes @ (v - u), u, low, high)
         return self._solve(self.mapped(u, off, base, E), u, low, high)
 
     def slopes(self, answer: Callable[[np.ndarray], np.ndarray], u: np.ndarray) -> np.ndarray:
-        """∂ answer/∂u by central differences, within the bounds, shape (m, n)."""
+        """∂ result/∂u by central differences, within the bounds, shape (m, n)."""
         columns = []
         for step in SLOPE_STEP * np.eye(len(u)):
             up, down = np.minimum(u + step, 1.0), np.maximum(u - step, 0.0)
@@ -258,19 +259,19 @@ class Search:
         return np.array(columns).T
 
     def nearest(self, answer: Callable[[np.ndarray], np.ndarray], start: np.ndarray) -> np.ndarray:
-        """Where an answer comes nearest to 0 between the bounds; in shares."""
+        """Where a result comes closest to 0 within the bounds, in relative unknowns."""
         return self._solve(answer, start, np.zeros_like(start), np.ones_like(start))
 
     def _solve(
         self, answer: Callable[[np.ndarray], np.ndarray], u: np.ndarray, low: np.ndarray, high: np.ndarray
     ) -> np.ndarray:
-        """Least squares between bounds."""
+        """Bounded least squares."""
         room = 1e-12
         start = np.clip(u, low + room, np.maximum(high - room, low + room))
         found = least_squares(answer, start, bounds=(low, high), diff_step=SLOPE_STEP, xtol=1e-12, ftol=1e-14,
                               gtol=1e-14, max_nfev=60)  # fmt: skip
         x = found.x
-        x = np.where(x - low < 1e-9, low, x)  # the solver stays within: an active bound is meant
+        x = np.where(x - low < 1e-9, low, x)  # the solver stays strictly inside: the bound itself is meant
         return np.where(high - x < 1e-9, high, x)
 
     def _found(

@@ -1,7 +1,7 @@
-"""The uniform rod in the place of a spring: what a run would come to, in milliseconds, as a first guess and for slopes.
+"""The uniform rod in place of a spring: estimates a run's results in milliseconds, as a first guess and for slopes.
 
-A spring that is no cylinder is taken as the cylinder of the same compliance and mean wire. Ends, contact and bowing are
-unknown to it; the search learns what they make of the answer.
+A spring of another shape is replaced by the cylinder with the same compliance and mean wire diameter. Ends, contact and
+bowing are neglected; the search learns their effect on the results.
 """
 
 from collections.abc import Sequence
@@ -31,11 +31,11 @@ TORSION = 2  # of the sections' N, Q₃, Mt, M₃
 
 @dataclass(frozen=True)
 class Guess:
-    """What the uniform rod comes to.
+    """Estimate by the uniform rod.
 
     Attributes:
-        values: of the conditions, shape (m,); not a number where the uniform rod does not know them.
-        torque: greatest torque in the wire over that at which its surface yields; 0 for an elastic law.
+        values: of the conditions, shape (m,); NaN for those that the uniform rod does not know.
+        torque: maximum torque in the wire over that at which its surface yields; 0 for an elastic law.
     """
 
     values: np.ndarray
@@ -43,7 +43,7 @@ class Guess:
 
 
 def coil(spring: Spring) -> np.ndarray:
-    """Wire diameter, mean diameter, pitch (mm) and turns of the cylinder in the place of a spring, shape (4,).
+    """Wire diameter, mean diameter, pitch (mm) and turns of the equivalent cylinder, shape (4,).
 
     Its turns are the active ones, its compliance ∝ ∫ D³/d⁴ dt that of the spring.
     """
@@ -61,7 +61,7 @@ def guess(case: Case, conditions: Sequence[Condition]) -> Guess:
     """Take the uniform rod through the load program of a case.
 
     Raises:
-        InputError: if spring or material cannot be built, or a target is none of the spring.
+        InputError: if spring or material cannot be built, or the spring cannot reach a target.
     """
     spring = case.spring.build()
     law = _law(case.material) if isinstance(case.material, str) else case_law(case, spring)
@@ -91,7 +91,7 @@ def _press(case: Case, spring: Spring, law: Law) -> tuple[dict[str, float], floa
     state: UniformState | np.ndarray = one
     travel, force, greatest, torque = 0.0, 0.0, 0.0, 0.0
     for number, phase in enumerate(case.loading):
-        if not isinstance(phase, Phase):  # time passes: the uniform rod does not know of it
+        if not isinstance(phase, Phase):  # time passes: the uniform rod has no time
             continue
         by_force, end = _target(phase, spring)
         begin = force if by_force else travel
@@ -113,7 +113,7 @@ def _press(case: Case, spring: Spring, law: Law) -> tuple[dict[str, float], floa
 
 
 def _target(phase: Phase, spring: Spring) -> tuple[bool, float]:
-    """Is a phase driven by force? Where to, N, or the travel, mm."""
+    """Whether a phase is controlled by force, and its target force, N, or travel, mm."""
     to, length = phase.to, spring.free_length
     if to == "block":
         return False, length - spring.block_height

@@ -1,4 +1,4 @@
-"""What else could be had: other wishes and other springs, estimated by the surrogate as the runs have corrected it."""
+"""Alternatives: other conditions and other springs, estimated by the surrogate corrected by the runs."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -9,8 +9,8 @@ import numpy as np
 from coilset.meshes.errors import InputError
 from coilset.model.design.search import FAR, Found, Search
 
-CHANGE = 0.02  # of each condition, for the rows about other wishes
-NEAR = 1e-3  # relative, to which an estimate must meet the wish to count as possible
+CHANGE = 0.02  # of each condition, for the rows about other targets
+NEAR = 1e-3  # relative deviation up to which an estimate counts as possible
 
 
 @dataclass(frozen=True)
@@ -18,12 +18,12 @@ class TradeOff:
     """One row.
 
     Attributes:
-        of: what is other than in the wish: a condition or an entry.
+        of: what differs from the wish: a condition or an entry.
         value: its value.
         unknowns: values of the unknowns, by their names.
-        off: how far the conditions are from being met, the farthest, relative.
+        off: largest relative deviation from the conditions.
         wire_length_mm, free_length_before_mm: of the spring as wound; None where it cannot be built.
-        torque: greatest torque over that at which the surface yields.
+        torque: maximum torque over that at which the surface yields.
     """
 
     of: str
@@ -36,12 +36,12 @@ class TradeOff:
 
     @property
     def possible(self) -> bool:
-        """Whether the conditions are met between the bounds, as far as the estimate goes."""
+        """Whether the conditions are met within the bounds, according to the estimate."""
         return self.off <= NEAR
 
 
 def trade_offs(search: Search, found: Found, others: Mapping[str, Sequence[Any]]) -> Iterator[TradeOff]:
-    """Each condition a little smaller and greater, then each of the entries with other values, one at a time."""
+    """Each condition slightly smaller and larger, then each of the entries with other values, one at a time."""
     for number, one in enumerate(search.conditions):
         for sign in (-1.0, 1.0):
             shift = np.zeros(len(search.conditions))

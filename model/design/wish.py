@@ -1,4 +1,4 @@
-"""The wish: a case, the entries that are sought, their bounds, and the conditions that its run shall meet."""
+"""The wish: a case, the entries to find, their bounds, and the conditions that its run must meet."""
 
 import copy
 from dataclasses import dataclass
@@ -18,10 +18,10 @@ KIND = "a wish holds the entries find: and such_that:, and those of a case or ca
 
 
 class Bounds(Strict):
-    """Between which values an entry is sought; `[9, 15]` in short."""
+    """Bounds of an entry; `[9, 15]` in short."""
 
     low: Annotated[float, Unit("of the entry"), Field(alias="from", description="least value")]
-    high: Annotated[float, Unit("of the entry"), Field(alias="to", description="greatest value")]
+    high: Annotated[float, Unit("of the entry"), Field(alias="to", description="maximum value")]
 
     @model_validator(mode="after")
     def _order(self) -> Self:
@@ -36,7 +36,7 @@ def _pair(value: Any) -> Any:
         return {"from": value[0], "to": value[1]}
     if isinstance(value, dict | Bounds):
         return value
-    raise ValueError("must be the least and the greatest value, as in [9, 15]")
+    raise ValueError("must be the minimum and the maximum value, as in [9, 15]")
 
 
 def _not_zero(value: float) -> float:
@@ -52,9 +52,9 @@ Stress = Annotated[float, Unit("MPa"), AfterValidator(_not_zero)]
 
 
 class ForceAt(Strict):
-    """A force at a height of the spring that the load program leaves behind.
+    """A force at a height, after the load program.
 
-    It is read where the program last goes to this height; if it never does, the height is gone to after it, and back.
+    It is read where the program last passes this height; if it never does, the spring goes to this height afterwards.
     """
 
     height: Annotated[Millimetres, Field(description="distance of the seats, mm")]
@@ -62,7 +62,7 @@ class ForceAt(Strict):
 
 
 class Conditions(Strict):
-    """What the run shall come to; all of it at the end of its load program, as in `summary.json`."""
+    """Conditions on the results at the end of the load program, as in `summary.json`."""
 
     free_length_after_mm: Annotated[Millimetres | None, Field(description="free length after the program, mm")] = None
     free_length_before_mm: Annotated[Millimetres | None, Field(description="free length as wound, mm")] = None
@@ -71,7 +71,7 @@ class Conditions(Strict):
     rate_N_per_mm: Annotated[
         float | None, Unit("N/mm"), Field(gt=0, description="initial rate of the spring as wound, N/mm")
     ] = None
-    force_max_N: Annotated[Newtons | None, Field(description="greatest force of the program, N")] = None
+    force_max_N: Annotated[Newtons | None, Field(description="maximum force of the program, N")] = None
     force_at: Annotated[
         list[ForceAt],
         BeforeValidator(lambda value: [value] if isinstance(value, dict | ForceAt) else value),
@@ -82,10 +82,10 @@ class Conditions(Strict):
         Field(description="residual shear stress at the coil's inside, MPa; presetting makes it negative"),
     ] = None
     shear_inside_max_MPa: Annotated[
-        Stress | None, Field(description="greatest shear stress at the coil's inside, MPa")
+        Stress | None, Field(description="maximum shear stress at the coil's inside, MPa")
     ] = None
     plastic_work_max_N_per_mm2: Annotated[
-        float | None, Unit("N/mm²"), Field(gt=0, description="greatest plastic work b* on the surface, N/mm²")
+        float | None, Unit("N/mm²"), Field(gt=0, description="maximum plastic work b* on the surface, N/mm²")
     ] = None
 
     @model_validator(mode="after")

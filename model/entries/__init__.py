@@ -1,1 +1,1 @@
-"""Entries of files that users write: the strict YAML reader, and errors in their words."""
+"""Entries of input files: the strict YAML reader, and error messages in the user's terms."""

@@ -1,4 +1,4 @@
-"""Entries of input files: their strict base, how they are checked, and what was wrong with them in one line."""
+"""Entries of input files: their strict base class, their checks, and one-line error messages."""
 
 import re
 import reprlib
@@ -16,7 +16,7 @@ Group = TypeVar("Group", bound=Strict)
 
 LONGEST = 60  # characters of a value or a name in a message
 OWN = ("unknown_entry", "missing_entry")  # errors that name their entry themselves
-TEXTS = {  # what would be right, where pydantic's words are those of a programmer
+TEXTS = {  # what would be right, where pydantic's messages are meant for programmers
     "model_type": "must be a group of entries, as in {name: value}",
     "model_attributes_type": "must be a group of entries, as in {name: value}",
     "dict_type": "must be a group of entries, as in {name: value}",
@@ -39,25 +39,25 @@ _short.maxstring = _short.maxlong = _short.maxother = LONGEST
 
 
 def shown(value: Any) -> str:
-    """A value as messages show it: at most `LONGEST` characters, however long it is, in one line."""
+    """A value as shown in messages: in one line of at most `LONGEST` characters."""
     text = " ".join(_short.repr(value).split())
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
 
 def shortened(text: str, longest: int = LONGEST) -> str:
-    """A text of the user's as messages show it, without quotation marks."""
+    """A user's text as shown in messages, without quotation marks."""
     text = " ".join(str(text).split())
     text = "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text[: longest + 1])
     return text if len(text) <= longest else text[: longest - 3] + "..."
 
 
 def explain(error: ValidationError) -> tuple[str, str]:
-    """Place and problem of a pydantic error, in one line: the value that was given, and what would be right."""
+    """Place and problem of a pydantic error, in one line: the value given, and what would be right."""
     found = _innermost(error.errors(include_url=False))
-    # a misspelt entry first: the one that it was meant for is reported as missing besides
+    # a misspelt entry first: the entry that was meant is also reported, as missing
     first = next((one for one in found if one["type"] == "unknown_entry"), found[0])
     context = first.get("ctx", {})
-    # what is in brackets is no entry of the file: tags of alternatives, and that an entry's name is meant
+    # names in brackets are not entries of the file: tags of alternatives, or a marker for an entry's name
     parts = [shortened(part) for part in first["loc"] if not re.fullmatch(r"\(.*\)|\[key\]", str(part))]
     if first["type"] in OWN:
         parts.append(shortened(context["entry"]))
@@ -71,7 +71,7 @@ def explain(error: ValidationError) -> tuple[str, str]:
 
 
 def _number_in_words(text: str) -> str:
-    """What is wrong with a number that came as a word, such as `5,0` or `5 mm`."""
+    """What is wrong with a number given as a word, such as `5,0` or `5 mm`."""
     if re.fullmatch(r"\s*[-+]?\d+,\d+\s*", text):
         return f" with a decimal point, as in {text.strip().replace(',', '.')}"
     if re.fullmatch(r"\s*[-+]?\d*\.?\d+\s*[^\d\s.,:][^\d]{0,9}", text):
@@ -80,7 +80,7 @@ def _number_in_words(text: str) -> str:
 
 
 def _innermost(found: list[Any]) -> list[Any]:
-    """Without complaints of groups that follow from one within: a list whose only value is wrong is also too short."""
+    """Without errors that follow from an inner one: a list whose only value is wrong is also too short."""
     outside = {one["loc"][:depth] for one in found for depth in range(len(one["loc"]))}
     return [one for one in found if one["loc"] not in outside]
 

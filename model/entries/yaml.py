@@ -1,4 +1,4 @@
-"""The one reader of YAML: every complaint has its line and column, and every file has one reading.
+"""The only YAML reader: every message has line and column, and every file has exactly one meaning.
 
 Words and numbers are read as by the core schema of YAML 1.2: `1e6` is a number, `yes` and `12:30:00` are words, `010`
 is ten. Names of entries are always words.
@@ -14,7 +14,7 @@ from coilset.meshes.errors import InputError
 from coilset.model.entries.entry import shortened
 
 MAX_NESTING = 40  # levels of nesting; a case has six
-LARGEST = 1_000_000  # values of a file, those that aliases repeat counted each time
+LARGEST = 1_000_000  # values of a file; those repeated by aliases count each time
 
 TAG = "tag:yaml.org,2002:"
 SCALARS = (  # of the core schema of YAML 1.2.2, 10.3.2
@@ -24,16 +24,16 @@ SCALARS = (  # of the core schema of YAML 1.2.2, 10.3.2
     ("float", r"(?:[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN))",
      list("-+0123456789.")),
 )  # fmt: skip
-UNFIT = re.compile("[\0\ud800-\udfff]")  # in no name of a file, and on no screen
+UNFIT = re.compile("[\0\ud800-\udfff]")  # not allowed in file names, and not printable
 
 
 class _Loader(yaml.loader.BaseLoader):
-    """Nodes of a document, nested no deeper than `MAX_NESTING`."""
+    """Nodes of a document, nested at most `MAX_NESTING` levels deep."""
 
     depth = 0
 
     def compose_node(self, parent: Any, index: Any) -> Any:
-        """PyYAML's, counting levels: it calls itself, and Python's stack has an end."""
+        """PyYAML's method, with a count of levels: it is recursive, and Python's stack is limited."""
         self.depth += 1
         if self.depth > MAX_NESTING:
             problem = f"nested deeper than {MAX_NESTING} levels"
@@ -48,13 +48,13 @@ for _tag, _pattern, _first in SCALARS:
 
 
 class _Values:
-    """Plain data of nodes. What an alias repeats becomes data of its own, so that a change here is none there."""
+    """Plain data of nodes. An alias becomes a copy, so that changing it does not change the original."""
 
     def __init__(self) -> None:
         self.count = 0
 
     def of(self, node: yaml.Node, depth: int = 0) -> Any:
-        """Value of a node."""
+        """The value of a node."""
         self.count += 1
         if self.count > LARGEST:
             raise _problem(node, f"more than {LARGEST:,} values; are aliases repeated by aliases?")
@@ -134,12 +134,12 @@ def read_data(path: str | Path, kind: str = "") -> dict[str, Any]:
 
     Args:
         path: the YAML file.
-        kind: what such a file holds, for a file that is no mapping.
+        kind: what such a file holds, for the message about a file that is not a mapping.
 
     Raises:
         InputError: if it cannot be read.
     """
-    if not str(path):  # else Path makes the folder that we are in of it
+    if not str(path):  # otherwise Path would turn it into the current folder
         raise InputError("the name of the file is empty")
     path = Path(path)
     try:

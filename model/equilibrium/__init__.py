@@ -1,1 +1,1 @@
-"""How equilibrium is found: unknowns, residual and tangent, Newton's method, and the way along a path of loads."""
+"""Finding equilibrium: unknowns, residual and tangent, Newton's method, and continuation along a load path."""

@@ -1,4 +1,4 @@
-"""How an axial force or height is put on a spring: by its top seat, or by its clamped top end."""
+"""Application of an axial force or height to a spring, by its top seat or its clamped top end."""
 
 from collections.abc import Sequence
 from typing import Literal
@@ -12,18 +12,18 @@ from coilset.model.equilibrium.system import System
 
 
 class AxialControl:
-    """The spring between its heads: which unknowns are held, which one is driven, and what force and height mean.
+    """The spring between its heads: the held unknowns, the driven one, and the definition of force and height.
 
     Args:
         system: System of a rod with its LineLayout.
         free_length: height of the unloaded spring, mm.
-        clamped: do the end nodes belong to rigid heads that move along the axis only? Else they stand on seats.
-        tips_held: on seats: are the wire's tips held sideways and against turning, as by pockets? Else contacts alone
-            hold the wire.
-        seats_held: on seats: degrees of freedom of the bottom and of the top seat that are held, without the level.
+        clamped: whether the end nodes belong to rigid heads that move along the axis only; else they stand on seats.
+        tips_held: on seats: whether the wire's tips are held sideways and against rotation, as in pockets; else
+            contacts alone hold the wire.
+        seats_held: on seats: held degrees of freedom of the bottom and the top seat, without the axial position.
 
     Attributes:
-        tips: station of each end and those of its six components that are held or driven, so that they bear reactions.
+        tips: station of each end and its components that are held or driven and therefore have reactions.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class AxialControl:
 
     @property
     def trial_height(self) -> float:
-        """On trial, mm; collective."""
+        """In the trial state, mm; collective."""
         return self.free_length + (self._level("trial") - self._start)
 
     @property
@@ -76,11 +76,11 @@ class AxialControl:
 
     @property
     def trial_force(self) -> float:
-        """Axial force on trial, compression positive, N; collective."""
+        """Axial force in the trial state, compression positive, N; collective."""
         return self._force(self.system.state["reactions"].trial)
 
     def _level(self, when: Literal["equilibrium", "trial"]) -> float:
-        """Level of the driven head, mm; collective."""
+        """Axial position of the driven head, mm; collective."""
         state = self.system.state
         if self.clamped:
             return float(self.layout.gather(getattr(state["x"], when))[-1, 2])

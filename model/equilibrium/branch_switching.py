@@ -1,14 +1,14 @@
-"""A spring lets go: from a state that is not stable, or beyond the end of its path, to where it is stable.
+"""Snap-through: from an unstable state, or beyond the end of a path, to a stable state.
 
-Loads and prescribed values stay, and a drag holds the spring back: over a step of time Δt the unknowns x resist with
+Loads and prescribed values are constant, and a drag slows the spring down: over a time step Δt it exerts
 
     c M (x − x₀),    c = 1/Δt,
 
-where x₀ is the state before and M weighs displacements and rotations. That is backward Euler for M ẋ = −r(x). Of all
-states it takes the one of least Π(x) + c/2 (x − x₀)·M (x − x₀), so the potential Π falls with each step whatever c is,
-and the way ends only where the spring rests. Where the least eigenvalue λ of the tangent is negative c = 2 |λ|: a drag
-of less than |λ| would not hold, and with this one the weakest mode doubles in a step. Else c is such that a step moves
-the wire by about its radius, and when it is below λ > 0 the state is solved for without drag.
+where x₀ is the state before and M weights displacements and rotations. That is backward Euler for M ẋ = −r(x). The step
+minimises Π(x) + c/2 (x − x₀)·M (x − x₀), so the potential Π falls in each step for any c, and the path ends only in a
+state of rest. If the lowest eigenvalue λ of the tangent is negative, c = 2 |λ|: a drag below |λ| would not suffice, and
+with this one the weakest mode doubles in a step. Otherwise c is such that a step moves the wire by about its radius,
+and when it is below λ > 0 the state is solved for without drag.
 """
 
 import logging
@@ -25,24 +25,24 @@ from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.stability import Stability, Weakest
 
 log = logging.getLogger("coilset.steps")
-FASTER = 4.0  # factor by which drag changes at most, and times its way that a step may go
-STUCK = 1e-3  # of the way that a step should go: what moves less though it is unstable is held by what it touches
+FASTER = 4.0  # maximum factor of a change of drag, and of a step's length over the intended one
+STUCK = 1e-3  # of the intended step: an unstable state that moves less is held by contact
 
 
 @dataclass
 class Descent:
-    """How far a snap has come.
+    """Progress of a snap.
 
     Attributes:
         drag: c of the next step, N/mm.
         origin: x₀ of the next step, over the last equilibrium, of this rank's unknowns.
         weights: M of this rank's unknowns.
-        advance: way that a step should go, mm.
+        advance: intended length of a step, mm.
         weakest: mode of the last state.
-        released: energy that the drag has taken up, N mm.
+        released: energy dissipated by the drag, N mm.
         drag_force: c M (x − x₀) at the last state.
-        moved: way of the last step, mm.
-        failed: steps that failed, one after the other.
+        moved: length of the last step, mm.
+        failed: number of consecutive failed steps.
     """
 
     drag: float
@@ -57,7 +57,7 @@ class Descent:
 
     @property
     def is_stuck(self) -> bool:
-        """Does it hardly move, though it is unstable?"""
+        """Whether it hardly moves although it is unstable."""
         return self.weakest.negative > 0 and self.moved < STUCK * self.advance
 
     def adapt(self) -> None:
@@ -68,17 +68,17 @@ class Descent:
 
 
 def holding(weakest: Weakest) -> float:
-    """The drag against which the weakest mode doubles in a step, N/mm."""
+    """The drag with which the weakest mode doubles in a step, N/mm."""
     return 2.0 * abs(weakest.value)
 
 
 class Snap:
-    """The way against the drag. Each step of it is committed: the wire yields along this way, not along a straight one.
+    """The path against the drag. Each step is committed: the wire yields along this path, not along a straight one.
 
     Args:
         stability: Stability.
         control: StepControl.
-        solve: solves a load from a start; an equilibrium with too deep penetrations counts as none.
+        solve: solves a load from a start; an equilibrium with too deep penetrations is rejected.
     """
 
     def __init__(self, stability: Stability, control: StepControl, solve: Callable[[Load, Start], Outcome]) -> None:
@@ -86,14 +86,14 @@ class Snap:
         self.system = stability.system
 
     def go(self, load: Callable[[], Load], unstable: PETSc.Vec | None) -> Outcome:
-        """Let go until a stable state is found; what is committed on the way is left as it is if none is.
+        """Follow the path until a stable state is found; if none is found, the committed steps are kept.
 
         Args:
             load: the load from the last equilibrium, whichever that is.
-            unstable: increments to an unstable equilibrium under this load; None to go from the last equilibrium.
+            unstable: increments to an unstable equilibrium under this load; None to start from the last equilibrium.
 
         Returns:
-            Outcome of the last solve; its `released` is what the drag took up, N mm.
+            Outcome of the last solve; its `released` is the energy dissipated by the drag, N mm.
         """
         descent = self._begin(load(), unstable)
         outcome = Outcome(False, "the spring does not come to rest", np.inf)
@@ -110,8 +110,8 @@ class Snap:
         return replace(outcome, converged=False)
 
     def _begin(self, load: Load, unstable: PETSc.Vec | None) -> Descent:
-        """At an unstable equilibrium, pushed along its weakest mode to the side from which the spring came; or, where
-        there is none, at the last equilibrium."""
+        """Start at an unstable equilibrium, displaced along its weakest mode towards where the spring came from; or,
+        without one, at the last equilibrium."""
         radius, origin = self.system.line.rod.largest_radius, np.zeros(self.system.layout.size_local)
         weights = self.stability.weights(load)
         if unstable is not None and self.solve(load, Start(unstable)).converged:
@@ -127,7 +127,7 @@ class Snap:
         return Descent(holding(weakest), origin, weights, advance, weakest, np.zeros_like(origin))
 
     def _descend(self, load: Load, descent: Descent) -> Outcome:
-        """One step against the drag, which is committed; where it fails, or goes too far, the drag grows instead."""
+        """One step against the drag, which is committed; if it fails or goes too far, the drag is increased instead."""
         drag = Drag(descent.drag * descent.weights, descent.origin)
         outcome = self.solve(load.dragged(drag), Start())
         moved = self.stability.greatest_displacement(self.system.increments)
@@ -148,7 +148,7 @@ class Snap:
         return outcome
 
     def _rest(self, load: Callable[[], Load], descent: Descent) -> Outcome | None:
-        """The stable equilibrium near by, where the drag is small beside what holds the spring; else None."""
+        """The stable equilibrium nearby, if the drag is small compared with the spring's stiffness; else None."""
         if descent.weakest.negative or descent.drag > descent.weakest.value:
             return None
         aim = load()
@@ -161,7 +161,8 @@ class Snap:
         self.system.commit()
         way = self.system.state["increments"].equilibrium
         released = descent.released + 0.5 * float(self._sum(descent.drag_force @ way))
-        return replace(outcome, left_branch=True, released=released)
+        # less than nothing: yielding took up more of the push than the way set free, and nothing drives the spring on
+        return replace(outcome, left_branch=True, released=max(released, 0.0))
 
     def _sum(self, value: float) -> float:
         comm = self.system.comm

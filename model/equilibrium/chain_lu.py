@@ -1,16 +1,16 @@
-"""The exact solve on ranks: each eliminates what is its own, and all of them what couples them.
+"""The direct solver on several ranks: each eliminates its own unknowns, and all of them the interface.
 
-The wire is cut in contiguous pieces. An unknown that is coupled with one of a lower rank is an *interface* unknown s;
-the other unknowns i of a rank are then coupled among themselves and with interface unknowns alone:
+The wire is divided into contiguous pieces. An unknown coupled with one of a lower rank is an *interface* unknown s; the
+other unknowns i of a rank are then coupled only among themselves and with interface unknowns:
 
     S = A_ss − Σ_ranks A_si A_ii⁻¹ A_is,    S x_s = b_s − Σ_ranks A_si A_ii⁻¹ b_i,    A_ii x_i = b_i − A_is x_s.
 
-At a cut of the wire s are the unknowns of a node; coils that touch across it add those of one winding, and seats, which
-the last rank has, are among them. S is gathered, and every rank eliminates it in the same order: all of them find the
-same bits, and so does the next run.
+At a cut of the wire, s are the unknowns of one node. Coils that touch across it add those of one winding; the seats,
+which belong to the last rank, are included. S is gathered, and every rank eliminates it in the same order, so that the
+result is the same to the bit on all ranks and in every run.
 
-Where most unknowns couple ranks, as in short springs of many elements whose coils touch, the blocks of S would cost
-more than they save. Every unknown then counts as one of the interface: each rank eliminates the whole matrix.
+If most unknowns couple ranks, as in short springs of many elements whose coils touch, the blocks of S would cost more
+than they save. All unknowns then belong to the interface, and each rank eliminates the whole matrix.
 """
 
 import numpy as np
@@ -20,7 +20,7 @@ from petsc4py import PETSc
 from coilset.model.equilibrium.elimination import Plan, plan_elimination
 from coilset.model.equilibrium.multifrontal import PartialLU
 
-FEW = 200  # interface unknowns up to which the whole matrix is no alternative
+FEW = 200  # interface unknowns up to which eliminating the whole matrix is not considered
 
 
 class ChainLU:
@@ -45,7 +45,7 @@ class ChainLU:
         rows = np.repeat(np.arange(self.start, self.stop), np.diff(indptr))
         coupled = np.unique(rows[indices < self.start])
         self.interface = np.concatenate(self.comm.allgather(coupled))
-        mine = ~np.isin(rows, coupled)  # entries of the rows that are no interface
+        mine = ~np.isin(rows, coupled)  # entries of the rows outside the interface
         self._numbers = np.union1d(rows[mine], indices[mine])  # of the rank's own matrix
         self._divide()
         if len(self.interface) > FEW and self._whole_is_cheaper():
@@ -94,7 +94,7 @@ class ChainLU:
         return plan_elimination(np.append(0, np.cumsum(counts)), places % max(size, 1), np.zeros(size, dtype=bool))
 
     def _whole_is_cheaper(self) -> bool:
-        """Does the elimination of the whole matrix take fewer multiplications than the two plans? Collective."""
+        """Whether eliminating the whole matrix takes fewer multiplications than the two plans; collective."""
         lengths = np.concatenate(self.comm.allgather(np.diff(self._indptr)))
         indptr, indices = np.append(0, np.cumsum(lengths)), np.concatenate(self.comm.allgather(self._indices))
         plan = plan_elimination(indptr, indices, np.zeros(len(indptr) - 1, dtype=bool))
@@ -104,10 +104,10 @@ class ChainLU:
     # ---- factors ---------------------------------------------------------------------------------------------------
 
     def factorise(self) -> bool:
-        """Factorise the matrix as it is now; False on every rank if a pivot is zero or no number; collective."""
+        """Factorise the current matrix; False on every rank if a pivot is zero or NaN; collective."""
         self._part = self.mat.createSubMatrices([self._set], [self._set], self._part)
         own = self._part[0].getValuesCSR()[2][self._local_order]
-        own[self._among_kept] = 0.0  # what couples interface unknowns is in A_ss
+        own[self._among_kept] = 0.0  # couplings between interface unknowns are in A_ss
         found = self._local.factorise(own)
         starts = self._block_starts
         self.comm.Allgatherv(self._local.schur.ravel(), (self._blocks, np.diff(starts)))
@@ -146,7 +146,7 @@ class ChainLU:
 
 
 def ascending_pattern(mat: PETSc.Mat) -> tuple[np.ndarray, np.ndarray, np.ndarray | slice]:
-    """CSR pattern of a matrix with ascending columns, and the order that brings PETSc's entries there."""
+    """CSR pattern of a matrix with ascending columns, and the permutation of PETSc's entries to it."""
     indptr, indices, _ = mat.getValuesCSR()
     rows = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
     entries = rows * mat.getSize()[1] + indices

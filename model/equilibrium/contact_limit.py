@@ -1,7 +1,7 @@
-"""How far a correction may go before coils or seats lie deep in each other.
+"""Limit of a correction, so that coils and seats do not penetrate each other deeply.
 
-Bodies that a correction presses far into each other make the wire yield, which the next correction cannot take back. So
-penetrations up to some hundredths of the wire's diameter are free, and a deeper one may grow by a factor only.
+A correction that presses bodies deeply into each other makes the wire yield, which the next correction cannot undo.
+Penetrations up to a few hundredths of the wire diameter are therefore free; deeper ones may grow only by a factor.
 """
 
 from petsc4py import PETSc
@@ -30,7 +30,7 @@ class ContactLimit:
         return max(self.free, self.control.penetration_growth * penetration)
 
     def step_length(self, start: PETSc.Vec, direction: PETSc.Vec, sign: float = 1.0) -> float:
-        """Greatest λ ≤ 1 up to which start + λ · sign · direction presses no deeper than allowed; collective."""
+        """Largest λ ≤ 1 up to which start + λ · sign · direction presses no deeper than allowed; collective."""
         layout = self.system.layout
         if not self.limiting:
             return 1.0
@@ -67,5 +67,5 @@ class ContactLimit:
 
 
 def free_penetration(control: NewtonControl, penetration_limit: float) -> float:
-    """What corrections may press without more ado, in wire diameters: the contacts' limit if nothing else is given."""
+    """Penetration that corrections may always cause, in wire diameters: by default the contacts' limit."""
     return penetration_limit if control.free_penetration is None else control.free_penetration

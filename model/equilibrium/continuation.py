@@ -1,7 +1,7 @@
-"""The way along a path of loads: predict, solve, accept or cut; one loop for rods, frames, probes, solids.
+"""Continuation along a load path: predict, solve, accept or cut; one loop for rods, frames, probes and solids.
 
-A solve ends in one of two ways: its trial state becomes the equilibrium, or all goes back to the last one. That
-transaction is made here and nowhere else.
+A solve ends in one of two ways: its trial state becomes the equilibrium, or the last equilibrium is restored. This
+transaction is made only here.
 """
 
 import logging
@@ -19,7 +19,7 @@ from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.newton import Newton, Start
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.stability import Stability
-from coilset.model.equilibrium.step_control import Path, StepSizes
+from coilset.model.equilibrium.step_control import ON_MARK, Path, StepSizes
 from coilset.model.equilibrium.step_error import StepError
 
 log = logging.getLogger("coilset.steps")
@@ -32,17 +32,17 @@ class Continuation:
     Args:
         newton: Newton.
         control: StepControl.
-        penetration_limit: penetration beyond which a state is no equilibrium, mm.
-        starts: where to begin solving a load for a step of the given length, one start after the other; default: the
+        penetration_limit: penetration beyond which a state is rejected, mm.
+        starts: starting points for solving a load for a step of the given length, to be tried in order; default: the
             last step's increments, scaled, then the last equilibrium.
 
-        stability: Stability; None: states are not judged.
-        step_error: StepError; None: the error of steps is not known, and automatic ones grow on ease alone.
+        stability: Stability; None: stability is not checked.
+        step_error: StepError; None: the error is unknown, and automatic steps depend on convergence alone.
 
     Attributes:
-        refusal: why the state on trial can be none of a body, in words, although forces balance; None if it can.
-        steps: StepSizes, which also know where on its path the continuation stands.
-        number: steps so far.
+        refusal: why the trial state is impossible although forces balance, in words; None if it is possible.
+        steps: StepSizes, which also hold the position on the path.
+        number: of steps so far.
         negative_pivots: of the tangent at the last equilibrium; 0 if it is stable.
     """
 
@@ -61,12 +61,13 @@ class Continuation:
         self.refusal: Callable[[], str | None] = lambda: None
         self.steps, self.number = StepSizes(self.control), 0
         self._spent: list[Outcome] = []  # all solves of the step in progress
-        self._unstable: PETSc.Vec | None = None  # increments with which a try at the step ended unstable
+        self._too_far: tuple[PETSc.Vec, float] | None = None  # increments of a step with too large an error, its length
+        self._unstable: PETSc.Vec | None = None  # increments of an attempt that ended unstable
 
     # ---- one solve -------------------------------------------------------------------------------------------------
 
     def attempt(self, load: Load, starts: Iterable[Start] = (Start(),)) -> Outcome:
-        """Solve a step; its state is the last equilibrium, or all is as it was before; collective."""
+        """Solve a step; its state becomes the last equilibrium, or everything is restored; collective."""
         self._spent.clear()
         return self._charged(self._attempt(load, starts))
 
@@ -78,7 +79,7 @@ class Continuation:
         return self._spent[-1]
 
     def _charged(self, outcome: Outcome) -> Outcome:
-        """The outcome of a step, with the cost of all solves since it was begun."""
+        """The outcome of a step, with the cost of all solves since its start."""
         spent = self._spent
         return replace(
             outcome,
@@ -92,19 +93,22 @@ class Continuation:
 
         Args:
             size: length of the step, in regular steps.
-            accurately: does a step whose error is too large count as failed?
+            accurately: whether a step with too large an error counts as failed.
         """
         if outcome.converged and self.step_error is not None:
             outcome = self._estimated(outcome, self.step_error, size, accurately)
+        self._too_far = None
         if outcome.converged:
             self.system.commit()
             self.negative_pivots = outcome.negative_pivots
         else:
+            if outcome.estimate is not None:
+                self._too_far = self.system.increments.copy(), size
             self.system.restore()
         return outcome
 
     def probe(self, load: Load, read: Callable[[], Reading]) -> tuple[Outcome, Reading]:
-        """Solve a step, read something of its state, and go back to the last equilibrium; collective."""
+        """Solve a step, evaluate its state, and return to the last equilibrium; collective."""
         outcome = self._solve(load, (Start(),))
         reading = read()
         self.system.restore()
@@ -116,13 +120,14 @@ class Continuation:
             if outcome is not None:
                 log.info("step %d: no equilibrium from the last step's direction (%s)", self.number + 1, outcome.reason)
             outcome = self._newton(load, start)
-            if outcome.converged or outcome.stagnated:  # what stagnates does so from elsewhere too: shorten the step
+            # stagnation recurs from other starts too, and partial steps lead away from the start: shorten the step
+            if outcome.converged or outcome.stagnated or outcome.failed_solves:
                 break
         assert outcome is not None
         return self._judged(outcome)
 
     def _judged(self, outcome: Outcome) -> Outcome:
-        """An equilibrium in which bodies are pressed deep into each other counts as none."""
+        """Reject an equilibrium in which bodies penetrate each other deeply."""
         if outcome.converged and (depth := self.system.max_penetration) > self.penetration_limit:
             reason = f"coils or seats would lie {depth:.4g} mm in each other, more than {self.penetration_limit:.4g} mm"
             return replace(outcome, converged=False, reason=reason, refused=True)
@@ -142,7 +147,7 @@ class Continuation:
     # ---- stability -------------------------------------------------------------------------------------------------
 
     def _stable(self, outcome: Outcome, load: Load) -> Outcome:
-        """A state that is less stable than the last equilibrium counts as none: another path goes on from there."""
+        """Reject a state that is less stable than the last equilibrium: another path continues from there."""
         if not outcome.converged or self.stability is None:
             return outcome
         negative = self.stability.negative_pivots(load)
@@ -154,16 +159,22 @@ class Continuation:
         return replace(outcome, converged=False, reason=reason)
 
     def _ends_here(self, size: float, outcome: Outcome) -> bool:
-        """Is a step that failed so short that its path ends, or must be left before it ends unstable?"""
-        shortest = self.control.cut * size < self.control.smallest
+        """Whether a failed step is so short that its path ends, or must be left because it becomes unstable.
+
+        The last stable state is near once the step is as short as `unstable_cuts` make a regular one, however many of
+        these were for steps before.
+        """
+        control = self.control
+        shortest = control.cut * size < control.smallest
         if self.stability is None or (self._unstable is None and (not shortest or outcome.refused)):
             return False
-        return shortest or self.steps.position.cuts >= self.control.unstable_cuts
+        near = size <= (1.0 + ON_MARK) * control.cut**control.unstable_cuts
+        return shortest or near or self.steps.position.cuts >= control.unstable_cuts
 
     def _snap(self, load: Callable[[], Load]) -> Outcome:
-        """Let go of a path that ends, or ends unstable, until a stable state is found.
+        """Leave a path that ends or becomes unstable, and find a stable state.
 
-        Where none is found all is as it was; an unstable state is kept then, with its negative pivots.
+        If none is found everything is restored; an unstable state is then kept, with its negative pivots.
 
         Args:
             load: the load of the step from the last equilibrium, whichever that is.
@@ -173,7 +184,8 @@ class Continuation:
         before = self.system.state.copy()
         outcome = Snap(self.stability, self.control, self._solve_once).go(load, there)
         if outcome.converged:
-            log.info("step %d: the spring snapped and set %.3g N mm free", self.number + 1, outcome.released)
+            free = f"set {outcome.released:.3g} N mm free" if outcome.released else "set no energy free: its path forks"
+            log.info("step %d: the spring left its path and %s", self.number + 1, free)
             self.negative_pivots = 0
             if self.step_error is not None:
                 self.step_error.rejoin()
@@ -193,8 +205,15 @@ class Continuation:
         return self._judged(self._newton(load, start))
 
     def from_last_step(self, load: Load, size: float) -> Iterator[Start]:
-        """The last step's increments, scaled to a step of this size; then the last equilibrium."""
-        if self.steps.position.last:
+        """The last step's increments, scaled to a step of this size; then the last equilibrium.
+
+        Where the error of a longer step was too large its increments lead to this one, for they know what touches.
+        """
+        if self._too_far is not None:
+            guess, length = self._too_far[0].copy(), self._too_far[1]
+            guess.scale(size / length)
+            yield Start(guess)
+        elif self.steps.position.last:
             yield self.scaled_last(size / self.steps.position.last)
         yield Start()
 
@@ -207,14 +226,14 @@ class Continuation:
     # ---- along a path -----------------------------------------------------------------------------------------
 
     def begin(self) -> None:
-        """Stand at the start of a path."""
+        """Go to the start of a path."""
         self.steps.begin()
 
     def advance(self, path: Path) -> tuple[Outcome, int]:
-        """Take one step along a path, cut as often as need be; collective.
+        """Take one step along a path, cut as often as necessary; collective.
 
         Returns:
-            The step's Outcome, with the cost of what failed before, and how often it was cut.
+            The step's Outcome, with the cost of failed attempts, and how often it was cut.
 
         Raises:
             SolveError: if it failed down to the smallest size, or the program stalls; the state is that of the last
@@ -231,7 +250,7 @@ class Continuation:
             outcome = self._attempt(load, self.starts(load, length), length, path.automatic)
             if outcome.negative_pivots > self.negative_pivots:
                 unstable_at = size
-            # where time passes nothing snaps: a path that ends there ends the run
+            # no snaps while time passes: a path that ends there ends the run
             if not outcome.converged and path.moment is None and self._ends_here(size, outcome):
                 there = size if self._unstable is None else unstable_at
                 beside = self._snap(lambda to=begun.done + there: path.load(to))  # type: ignore[misc]

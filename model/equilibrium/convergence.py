@@ -1,6 +1,6 @@
-"""When a step is in equilibrium: the thesis's measure (6.3.1), and how a solve ended, in words."""
+"""The thesis's convergence test (6.3.1), and the outcome of a solve in words."""
 
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, replace
 
 import numpy as np
 from petsc4py import PETSc
@@ -16,7 +16,7 @@ WORDS = {
     "DIVERGED_FUNCTION_NANORINF": "the residual is not a number, or the law found no stress",
     "DIVERGED_FUNCTION_DOMAIN": "the law found no stress",
     "DIVERGED_LINEAR_SOLVE": "the tangent is singular",
-    "DIVERGED_MAX_IT": "no equilibrium within the greatest number of iterations",
+    "DIVERGED_MAX_IT": "no equilibrium within the maximum number of iterations",
     "DIVERGED_LINE_SEARCH": "the line search found no better state",
     "DIVERGED_DTOL": "the out-of-balance forces grow without bound",
     "DIVERGED_LOCAL_MIN": "the iteration stagnates: the out-of-balance forces no longer fall",
@@ -27,30 +27,31 @@ WORDS = {
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a step ended, and what it cost.
+    """Outcome and cost of a step.
 
     Attributes:
-        converged: is it in equilibrium?
+        converged: whether it is in equilibrium.
         reason: in words.
         ratio: left side of (6.3.1).
-        iterations: new states; a first one that only meets the prescribed increments counts too.
-        factorisations: tangents set up and factorised.
-        evaluations: states evaluated, each with the law at every point; those of line searches among them.
-        linear_iterations: inside of iterative linear solvers.
+        iterations: new states, including a first one that only meets the prescribed increments.
+        factorisations: tangents assembled and factorised.
+        evaluations: states evaluated, each with the law at every point, including those of line searches.
+        linear_iterations: of iterative linear solvers.
         negative_pivots: negative eigenvalues of the tangent where they were counted; the state is unstable if there
             are.
-        left_branch: did the body snap from a path that ends or is unstable on the way to this state?
-        released: potential energy that it lost then, N mm.
+        left_branch: whether the body snapped, from a path that ends or is unstable, before this state.
+        released: potential energy released by the snap, N mm.
         failed_solves: solves that did not lead to it, before this one: other starts, parts of the step, and the whole
             steps that were cut. Their factorisations and evaluations are counted above, their iterations are not.
-        stagnated: did it end because the out-of-balance forces no longer fell?
-        estimate: of the error that the steps' length leaves; None where it is not known.
-        refused: is it an equilibrium that does not count: bodies lie too deep in each other, or its error is too large?
+        stagnated: whether it ended because the out-of-balance forces no longer decreased.
+        estimate: of the error due to the step size; None if unknown.
+        refused: whether it is a rejected equilibrium: too deep a penetration, or too large an error.
     """
 
     converged: bool
     reason: str
     ratio: float
+    _: KW_ONLY
     iterations: int = 0
     factorisations: int = 0
     evaluations: int = 0
@@ -70,14 +71,14 @@ class Outcome:
 
 
 def reason_in_words(reason: int) -> str:
-    """PETSc's reason for the end of a solve."""
+    """PETSc's reason for the end of a solve, in words."""
     name = REASONS.get(reason, str(reason))
     return WORDS.get(name, name)
 
 
 @dataclass(frozen=True)
 class Imbalance:
-    """How far a state is from equilibrium.
+    """Distance of a state from equilibrium.
 
     Attributes:
         residual_norm: of the out-of-balance forces |r − f|, N.
@@ -96,7 +97,7 @@ class Imbalance:
 
 
 def imbalance(system: System, load: Load, F: PETSc.Vec) -> Imbalance:
-    """Imbalance of the state that was evaluated last and has the residual `F`; collective."""
+    """Imbalance of the state evaluated last, which has the residual `F`; collective."""
     residual = F.getArray(readonly=True).copy()
     residual[load.held] = 0.0
     supports = np.union1d(load.held, load.loaded) if len(load.loaded) else load.held
@@ -111,11 +112,11 @@ def imbalance(system: System, load: Load, F: PETSc.Vec) -> Imbalance:
 
 
 class EquilibriumTest:
-    """(6.3.1): |r − f| / |²R − ²F| ≤ ε, and prescribed increments met; or the reason why it will not come to that.
+    """(6.3.1): |r − f| / |²R − ²F| ≤ ε, and prescribed increments met; or the reason for giving up.
 
     Args:
         tolerance: ε.
-        stagnation: iterations without a new least residual that count as stagnation.
+        stagnation: number of iterations without a new minimum of the residual that count as stagnation.
     """
 
     def __init__(self, tolerance: float, stagnation: int) -> None:
@@ -124,11 +125,11 @@ class EquilibriumTest:
         self._least_at = 0
 
     def begin(self, norm: float, feigned: float = 0.0) -> None:
-        """Begin a solve with the residual's norm at its start, and the size of forces that corrections may feign."""
+        """Begin a solve with the initial norm of the residual, and the size of spurious forces of corrections."""
         self._first, self._least, self._least_at = max(norm, feigned), norm, 0
 
     def is_met(self, found: Imbalance, tolerance: float, rounding: float) -> bool:
-        """Is it an equilibrium to ε = `tolerance`, or to `rounding`, N?"""
+        """Whether it is an equilibrium to ε = `tolerance`, or to `rounding`, N."""
         return found.missed <= self.tolerance and found.residual_norm <= max(tolerance * found.change, rounding)
 
     def is_lost(self, iteration: int, norm: float, divergence: float) -> int | None:

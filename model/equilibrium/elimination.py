@@ -1,8 +1,8 @@
-"""The plan of a sparse LU that stops before some unknowns: which fronts there are, and what goes into which.
+"""Symbolic phase of a partial sparse LU factorisation: its fronts, and which updates each one takes.
 
-Unknowns with the same neighbours form a *group*, as those of a node. A *front* is a dense matrix of the k unknowns
-that it eliminates, and of the m that these are coupled with by then. What it leaves of the latter, its update, m × m,
-is added to the front that eliminates the first of them. Fronts follow each other so that updates wait on a stack.
+Unknowns with the same neighbours form a *group*, such as those of a node. A *front* is a dense matrix of the k unknowns
+that it eliminates and of the m unknowns that these are then coupled with. Its update of the latter, m × m, is added to
+the front that eliminates the first of them. Fronts are ordered so that pending updates form a stack.
 """
 
 from dataclasses import dataclass
@@ -13,13 +13,13 @@ from petsc4py import PETSc
 from scipy import sparse
 
 ORDERING = "qmd"  # PETSc's quotient minimum degree; along a chain it finds an order without fill
-# Share of zeros that a front may have for the sake of being large: small ones cost more to move than to eliminate.
+# Fraction of zeros accepted for larger fronts: small fronts cost more to move than to eliminate.
 ZEROS = 0.15
 
 
 @dataclass(frozen=True)
 class Plan:
-    """How to eliminate the unknowns of every matrix with one pattern.
+    """Elimination plan for all matrices with the same pattern.
 
     Attributes:
         order: unknown at each place of the elimination, shape (n,); the kept ones come last.
@@ -29,7 +29,7 @@ class Plan:
         into: row in the next front of each of `rest`.
         child_start, child: fronts whose updates each front takes, in ranges.
         entry_start, entry, position: entries of the matrix that each front takes, in ranges, and where they go in it.
-        stack: numbers in the updates that wait at one time, at most.
+        stack: maximum size of the stack of updates, in numbers.
         multiplications: of a factorisation.
     """
 
@@ -53,7 +53,7 @@ def plan_elimination(indptr: np.ndarray, indices: np.ndarray, keep: np.ndarray) 
 
     Args:
         indptr, indices: the pattern, CSR with ascending columns and a full diagonal.
-        keep: which unknowns are kept, shape (n,), bool.
+        keep: whether each unknown is kept, shape (n,), bool.
 
     Raises:
         ValueError: if the pattern is not symmetric.
@@ -78,10 +78,10 @@ def plan_elimination(indptr: np.ndarray, indices: np.ndarray, keep: np.ndarray) 
 
 
 def _order(indptr: np.ndarray, indices: np.ndarray, kept: np.ndarray) -> np.ndarray:
-    """Order that leaves few entries, of the vertices of a graph, if those that are kept are moved to its end.
+    """Fill-reducing order of the vertices of a graph, with the kept ones moved to its end.
 
-    These are coupled with each other for that, so that a rank's elimination comes to its interface last: if it began
-    there it would carry the interface along.
+    The kept ones are coupled with each other, so that the elimination reaches the interface last: starting there would
+    carry the interface along.
     """
     n = len(indptr) - 1
     if n == 0:
@@ -131,7 +131,7 @@ def fingerprints(indptr: np.ndarray, indices: np.ndarray, keep: np.ndarray) -> n
 def group_graph(
     indptr: np.ndarray, indices: np.ndarray, group: np.ndarray, members: np.ndarray, size: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Neighbours of each group, itself among them, CSR; the rows of a group are all alike."""
+    """Neighbours of each group, itself among them, CSR; all rows of a group are equal."""
     n = len(size)
     out_ptr, out, seen, row = np.zeros(n + 1, np.int64), np.empty(len(indices), np.int64), np.full(n, -1), 0
     for g in range(n):
@@ -153,8 +153,8 @@ def find_fronts(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Fronts by groups.
 
-    A group joins the front of one that is eliminated before it if they are coupled with the same groups then, or nearly
-    so: with at most the share ZEROS of zeros in the front's rows.
+    A group joins the front of one eliminated before it if both are then coupled with the same groups, or nearly so:
+    with at most a fraction ZEROS of zeros in the front's rows.
 
     Args:
         indptr, indices: neighbours of the groups.
@@ -216,7 +216,7 @@ def find_fronts(
             pivots[j], zeros[j] = pivots[j] + pivots[best], zeros[best] + least
         if parent < n:
             sibling[j], first_child[parent] = first_child[parent], j
-    # the fronts, after those whose updates they take
+    # the fronts, each after those whose updates it takes
     fronts = eliminated - np.sum(absorbed) + 1
     own_start, own, rest_start = np.zeros(fronts + 1, np.int64), np.empty(n, np.int64), np.zeros(fronts + 1, np.int64)
     total = 0

@@ -1,4 +1,4 @@
-"""Where each unknown lies in PETSc's vectors, and the natural order that no partition changes."""
+"""Positions of the unknowns in PETSc's vectors, and the natural order, which is independent of the partition."""
 
 from typing import TYPE_CHECKING
 
@@ -16,15 +16,15 @@ SEATS = 2 * SEAT_DOFS  # unknowns of bottom and top seat
 
 
 class Layout:
-    """Vectors of a body's unknowns, with `extra` ones behind them on the last rank.
+    """Vectors of a body's unknowns, followed by `extra` ones on the last rank.
 
-    The body's unknowns keep DOLFINx's numbering, so that DOLFINx assembles into the enlarged vectors as they stand.
+    The body's unknowns keep DOLFINx's numbering, so that DOLFINx can assemble into the enlarged vectors directly.
 
     Attributes:
         owned: number of the body's unknowns on this rank; they come first.
         size_local, size: of a vector, on this rank and in all.
         start, stop: range of this rank's unknowns.
-        has_extra: does this rank own the extra unknowns?
+        has_extra: whether this rank owns the extra unknowns.
     """
 
     def __init__(self, space: fem.FunctionSpace, extra: int = 0) -> None:
@@ -46,7 +46,7 @@ class Layout:
 
     def extra(self, values: np.ndarray) -> np.ndarray:
         """The extra unknowns of this rank's part `values` of a vector, the same on every rank."""
-        mine = values[self.owned :].copy()  # empty but on the last rank, which has them
+        mine = values[self.owned :].copy()  # empty except on the last rank, which owns them
         return mine if self.comm.size == 1 else self.comm.bcast(mine, root=self.comm.size - 1)
 
     def values(self, vector: PETSc.Vec, dofs: np.ndarray) -> np.ndarray:
@@ -99,17 +99,17 @@ class LineLayout(Layout):
         return out
 
     def to_order(self, values: np.ndarray) -> np.ndarray:
-        """This rank's part of a vector → all by stations, elements and seats, the same on any number of ranks."""
+        """This rank's part of a vector → the whole by stations, elements and seats, the same on any number of ranks."""
         return np.concatenate(self.comm.allgather(values))[self._all_dofs]
 
     def from_order(self, ordered: np.ndarray) -> np.ndarray:
-        """This rank's part of what `to_order` gave."""
+        """The inverse of `to_order`: this rank's part."""
         everything = np.empty(len(ordered))
         everything[self._all_dofs] = ordered
         return everything[self.start : self.stop]
 
     def natural(self, field: Field) -> np.ndarray:
-        """A field at the last equilibrium in an order that no partition changes; cells on rank 0 only; collective."""
+        """A field at the last equilibrium in natural order; cells on rank 0 only; collective."""
         if field.where is Where.STATION:
             return self.gather(field.equilibrium)
         if field.where is Where.ELEMENT:
@@ -117,7 +117,7 @@ class LineLayout(Layout):
         return self.to_order(field.equilibrium) if field.where is Where.UNKNOWN else field.equilibrium
 
     def take(self, field: Field, natural: np.ndarray) -> None:
-        """Set a field's last equilibrium from what `natural` gave, the whole on every rank."""
+        """Set a field's last equilibrium from the output of `natural`, complete on every rank."""
         if field.where is Where.STATION:
             natural = natural[self.line.node]
         elif field.where is Where.ELEMENT:

@@ -1,11 +1,12 @@
-"""How far to go along a Newton correction where coils close and wire yields.
+"""Step length along a Newton correction when coils close and the wire yields.
 
-Contacts and yielding bend the residual: its norm often grows over a full correction that is right nevertheless, and a
-search for a smaller norm (PETSc's `bt`) then stalls. Measured instead is the out-of-balance work along the correction,
-s(λ) = y · F(x − λ y), as with Matthies and Strang: s falls from s(0) > 0 through zero where the energy is least.
+Contacts and yielding make the residual non-smooth: its norm often grows over a full correction that is nevertheless
+right, and a search for a smaller norm (PETSc's `bt`) then stalls. The criterion is instead the out-of-balance work
+along the correction, s(λ) = y · F(x − λ y), as with Matthies and Strang: s falls from s(0) > 0 through zero at the
+minimum of the energy.
 
-A correction that presses coils far into each other goes only as far as the contacts allow, and the next one finds them
-closed. If it was the one that meets the prescribed increments, balance is sought there before it goes on: the step is
+A correction that presses coils deeply into each other is shortened to what the contacts allow, and the next one finds
+them closed. If it was the one that meets the prescribed increments, equilibrium is found there first: the step is
 solved in parts, see coilset.model.equilibrium.newton.
 """
 
@@ -22,13 +23,13 @@ from coilset.model.equilibrium.system import System
 
 @dataclass(frozen=True)
 class StepLength:
-    """How far to go.
+    """Result of a line search.
 
     Attributes:
         contact_limit: factor of the correction that contacts allow.
-        value: factor of the correction that is left, from the search for the work's zero.
-        ends_on_the_way: is the step short of the prescribed increments, which the whole correction would meet?
-        feigns: is it taken because the forces without those that finite turns feign have fallen, and only these?
+        value: final factor of the correction, from the search for the zero of the work.
+        ends_on_the_way: whether the step misses prescribed increments that the full correction would meet.
+        feigns: whether it is accepted only because forces without the spurious ones of finite rotations have decreased.
     """
 
     contact_limit: float
@@ -41,10 +42,10 @@ class WorkSearch:
     """Search for the zero of the out-of-balance work.
 
     Args:
-        system: System; it is evaluated at the places that are tried.
+        system: System; it is evaluated at the trial points.
         limit: ContactLimit.
         control: NewtonControl.
-        foresees: has the body predicted its forces for the correction (Foresees)?
+        foresees: whether the body has predicted its forces for the correction (Foresees).
     """
 
     def __init__(self, system: System, limit: ContactLimit, control: NewtonControl, foresees: bool = False) -> None:
@@ -52,7 +53,7 @@ class WorkSearch:
         self._direction, self._free, self._trial, self._force = (system.layout.vector() for _ in range(4))
 
     def __call__(self, x: PETSc.Vec, y: PETSc.Vec, F: PETSc.Vec, load: Load, load_factor: float) -> StepLength:
-        """How far to go from `x` along −y, with the residual `F` at x; the three stay as they are; collective."""
+        """Step length from `x` along −y, with the residual `F` at x; the three are not changed; collective."""
         system, control = self.system, self.control
         self._x, self._load, self._load_factor = x, load, load_factor
         system.evaluate(x)
@@ -79,13 +80,13 @@ class WorkSearch:
         return StepLength(limit, length, pending and limit * length < 1.0, feigns)
 
     def _is_right(self, start: tuple[float, float], work: float, norm: float) -> bool:
-        """Have norm or work of the forces fallen?"""
+        """Whether norm or work of the forces have decreased."""
         return norm < start[1] or abs(work) <= self.control.accepted_work * abs(start[0])
 
     def _without_turning(self, limit: float, length: float) -> tuple[float, float]:
-        """Work and norm at the last evaluation, `length` along, without the forces that finite turns feign.
+        """Work and norm at the last evaluation, at `length`, without the spurious forces of finite rotations.
 
-        In a slender rod these grow over a correction that is right nevertheless; the next one takes them off.
+        In a slender rod these grow over a correction that is nevertheless right; the next one removes them.
         """
         if not self.foresees:
             return np.inf, np.inf
@@ -93,7 +94,7 @@ class WorkSearch:
         return self._force.dot(self._free), self._free_norm(self._force)
 
     def _at(self, length: float) -> tuple[float | None, float]:
-        """Work and norm of the forces on the free unknowns after `length`; None where the law finds no stress."""
+        """Work and norm of the forces on the free unknowns at `length`; None if the law finds no stress."""
         self._direction.copy(self._free)
         self._free.getArray()[self._load.held] = 0.0
         self._trial.waxpy(-length, self._direction, self._x)
@@ -126,7 +127,7 @@ class WorkSearch:
         return length
 
     def _back(self, start_norm: float, length: float, norm: float) -> float:
-        """Step length at which the norm is less than at the start, or the least that was found."""
+        """Step length at which the norm is smaller than at the start, or the smallest that was found."""
         best = norm, length
         while length > self.control.smallest_step_length and best[0] >= start_norm:
             length *= self.control.backtrack

@@ -1,4 +1,4 @@
-"""What a step asks for: increments of held unknowns and external forces, whole or a part of them."""
+"""The load of a step: prescribed increments and external forces, or a fraction of them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -11,7 +11,7 @@ from coilset.model.equilibrium.layout import Layout
 
 @dataclass(frozen=True)
 class Drag:
-    """A viscous resistance of the unknowns, over one step of time: the forces c (x − x₀).
+    """A viscous drag on the unknowns over one time step: the forces c (x − x₀).
 
     Attributes:
         stiffness: c by this rank's unknowns, shape (size_local,), N/mm and N mm.
@@ -22,7 +22,7 @@ class Drag:
     origin: np.ndarray
 
     def forces(self, increments: np.ndarray) -> np.ndarray:
-        """At increments, this rank's part, N and N mm."""
+        """Forces at given increments, this rank's part, N and N mm."""
         return self.stiffness * (increments - self.origin)
 
 
@@ -34,7 +34,7 @@ class Load:
         layout: Layout.
         held: places in this rank's part of a vector whose increments are prescribed, shape (h,).
         increments: shape (h,), mm and rad.
-        loaded: places that bear an external force, shape (f,).
+        loaded: places with an external force, shape (f,).
         forces: at the end of the step, shape (f,), N and N mm; moments are of the fixed frame.
         drag: Drag of the free unknowns, or None.
     """
@@ -52,7 +52,7 @@ class Load:
         return cls(layout, *_mine(layout, fixed), *_mine(layout, forces))
 
     def at(self, load_factor: float, reactions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Increments and forces of a part of the step.
+        """Increments and forces of a fraction of the step.
 
         Args:
             load_factor: from 0, the last equilibrium, to 1, the end of the step.
@@ -62,7 +62,7 @@ class Load:
         return load_factor * self.increments, forces
 
     def dragged(self, drag: Drag | None) -> "Load":
-        """The same load against a drag, or without."""
+        """The same load with another drag, or none."""
         return replace(self, drag=drag)
 
     def prescribed(self) -> float:
@@ -70,12 +70,12 @@ class Load:
         return float(np.sqrt(self._sum(self.increments @ self.increments)))
 
     def misses(self, increments: np.ndarray, load_factor: float) -> bool:
-        """Do the increments, this rank's part, miss prescribed ones by more than rounding? Collective."""
+        """Whether the increments, this rank's part, miss prescribed ones by more than rounding; collective."""
         off = np.abs(increments[self.held] - load_factor * self.increments).max(initial=0.0)
         return self._max(off) > 1e-12 * self._max(np.abs(self.increments).max(initial=0.0))
 
     def reached(self, increments: np.ndarray) -> float:
-        """Part of the step that the increments have reached, by the greatest prescribed one, else 1; collective."""
+        """Fraction of the step reached by the increments, from the largest prescribed one, else 1; collective."""
         size, part = 0.0, 1.0
         if len(self.held):
             greatest = int(np.abs(self.increments).argmax())

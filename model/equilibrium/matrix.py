@@ -1,8 +1,8 @@
-"""The tangent as a PETSc matrix whose rows have room for what touches.
+"""The tangent as a PETSc matrix whose rows have room for contacts.
 
-A row that is full would be moved at each new entry, and the whole matrix with it; so the rows are allocated anew where
-contacts close that the matrix has no places for. At the start of a solve they are allocated for the contacts that are
-closed then and no others, so that the rounding of a factorisation does not depend on how the spring came there.
+A new entry in a full row would move the whole matrix, so the rows are reallocated when contacts close for which the
+matrix has no entries. At the start of a solve they are allocated for exactly the contacts that are closed, so that the
+rounding of a factorisation does not depend on the history.
 """
 
 from collections.abc import Sequence
@@ -14,9 +14,9 @@ from coilset.model.body import Body
 from coilset.model.contact.base import Contribution
 from coilset.model.equilibrium.layout import Layout, LineLayout
 
-# Contacts lead out of the band of a line. Up to SMALL unknowns the fill of the natural order costs less than looking
-# for a better one; beyond, minimum degree: 2,560 elements in 2.5 windings take 17 ms a factorisation, in the band
-# 2.8 s; in 160 windings 25 ms and 54 ms.
+# Contacts add entries outside the band of a line. Up to SMALL unknowns the fill of the natural order costs less than
+# finding a better one; beyond, minimum degree: with 2,560 elements in 2.5 windings a factorisation takes 17 ms, in
+# band order 2.8 s; in 160 windings 25 ms and 54 ms.
 SMALL = 1500
 NATURAL, MINIMUM_DEGREE = "natural", "qmd"
 
@@ -30,7 +30,7 @@ class TangentMatrix:
 
     Attributes:
         mat: PETSc's matrix.
-        version: how often its rows were allocated; factors from before are of no use.
+        version: how often its rows were allocated; older factors are invalid.
     """
 
     def __init__(self, body: Body, layout: Layout) -> None:
@@ -46,10 +46,9 @@ class TangentMatrix:
         return MINIMUM_DEGREE if len(self._places) and self.layout.size > SMALL else NATURAL
 
     def clear(self, contributions: Sequence[Contribution], exactly: bool) -> None:
-        """Zero the matrix, with room for the contacts that are closed; `exactly` for these and no others."""
+        """Zero the matrix, with room for the closed contacts; with `exactly`, for no others."""
         places = self._contact_places(contributions)
-        fits = np.array_equal(places, self._places) if exactly else np.isin(places, self._places).all()
-        if fits:
+        if np.array_equal(places, self._places) or (not exactly and np.isin(places, self._places).all()):
             self.mat.zeroEntries()
         else:
             self._make_room(contributions)
@@ -59,12 +58,14 @@ class TangentMatrix:
         layout = self.layout
         for part in contributions:
             assert isinstance(layout, LineLayout)
-            dofs = layout.contact_dofs[part.dofs]
-            mine = ((dofs >= layout.start) & (dofs < layout.stop)).any(axis=1)
-            add_blocks(self.mat, dofs[mine], part.stiffness[mine], layout.start, layout.stop)
+            dofs, stiffness = layout.contact_dofs[part.dofs], part.stiffness
+            if layout.comm.size > 1:
+                mine = ((dofs >= layout.start) & (dofs < layout.stop)).any(axis=1)
+                dofs, stiffness = dofs[mine], stiffness[mine]
+            add_blocks(self.mat, dofs, stiffness, layout.start, layout.stop)
 
     def _make_room(self, contributions: Sequence[Contribution]) -> None:
-        """Allocate the rows anew: a node couples with neighbours, shear angles, and what it touches."""
+        """Reallocate the rows: a node couples with its neighbours, shear angles, and contacts."""
         layout = self.layout
         assert self._entries is not None
         entries = np.full(layout.size_local, self._entries.max(), dtype=PETSc.IntType)
@@ -79,12 +80,12 @@ class TangentMatrix:
         there = np.minimum(entries, layout.size - layout.size_local)
         self.mat.setPreallocationNNZ((here, there) if layout.comm.size > 1 else here)
         self.mat.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
-        self.mat.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)  # allocation on ranks forgets it
+        self.mat.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)  # lost in a parallel allocation
         self._places = self._contact_places(contributions)
         self.version += 1
 
     def _contact_places(self, contributions: Sequence[Contribution]) -> np.ndarray:
-        """A number for each contact element by its first and last dof, which tell between what it acts."""
+        """A number for each contact element from its first and last dof, which identify the bodies in contact."""
         if not contributions:
             return np.empty(0, dtype=np.int64)
         assert isinstance(self.layout, LineLayout)

@@ -1,10 +1,10 @@
 """The iteration methods as named sets of PETSc options: those of chapter 4.4 for the rod, Newton's for the solid.
 
-Only the step length of `newton` is written by hand, see coilset.model.equilibrium.line_search.
+Only the step length of `newton` is our own code, see coilset.model.equilibrium.line_search.
 
-A method's matrix is the tangent; what differs is how often it is set up, and what is made of it in between. The methods
-that keep it set it up anew after RENEWAL iterations in one step: where contacts close or a plastic spring is released,
-one matrix for the whole step comes to no rest, as the thesis found (6.3). `snes_lag_jacobian: 1000000` keeps it.
+A method's matrix is the tangent; the methods differ in how often it is assembled, and how it is modified in between.
+Those that keep it renew it after RENEWAL iterations within a step: when contacts close or a plastic spring is released,
+a single matrix for the whole step does not converge, as the thesis found (6.3). `snes_lag_jacobian: 1000000` keeps it.
 """
 
 from collections.abc import Mapping
@@ -17,14 +17,14 @@ from coilset.meshes.errors import InputError
 DIRECT = {"ksp_type": "preonly", "pc_type": "lu"}
 ON_RANKS = "coilset.model.equilibrium.chain_lu.ChainPC"
 RENEWAL = 10
-# one Newton step; PETSc's Broyden and Anderson take no matrix of their own, but such a step as preconditioner
+# one Newton step: PETSc's Broyden and Anderson methods use no matrix, but such a step as a preconditioner
 ONE_STEP = {
     "snes_type": "newtonls", "snes_max_it": 1, "snes_convergence_test": "skip", "snes_norm_schedule": "none", **DIRECT,
 }  # fmt: skip
 KEPT = {"snes_linesearch_type": "cp", "snes_lag_jacobian": RENEWAL, "snes_lag_jacobian_persists": True}
 PRECONDITIONED = {f"npc_{key}": value for key, value in (ONE_STEP | KEPT).items()}
 
-FIRST = {**ONE_STEP, "snes_linesearch_type": "basic"}  # does nothing but meet the prescribed increments
+FIRST = {**ONE_STEP, "snes_linesearch_type": "basic"}  # only meets the prescribed increments
 
 MethodName = Literal["newton", "modified-newton", "modified-newton-anderson", "bfgs", "broyden", "arc-length"]
 METHODS: dict[str, dict[str, Any]] = {  # each MethodName
@@ -36,7 +36,7 @@ METHODS: dict[str, dict[str, Any]] = {  # each MethodName
         "snes_type": "newtonls", "snes_linesearch_type": "cp", "snes_lag_jacobian": RENEWAL, "snes_max_it": 100,
         **DIRECT,
     },
-    # the same made faster by mixing the last states; with one of them it is Aitken's acceleration for vectors
+    # the same, accelerated by mixing the last states; with one of them it is Aitken's method for vectors
     "modified-newton-anderson": {"snes_type": "anderson", "snes_anderson_m": 10, "snes_max_it": 100, **PRECONDITIONED},
     # Matthies and Strang (4.4.6-4.4.13), with the line search on the out-of-balance work
     "bfgs": {
@@ -48,13 +48,13 @@ METHODS: dict[str, dict[str, Any]] = {  # each MethodName
         "snes_linesearch_type": "cp", "snes_max_it": 100, "snes_npc_side": "left",
         "snes_function_type": "unpreconditioned", **PRECONDITIONED, "npc_snes_lag_jacobian": 5,
     },
-    # the load factor as one more unknown: goes past limit points within a step; the arc is one of displacements
+    # the load factor as one more unknown: passes limit points within a step; the arc is measured in displacements
     "arc-length": {"snes_type": "newtonal", "snes_newtonal_psisq": 0.0, "snes_max_it": 30, **DIRECT},
 }  # fmt: skip
 
 
 ARC_LENGTH = "newtonal"  # SNES type
-FORGETFUL = ("newtonls", "newtontr")  # SNES types that keep nothing from one step to the next
+FORGETFUL = ("newtonls", "newtontr")  # SNES types without memory between steps
 
 _SOLID = {"snes_type": "newtonls", "snes_linesearch_type": "bt", "snes_max_it": 25, "snes_max_linear_solve_fail": 1}
 _MULTIGRID = {
@@ -106,22 +106,22 @@ class Method:
 
     @property
     def searches(self) -> bool:
-        """Are corrections scaled by our own search? They are not where the user names a line search of his own."""
+        """Whether corrections are scaled by our own search; not if the user selects one of PETSc's line searches."""
         return self.name == "newton" and "snes_linesearch_type" not in self.of_the_user
 
     @property
     def own_test(self) -> bool:
-        """Does PETSc's own test, which the user asks for, take the place of (6.3.1)?"""
+        """Whether PETSc's own test, if the user selects it, replaces (6.3.1)."""
         return "snes_convergence_test" in self.of_the_user
 
     @property
     def is_arc_length(self) -> bool:
-        """Is the load factor one more unknown?"""
+        """Whether the load factor is one more unknown."""
         return self.options.get("snes_type") == ARC_LENGTH
 
     @property
     def remembers(self) -> bool:
-        """Does it keep vectors from one step to the next, of which it must be rid?"""
+        """Whether it keeps vectors from one step to the next, which must be discarded."""
         return self.options.get("snes_type") not in FORGETFUL
 
     @property
@@ -147,14 +147,14 @@ def rod_method(name: str, ranks: int, extra: Mapping[str, Any] | None = None, ar
     Args:
         name: a key of METHODS.
         ranks: size of the communicator.
-        extra: more options, which win.
+        extra: further options, which take precedence.
         arc: length of a step of the arc-length method, mm.
 
     Raises:
         InputError: if there is no such method.
     """
     check_method(name)
-    # a line search that finds nothing must not pass for a small step: stol = 0
+    # a failed line search must not count as a small step: stol = 0
     chosen = {"snes_stol": 0.0} | METHODS[name]
     prefix = "npc_" if "npc_pc_type" in chosen else ""
     if ranks > 1:
@@ -172,7 +172,7 @@ def solid_method(name: str, unknowns: int, extra: Mapping[str, Any] | None = Non
     Args:
         name: a key of SOLID_METHODS, or ``auto`` to choose by size.
         unknowns: their number.
-        extra: more options, which win.
+        extra: further options, which take precedence.
 
     Raises:
         InputError: if there is no such method.

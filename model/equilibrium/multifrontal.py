@@ -1,12 +1,12 @@
-"""A sparse LU that can stop before some unknowns.
+"""A partial sparse LU factorisation.
 
-With the unknowns i that are eliminated and the unknowns s that are kept it finds the factors of A_ii and
+With the eliminated unknowns i and the kept unknowns s it computes the factors of A_ii and
 
     S = A_ss − A_si A_ii⁻¹ A_is.
 
-PETSc's own LU eliminates all or nothing; S would then cost one solve for every kept unknown. Pivots are not exchanged,
-as in PETSc's. Those of a symmetric matrix have the signs of its eigenvalues (Sylvester), and the negative ones of A_ii
-and of S add up to those of A (Haynsworth).
+PETSc's own LU eliminates all unknowns; S would then cost one solve for every kept unknown. As in PETSc, there is no
+pivoting. The pivots of a symmetric matrix have the signs of its eigenvalues (Sylvester), and the numbers of negative
+ones of A_ii and of S add up to that of A (Haynsworth).
 """
 
 import numpy as np
@@ -36,7 +36,7 @@ class PartialLU:
         self._places = np.empty(len(plan.order))
 
     def factorise(self, values: np.ndarray) -> bool:
-        """Eliminate; False if a pivot is zero or no number.
+        """Eliminate; False if a pivot is zero or NaN.
 
         Args:
             values: entries of the matrix in the order of the pattern.
@@ -77,7 +77,7 @@ def eliminate(
     factors: np.ndarray,
     schur: np.ndarray,
 ) -> int:
-    """Factors of all fronts, each k rows of U over m rows of L; number of negative pivots, −1 where one is no pivot."""
+    """Factors of all fronts, each k rows of U over m rows of L; number of negative pivots, −1 if one is unusable."""
     fronts, top, written, negative = len(first) - 1, 0, 0, 0
     for f in range(fronts):
         k, m = first[f + 1] - first[f], rest_start[f + 1] - rest_start[f]
@@ -114,7 +114,7 @@ def eliminate(
 
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
 def eliminate_pivots(F: np.ndarray, k: int) -> int:
-    """Eliminate the first k unknowns of a front, row after row; number of negative pivots, −1 where one is no pivot."""
+    """Eliminate the first k unknowns of a front, row after row; number of negative pivots, −1 if one is unusable."""
     w, negative = len(F), 0
     for i in range(w):
         row, p, stop = F[i], 0, min(i, k)

@@ -27,6 +27,7 @@ from coilset.model.equilibrium.snes import SnesFactory
 from coilset.model.equilibrium.system import System
 
 log = logging.getLogger("coilset.steps")
+each_iteration = logging.getLogger("coilset.iterations")  # silent unless its level is set
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class Newton:
         tolerance: ε of (6.3.1).
         control: NewtonControl.
         limit: ContactLimit; None: corrections are not limited.
-        augmentation_tolerance: greatest penetration, mm, that is let be; a greater one is worked off by augmented
+        augmentation_tolerance: maximum penetration, mm, that is let be; a greater one is worked off by augmented
             Lagrange: contacts are pressed harder by what they have sunk in, and the step is solved on.
         prepare: called with PETSc's matrix after each tangent, for preconditioners that are not PETSc's.
 
@@ -82,6 +83,7 @@ class Newton:
         self.ratio, self._factorisations, self._at_step_start = np.inf, 0, True
         self._failed = 0
         self._foreseen = False  # have tangents of the present attempt been built with foreseen forces?
+        self._step_length: float | None = None  # of the last correction; None where there is none, or PETSc's own
         self._corrected: float | None = None  # share of the last correction, where it led to the present state
         me = weakref.proxy(self)
         self._factory = SnesFactory(
@@ -110,10 +112,13 @@ class Newton:
     # ---- solve -----------------------------------------------------------------------------------------------------
 
     def solve(self, load: Load, start: Start | None = None) -> Outcome:
-        """As `_attempt`; where tangents with foreseen forces fail, once more with the true ones; collective."""
+        """As `_attempt`; where tangents with foreseen forces fail, once more with the true ones; collective.
+
+        What fails where something touches has had the true ones nearly all the way, and fails again.
+        """
         self._foreseen = False
         outcome = self._attempt(load, start)
-        if outcome.converged or not self._foreseen:
+        if outcome.converged or not self._foreseen or self.system.touches:
             return outcome
         self.foresees = self.search.foresees = False
         try:
@@ -173,9 +178,16 @@ class Newton:
         reason = self.snes.getConvergedReason()
         system.evaluate(X)
         return Outcome(
-            reason > 0, reason_in_words(reason), self.ratio, first + iterations, self._factorisations,
-            system.evaluations - evaluations, linear, self._failed, reason == Reason.DIVERGED_LOCAL_MIN,
-        )  # fmt: skip
+            converged=reason > 0,
+            reason=reason_in_words(reason),
+            ratio=self.ratio,
+            iterations=first + iterations,
+            factorisations=self._factorisations,
+            evaluations=system.evaluations - evaluations,
+            linear_iterations=linear,
+            failed_solves=self._failed,
+            stagnated=reason == Reason.DIVERGED_LOCAL_MIN,
+        )
 
     def _foresee_start(self, guess: PETSc.Vec) -> None:
         """Take a start for a correction of the last equilibrium: its finite turns feign forces like any other's."""
@@ -262,6 +274,7 @@ class Newton:
             self.system.evaluate(x)
             self.system.predict(y)
         step = self.search(x, y, self.F, self.load, self.load_factor)
+        self._step_length = step.contact_limit * step.value
         ahead = self.foresees and (step.feigns or self.control.foreseen_forces or not self.system.touches)
         self._corrected = step.contact_limit * step.value if ahead else None
         for factor in (step.contact_limit, step.value):
@@ -276,7 +289,7 @@ class Newton:
         """SNES's convergence test."""
         norm, X = norms[2], self.system.increments
         if iteration == 0:
-            body = self.system.body
+            body, self._step_length = self.system.body, None
             self.test.begin(norm, body.axial_force if self.foresees and isinstance(body, Foresees) else 0.0)
         if not np.isfinite(norm):
             return NOT_A_NUMBER
@@ -289,6 +302,7 @@ class Newton:
             self.system.residual(X, self.load, self.load_factor, balance)
         found = imbalance(self.system, self.load, balance)
         self.ratio = found.ratio
+        self._tell(iteration, norm)
         tolerance = self.test.tolerance if self.load_factor == 1.0 else self.control.part_tolerance
         if self.test.is_met(found, tolerance, self.system.body.rounding(X.getArray(readonly=True))):
             return Reason.CONVERGED_FNORM_RELATIVE
@@ -296,3 +310,9 @@ class Newton:
             return Reason.DIVERGED_MAX_IT
         lost = None if self.method.is_arc_length else self.test.is_lost(iteration, norm, snes.getDivergenceTolerance())
         return Reason.ITERATING if lost is None else lost
+
+    def _tell(self, iteration: int, norm: float) -> None:
+        length = "" if self._step_length is None else f", step length {self._step_length:.3g}"
+        part = "" if self.load_factor == 1.0 else f", at {self.load_factor:.3g} of the step"
+        balance = f", out of balance {self.ratio:.2e}" if np.isfinite(self.ratio) else ""
+        each_iteration.debug("  iteration %d: residual %.3e N%s%s%s", iteration, norm, balance, length, part)

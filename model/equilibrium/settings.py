@@ -85,7 +85,7 @@ class StepControl:
         regrowth: factor by which an equal step that was cut grows again, up to 1.
         probe: travel by which the initial rate is measured, in free lengths.
         unstable_cuts: how often a step is cut where it ends in an unstable state, before its path is left.
-        branch_amplitude: greatest displacement of the weakest mode by which a path is left at first, in wire radii.
+        branch_amplitude: maximum displacement of the weakest mode by which a path is left at first, in wire radii.
         snap_advance: way of a spring that snaps in one step of it, in wire radii.
         snap_steps: of these at most, until it rests.
         snap_failures: of these that may fail, or go more than four times as far, one after the other.
@@ -109,7 +109,7 @@ class StepControl:
     least_factor: Fraction = 0.25
     regrowth: Growth = 2.0
     probe: Fraction = 1e-3
-    unstable_cuts: Count = 6
+    unstable_cuts: Count = 8
     branch_amplitude: Positive = 0.2
     snap_advance: Positive = 1.0
     snap_steps: Count = 200

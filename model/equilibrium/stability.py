@@ -30,7 +30,7 @@ class Weakest:
     Attributes:
         negative: number of negative eigenvalues of the symmetric part of the tangent.
         value: least of the eigenvalues nearest to zero, N/mm, with rotations counted in coil radii.
-        mode: increments whose greatest displacement is 1 mm.
+        mode: increments whose maximum displacement is 1 mm.
     """
 
     negative: int
@@ -113,12 +113,15 @@ class Stability:
         natural = [rng.normal(size=self.layout.size) for _vector in range(BLOCK)]
         return [self.layout.vector(self.layout.from_order(values).copy()) for values in natural]
 
-    def greatest_displacement(self, mode: PETSc.Vec) -> float:
-        """Of the stations, mm; collective."""
+    def displacements(self, mode: PETSc.Vec) -> np.ndarray:
+        """Of the stations, shape (n, 3), mm; collective."""
         assert isinstance(self.layout, LineLayout)
         n = len(self.layout.station_dofs)
-        natural = self.layout.to_order(mode.getArray(readonly=True))[: 6 * n].reshape(n, 6)
-        return float(np.linalg.norm(natural[:, :3], axis=1).max())
+        return self.layout.to_order(mode.getArray(readonly=True))[: 6 * n].reshape(n, 6)[:, :3]
+
+    def greatest_displacement(self, mode: PETSc.Vec) -> float:
+        """Of the stations, mm; collective."""
+        return float(np.linalg.norm(self.displacements(mode), axis=1).max())
 
 
 def negative_pivots(factors: PETSc.PC) -> int:
@@ -153,7 +156,7 @@ def _rayleigh_ritz(matrix: PETSc.Mat, scale: PETSc.Vec, block: list[PETSc.Vec]) 
 
 
 def vanishing(points: Sequence[tuple[float, float]]) -> float:
-    """Where the least eigenvalue vanishes, by a parabola through its last three values; NaN if it does not fall.
+    """Where the lowest eigenvalue vanishes, by a parabola through its last three values; NaN if it does not fall.
 
     Args:
         points: travel, mm, and eigenvalue of stable states, in the order of the path.

@@ -1,7 +1,7 @@
 """What the length of the steps leaves wrong: an estimate after each step, and the size that the next one may have.
 
 A body that EstimatesErrors gives the work ΔW of the error of its inner forces on the step's deformation. By the
-principle of virtual work, with the step's own increments in the place of the deformation that a small travel makes, the
+principle of virtual work, with the step's own increments instead of the deformation that a small travel makes, the
 driven head's force is wrong by
 
     ΔF = ΔW / Δs   at its height,   and its height by   Δs_F = ΔF / (∂F/∂s)   at its force,
@@ -23,7 +23,7 @@ from coilset.model.equilibrium.settings import StepControl
 from coilset.model.state import Where
 
 ORDER = 3
-# what is remembered: greatest force, N, travel of the first step of all, mm, and how many contact elements are closed
+# what is remembered: maximum force, N, travel of the first step of all, mm, and how many contact elements are closed
 GREATEST, FIRST, CLOSED = range(3)
 
 
@@ -49,7 +49,7 @@ class StepError:
 
     Args:
         control: AxialControl of a System whose body EstimatesErrors.
-        accuracy: error of force that is asked for, over the greatest force so far.
+        accuracy: error of force that is asked for, over the maximum force so far.
         steps: StepControl.
     """
 
@@ -65,8 +65,8 @@ class StepError:
 
         Args:
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
-            controls: does the length of steps hang on it? A kink then counts as in the middle of the step. Where steps
-                are equal it lies somewhere in each, and the errors of many would not add up as those of the worst.
+            controls: whether the step size is controlled by it. A kink then counts as in the middle of the step. In
+                equal steps it lies anywhere, and the errors of many steps would not add up as those of the worst case.
         """
         control, comm = self.control, self.control.system.comm
         memory, last = self._memory.trial, self._memory.equilibrium

@@ -8,7 +8,15 @@ from dolfinx import la
 from petsc4py import PETSc
 
 from coilset.model.body import Body, Foresees, HasRotations, Moment, PassesTime
-from coilset.model.contact.base import Augmented, Contact, Contribution, HasMemory, LimitsStep, TrialPositions
+from coilset.model.contact.base import (
+    Augmented,
+    BearsOnWire,
+    Contact,
+    Contribution,
+    HasMemory,
+    LimitsStep,
+    TrialPositions,
+)
 from coilset.model.equilibrium.layout import Layout, LineLayout
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import TangentMatrix
@@ -45,6 +53,7 @@ class System:
             internal forces `reactions` beside the body's fields.
         increments: PETSc's vector of the increments on trial, that of the state.
         internal: internal forces at the last evaluation, without constraints and loads, that of the state.
+        bearing: does each of the contacts bear on the wire (BearsOnWire)?
         last: Evaluation.
         evaluations: number of states that were evaluated so far.
     """
@@ -67,6 +76,7 @@ class System:
         self._rotating = body if isinstance(body, HasRotations) else None
         self._foreseeing = body if isinstance(body, Foresees) else None
         self._limiting = [k for k, contact in enumerate(self.contacts) if isinstance(contact, LimitsStep)]
+        self.bearing = [isinstance(contact, BearsOnWire) for contact in self.contacts]
         self._augmented = [contact for contact in self.contacts if isinstance(contact, Augmented)]
         self._is_rotation = np.zeros(layout.size_local, dtype=bool)
         if self._rotating is not None:
@@ -149,7 +159,7 @@ class System:
 
     @property
     def max_penetration(self) -> float:
-        """Greatest penetration of coils and seats at the last evaluation, mm; infinite where no stress was found."""
+        """Maximum penetration of coils and seats at the last evaluation, mm; infinite where no stress was found."""
         if not self.last.has_stress:
             return np.inf
         parts = [self.last.contributions[k] for k in self._limiting] if self.last.contributions else []

@@ -1,27 +1,27 @@
-"""Creep beside plastic flow at one point, D = D_el + D_pl + D_c, over an increment of time, with the tangent.
+"""Creep combined with plastic flow at one point, D = D_el + D_pl + D_c, over an increment of time, with the tangent.
 
 The equivalent creep strain c grows under the equivalent stress σ (von Mises) as
 
     c = φ(σ) t^p,   φ = c₀ (σ/σ₀)^N  (Norton-Bailey)   or   c₀ sinh(σ/σ₀)^N  (Garofalo's form),
 
-with t in hours, counted faster where it is warmer, see `creep_law`. Where the stress changes, strain hardening takes
-the rate at the present c, time hardening at the present t. Both become a smooth rate in other variables,
+with t in hours, scaled with temperature, see `creep_law`. When the stress changes, strain hardening uses the rate at
+the current c, time hardening the rate at the current t. Both become smooth rates in other variables,
 
     strain hardening   u = c^(1/p),   du/dt = φ^(1/p)          time hardening   u = c,   du/d(t^p) = φ,
 
-so that c(t) is met exactly under constant stress, from t = 0 on too, where dc/dt is infinite. The direction is that of
-the stress's deviator: creep flows from T, not from T − B, and leaves plastic work and back stress as they are.
+so that c(t) is exact under constant stress, even from t = 0, where dc/dt is infinite. The direction is that of the
+stress deviator: creep depends on T, not on T − B, and does not change plastic work and back stress.
 
-In time the two stages of an L-stable diagonally implicit Runge-Kutta method of second order (γ = 1 − 1/√2; Alexander,
-SIAM J. Numer. Anal. 14, 1977) follow each other,
+Time integration uses the two stages of an L-stable, diagonally implicit Runge-Kutta method of second order
+(γ = 1 − 1/√2; Alexander, SIAM J. Numer. Anal. 14, 1977),
 
     x₁ = [c] from 0 to γ at σ₁,      x₂ = [c] from 0 to 1 − γ at σ₁, and from there to 1 at σ₂,
 
-each solved for its creep strain x by Newton's method, x = X(σ(Δε − x)). The stress σ of a given strain is what the
-return mapping says: elasticity and plasticity enter as one function with its tangent, so that both flows are there at
-once and nothing is split. Without yield X(σ(Δε − x)) is convex and falls with x, so that Newton from x = 0 goes to the
-root from one side, whatever the step of time is. That root is the answer where its stress does not flow, and else where
-Newton begins again.
+each solved for its creep strain x by Newton's method, x = X(σ(Δε − x)). The stress σ of a given strain comes from the
+return mapping: elasticity and plasticity enter as one function with its tangent, so that both flows act simultaneously
+without operator splitting. Without yield X(σ(Δε − x)) is convex and decreases with x, so that Newton's method from x =
+0 approaches the root from one side for any time step. This root is the solution if its stress does not yield, and
+otherwise the starting point of a second iteration.
 """
 
 import math
@@ -36,7 +36,7 @@ from coilset.model.material.kernel import KERNEL
 from coilset.model.material.rod import return_map as rod_return_map
 from coilset.model.material.solid import return_map as solid_return_map
 
-# What the law's kernels take in the place of the parameter array where time passes: that array, the same without yield,
+# Replaces the parameter array of the law's kernels where time passes: that array, the same without yield,
 # and the array of creep.
 Creeping = namedtuple("Creeping", "plastic elastic viscous")
 
@@ -120,9 +120,9 @@ def elastoplastic(p: np.ndarray, old: np.ndarray, de: np.ndarray, new: np.ndarra
 
 @njit(**KERNEL)
 def _warmed(law: Creeping, old: np.ndarray, de: np.ndarray, part: float, start: np.ndarray, strain: np.ndarray) -> None:
-    """What a stage starts from: the elastic strains of `old` at the stage's temperature, and the mechanical strain.
+    """Start of a stage: the elastic strains of `old` at the stage's temperature, and the mechanical strain.
 
-    σ = C(T) : ε_el, so that stress follows the elastic constants at once where it is heated, and comes back.
+    σ = C(T) : ε_el, so that on heating the stress follows the elastic constants at once, and recovers on cooling.
     """
     n, p = de.shape[0], law.plastic
     columns = 2 * n + 2
@@ -189,7 +189,7 @@ def _newton(
     C: np.ndarray,
     A: np.ndarray,
 ) -> int:
-    """Newton's method for x from where it stands, with halved corrections where they do not help; as `_stage`."""
+    """Newton's method for x from its current value, with corrections halved if they do not help; as `_stage`."""
     n = strain.shape[0]
     wanted, r, step = np.empty(n), np.empty((n, 1)), np.zeros(n)
     last, part = math.inf, 1.0
@@ -237,7 +237,7 @@ def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 @njit(**KERNEL)
 def _eliminated(M: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(1 + M)⁻¹ b by elimination with pivots; M is overwritten."""
+    """(1 + M)⁻¹ b by elimination with pivoting; M is overwritten."""
     n, x = M.shape[0], b.copy()
     for i in range(n):
         M[i, i] += 1.0

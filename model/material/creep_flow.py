@@ -1,4 +1,4 @@
-"""How fast a point creeps: the strain that creep adds under constant stress, and its slopes; see `creep`."""
+"""Creep rates of a point: the creep strain under constant stress, and its slopes; see `creep`."""
 
 import math
 

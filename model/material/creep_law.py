@@ -1,6 +1,6 @@
-"""The constants of creep out of a material file, as the kernels of `creep` take them, and how warmth counts time.
+"""The constants of creep from a material file, in the form for the kernels of `creep`, and the scaling of time.
 
-Time is counted faster where it is warmer (Orr, Sherby and Dorn, Trans. ASM 46, 1954): an hour at T is worth
+Time is scaled with temperature (Orr, Sherby and Dorn, Trans. ASM 46, 1954): an hour at T corresponds to
 
     exp(−Q/R (1/T − 1/T₀))
 
@@ -16,7 +16,7 @@ from coilset.model.material.file import Creep
 from coilset.model.material.functions import B1, K0, N_ROWS, NODES, ROW_LENGTH, ROWS_START
 
 GAS_CONSTANT = 8.31446261815324  # J/(mol K)
-# The clock of a body: hours since the start, temperature (K), and hours at T₀ that they are worth.
+# The clock of a body: hours since the start, temperature (K), and the equivalent hours at T₀.
 HOURS, TEMPERATURE, WORTH = range(3)
 CREEP_COLUMNS = ("T", "c")  # what creep adds to a point's state: temperature, K, and equivalent creep strain
 
@@ -34,7 +34,7 @@ class CreepLaw:
         self._gauss, self._weights = np.polynomial.legendre.leggauss(12)
 
     def worth(self, hours: float, start: float, end: float) -> float:
-        """Hours at T₀ that some hours are worth whose temperature goes linearly from one value to another, K."""
+        """Equivalent hours at T₀ of hours in which the temperature changes linearly between two values, K."""
         temperatures = start + 0.5 * (1.0 + self._gauss) * (end - start)
         factors = np.exp(
             -self.data.activation_energy / GAS_CONSTANT * (1.0 / temperatures - 1.0 / self.data.temperature)
@@ -42,7 +42,7 @@ class CreepLaw:
         return hours * 0.5 * float(self._weights @ factors)
 
     def clock(self, hours: float, temperature: float, before: np.ndarray | None = None) -> np.ndarray:
-        """The clock, shape (3,), at a time and temperature, which goes linearly from that of the clock `before`."""
+        """The clock, shape (3,), at a time and temperature; the temperature has changed linearly since `before`."""
         if before is None:
             return np.array([hours, temperature, 0.0])
         worth = self.worth(hours - before[HOURS], float(before[TEMPERATURE]), temperature)
@@ -70,7 +70,7 @@ class CreepLaw:
 
 
 def without_yield(plastic: np.ndarray) -> np.ndarray:
-    """A parameter array whose first yield lies at infinity."""
+    """A parameter array with an infinite yield stress."""
     elastic = plastic.copy()
     rows = elastic[ROWS_START : ROWS_START + int(plastic[N_ROWS]) * ROW_LENGTH].reshape(-1, ROW_LENGTH)
     rows[:, [K0, B1]] = np.inf

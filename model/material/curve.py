@@ -1,15 +1,12 @@
-"""Hardening as people have it: a curve of stress over plastic strain, by a law or by a table, as k² over plastic work.
+"""Hardening curves: stress over plastic strain, from a law or a table, converted to k² over plastic work.
 
 In tension without back stress σ = √(3/2) k (3.1.4), and the plastic work is b* = ∫ σ dεᵖ (3.1.8). A curve σ(εᵖ) gives
 
     k²(b*) = ⅔ σ²,   dk²/db* = 4/3 dσ/dεᵖ,
 
-at as many places as keep what is interpolated between them (cubic, with these slopes) exact to 1e-5. Beyond its end the
-curve stays level.
+at enough points to make the cubic interpolation with these slopes exact to 1e-5. Beyond its end the curve is constant.
 """
 
-import csv
-import itertools
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Literal, Self
@@ -21,11 +18,12 @@ from scipy.integrate import cumulative_simpson
 from scipy.interpolate import PchipInterpolator
 
 from coilset.meshes.errors import InputError
-from coilset.model.entries.entry import Strict, shortened
+from coilset.model.entries.entry import Strict
+from coilset.model.material.columns import read_columns
 
 NODES = 65  # of a law's curve
 FINE = 32  # intervals of the integral between two nodes
-FIRST = 1e-4  # of the strain at its end, where the nodes of a law begin to lie in geometric progression
+FIRST = 1e-4  # of the final strain, where the nodes of a law start to form a geometric progression
 ELASTIC = 1e-5  # plastic strain up to which a point of a table counts as elastic
 BETWEEN = 4  # nodes in each interval of a table
 
@@ -36,9 +34,9 @@ Sampled = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 class Curve(Strict):
-    """What all laws of a curve have."""
+    """Common entries of all curves."""
 
-    up_to: Annotated[Strain, Field(description="plastic strain at which the curve ends; it stays level beyond")] = 0.3
+    up_to: Annotated[Strain, Field(description="plastic strain at which the curve ends; it is constant beyond")] = 0.3
 
     def stress(self, strain: np.ndarray) -> np.ndarray:
         """True stress at plastic strains, N/mm²."""
@@ -91,8 +89,8 @@ class Voce(Curve):
 class RambergOsgood(Curve):
     """Ramberg and Osgood's law, εᵖ = 0.002 (σ/Rp)ⁿ, from an elastic limit on.
 
-    The law itself has plastic strain at any stress, here it begins at the elastic limit; what it has until then, as a
-    rule some hundredths of 0.2 %, is left out of the strain.
+    The law itself has plastic strain at any stress. Here plastic strain starts at the elastic limit; the law's value
+    there, usually some hundredths of 0.2 %, is subtracted.
     """
 
     law: Annotated[Literal["ramberg-osgood"], Field(description="the word that chooses this law")]
@@ -120,7 +118,7 @@ class RambergOsgood(Curve):
         return self.stress(strain) / (self.n * (strain + self._before))
 
     def sampled(self, young_modulus: float, shear_modulus: float) -> Sampled:
-        """The curve at its nodes, which begin to lie in geometric progression at the strain left out."""
+        """The curve at its nodes, in a geometric progression that starts at the subtracted strain."""
         total = np.geomspace(self._before, self.up_to + self._before, 2 * NODES)
         return sample(total - total[0], self.stress, self.slope)
 
@@ -128,7 +126,7 @@ class RambergOsgood(Curve):
 class Table(Strict):
     """Points of a test in tension or torsion, with monotone cubic interpolation between them (Fritsch and Carlson).
 
-    Torsion is that of a thin tube, or of a bar from which the shear stress at the surface has been found.
+    Torsion is that of a thin tube, or of a bar with the shear stress evaluated at the surface.
     """
 
     law: Annotated[Literal["table"], Field(description="the word that chooses this form")]
@@ -143,10 +141,12 @@ class Table(Strict):
     ] = None
     test: Annotated[Literal["tension", "torsion"], Field(description="what the test was")] = "tension"
     strains: Annotated[
-        Literal["total", "plastic"], Field(description="whether elastic strain is in them; it is taken off then")
+        Literal["total", "plastic"],
+        Field(description="total or plastic strains; the elastic part of total strains is subtracted"),
     ] = "total"
     measure: Annotated[
-        Literal["true", "engineering"], Field(description="of a tension test; engineering is of the first length, area")
+        Literal["true", "engineering"],
+        Field(description="of a tension test; engineering: relative to the initial length and area"),
     ] = "true"
 
     @field_validator("file")
@@ -168,7 +168,7 @@ class Table(Strict):
         return self
 
     def points(self) -> tuple[np.ndarray, np.ndarray]:
-        """Strain and stress as they are given.
+        """Strain and stress as given.
 
         Raises:
             InputError: a file that cannot be read or is wrong.
@@ -203,11 +203,11 @@ class Table(Strict):
         file = self.file or ""
         if len(strain) < 2 or (strain[0] > 0.0 and self.strains == "plastic"):
             raise InputError(
-                "a table wants a point at plastic strain 0, where yielding begins, and one beyond", "", file
+                "a table needs a point at plastic strain 0, where yielding begins, and one beyond", "", file
             )
         if strain[0] > 0.0:
             raise InputError(f"the first point has a plastic strain of {strain[0]:.3g} already: give one that is still "
-                             "elastic, or look whether the elastic constants belong to it", "", file)  # fmt: skip
+                             "elastic, or check the elastic constants", "", file)  # fmt: skip
         for problem, values, least in (("plastic strain does not ascend", strain, 0.0), ("stress falls", stress, None)):
             steps = np.diff(values)
             wrong = np.flatnonzero(steps <= least if least is not None else steps < 0.0)
@@ -225,33 +225,16 @@ AnyCurve = Swift | Voce | RambergOsgood | Table
 
 
 def read_table(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
-    """Columns strain and stress of a CSV file; lines at its top that begin with # are remarks.
+    """Columns strain and stress of a CSV file; lines at its top that begin with # are comments.
 
     Raises:
         InputError: if it cannot be read, or a column or a number is missing or wrong.
     """
-    try:
-        with open(path, newline="", encoding="utf-8-sig") as file:
-            lines = itertools.dropwhile(lambda line: line.startswith("#"), file)
-            rows = list(csv.DictReader(lines))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", "", path) from None
-    columns = []
+    table = read_columns(path)
     for name in ("strain", "stress"):
-        if not rows or name not in rows[0]:
-            raise InputError("is missing; the columns are strain and stress (N/mm²)", f"column {name}", path)
-        columns.append(np.array([_number(row[name], name, number, path) for number, row in enumerate(rows, 1)]))
-    return columns[0], columns[1]
-
-
-def _number(text: str | None, name: str, row: int, path: str | Path) -> float:
-    try:
-        value = float(text or "")
-    except (TypeError, ValueError):
-        value = np.nan
-    if not np.isfinite(value):
-        raise InputError(f"'{shortened(str(text))}' is no number", f"row {row}, column {name}", path)
-    return value
+        if name not in table.names:
+            raise InputError("is missing; the columns are strain and stress (N/mm²)", f"column {name}", table.path)
+    return table.numbers("strain"), table.numbers("stress")
 
 
 def sample(

@@ -1,7 +1,7 @@
-"""exp(x) and exp(x) − 1 without branches and calls, so that compilers can work on several points at a time.
+"""exp(x) and exp(x) − 1 without branches and calls, so that compilers can vectorise over points.
 
-x = n ln 2 + r with a whole number n and |r| ≤ ½ ln 2. Taylor's series of exp(r) − 1 to r¹³ is right to rounding, and 2ⁿ
-is written into the exponent of a number. Errors are below 3e-16 of exp(x), and of exp(x) − 1 where |x| ≤ ½ ln 2.
+x = n ln 2 + r with an integer n and |r| ≤ ½ ln 2. The Taylor series of exp(r) − 1 up to r¹³ is exact to rounding, and
+2ⁿ is written into the exponent of a number. Errors are below 3e-16 of exp(x), and of exp(x) − 1 for |x| ≤ ½ ln 2.
 """
 
 from typing import Any
@@ -12,11 +12,11 @@ from numba.extending import intrinsic
 
 from coilset.model.material.kernel import INLINE
 
-LEAST, GREATEST = -700.0, 700.0  # beyond, the result is that of these: 1e-304 and 1e304
+LEAST, GREATEST = -700.0, 700.0  # arguments are limited to these: results 1e-304 and 1e304
 LOG2_E = 1.4426950408889634
 LN2_HIGH, LN2_LOW = 0.6931471803691238, 1.9082149292705877e-10  # 33 bits of ln 2, and the rest
-ROUND = 6755399441055744.0  # 1.5 · 2⁵²: what is added to it is rounded to a whole number, which its last bits then are
-BIAS = 1023  # of a number's exponent, which stands from bit 52 on
+ROUND = 6755399441055744.0  # 1.5 · 2⁵²: a number added to it is rounded to an integer, found in its last bits
+BIAS = 1023  # bias and shift of a number's exponent, which starts at bit 52
 
 
 @intrinsic
@@ -58,6 +58,6 @@ def exp(x: float) -> float:
 
 @njit(**INLINE)
 def expm1(x: float) -> float:
-    """exp(x) − 1, right to rounding also where x is small."""
+    """exp(x) − 1, exact to rounding also for small x."""
     scale, rest = _reduced(x)
     return (scale - 1.0) + scale * rest

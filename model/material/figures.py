@@ -1,4 +1,4 @@
-"""Figures of the material: its functions, a program's answer, and the fit of tests."""
+"""Figures of the material: its functions, the response to a program, and the fit of tests."""
 
 import textwrap
 
@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from coilset.model.material.identification.result import Fit
 from coilset.model.material.law import Law
 from coilset.model.material.programs import STRAINS, STRESSES, History, Program
+from coilset.model.style import STYLE
 
-STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False}
 SYMBOLS = {
     "eps11": "ε11", "eps22": "ε22", "eps33": "ε33", "gamma12": "γ12", "gamma13": "γ13", "gamma23": "γ23",
     "sigma11": "σ11", "sigma22": "σ22", "sigma33": "σ33", "tau12": "τ12", "tau13": "τ13", "tau23": "τ23",
@@ -23,7 +23,7 @@ def _figure(width: float, height: float) -> Figure:
 
 
 def material_functions(law: Law) -> Figure:
-    """k², ζ and 2Gκ over the plastic work b*, one line a temperature; figures 6.3 to 6.5 of the thesis for Ck 15."""
+    """k², ζ and 2Gκ over the plastic work b*, one line per temperature; figures 6.3 to 6.5 of the thesis for Ck 15."""
     work = np.linspace(0.0, law.validity.plastic_work, 801)
     with mpl.rc_context(STYLE):
         figure = _figure(10.5, 3.7)
@@ -48,7 +48,7 @@ def material_functions(law: Law) -> Figure:
 
 
 def program(law: Law, run: Program, history: History) -> Figure:
-    """What a program did: stress over strain, and for the rod the path of the stress between its yield surfaces."""
+    """Response to a program: stress over strain, and for the rod the stress path between its yield surfaces."""
     strains, stresses = STRAINS[history.form], STRESSES[history.form]
     moved = [i for i in range(len(strains)) if np.ptp(history.stress[:, i]) > 1e-3]
     with mpl.rc_context(STYLE):
@@ -98,7 +98,7 @@ def _stress_plane(axes: Axes, law: Law, history: History) -> None:
 
 
 def fit(result: Fit, name: str) -> Figure:
-    """Tests, the law fitted to them, and what is left; one column a test."""
+    """Tests, the law fitted to them, and the residual; one column per test."""
     with mpl.rc_context(STYLE):
         figure = _figure(3.4 * len(result.tests), 5.6)
         axes = figure.subplots(2, len(result.tests), sharex="col", squeeze=False, height_ratios=(2, 1))

@@ -1,4 +1,4 @@
-"""The material file: its schema, and how it is read.
+"""The material file: its schema, and its reader.
 
 A material file gives, for one or more temperatures, the elastic constants and the constants of k², ζ and κ (6.2.2).
 """
@@ -32,7 +32,7 @@ class Saturation(Strict):
 
     b1: Annotated[float, Unit("N/mm²"), Field(ge=0, description="the plastic work where it begins, N/mm²")]
     k1_squared: Annotated[float, Unit("N²/mm⁴"), Field(gt=0, description="k² where it begins, N²/mm⁴")]
-    k_inf_squared: Annotated[float, Unit("N²/mm⁴"), Field(gt=0, description="k² at great plastic work, N²/mm⁴")]
+    k_inf_squared: Annotated[float, Unit("N²/mm⁴"), Field(gt=0, description="k² at large plastic work, N²/mm⁴")]
     a4: Annotated[float, Unit("mm²/N"), Field(ge=0, description="the decay of its distance from k∞², mm²/N")]
 
 
@@ -60,6 +60,25 @@ class KinematicHardening(Strict):
     ]
 
 
+class BackStress(Strict):
+    """One back stress: in tension it follows C εᵖ at first, and tends to C/γ."""
+
+    C: Annotated[float, Unit("N/mm²"), Field(gt=0, description="its slope over the plastic strain at first, N/mm²")]
+    gamma: Annotated[
+        float, Unit("1"), Field(ge=0, description="how fast it saturates over the plastic strain; 0: it never does")
+    ]
+
+
+class Chaboche(Strict):
+    """Several back stresses, Ḃ = ⅔ C D_pl − γ B ṗ each (Chaboche)."""
+
+    law: Literal["chaboche"]
+    terms: Annotated[
+        tuple[BackStress, ...],
+        Field(strict=False, min_length=1, max_length=8, description="a list of back stresses, each with C and gamma"),
+    ]
+
+
 class NonNormality(Strict):
     """2Gκ(b*) = a b*³."""
 
@@ -81,7 +100,7 @@ Word = Annotated[Literal["none"], Tag("(none)")]
 
 
 class Constants(Strict):
-    """All constants at one temperature; a function that the material has not is said to be `none`."""
+    """All constants at one temperature; `none` stands for a function that the material does not have."""
 
     temperature: Annotated[float, Unit("K"), Field(gt=0, description="the temperature of the constants, K")]
     elasticity: Annotated[Elasticity, Field(description="G and nu")]
@@ -100,7 +119,13 @@ class Constants(Strict):
         Field(description=f"{NONE}; or a curve of stress over plastic strain"),
     ]
     kinematic: Annotated[
-        Annotated[KinematicHardening, Tag("(constants)")] | Word, Discriminator(_kind), Field(description=NONE)
+        Annotated[KinematicHardening, Tag("(constants)")] | Annotated[Chaboche, Tag("(chaboche)")] | Word,
+        Discriminator(
+            _hardening,
+            custom_error_type="law",
+            custom_error_message="law must be chaboche; without it ζ has constants",
+        ),
+        Field(description=f"{NONE}; or several back stresses"),
     ]
     non_normality: Annotated[
         Annotated[NonNormality, Tag("(constants)")] | Word, Discriminator(_kind), Field(description=NONE)
@@ -108,7 +133,7 @@ class Constants(Strict):
 
 
 class Heating(Strict):
-    """Adiabatic heating: of the plastic work b* the fraction `dissipated` warms the material."""
+    """Adiabatic heating: the fraction `dissipated` of the plastic work b* heats the material."""
 
     dissipated: Annotated[
         float, Unit("1"), Field(gt=0, le=1, description="the fraction of plastic work that becomes heat")
@@ -129,29 +154,25 @@ class Creep(Strict):
     strain: Annotated[
         float,
         Unit("1"),
-        Field(gt=0, le=1, description="equivalent creep strain after 1 h, where the stress's part is 1"),
+        Field(gt=0, le=1, description="equivalent creep strain after 1 h if the stress factor is 1"),
     ]
-    stress: Annotated[
-        float, Unit("N/mm²"), Field(gt=0, description="the equivalent stress to which the stress is related, N/mm²")
-    ]
+    stress: Annotated[float, Unit("N/mm²"), Field(gt=0, description="the reference equivalent stress, N/mm²")]
     exponent: Annotated[float, Unit("1"), Field(ge=1, le=50, description="the exponent of stress, N")]
     time_exponent: Annotated[
         float, Unit("1"), Field(ge=0.05, le=1, description="the exponent of time, p; 1: steady creep")
     ] = 1.0
     hardening: Annotated[
         Literal["strain", "time"],
-        Field(
-            description="on what the rate hangs where the stress changes: the creep strain, or the time since the start"
-        ),
+        Field(description="what the rate depends on if the stress changes: creep strain, or time since the start"),
     ] = "strain"
     activation_energy: Annotated[
-        float, Unit("J/mol"), Field(ge=0, description="by which time counts faster where it is warmer, J/mol")
+        float, Unit("J/mol"), Field(ge=0, description="activation energy, which scales time with temperature, J/mol")
     ] = 0.0
     temperature: Annotated[float, Unit("K"), Field(gt=0, description="the temperature of these constants, K")] = 293.15
 
 
 class Validity(Strict):
-    """Where the constants may be trusted; the checks of the functions go up to the greatest plastic work."""
+    """Where the constants may be trusted; the checks of the functions go up to the maximum plastic work."""
 
     plastic_work: Annotated[
         float, Unit("N/mm²"), Field(gt=0, description="the largest b* up to which the constants are valid, N/mm²")
@@ -171,7 +192,7 @@ class MaterialFile(Strict):
     validity: Annotated[Validity, Field(description="plastic_work, the largest b* in N/mm², and a remark")]
     temperatures: Annotated[
         tuple[Constants, ...],
-        Field(strict=False, min_length=1, description="a list with the constants at one temperature at least"),
+        Field(strict=False, min_length=1, description="a list with the constants at one or more temperatures"),
     ]
     heating: Heating | None = None
     creep: Annotated[Creep | None, Field(description="creep; left out: none")] = None
@@ -181,7 +202,7 @@ UNITS = {
     "G": "N/mm²", "nu": "", "alpha": "1/K", "k0_squared": "N²/mm⁴", "a1": "N²/mm⁴", "a2": "mm²/N", "a3": "mm²/N",
     "b1": "N/mm²", "k1_squared": "N²/mm⁴", "k_inf_squared": "N²/mm⁴", "a4": "mm²/N", "a5": "N/mm²", "a6": "mm²/N",
     "a7": "mm²/N", "a": "mm⁶/N³", "up_to": "", "C": "N/mm²", "strain_0": "", "n": "", "yield_stress": "N/mm²",
-    "rise": "N/mm²", "rate": "", "proof_stress": "N/mm²", "elastic_limit": "N/mm²",
+    "rise": "N/mm²", "rate": "", "proof_stress": "N/mm²", "elastic_limit": "N/mm²", "gamma": "",
 }  # fmt: skip
 
 
@@ -194,12 +215,12 @@ def read(path: str | Path) -> MaterialFile:
     try:
         content = Path(path).read_bytes()
     except OSError:
-        content = b""  # which is said below
+        content = b""  # reported below
     return _read(str(path), content)
 
 
-@lru_cache(maxsize=16)  # cases of a sweep share their materials
+@lru_cache(maxsize=16)  # cases of a sweep share materials
 def _read(path: str, content: bytes) -> MaterialFile:
-    """What a file with this content says."""
+    """The checked content of a file."""
     kind = "is not a material file; it needs name, source, units, validity, ..."
     return check_entries(read_data(path, kind), MaterialFile, path)

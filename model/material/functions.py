@@ -2,7 +2,7 @@
 
 The kernels take one 1-D array `p`: a head of `ROWS_START` entries, then one row of `ROW_LENGTH` constants for every
 temperature of the material's table. Between two temperatures the values of the functions are interpolated linearly.
-Behind the rows stand the curves of k² that are given by points (`coilset.model.material.curve`).
+The rows are followed by the curves of k² that are given by points (`coilset.model.material.curve`).
 """
 
 import math
@@ -33,9 +33,9 @@ ROW_LENGTH = 18
 
 @njit(**KERNEL)
 def curve(p: np.ndarray, o: int, b: float) -> tuple[float, float]:
-    """k², dk²/db* between the points of a curve, whose row starts at `o`: cubic with their slopes, level beyond.
+    """k², dk²/db* between the points of a curve, whose row starts at `o`: cubic with their slopes, constant beyond.
 
-    The points are b*, k² and dk²/db*, one array behind the other.
+    The points are b*, k² and dk²/db*, one array after the other.
     """
     start, n = int(p[o + CURVE]), int(p[o + NODES])
     low, high = 0, n - 1
@@ -142,7 +142,7 @@ def functions(p: np.ndarray, b: float, temperature: float) -> Functions:
 
 @njit(**INLINE)
 def inside_table(p: np.ndarray, temperature: float) -> bool:
-    """Whether the material's table reaches to `temperature`."""
+    """Whether the material's table covers `temperature`."""
     last = ROWS_START + (int(p[N_ROWS]) - 1) * ROW_LENGTH
     return p[ROWS_START] <= temperature <= p[last]
 

@@ -3,8 +3,8 @@ state.
 
 In each sub-step the yield and the loading condition (5.2.41) decide between the elastic and the elastic-plastic rate
 equations. Where an elastic sub-step would leave the yield surface it is cut at the surface. The difference between the
-Euler and the Heun result estimates the error: it steers the size of the sub-steps and, added to the Euler result,
-corrects it. What drift from the yield surface is left after that is taken out along n.
+Euler and the Heun result estimates the error: it controls the size of the sub-steps and, added to the Euler result,
+corrects it. The remaining drift from the yield surface is removed along n.
 
 Both forms are written for one vector y = (t, B, b*, T, σm): t is the deviator's components that the form carries (⅔σ11,
 τ12, τ13 or all six), with metric w and elastic moduli c of each (3/2, 2, 2 and ⅔E, 2G, 2G; or 1 and 2, all 2G), σm the
@@ -50,7 +50,7 @@ def _yield_excess(p: np.ndarray, y: np.ndarray, w: np.ndarray) -> float:
 
 @njit(**KERNEL)
 def _onto_surface(p: np.ndarray, y: np.ndarray, w: np.ndarray) -> None:
-    """Take out the drift: n → n k/|n| at fixed B and b*."""
+    """Remove the drift: n → n k/|n| at fixed B and b*."""
     m = w.shape[0]
     factor = 1.0 / math.sqrt(1.0 + _yield_excess(p, y, w))
     for i in range(m):
@@ -142,7 +142,7 @@ def _rates(
     half = (0.5 * dk2 - thermal) / (1.0 - kappa * thermal)
     mu = (spin + xe * (1.0 - kappa * half)) / (cxnn + xnn * half)
     work = (kappa * xe + mu * xnn) / (1.0 - kappa * thermal)
-    work = max(work, 0.0)  # with spin, on the edge of the cone of `local`, it may be negative by a trifle
+    work = max(work, 0.0)  # with spin, at the edge of the cone of `local`, it may be slightly negative
     if mode == BY_LOADING and mu < 0.0:  # neutral loading, see `local`
         kappa = _neutral_kappa(kappa, zeta + ca, zeta + cc, axial, rest, spin, 0.5 * dk2)
         xa, xc = 1.0 / (1.0 + kappa * (zeta + ca)), 1.0 / (1.0 + kappa * (zeta + cc))

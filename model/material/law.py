@@ -1,4 +1,4 @@
-"""The law that comes out of a material file: its checks, and the array of its constants for the kernels."""
+"""The law of a material file: its checks, and the array of its constants for the kernels."""
 
 import math
 from collections.abc import Iterator
@@ -11,8 +11,9 @@ import numpy.typing as npt
 from coilset.meshes.errors import InputError
 from coilset.model.entries.entry import Strict
 from coilset.model.material import functions as fn
+from coilset.model.material.back_stresses import BackStresses, columns
 from coilset.model.material.curve import AnyCurve
-from coilset.model.material.file import UNITS, Constants, Creep, MaterialFile, Validity
+from coilset.model.material.file import UNITS, Chaboche, Constants, Creep, MaterialFile, Validity
 
 
 class Law:
@@ -25,7 +26,7 @@ class Law:
         file: where the data came from, for messages.
 
     Raises:
-        InputError: if the functions break a condition of the theory.
+        InputError: if the functions violate a condition of the theory.
     """
 
     def __init__(
@@ -41,6 +42,7 @@ class Law:
             self._fail("heating", "plastic work warms the material; give its constants at two temperatures at least")
         if len({at.isotropic == "none" for at in data.temperatures}) == 2:
             self._fail("temperatures", "isotropic is 'none' at some temperatures only; give it at all or at none")
+        self._terms = self._back_stresses()
         if data.heating and data.creep:
             self._fail("creep", "there is none where plastic work heats the points, which takes no time; leave one out")
         if spin and data.creep:
@@ -105,7 +107,17 @@ class Law:
     @property
     def n_state(self) -> int:
         """Length of a rod point's state."""
-        return 8 if self.data.heating else 7
+        return self.columns(3)
+
+    def columns(self, components: int) -> int:
+        """Length of the state of a point with 3 or 6 stresses, without what creep adds."""
+        return 2 * components + 1 + self.is_adiabatic + (columns(components, self.n_terms) if self.n_terms else 0)
+
+    @property
+    def n_terms(self) -> int:
+        """Number of back stresses that saturate (Chaboche); 0: there is the one of ζ, or none."""
+        kinematic = self.data.temperatures[0].kinematic
+        return len(kinematic.terms) if isinstance(kinematic, Chaboche) else 0
 
     @property
     def yield_stress(self) -> float:
@@ -128,6 +140,8 @@ class Law:
         at = self.data.temperatures[self.temperatures.index(temperature)]
         for section in (at.elasticity, at.isotropic, getattr(at.isotropic, "saturation", None), at.kinematic):
             yield from _entries(section)
+        for i, term in enumerate(at.kinematic.terms if isinstance(at.kinematic, Chaboche) else ()):
+            yield from ((f"{name}_{i + 1}", found) for name, found in _entries(term))
         yield from _entries(at.non_normality)
 
     def parameters(self, temperature: float | None = None) -> np.ndarray:
@@ -155,10 +169,16 @@ class Law:
             start += len(points)
         return np.concatenate([head, rows.ravel(), *self._curves.values()])
 
+    def point_law(self, temperature: float | None = None) -> np.ndarray | BackStresses:
+        """What the kernels take as the law: the parameter array, alone or with several back stresses."""
+        parameters = self.parameters(temperature)
+        return BackStresses(parameters, self._terms_at(parameters[fn.TEMPERATURE])) if self.n_terms else parameters
+
     def content(self) -> bytes:
         """All constants, for a digest."""
         creep = self.data.creep
-        return self.parameters().tobytes() + (creep.model_dump_json().encode() if creep else b"")
+        terms = self._terms.tobytes() if self.n_terms else b""
+        return self.parameters().tobytes() + terms + (creep.model_dump_json().encode() if creep else b"")
 
     def known(self, temperature: float) -> float:
         """The temperature, K, as a number.
@@ -198,6 +218,26 @@ class Law:
         """k² at the reference temperature, N²/mm⁴."""
         return self.functions(work)[0]
 
+    def _terms_at(self, temperature: float) -> np.ndarray:
+        """⅔C and γ of the back stresses, interpolated between two temperatures, shape (terms, 2)."""
+        flat = self._terms.reshape(len(self._terms), -1)
+        return np.array([np.interp(temperature, self._temperatures, column) for column in flat.T]).reshape(-1, 2)
+
+    def _back_stresses(self) -> np.ndarray:
+        """⅔C and γ of the back stresses that saturate, shape (temperatures, terms, 2)."""
+        found = [at.kinematic.terms if isinstance(at.kinematic, Chaboche) else () for at in self.data.temperatures]
+        if len({len(terms) for terms in found}) > 1:
+            self._fail("temperatures", "not all have the same number of back stresses; give as many terms at each")
+        if self.n_terms:
+            if any(at.non_normality != "none" for at in self.data.temperatures):
+                self._fail("temperatures", "several back stresses go with normality only; make non_normality 'none'")
+            for part, word in ((self.data.heating, "heating"), (self.data.creep, "creep")):
+                if part:
+                    self._fail(word, "goes not with several back stresses; leave it out, or give kinematic constants")
+            if self.spin:
+                self._fail("temperatures.0.kinematic", "several back stresses have no spin; leave out the spin")
+        return np.array([[(2.0 / 3.0 * one.C, one.gamma) for one in terms] for terms in found])
+
     def _fail(self, place: str, problem: str) -> NoReturn:
         raise InputError(problem, place, self.file)
 
@@ -228,7 +268,7 @@ class Law:
                     )
                 # The first branch's own end, so that k² is continuous to the last digit.
                 row[[fn.B1, fn.K1, fn.KINF, fn.A4]] = second.b1, k1, second.k_inf_squared, second.a4
-        if at.kinematic != "none":
+        if at.kinematic != "none" and not isinstance(at.kinematic, Chaboche):
             row[[fn.A5, fn.A6, fn.A7]] = at.kinematic.a5, at.kinematic.a6, at.kinematic.a7
         if at.non_normality != "none":
             row[fn.KAPPA] = at.non_normality.a / (2 * G)
@@ -239,7 +279,7 @@ class Law:
         work = np.linspace(0, self.validity.plastic_work, 2001)
         for i, row in enumerate(self._rows):
             above = self._rows[min(i + 1, len(self._rows) - 1), fn.ROW_T]
-            # Between two temperatures, too: of κ and k²′, each interpolated, the product may be greater than at both.
+            # Between two temperatures, too: the product of the interpolated κ and k²′ may be larger than at both.
             for temperature in np.unique(np.linspace(row[fn.ROW_T], above, 5)):
                 if math.isinf(row[fn.K0]):
                     continue

@@ -11,25 +11,25 @@ and λ constant, Λ = λΔt, the solution is
 
     n = φ n₀ + ψ x e,   φ = exp(−sΛ),   ψ = (1 − φ)/(sΛ),   p = (n₀ + e − n) / (c + ζ).
 
-So the error is of second order in the increment, and however long it is n turns into the direction of e and does not
-swing beyond it. Backward Euler has φ = ψ = 1/(1 + sΛ) in its place, and an error of first order, which shows where the
-path of strain turns.
+The error is of second order in the increment. However long the increment is, n turns towards the direction of e and
+does not overshoot. Backward Euler has φ = ψ = 1/(1 + sΛ) instead, with an error of first order, visible where the
+strain path changes direction.
 
-Two scalars are left, the plastic work b* and Λ, and two equations:
+Two scalars remain, the plastic work b* and Λ, with two equations:
 
     n:n = k²(b*)    (3.1.4)         b* = b*₀ + ½ (n₀ + n):p        (3.1.7)
 
 The classic radial return with a yield stress linear in the plastic strain is a special case, exact to rounding.
 
-Newton's method on both is kept safe in two ways. For a given b* the root Λ of the first comes from a Newton iteration
-for 1/|n|, which grows along a curve that is nearly straight; and b* stays in a bracket, halved where Newton would
-leave it: k² is steep at b* = 0, so that Newton alone overshoots there, and the slope of k² jumps at b1*.
+Newton's method for both is safeguarded in two ways. For a given b* the root Λ of the first comes from a Newton
+iteration for 1/|n|, which is nearly linear in Λ; and b* stays in a bracket, which is halved where Newton's method would
+leave it: k² is steep at b* = 0, so that Newton's method alone overshoots there, and the slope of k² jumps at b1*.
 
-Neutral loading. The κ term sets in suddenly with loading. In the rod, where x differs between the axial and the shear
+Neutral loading. The κ term sets in abruptly on loading. In the rod, where x differs between the axial and the shear
 components, there is a narrow cone of strain increments, nearly tangential to the yield surface, for which the elastic
-answer leaves the surface although the plastic one with λ ≥ 0 moves inside: neither may be. The limit of ever smaller
-steps that switch between the two stays on the surface with λ = 0 and a smaller κ; `_neutral` finds that κ. The plastic
-work is then of second order, so ζ and the temperature are kept.
+response leaves the surface although the plastic one with λ ≥ 0 moves inside: neither is admissible. In the limit of
+ever smaller steps that alternate between the two, the state stays on the surface with λ = 0 and a smaller κ; `_neutral`
+finds this κ. The plastic work is then of second order, so ζ and the temperature are kept.
 
 A point has two groups of components: `a`, a single one with modulus `ca` (the rod's axial one), and `c`, any number
 with modulus `cc`, of which only the inner products enter.
@@ -46,7 +46,7 @@ from coilset.model.material.functions import CHANGE, Functions, functions, insid
 from coilset.model.material.kernel import INLINE, KERNEL
 
 MAX_ITERATIONS = 60
-FAILED, TOO_HOT = -1, -2  # in the place of a number of iterations; TOO_HOT: heated out of the material's table
+FAILED, TOO_HOT = -1, -2  # instead of a number of iterations; TOO_HOT: heated out of the material's table
 FINE = 1e-6  # relative residual below which one more Newton step ends the iteration
 SMALL = 0.02  # sΛ below which ψ and its slope are summed up as series; the next terms are below 1e-14
 COARSE = 1e-3  # relative error of |n| to which Λ is brought before the two equations are solved together
@@ -120,7 +120,7 @@ def _decay(z: float) -> tuple[float, float, float]:
 
 @njit(**INLINE)
 def turn(g: Group, multiplier: float, neutral: bool = False) -> Turn:
-    """How a group's n follows from n₀ and e at Λ = `multiplier`; `neutral`: with κ as the unknown in its place."""
+    """A group's n from n₀ and e at Λ = `multiplier`; `neutral`: with κ as the unknown instead."""
     if neutral:
         return Turn(1.0, g.x, 0.0, 0.0, 0.0, -g.x * g.s)
     phi, psi, slope = _decay(g.s * multiplier)
@@ -224,7 +224,7 @@ def correction(at: Equations) -> Correction:
 
 @njit(**INLINE)
 def is_last(start: Start, k2: float, at: Equations, newton: Correction, b: float) -> bool:
-    """Does this correction end the iteration? What it leaves is of the order FINE²."""
+    """Whether this correction ends the iteration; the remaining error is of the order FINE²."""
     # the second term is the rounding of b* and of n:(n_trial − n)
     small = abs(newton.g) <= FINE * at.work + 1e-15 * (b + k2 / start.cc)
     return small & (abs(at.r1) <= FINE * k2) & (newton.inverse > 0.0)
@@ -267,7 +267,7 @@ def _neutral(p: np.ndarray, start: Start, values: Functions) -> Local:
         work = kappa * (xa * mean_a + xc * mean_c)
         dwork = xa * xa * mean_a + xc * xc * mean_c
         dwork += 0.5 * kappa * (1.5 * xa * dxa * ea * ea + xc * dxc * start.ee)
-        # With spin, the work may come out negative by a trifle of higher order; b* does not fall.
+        # With spin, the work may be slightly negative, to higher order; b* does not decrease.
         b = start.b + max(work, 0.0)
         k2, dk2, _, _, _, _ = functions(p, b, start.temperature)
         r1 = nn - k2
@@ -296,7 +296,7 @@ def _neutral(p: np.ndarray, start: Start, values: Functions) -> Local:
 
 @njit(**KERNEL)
 def _frozen(start: Start, values: Functions, ga: Group, gc: Group) -> Local:
-    """On the edge of the cone spin can make the work negative by a trifle: b* is kept, only n:n = k² solved."""
+    """At the edge of the cone spin can make the work slightly negative: b* is kept, and only n:n = k² is solved."""
     a, c = axial_products(start, start.b), (start.nn, start.ne, start.ee)
     multiplier = _multiplier(ga, gc, a, c, values[0], 0.0, 1e-15)
     slope = _square(turn(ga, multiplier), *a)[1] + _square(turn(gc, multiplier), *c)[1]
@@ -352,13 +352,13 @@ def solve(p: np.ndarray, start: Start, values: Functions) -> Local:
                 corrected(ga, step), corrected(gc, step),
                 at.r1b * inverse, at.r1l * inverse, at.r2b * inverse, at.r2l * inverse,
             )  # fmt: skip
-        # else Λ is too coarse for a sure sign
+        # else Λ is not accurate enough for a reliable sign
         if abs(newton.g) > 10.0 * COARSE * at.work or abs(at.r1) <= FINE * values[0]:
             if newton.g < 0.0:
                 low = b
             else:
                 high = b
-        # Newton, unless it leaves the bracket or swings to and fro across a bend.
+        # Newton, unless it leaves the bracket or oscillates across a kink.
         if inverse > 0.0 and low < b + step < high and (step * last > 0.0 or abs(step) <= 0.5 * abs(last)):
             multiplier += newton.multiplier
         else:

@@ -1,7 +1,8 @@
-"""The law of a section point, whichever it is: numba chooses by the type of what is handed down as the law.
+"""The law of a section point: numba selects it by the type of the argument that represents the law.
 
-A parameter array means the return mapping, a `Creeping` creep beside it. The choice is made when a section's loop is
-compiled (njit) for the one or the other: a material that does not creep pays nothing for it and compiles nothing of it.
+A parameter array means the return mapping, a `Creeping` adds creep, a `BackStresses` has several back stresses. The
+choice is made when a section's loop is compiled (njit) for one of them: a material has no extra cost for what it does
+not do, and compiles none of it.
 """
 
 from collections.abc import Callable
@@ -11,7 +12,8 @@ import numpy as np
 from numba import njit, types
 from numba.extending import overload
 
-from coilset.model.material import creep, solid
+from coilset.model.material import creep, rod, solid
+from coilset.model.material.back_stresses import BackStresses, back_stress_map
 from coilset.model.material.kernel import KERNEL
 from coilset.model.material.rod_points import return_map_points
 
@@ -25,12 +27,17 @@ def rod_points(
     with_tangent: bool,
     count: np.ndarray,
 ) -> bool:
-    """One increment of the rod's law at many points, as `rod_points.return_map_points`, or with a Creeping."""
+    """One increment of the rod's law at many points, as `rod_points.return_map_points`, or with another law."""
     raise NotImplementedError("only compiled loops call it")
 
 
 def solid_point(law: Any, old: np.ndarray, dD: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
-    """One increment of the law for the full stress state, as in `solid.return_map`, or with a Creeping."""
+    """One increment of the law for the full stress state, as in `solid.return_map`, or with another law."""
+    raise NotImplementedError("only compiled loops call it")
+
+
+def rod_point(law: Any, old: np.ndarray, e11: float, g12: float, g13: float, new: np.ndarray, C: np.ndarray) -> int:
+    """One increment of the rod's law, as in `rod.return_map`, or with another law."""
     raise NotImplementedError("only compiled loops call it")
 
 
@@ -43,17 +50,17 @@ def _rod_points(
         return lambda law, old, de, new, tangent, with_tangent, count: return_map_points(
             law, old, de, new, tangent, with_tangent, count
         )
-    return lambda law, old, de, new, tangent, with_tangent, count: creep_points(law, old, de, new, tangent, count)
+    return lambda law, old, de, new, tangent, with_tangent, count: one_by_one(law, old, de, new, tangent, count)
 
 
 @njit(**KERNEL)
-def creep_points(
-    law: creep.Creeping, old: np.ndarray, de: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
+def one_by_one(
+    law: Any, old: np.ndarray, de: np.ndarray, new: np.ndarray, tangent: np.ndarray, count: np.ndarray
 ) -> bool:
-    """One increment over time at many points, one after the other."""
+    """One increment at many points, one after the other."""
     good, c = True, np.empty((3, 3))
     for k in range(old.shape[0]):
-        count[k] = creep.rod_map(law, old[k], de[0, k], de[1, k], de[2, k], new[k], c)
+        count[k] = rod_point(law, old[k], de[0, k], de[1, k], de[2, k], new[k], c)
         good = good and count[k] >= 0
         for i in range(3):
             for j in range(3):
@@ -65,4 +72,15 @@ def creep_points(
 def _solid_point(law: Any, old: Any, dD: Any, new: Any, C: Any) -> Callable[..., int]:
     if not isinstance(law, types.BaseNamedTuple):
         return lambda law, old, dD, new, C: solid.return_map(law, old, dD, new, C)
+    if law.instance_class is BackStresses:
+        return lambda law, old, dD, new, C: back_stress_map(law, old, dD, new, C)
     return lambda law, old, dD, new, C: creep.creep_map(law, old, dD, new, C)
+
+
+@overload(rod_point, strict=False, inline="always")
+def _rod_point(law: Any, old: Any, e11: Any, g12: Any, g13: Any, new: Any, C: Any) -> Callable[..., int]:
+    if not isinstance(law, types.BaseNamedTuple):
+        return lambda law, old, e11, g12, g13, new, C: rod.return_map(law, old, e11, g12, g13, new, C)
+    if law.instance_class is BackStresses:
+        return lambda law, old, e11, g12, g13, new, C: back_stress_map(law, old, np.array([e11, g12, g13]), new, C)
+    return lambda law, old, e11, g12, g13, new, C: creep.rod_map(law, old, e11, g12, g13, new, C)

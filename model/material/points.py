@@ -8,6 +8,7 @@ import numpy as np
 from numba import njit
 
 from coilset.meshes.errors import InputError, SolveError
+from coilset.model.material.back_stresses import BackStresses, back_stress_map
 from coilset.model.material.functions import CHANGE, TOLERANCE
 from coilset.model.material.heun import rod_heun, solid_heun
 from coilset.model.material.kernel import KERNEL
@@ -57,6 +58,19 @@ def _solid_heun(
         count[i] = solid_heun(p, state[i], increments[i], new[i], tangent[i])
 
 
+@njit(**KERNEL)
+def _back_stresses(
+    law: BackStresses,
+    state: np.ndarray,
+    increments: np.ndarray,
+    new: np.ndarray,
+    tangent: np.ndarray,
+    count: np.ndarray,
+) -> None:
+    for i in range(state.shape[0]):
+        count[i] = back_stress_map(law, state[i], increments[i], new[i], tangent[i])
+
+
 LOOPS = {
     (3, "return_mapping"): _rod_return_map,
     (3, "heun"): _rod_heun,
@@ -75,11 +89,12 @@ def initial_state(law: Law, points: int, components: int = 3, temperature: float
         temperature: K, where the rows hold one (adiabatic heating); default is the reference temperature.
 
     Returns:
-        Shape (points, 7) or (points, 13), one column more (the temperature) with adiabatic heating.
+        Shape (points, 7) or (points, 13), one column more (the temperature) with adiabatic heating, one set of columns
+        more for each back stress after the first.
     """
-    columns = 2 * components + 1
-    state = np.zeros((points, columns + law.is_adiabatic))
-    state[:, columns:] = law.reference_temperature if temperature is None else law.known(temperature)
+    state = np.zeros((points, law.columns(components)))
+    if law.is_adiabatic:
+        state[:, -1] = law.reference_temperature if temperature is None else law.known(temperature)
     return state
 
 
@@ -102,7 +117,7 @@ def update(
             temperature at the start and at the end: thermal strain is then part of `increments`.
         tolerance: error of stress, relative to the yield stress, allowed in a sub-step. None: the return mapping makes
             one step of each increment, Heun takes the law's tolerance. With a number the return mapping, too, divides
-            the increments where the direction of loading turns; the tangent is then that of the last sub-step.
+            the increments where the direction of loading changes; the tangent is then that of the last sub-step.
 
     Returns:
         The new state, the tangent (points, 3, 3) or (points, 6, 6) in N/mm², and the number of local iterations or
@@ -111,15 +126,17 @@ def update(
     Raises:
         SolveError: if a point did not converge.
         InputError: if the temperature lies outside the material's table, or plastic work heats a point out of it.
-        ValueError: if shapes do not fit, there is no such integrator, or a changing temperature is given for a material
+        ValueError: if shapes do not match, the integrator is unknown, or a changing temperature is given for a material
             that heats itself or together with `tolerance` for the return mapping.
     """
     state, increments = np.ascontiguousarray(state, float), np.ascontiguousarray(increments, float)
     points, components = increments.shape
     if integrator not in INTEGRATORS:
         raise ValueError(f"integrator '{integrator}' is none of {', '.join(INTEGRATORS)}")
-    if components not in (3, 6) or state.shape != (points, 2 * components + 1 + law.is_adiabatic):
+    if components not in (3, 6) or state.shape != (points, law.columns(components)):
         raise ValueError(f"state of shape {state.shape} does not fit strain increments of shape {increments.shape}")
+    if law.n_terms:
+        return _update_back_stresses(law, state, increments, integrator, temperature, tolerance)
     loop = LOOPS[components, integrator]
     divided = tolerance is not None and integrator == "return_mapping"
     p = law.parameters(temperature[1] if isinstance(temperature, tuple) else temperature)
@@ -140,12 +157,31 @@ def update(
     return new, tangent, count
 
 
+def _update_back_stresses(
+    law: Law,
+    state: np.ndarray,
+    increments: np.ndarray,
+    integrator: str,
+    temperature: float | tuple[float, float] | None,
+    tolerance: float | None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """`update` with several back stresses, which have less to choose from."""
+    start, end = temperature if isinstance(temperature, tuple) else (temperature, temperature)
+    if start != end:
+        raise InputError("several back stresses are for one temperature at a time", "kinematic", law.file)
+    if integrator == "heun" or tolerance is not None:
+        raise InputError("several back stresses have the return mapping alone, in one step", "kinematic", law.file)
+    new, tangent, count = _advance(_back_stresses, law.point_law(end), state, increments)
+    _refuse(law, count)
+    return new, tangent, count
+
+
 def _normals(components: int) -> int:
     return 1 if components == 3 else 3
 
 
 def _advance(
-    loop: Callable[..., Any], p: np.ndarray, state: np.ndarray, increments: np.ndarray
+    loop: Callable[..., Any], p: np.ndarray | BackStresses, state: np.ndarray, increments: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     points, components = increments.shape
     new, tangent = np.empty_like(state), np.empty((points, components, components))
@@ -172,7 +208,7 @@ def _divided(
     increments: np.ndarray,
     tolerance: float | None,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Sub-steps by step doubling: one step against two half ones estimates the error of the second-order method."""
+    """Sub-steps by step doubling: comparing one step with two half steps gives the error of the second-order method."""
     points, components = increments.shape
     weight = np.where(np.arange(components) < _normals(components), 1.0, 2.0)
     row, tangent = state.copy(), np.empty((points, components, components))

@@ -1,8 +1,8 @@
 """Programs for one point: targets of strain or stress, one after the other, as in a tension-torsion testing machine.
 
-At every instant each component is driven either by its strain or by its stress. A step names components and their
-values at its end, reached in equal increments; what it does not name stays driven as before, at its last value. At the
-start every stress is driven, and zero: tension is `eps11` alone.
+At any time each component is controlled either by its strain or by its stress. A step names components and their values
+at its end, reached in equal increments; components that it does not name remain controlled as before, at their last
+value. At the start every stress is prescribed as zero: tension is `eps11` alone.
 """
 
 from collections.abc import Iterator, Mapping
@@ -59,7 +59,7 @@ class Program(Strict):
 
 @dataclass(frozen=True)
 class History:
-    """What a point went through; the first row is the start.
+    """History of a point; the first row is the start.
 
     strain: engineering shear strains, shape (rows, 3 or 6); stress, back (N/mm²): the same shape; work: b*, N/mm²;
     temperature: K; step: index of the step that the row belongs to.
@@ -158,7 +158,7 @@ def _check_temperatures(law: Law, program: Program) -> None:
 
 
 class _Point:
-    """The point under the machine: state, total strain, and which components are driven by strain."""
+    """The point in the testing machine: state, total strain, and which components are controlled by strain."""
 
     def __init__(self, law: Law, form: str, integrator: str, temperature: float | None) -> None:
         self.law, self.form, self.integrator = law, form, integrator
@@ -171,11 +171,11 @@ class _Point:
         self.tangent = tangent[0]
 
     def _at(self, end: float) -> tuple[float, float] | None:
-        """What `update` is told of the temperature."""
+        """The temperature argument of `update`."""
         return None if self.law.is_adiabatic else (self.temperature, end)
 
     def drive(self, targets: Mapping[str, float]) -> np.ndarray:
-        """Take over which components are driven by strain; returns the present values of what drives them."""
+        """Set which components are controlled by strain; returns the current values of the controlled quantities."""
         for i, (strain, stress) in enumerate(zip(STRAINS[self.form], STRESSES[self.form], strict=True)):
             if strain in targets or stress in targets:
                 self.by_strain[i] = strain in targets
@@ -187,7 +187,7 @@ class _Point:
         return self.strain.copy(), s[:n].copy(), s[n : 2 * n].copy(), s[2 * n], temperature, index
 
     def advance(self, target: np.ndarray, temperature: float, halvings: int = 0) -> None:
-        """One increment to `target` and `temperature`; where Newton does not find it, two of half the size."""
+        """One increment to `target` and `temperature`; if Newton's method fails, two of half the size."""
         now = np.where(self.by_strain, self.strain, self.state[: self.n])
         self.refused: InputError | None = None
         if self._newton(target, temperature):

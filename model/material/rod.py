@@ -50,7 +50,7 @@ def active(s: Vector, b: Vector) -> Vector:
 
 @njit(**INLINE)
 def _crossing(s: Vector, B: Vector, k2: float, E: float, G: float, e: Vector) -> Crossing:
-    """Where Hooke's law alone leads out of the yield surface; e is the increment of the active deviator."""
+    """Where the elastic path leaves the yield surface; e is the increment of the active deviator."""
     n = active(s, B)
     nn, ne, ee = inner(n, n), inner(n, e), inner(e, e)
     if nn + 2.0 * ne + ee <= k2 * (1.0 + 1e-12):
@@ -68,7 +68,7 @@ def _crossing(s: Vector, B: Vector, k2: float, E: float, G: float, e: Vector) ->
 def _start(
     p: np.ndarray, old: np.ndarray, k2: float, E: float, G: float, de11: float, dg12: float, dg13: float
 ) -> Point:
-    """Stress and back stress from which Hooke's law leads to the elastic answer: those of `old`, or with its spin."""
+    """Stress and back stress from which Hooke's law gives the elastic response: those of `old`, or with its spin."""
     s, B = (old[0], old[1], old[2]), (old[3], old[4], old[5])
     if p[SPIN] == 0.0:
         nothing = (NOTHING, NOTHING, NOTHING)
@@ -227,7 +227,7 @@ def _scaled(a: Vector, f: float) -> Vector:
 
 @njit(**INLINE)
 def _tangent(plastic: Plastic, point: Point, E: float, G: float, expansion: float, C: np.ndarray) -> None:
-    """Subtract from the elastic tangent in C what the plastic strain takes; `expansion` is thermal strain per b*."""
+    """Subtract the effect of the plastic strain from the elastic tangent in C; `expansion` is thermal strain per b*."""
     axial = active(point.spin_stress[0], point.spin_back[0])
     first = active(point.spin_stress[1], point.spin_back[1])
     second = active(point.spin_stress[2], point.spin_back[2])
@@ -242,7 +242,7 @@ def _tangent(plastic: Plastic, point: Point, E: float, G: float, expansion: floa
 def softening(
     plastic: Plastic, axial: Vector, first: Vector, second: Vector, E: float, G: float, expansion: float
 ) -> tuple[Vector, Vector, Vector]:
-    """What the plastic strain takes off the elastic tangent, by columns.
+    """Reduction of the elastic tangent by the plastic strain, by columns.
 
     Args:
         plastic: the plastic part.
@@ -307,6 +307,6 @@ def _sensitivity(plastic: Plastic, g: Gradients, dn: Vector, de: Vector) -> tupl
 
 @njit(**INLINE)
 def _stress(change: tuple[Vector, float], E: float, G: float, expansion: float) -> Vector:
-    """Stress that a change of the plastic strain and of b* takes."""
+    """Change of the stress with the plastic strain and b*."""
     p, b = change
     return (E * (p[0] + expansion * b), 2.0 * G * p[1], 2.0 * G * p[2])

@@ -1,10 +1,10 @@
 """The rod's law at many points, several at a time: the same functions as `rod.return_map`, in loops without branches.
 
-The points go through in groups. All of a group are tried elastically; those that flow are gathered, and Newton's method
-of `local` runs on all of them until each has ended, then the tangent is built. What makes a loop branch is left to
-`return_map` itself, point by point: neutral loading, Newton steps that leave the bracket or do not end, spin,
-temperature tables, heating, and hardening by a curve. Arrays hold a quantity of all points in a row, so that a
-processor's vector registers take neighbouring points at once.
+Points are processed in groups. All points of a group get an elastic trial; those that flow are collected, and Newton's
+method of `local` runs on all of them until each has converged; then the tangent is built. Cases that would make a loop
+branch are left to `return_map` itself, point by point: neutral loading, Newton steps that leave the bracket or do not
+converge, spin, temperature tables, heating, and hardening by a curve. Arrays hold a quantity of all points in a row, so
+that vector registers can take neighbouring points at once.
 """
 
 import numpy as np
@@ -29,7 +29,7 @@ from coilset.model.material.local import (
 )
 from coilset.model.material.rod import Beginning, active, begin, end, inner, return_map, softening
 
-GROUP = 64  # points that go through together; their rows fill half of a processor's first cache
+GROUP = 64  # points processed together; their rows fill half of a processor's first-level cache
 NEWTON = 8  # iterations at most, before a point is left to `return_map`
 STATE = 7  # columns of a point's state
 
@@ -131,7 +131,7 @@ def _elastic(
     w: np.ndarray,
     place: np.ndarray,
 ) -> int:
-    """Write the elastic answer of a group, and the places of those that flow; their number."""
+    """Write the elastic response of a group and the indices of the points that flow; returns their number."""
     E, G, _ = elasticity(p, 0.0)
     for k in range(size):
         for i in range(STATE):
@@ -190,7 +190,7 @@ def _begin(p: np.ndarray, size: int, w: np.ndarray) -> None:
 
 @njit(**INLINE)
 def _first(p: np.ndarray, size: int, w: np.ndarray) -> None:
-    """Where Newton's method starts: b*₀ and a first Λ; what is loaded neutrally is marked for `return_map`."""
+    """Newton's first step, from b*₀ and Λ = 0; neutrally loaded points are marked for `return_map`."""
     E, G, _ = elasticity(p, 0.0)
     for j in range(size):
         b = w[START + 6, j]
@@ -200,14 +200,16 @@ def _first(p: np.ndarray, size: int, w: np.ndarray) -> None:
         gc = group(start.cc, middle[2], middle[3], middle[4], middle[5])
         ta, tc = turn_at_rest(ga), turn_at_rest(gc)
         at = equations(start, values, middle, ta, tc, b)
-        w[ENDED, j] = 0.0 if (at.r1 >= 0.0) & (correction(at).g <= 0.0) else 2.0
+        newton = correction(at)
+        w[ENDED, j] = 0.0 if (at.r1 >= 0.0) & (newton.g <= 0.0) else 2.0
         a, c = axial_products(start, b), (start.nn, start.ne, start.ee)
-        w[B, j], w[MULTIPLIER, j] = b, nearer(ga, gc, ta, tc, a, c, values[0], 0.0)[1]
+        w[B, j] = b + (newton.b if newton.b > 0.0 else 0.0)
+        w[MULTIPLIER, j] = nearer(ga, gc, ta, tc, a, c, values[0], 0.0)[1]
 
 
 @njit(**INLINE)
 def _newton(p: np.ndarray, size: int, w: np.ndarray) -> int:
-    """Newton's method until all have ended; `ENDED` is 1 where it has, 2 where the point is none of this loop."""
+    """Newton's method until all have converged; `ENDED` is 1 for these, 2 for points not in this loop."""
     E, G, _ = elasticity(p, 0.0)
     iteration, left = 0, 1
     while left > 0 and iteration < NEWTON:
@@ -241,7 +243,7 @@ def _newton(p: np.ndarray, size: int, w: np.ndarray) -> int:
 
 @njit(**INLINE)
 def _end(p: np.ndarray, size: int, with_tangent: bool, w: np.ndarray) -> None:
-    """States at the end, in the place of those at the start, and what they take off the elastic tangent, from A on."""
+    """Replace the initial states by the final ones, and write the reduction of the elastic tangent, from A on."""
     E, G, _ = elasticity(p, 0.0)
     still = (0.0, 0.0, 0.0)
     for j in range(size):

@@ -147,7 +147,7 @@ def _tangent(
     expansion: float,
     C: np.ndarray,
 ) -> None:
-    """Subtract from the elastic tangent in C what the plastic strain takes.
+    """Subtract the effect of the plastic strain from the elastic tangent in C.
 
     Every vector here is a combination of n₀ and of the increment's e and is written as the pair of its two factors.
     """
@@ -198,17 +198,25 @@ def rotate_state(old: np.ndarray, R: np.ndarray, new: np.ndarray) -> None:
     integrates the Zaremba-Jaumann rate; all invariants stay, so that the update is objective for any size of W.
 
     Args:
-        old: the point's state, shape (13,) or (14,); not written.
+        old: the point's state, shape (13,), (14,) or with more back stresses; not written.
         R: rotation, shape (3, 3).
         new: the rotated state, not the same array as `old`.
     """
-    for o in (0, 6):
-        for k in range(6):
-            i, j = COMPONENTS[k]
-            value = 0.0
-            for a in range(3):
-                for b in range(3):
-                    value += R[i, a] * old[o + PLACES[a][b]] * R[j, b]
-            new[o + k] = value
     for i in range(12, old.shape[0]):
         new[i] = old[i]
+    _rotate(old, 0, R, new)
+    _rotate(old, 6, R, new)
+    for o in range(13, old.shape[0] - 5, 6):
+        _rotate(old, o, R, new)
+
+
+@njit(**INLINE)
+def _rotate(old: np.ndarray, o: int, R: np.ndarray, new: np.ndarray) -> None:
+    """Rotate the tensor that begins in the column o."""
+    for k in range(6):
+        i, j = COMPONENTS[k]
+        value = 0.0
+        for a in range(3):
+            for b in range(3):
+                value += R[i, a] * old[o + PLACES[a][b]] * R[j, b]
+        new[o + k] = value

@@ -1,4 +1,4 @@
-"""The material's spin against the rod's section (5.2.33), as a turn that hangs on the state and not on the path.
+"""The material's spin relative to the rod's section (5.2.33), as a rotation that depends on the state, not on the path.
 
 The spin w1j = −½ γ̇1j changes the three stresses by
 
@@ -8,16 +8,17 @@ With Hooke's law τ̇1j = G γ̇1j beside it, a point that is stretched by ε an
 
     σ11 = (2G + Eε) cos θ − 2G,   τ1j = (G + ½Eε) γ1j sin θ/θ,   θ = |γ|/√2:
 
-(σ11/√2 + √2 G, τ12, τ13) is a vector of the length √2 (G + ½Eε) that is turned by θ. The rates themselves are no
-derivative of a stress: of a point that is sheared first they leave out τ̇1j = (E/2G) τ1j ε̇11, and around a closed path
-of strain ½ E ε γ of shear stays. It is the shear (1 + ν) γ ε̇ by which a sheared fibre turns as it is stretched and
-thins. Here the stress is that function of the elastic strain on all elastic paths: an increment adds to the ε and γ
-that the stress at its start stands for. An elastic path that closes thus closes in the stress; each of its increments
-has the rates of (5.2.33) and this term, to the order θ².
+(σ11/√2 + √2 G, τ12, τ13) is a vector of length √2 (G + ½Eε), rotated by θ. The rates themselves are not the
+derivative of a stress: for a point that is sheared first they omit τ̇1j = (E/2G) τ1j ε̇11, and a closed strain path
+leaves a shear stress of ½ E ε γ. The missing term is the shear (1 + ν) γ ε̇ by which a sheared fibre rotates as it is
+stretched
+and becomes thinner. Here the stress is this function of the elastic strain on all elastic paths: an increment adds to
+the ε and γ that correspond to the stress at its start. A closed elastic path therefore leaves no stress; each of its
+increments has the rates of (5.2.33) and this term, to the order θ².
 
-Plastic flow follows (5.2.33) as it stands: in the part β … 1 of an increment that lies behind the yield surface the
-stress is turned by the shear of that part, (σ11/√2, τ12, τ13) by the angle (1 − β)|Δγ|/√2. β is where Hooke's law meets
-the surface. The back stress, (√3/2 B11, B12, B13), turns by √3/2 |Δγ|, with the elastic γ before and after it.
+Plastic flow follows (5.2.33) unchanged: in the part β … 1 of an increment, beyond the yield surface, the stress
+(σ11/√2, τ12, τ13) is rotated by the shear of that part, by the angle (1 − β)|Δγ|/√2. β is where the elastic path meets
+the surface. The back stress, (√3/2 B11, B12, B13), rotates by √3/2 |Δγ|, with the elastic γ before and after it.
 """
 
 import math
@@ -58,7 +59,7 @@ def _ratios(t: float) -> Ratios:
 
 @njit(**INLINE)
 def _elastic_shear(s: Vector, E: float, G: float) -> tuple[float, float, float]:
-    """E ε and γ12, γ13 of the elastic strain that the stress `s` stands for."""
+    """E ε and γ12, γ13 of the elastic strain that corresponds to the stress `s`."""
     length = math.sqrt((G + 0.5 * s[0]) ** 2 + 0.5 * (s[1] * s[1] + s[2] * s[2]))
     angle = math.atan2(math.sqrt(0.5 * (s[1] * s[1] + s[2] * s[2])), G + 0.5 * s[0])
     factor = 1.0 / (length * _ratios(angle * angle).S)
@@ -99,7 +100,7 @@ def _turn_rates(v: Vector, g: tuple[float, float], k: int, c2: float) -> Vector:
 
 @njit(**INLINE)
 def spun(s: Vector, B: Vector, E: float, G: float, de11: float, dg12: float, dg13: float, crossing: Crossing) -> Spun:
-    """What the spin of an increment makes of the stress and back stress at its start.
+    """Effect of an increment's spin on the stress and back stress at its start.
 
     Args:
         s, B: stress and back stress at the start.

@@ -1,10 +1,10 @@
-"""What lies along the wire: stress at the inside and the outside of the coil, force and moments of the sections."""
+"""Distributions along the wire: stress at the inside and the outside of the coil, moments of the sections."""
 
 import numpy as np
 
 from coilset.model.report.panel import COLOURS, LINE, Panel, Trace, axis, said
-from coilset.model.report.wire import inside, section_turns, shear_around
 from coilset.model.results.opened import Run
+from coilset.model.results.wire import inside, section_turns, shear_around
 
 SIDES = (("inside of the coil", 0.0, "solid"), ("outside", np.pi, "dash"))
 SHOWN = {"Mt": "torque Mt", "M2": "bending moment M2", "M3": "bending moment M3"}
@@ -21,7 +21,7 @@ def stress_along_wire(run: Run) -> Panel:
     finding = (
         "Shear stress along the wire"
         if stays is None
-        else f"{said(stays, 'MPa')} of shear stay at the inside of the middle coils"
+        else f"{said(stays, 'MPa')} of shear remain at the inside of the middle coils"
     )
     return Panel(
         "along_wire",
@@ -35,14 +35,14 @@ def stress_along_wire(run: Run) -> Panel:
 
 
 def moments_along_wire(run: Run) -> Panel:
-    """Torque and bending moments of the sections over the turns, a snapshot at a time."""
+    """Torque and bending moments of the sections over the turns, one snapshot at a time."""
     turns, traces = section_turns(run).ravel(), []
     for number, _ in enumerate(run.snapshots):
         for place, (key, name) in enumerate(SHOWN.items()):
             values = run.data["resultants"].sel(resultant=key).values[number].ravel()
             traces.append({**_line(name, turns, values, place, "solid"), "meta": {"choice": number}})
     greatest = np.abs(run.data["resultants"].sel(resultant="Mt").values).max()
-    finding = f"The wire bears a torque of up to {greatest:.4g} N mm"
+    finding = f"The wire carries a torque of up to {greatest:.4g} N mm"
     return Panel(
         "moments",
         finding,

@@ -1,5 +1,6 @@
-"""The numbers that a reader came for, in the words of a spring maker; all are those of summary.json."""
+"""The main results in a spring maker's terms; all numbers are those of summary.json."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,9 +13,9 @@ class Number:
     """One number of the answer.
 
     Attributes:
-        term: what it is; a word of the glossary, if it is one.
+        term: its name, explained by the glossary if it has an entry.
         value: with its unit.
-        remark: what it means beside others.
+        remark: how it relates to other numbers.
     """
 
     term: str
@@ -23,7 +24,7 @@ class Number:
 
 
 def subtitle(run: Run) -> str:
-    """The spring and what was done with it, in a line."""
+    """The spring and its load program, in one line."""
     spring, summary = run.case["spring"], run.summary
     size = [
         f"{label} {spring[name]:g} mm"
@@ -38,12 +39,12 @@ def subtitle(run: Run) -> str:
     ) + (f"; to {way}" if way else "")
 
 
-def answer(run: Run) -> list[Number]:
-    """Set first, then what stays in the wire, forces and rates."""
-    s = run.summary
+def answer(summary: Mapping[str, Any]) -> list[Number]:
+    """Set first, then the residual stress, forces and rates; of summary.json."""
+    s = summary
     before, after = s["free_length_before_mm"], s["free_length_after_mm"]
     share = (
-        f"{100.0 * s['set_mm'] / before:.1f} % of the free length" if s["set_mm"] is not None else "it was not let go"
+        f"{100.0 * s['set_mm'] / before:.1f} % of the free length" if s["set_mm"] is not None else "it was not released"
     )
     inside = s["residual_shear_inside_MPa"]
     told = "" if inside is None or inside == 0.0 else "against the load" if inside < 0.0 else "with the load"
@@ -55,7 +56,7 @@ def answer(run: Run) -> list[Number]:
             _said(inside, "MPa", 1),
             f"at the inside of the middle coils{', ' + told if told else ''}",
         ),
-        Number("greatest force", _said(s["force_max_N"], "N", 1), _error(s["estimated_force_error_N"], "N")),
+        Number("maximum force", _said(s["force_max_N"], "N", 1), _error(s["estimated_force_error_N"], "N")),
         Number("initial rate", _said(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
         Number("block height", _said(s["block_height_mm"], "mm", 2)),
     ]
@@ -66,9 +67,9 @@ def _said(value: float | None, unit: str, digits: int) -> str:
 
 
 def _error(value: float | None, unit: str) -> str:
-    return "" if value is None else f"{abs(value):.2g} {unit} uncertain by the length of the steps"
+    return "" if value is None else f"{abs(value):.2g} {unit} estimated error due to the step size"
 
 
-def _after(summary: dict[str, Any]) -> str:
+def _after(summary: Mapping[str, Any]) -> str:
     rate = summary["rate_30_70_after_N_per_mm"]
     return "" if rate is None else f"{rate:.3f} N/mm on release, between 30 and 70 % of the travel"

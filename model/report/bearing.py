@@ -1,4 +1,4 @@
-"""How the seats bear: where the force passes, and where along the wire coils and seats press."""
+"""Seats and coils: the force centre, and the contact pressure along the wire."""
 
 import numpy as np
 
@@ -6,14 +6,15 @@ from coilset.model.report.panel import COLOURS, LINE, Panel, axis
 from coilset.model.report.scale import round_end
 from coilset.model.results.opened import Run
 
-FAINT = 0.02  # of the greatest force: a smaller one passes anywhere
+FAINT = 0.02  # of the maximum force: a smaller one passes anywhere
+REACH = 1.3  # of the figure, in coil radii
 
 
 def force_centre(run: Run) -> Panel | None:
     """Path of the force centre on both seats; None for a spring without steps."""
     if "bottom_centre_x_mm" not in run.data:
         return None
-    traces, away = [], 0.0
+    traces = []
     for number, seat in enumerate(("bottom", "top")):
         x, y, force = (run.data[f"{seat}_{name}"].values for name in ("centre_x_mm", "centre_y_mm", "force_N"))
         bears = np.abs(force) > FAINT * np.nanmax(np.abs(force), initial=0.0)
@@ -29,20 +30,24 @@ def force_centre(run: Run) -> Panel | None:
                 "line": {**LINE, "color": COLOURS[number]},
             }
         )
-        away = max(away, float(np.hypot(x[bears], y[bears]).max(initial=0.0)))
-    finding = f"The force passes up to {away:.3g} mm beside the axis"
+    most = int(np.nanargmax(np.abs(run.data["force_N"].values)))
+    away = max(float(run.data[f"{seat}_eccentricity_mm"].values[most]) for seat in ("bottom", "top"))
+    reach = REACH * float(np.nanmax(np.linalg.norm(run.data["position"].values[..., :2], axis=-1)))
+    shown = {"range": [-reach, reach], "zeroline": True}
+    finding = f"At {abs(run.data['force_N'].values[most]):.4g} N the force passes {away:.2g} mm beside the axis"
     return Panel(
         "force_centre",
         finding,
         f"{finding}. Path of the force centre on each seat, seen along the axis.",
         traces,
-        {"xaxis": axis("x, mm", zeroline=True), "yaxis": axis("y, mm", scaleanchor="x", zeroline=True)},
+        {"xaxis": axis("x, mm", **shown), "yaxis": axis("y, mm", scaleanchor="x", **shown)},
         height=420,
+        note=f"Shown up to {REACH:g} coil radii; a double click shows what lies farther away.",
     )
 
 
 def contact(run: Run) -> Panel | None:
-    """Pressure of each kind of contact along the wire in each step; None where nothing ever bears."""
+    """Pressure of each kind of contact along the wire in each step; None without any contact."""
     if "pressure" not in run.data:
         return None
     pressure, traces = run.data["pressure"], []
@@ -73,7 +78,7 @@ def contact(run: Run) -> Panel | None:
     if not bears:
         return None
     ends = float(run.data["turn"].values[0]), float(run.data["turn"].values[-1])
-    finding = f"Contact bears up to {greatest:.3g} N per millimetre of wire"
+    finding = f"Contact carries up to {greatest:.3g} N per millimetre of wire"
     return Panel(
         "contact",
         finding,

@@ -5,6 +5,8 @@ import numpy as np
 from coilset.model.report.panel import COLOURS, LINE, Panel, Trace, axis
 from coilset.model.results.opened import Run
 
+HEIGHT = 440  # pixels, the same for both, which stand side by side
+
 
 def phases(run: Run) -> list[tuple[str, np.ndarray, np.ndarray]]:
     """Label, travel (mm) and force (N) of each phase, from the end of the one before on."""
@@ -24,7 +26,7 @@ def phases(run: Run) -> list[tuple[str, np.ndarray, np.ndarray]]:
 
 
 def characteristic(run: Run) -> Panel:
-    """Force over travel, a line a phase, with the initial rate, block and set."""
+    """Force over travel, one line per phase, with the initial rate, block and set."""
     summary, traces = run.summary, []
     for number, (label, travel, force) in enumerate(phases(run)):
         traces.append(_line(f"to {label}", travel, force, number))
@@ -74,7 +76,7 @@ def characteristic(run: Run) -> Panel:
         notes.append(
             {"x": 0.5 * set_mm, "y": 0, "yanchor": "bottom", "text": f"set {set_mm:.3f} mm", "showarrow": False}
         )
-    finding = f"Pressed with up to {greatest:.4g} N" + (
+    finding = f"Compressed with up to {greatest:.4g} N" + (
         f", the spring sets {set_mm:.4g} mm" if set_mm is not None else ""
     )
     return Panel(
@@ -83,7 +85,7 @@ def characteristic(run: Run) -> Panel:
         f"Axial force over travel. {finding}. Block is at {block:.4g} mm of travel.",
         traces,
         {"xaxis": axis("travel, mm"), "yaxis": axis("axial force, N"), "shapes": shapes, "annotations": notes},
-        height=440,
+        height=HEIGHT,
     )
 
 
@@ -104,6 +106,7 @@ def rate_curve(run: Run) -> Panel | None:
         f"{first}. Slope of the characteristic over travel, each phase a line.",
         traces,
         {"xaxis": axis("travel, mm"), "yaxis": axis("rate, N/mm", rangemode="tozero")},
+        height=HEIGHT,
     )
 
 

@@ -1,4 +1,4 @@
-"""How hard the run was, and how true its steps are."""
+"""The cost of the run, and the accuracy of its steps."""
 
 import numpy as np
 
@@ -28,15 +28,15 @@ def cost(run: Run) -> Panel:
 
 
 def step_error(run: Run) -> Panel | None:
-    """Estimated error of the force by the length of the steps; None where it is not known."""
+    """Estimated error of the force due to the step size; None if unknown."""
     error = run.data["estimated_force_error_N"].values
     if not np.isfinite(error).any():
         return None
     last = run.summary["estimated_force_error_N"]
     finding = (
-        "What the length of the steps leaves wrong in the force"
+        "Error of the force due to the step size"
         if last is None
-        else f"The length of the steps leaves about {abs(last):.2g} N wrong in the greatest force"
+        else f"The step size causes an error of about {abs(last):.2g} N in the maximum force"
     )
     trace = {
         "type": "scatter",

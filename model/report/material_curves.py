@@ -1,4 +1,4 @@
-"""What the wire is made of: one point of it twisted there and back."""
+"""The material of the wire: one point under reversed torsion."""
 
 import json
 

@@ -1,4 +1,4 @@
-"""Arrays as text: the bits of their single precision, which a page unpacks without reading each number."""
+"""Arrays as text: the bits of their single-precision numbers, which a page unpacks without parsing each number."""
 
 import base64
 from typing import Any

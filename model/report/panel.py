@@ -1,11 +1,12 @@
-"""A figure of the report: what it says, how it is drawn, and how it is told to whoever does not see it."""
+"""A figure of the report: its finding, its data, and its description for screen readers."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 Trace = dict[str, Any]
 
-# Okabe and Ito's colours, which all eyes tell apart; the page puts them on light and on dark.
+# Okabe and Ito's colours, distinguishable with colour-vision deficiencies; used on light and dark backgrounds.
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 DIVERGING = "RdBu"
 LINE = {"width": 2}
@@ -18,11 +19,13 @@ class Panel:
     Attributes:
         name: of the figure, for links.
         title: the finding, in a sentence.
-        description: the same for whoever hears the page: what is drawn, from where to where.
-        traces: of plotly. One that belongs to a choice has its number in `meta.choice`.
+        description: the same for screen readers: what is drawn, and its range.
+        traces: of plotly. A trace that belongs to a choice has the choice's number in `meta.choice`.
         layout: of plotly.
-        choices: what can be chosen between, such as moments; the last is shown first.
-        choice: what is chosen, for the label.
+        choices: alternatives to choose from, such as snapshots; the last is shown first.
+        choice: what is being chosen, for the label.
+        frames: what the first trace shows at each moment of the load program, for a slider; the last is shown first.
+        moments: the labels of these moments.
         height: pixels.
         note: a remark under the figure.
     """
@@ -34,6 +37,8 @@ class Panel:
     layout: dict[str, Any] = field(default_factory=dict)
     choices: tuple[str, ...] = ()
     choice: str = "moment"
+    frames: Sequence[Trace] = ()
+    moments: Sequence[str] = ()
     height: int = 380
     note: str = ""
 
@@ -44,5 +49,5 @@ def axis(title: str, **more: Any) -> dict[str, Any]:
 
 
 def said(value: float, unit: str, digits: int = 0) -> str:
-    """A number with its unit, as a text shows it."""
+    """A number with its unit, for use in text."""
     return f"{value:.{digits}f} {unit}".replace("-", "−")

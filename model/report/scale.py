@@ -1,4 +1,4 @@
-"""Scales of colours with round ends."""
+"""Colour scales with round limits."""
 
 import math
 
@@ -6,7 +6,7 @@ NICE = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 
 
 def round_end(greatest: float) -> float:
-    """The least round number that is not below a value; 1 for 0."""
+    """The smallest round number that is not below a value; 1 for 0."""
     if not greatest > 0.0:
         return 1.0
     power = 10.0 ** math.floor(math.log10(greatest))

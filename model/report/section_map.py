@@ -1,4 +1,4 @@
-"""Stress over the wire's section at mid height, to its rim."""
+"""Stress over the wire's section at mid height, up to its edge."""
 
 from typing import Any
 
@@ -7,21 +7,21 @@ from matplotlib.tri import LinearTriInterpolator, Triangulation
 
 from coilset.model.report.panel import DIVERGING, Panel, Trace, axis, said
 from coilset.model.report.scale import round_end
-from coilset.model.report.wire import inside
 from coilset.model.results.opened import Run
 from coilset.model.results.rings import ROUND, refined, rings
+from coilset.model.results.wire import inside
 
 PIXELS = 121  # of a map, across the wire
 BEYOND = 1.04  # wire radii up to which colours go: the rim is drawn over them
 
 
 def shear_map(run: Run) -> Panel:
-    """Shear about the wire's axis, a map a snapshot."""
+    """Shear about the wire's axis, one map per snapshot."""
     return _panel(run, "section_shear", "shear", 0, "; positive as in a compressed spring")
 
 
 def normal_map(run: Run) -> Panel:
-    """Normal stress, a map a snapshot."""
+    """Normal stress, one map per snapshot."""
     return _panel(run, "section_normal", "normal stress", 1, "")
 
 
@@ -98,7 +98,7 @@ def _map(places: np.ndarray, values: np.ndarray, radius: float, end: float, choi
 
 
 def _layout(radius: float, inwards: bool) -> dict[str, Any]:
-    """A square map; what lies beyond the rim is covered with paper."""
+    """A square map; the area outside the wire is covered in the background colour."""
     edge = BEYOND * 1.06 * radius
     around = radius * np.exp(1j * np.linspace(0.0, 2.0 * np.pi, 181))
     rim = "M" + " L".join(f"{at.real:.5g},{at.imag:.5g}" for at in around) + " Z"

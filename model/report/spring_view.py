@@ -1,50 +1,52 @@
-"""The spring in space, to turn and to step through its load program, coloured by the stress on its surface."""
+"""The spring in 3D, to rotate and to step through its load program, coloured by the stress on its surface."""
 
 import numpy as np
 
 from coilset.model.report.panel import DIVERGING, Panel
 from coilset.model.report.scale import round_end
-from coilset.model.report.wire import tubes
 from coilset.model.results.opened import Run
+from coilset.model.results.wire import moments, tubes
+
+RINGS = 6000  # of all moments of a page together
+MOST = 60  # moments
+PER_TURN = 24  # rings, for which moments are left out
+PER_ELEMENT = 4
 
 
 def spring_view(run: Run) -> Panel:
-    """One tube a snapshot, all on one scale."""
-    places, stress = tubes(run)
+    """One tube per step, all on one scale."""
+    turns = float(np.ptp(run.data["turn"].values))
+    shown = moments(run, int(np.clip(RINGS / (PER_TURN * turns), 2, MOST)))
+    rings = min(PER_ELEMENT * (run.data.sizes["station"] - 1), RINGS // len(shown.labels)) + 1
+    places, stress = tubes(run, shown, rings)
     end = round_end(float(np.abs(stress).max()))
-    traces = []
-    for number, (place, value) in enumerate(zip(places, stress, strict=True)):
-        x, y, z = np.moveaxis(place, -1, 0)
-        traces.append(
-            {
-                "type": "surface",
-                "x": x,
-                "y": y,
-                "z": z,
-                "surfacecolor": value,
-                "cmin": -end,
-                "cmax": end,
-                "colorscale": DIVERGING,
-                "meta": {"choice": number},
-                "colorbar": {"title": {"text": "MPa"}, "thickness": 14, "len": 0.8},
-                "lighting": {"ambient": 0.75, "diffuse": 0.5, "specular": 0.1},
-                "hovertemplate": "%{surfacecolor:.0f} MPa<br>height %{z:.1f} mm<extra></extra>",
-            }
-        )
+    frames = [
+        {**dict(zip("xyz", np.moveaxis(place, -1, 0), strict=True)), "surfacecolor": value}
+        for place, value in zip(places, stress, strict=True)
+    ]
+    trace = {
+        "type": "surface",
+        "cmin": -end,
+        "cmax": end,
+        "colorscale": DIVERGING,
+        "colorbar": {"title": {"text": "MPa"}, "thickness": 14, "len": 0.8},
+        "lighting": {"ambient": 0.75, "diffuse": 0.5, "specular": 0.1},
+        "hovertemplate": "%{surfacecolor:.0f} MPa<br>height %{z:.1f} mm<extra></extra>",
+    }
     low, high = places.reshape(-1, 3).min(axis=0), places.reshape(-1, 3).max(axis=0)
     ranges = {name: {"range": [low[k], high[k]], "title": {"text": f"{name}, mm"}} for k, name in enumerate("xyz")}
-    last = run.snapshots[-1]
     scene = {f"{name}axis": value for name, value in ranges.items()}
     eye = {"x": 1.3, "y": -1.3, "z": 0.5}
     return Panel(
         "spring",
         "Red is sheared with the load, blue against it",
-        f"The spring in three dimensions at {', '.join(run.snapshots)}, coloured by the shear stress about the wire's "
-        f"axis on its surface from {-end:g} to {end:g} MPa. At {last} it is {stress[-1].min():.0f} to "
-        f"{stress[-1].max():.0f} MPa.",
-        traces,
+        f"The spring in three dimensions at {len(shown.labels)} moments of its load program, coloured by the shear "
+        f"stress about the wire's axis on its surface from {-end:g} to {end:g} MPa. "
+        f"At the end it is {stress[-1].min():.0f} to {stress[-1].max():.0f} MPa.",
+        [trace],
         {"scene": {**scene, "aspectmode": "data", "camera": {"eye": eye}}, "margin": {"l": 0, "r": 0, "t": 0, "b": 0}},
-        tuple(run.snapshots),
+        frames=frames,
+        moments=shown.labels,
         height=520,
-        note="Drag to turn, scroll or pinch to come nearer.",
+        note="Drag to rotate, scroll or pinch to zoom; the slider steps through the load program.",
     )

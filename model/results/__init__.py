@@ -1,1 +1,1 @@
-"""What a run leaves behind: summary, steps, fields, point state and figures."""
+"""Results of a run: summary, steps, fields, point state and figures."""

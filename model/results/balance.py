@@ -1,4 +1,4 @@
-"""Global balance: at every cut the force and moment in the wire carry what acts on it from outside before the cut."""
+"""Global balance: at every cut, force and moment in the wire balance the external loads before the cut."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from coilset.model.results.record import Snapshot
 def section_wrenches(x: np.ndarray, triads: np.ndarray, resultants: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """What the wire behind a cut does to the wire before it, for a cut through each element.
 
-    Between two nodes nothing acts on an element; so the force is the mean of its two Gauss sections, and the moment at
+    No load acts on an element between its nodes, so the force is the mean of its two Gauss sections, and the moment at
     its first node follows from the virtual work of the strains (5.2.4): E (Mt, M2 − Q3 l/2, M3 + Q2 l/2).
 
     Args:
@@ -31,7 +31,7 @@ def section_wrenches(x: np.ndarray, triads: np.ndarray, resultants: np.ndarray) 
 
 
 def imbalance(shot: Snapshot, system: System, control: AxialControl) -> tuple[float, float]:
-    """How far seats, contacts and section forces are from balance; collective, whole on rank 0.
+    """Imbalance of seats, contacts and section forces; collective, complete on rank 0.
 
     Args:
         shot: Snapshot of the equilibrium.
@@ -39,8 +39,8 @@ def imbalance(shot: Snapshot, system: System, control: AxialControl) -> tuple[fl
         control: AxialControl.
 
     Returns:
-        Greatest lack of force over all cuts, N, and of moment about the origin, N mm; the last cut is behind the whole
-        wire, so that both seats' wrenches are judged too.
+        Maximum imbalance of force over all cuts, N, and of moment about the origin, N mm. The last cut is behind the
+            whole wire, so that the wrenches of both seats are checked too.
     """
     layout, x = system.layout, shot.x
     assert isinstance(layout, LineLayout)

@@ -1,4 +1,4 @@
-"""Did the spring buckle, at which travel and force? Read from its steps, so that a resumed run says the same."""
+"""Whether the spring buckled, and at which travel and force, from its steps, so that a resumed run agrees."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,10 +9,8 @@ import numpy as np
 from coilset.model.equilibrium.stability import vanishing
 from coilset.model.results.record import Step
 
-SIDEWAYS = 0.05  # of the mean diameter: an axis that has gone off so far has buckled, however gently
-NEAR = (
-    0.95  # of the critical travel: what goes off before is pushed by the ends of a helix that are no whole turns apart
-)
+SIDEWAYS = 0.05  # of the mean diameter: an axis that has deflected this far has buckled, however gradually
+NEAR = 0.95  # of the critical travel: an earlier deflection is due to ends that are not a whole number of turns apart
 WELL_ABOVE = 0.15  # of the first eigenvalue
 # Of force times mean diameter. Springs that snapped set 3e-6 and more free; coils that slide over each other set 2e-10
 # free and less where they pass from one cubic of the wire's curve to the next, whose curvature jumps there.
@@ -24,8 +22,8 @@ class Buckling:
     """Where a spring buckled.
 
     Attributes:
-        travel_mm, force_N: where its least eigenvalue vanishes, or where it was first seen to have gone off.
-        offset_mm: greatest distance of its axis from the straight one after that.
+        travel_mm, force_N: where its lowest eigenvalue vanishes, or where a deflection was first seen.
+        offset_mm: maximum distance of its axis from the straight one after that.
     """
 
     travel_mm: float
@@ -34,13 +32,13 @@ class Buckling:
 
 
 def buckling(steps: Sequence[Step], diameter: float) -> Buckling | None:
-    """The Buckling that a run has seen, or None.
+    """The Buckling found in a run, or None.
 
     Args:
         steps: Steps up to now.
         diameter: mean diameter of the coil, mm.
     """
-    # Eigenvalues are asked for where a spring is slender enough to buckle. Where none is, its ends push the axis off.
+    # Eigenvalues are computed if a spring is slender enough to buckle. If there are none, its ends deflect the axis.
     asked = any(step.least_eigenvalue is not None for step in steps)
     critical = critical_travel(steps) if asked else inf
     seen = next((k for k, step in enumerate(steps) if _has_buckled(step, diameter, critical)), None)
@@ -56,9 +54,9 @@ def buckling(steps: Sequence[Step], diameter: float) -> Buckling | None:
 
 
 def critical_travel(steps: Sequence[Step]) -> float:
-    """Travel at which the least eigenvalue of the straight spring vanishes, mm; NaN if its values do not tell.
+    """Travel at which the lowest eigenvalue of the straight spring vanishes, mm; NaN if it cannot be determined.
 
-    A spring whose axis goes off gently stays stable: its eigenvalue turns away from zero. So values are taken while
+    A spring whose axis deflects gradually stays stable: its eigenvalue turns away from zero. So values are taken while
     they are well above zero, where there are enough of these.
     """
     values = [(step.travel_mm, value) for step in steps if (value := step.least_eigenvalue) is not None and value > 0.0]
@@ -69,18 +67,18 @@ def critical_travel(steps: Sequence[Step]) -> float:
 
 
 def _has_buckled(step: Step, diameter: float, critical: float) -> bool:
-    """Is it unstable, has it snapped, or has its axis gone off far, and not by the push of its ends long before?"""
+    """Is it unstable, has it snapped, or has its axis deflected far, other than by the effect of its ends?"""
     gone = step.axis_offset_mm > SIDEWAYS * diameter and not step.travel_mm < NEAR * critical
     return step.negative_pivots > 0 or snapped(step, diameter) or gone
 
 
 def snapped(step: Step, diameter: float) -> bool:
-    """Did the spring leave its path on the way to this step, and set energy free that counts?"""
+    """Did the spring snap before this step and release a significant energy?"""
     return step.left_branch > 0 and step.released_energy_Nmm > SNAPPED * abs(step.force_N) * diameter
 
 
 def axis_offset(x: np.ndarray, start: np.ndarray, turns: np.ndarray) -> float:
-    """Greatest distance by which the mean of a whole turn has moved sideways since the start, mm.
+    """Maximum distance by which the mean of a whole turn has moved sideways since the start, mm.
 
     Args:
         x, start: station positions now and at the start, shape (n, 3), mm.
@@ -88,9 +86,17 @@ def axis_offset(x: np.ndarray, start: np.ndarray, turns: np.ndarray) -> float:
     """
     if turns[-1] - turns[0] <= 1.5:
         return 0.0
-    moved = (x - start)[:, :2]
-    steps = 0.5 * np.diff(turns)[:, None] * (moved[1:] + moved[:-1])
-    total = np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])
+    return float(np.hypot(*turn_means((x - start)[:, :2], turns).T).max())
+
+
+def turn_means(values: np.ndarray, turns: np.ndarray) -> np.ndarray:
+    """Means of values over the whole turn that begins at each station, as far as there is one, shape (m, columns).
+
+    Args:
+        values: at the stations, shape (n, columns).
+        turns: of the stations, shape (n,), more than one.
+    """
+    steps = 0.5 * np.diff(turns)[:, None] * (values[1:] + values[:-1])
+    total = np.concatenate([np.zeros((1, values.shape[1])), np.cumsum(steps, axis=0)])
     first = turns[turns <= turns[-1] - 1.0]
-    mean = [np.interp(first + 1.0, turns, part) - np.interp(first, turns, part) for part in total.T]
-    return float(np.hypot(*mean).max())
+    return np.stack([np.interp(first + 1.0, turns, part) - np.interp(first, turns, part) for part in total.T], axis=1)

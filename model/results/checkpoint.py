@@ -1,6 +1,6 @@
-"""Checkpoints: the state after each converged step, in an order that no partition changes, written in one move.
+"""Checkpoints: the state after each converged step, in an order independent of the partition, written atomically.
 
-The arrays of a checkpoint belong to stations and elements, not to ranks, so that any number of ranks goes on from it.
+The arrays of a checkpoint belong to stations and elements, not to ranks, so that any number of ranks can resume.
 """
 
 import json
@@ -20,14 +20,15 @@ from coilset.model.equilibrium.program import ProgramPosition, Stage
 from coilset.model.equilibrium.step_control import Position
 from coilset.model.results.folder import make, whole
 from coilset.model.results.provenance import changed, provenance
-from coilset.model.results.record import Result, Snapshot
+from coilset.model.results.record import BucklingMode, Result, Snapshot
 from coilset.model.results.step_journal import StepJournal
 from coilset.model.state import State
 from coilset.model.warning import Warning
 
-# what must be the same to go on
+# what must be unchanged to resume
 SPRING_ENTRIES = ("spring", "material", "temperature", "ends", "seats", "mesh", "contact")
 PREFIX = "state_"  # of the state's arrays
+MODE = "mode_"  # of the buckling mode's
 ANEW = "use --force instead of --resume to start again"
 
 
@@ -38,7 +39,7 @@ class Saved:
     Attributes:
         arrays: name → array of the state in natural order.
         position: ProgramPosition.
-        result: Result up to there.
+        result: Result so far.
     """
 
     arrays: Mapping[str, np.ndarray]
@@ -75,8 +76,10 @@ class Checkpoint:
             "steps": len(result.steps),
             "snapshots": len(result.snapshots),
         }
+        if result.mode is not None:
+            arrays |= {MODE + name: value for name, value in asdict(result.mode).items()}
         make(self.folder)
-        self.journal.append(result.steps, result.seats)
+        self.journal.append(result.steps, result.seats, result.frames)
         for number, snapshot in enumerate(result.snapshots):
             self._save_snapshot(number, snapshot)
         with whole(self.folder / "state.npz") as path, open(path, "wb") as file:
@@ -89,19 +92,19 @@ class Checkpoint:
                 np.savez(file, **asdict(snapshot))
 
     def clear(self) -> None:
-        """Forget an earlier run."""
+        """Remove the checkpoint of an earlier run."""
         for path in (*self.folder.glob("*.npz"), self.journal.path):
             path.unlink(missing_ok=True)
 
     def require(self) -> None:
-        """Raise InputError where there is nothing to go on from."""
+        """Raise InputError if there is nothing to resume from."""
         if not (self.folder / "state.npz").exists():
             raise InputError("there is no checkpoint to continue from; run it without --resume", "", self.folder)
 
     # ---- resuming --------------------------------------------------------------------------------------------------
 
     def load(self, comm: MPI.Comm) -> Saved:
-        """What was saved last, the same on every rank but for the cells of snapshots; collective.
+        """The last state saved, the same on every rank except for the cells of snapshots; collective.
 
         Raises:
             InputError: if there is no checkpoint, it is broken, or it belongs to another spring or load program.
@@ -119,7 +122,7 @@ class Checkpoint:
         return saved or shared
 
     def _read(self) -> Saved:
-        """On rank 0; a file that is damaged can fail in any way: as zip, as array, as JSON, as record."""
+        """On rank 0; a damaged file can fail in any way: as zip, as array, as JSON, as record."""
         self.require()
         path = self.folder / "state.npz"
         try:
@@ -127,21 +130,25 @@ class Checkpoint:
             about = json.loads(str(loaded["about"]))
             self._compare(about)
             arrays = {name.removeprefix(PREFIX): values for name, values in loaded.items() if name.startswith(PREFIX)}
-            result = self._result(about)
+            result = self._result(about, loaded)
             return Saved(arrays, self._position(about, result), result)
         except InputError:
             raise
-        except (KeyError, TypeError):  # an entry that is missing, or one that nobody knows
+        except (KeyError, TypeError):  # an entry that is missing or unknown
             raise InputError(f"the checkpoint was written by another version of coilset, or is damaged; {ANEW}", "",
                              path) from None  # fmt: skip
         except Exception as error:
             reason = str(error).partition("\n")[0] or type(error).__name__
             raise InputError(f"the checkpoint is not readable: {reason}; {ANEW}", "", path) from None
 
-    def _result(self, about: Mapping[str, Any]) -> Result:
+    def _result(self, about: Mapping[str, Any], loaded: Mapping[str, np.ndarray]) -> Result:
+        kept: dict[str, Any] = {name.removeprefix(MODE): values for name, values in loaded.items()
+                                if name.startswith(MODE)}  # fmt: skip
+        kept = {name: values if values.ndim else float(values) for name, values in kept.items()}
+        mode = BucklingMode(**kept) if kept else None
         snapshots = tuple(self._snapshot(number) for number in range(about["snapshots"]))
         warnings = tuple(Warning(**warning) for warning in about["warnings"])
-        return Result(*self.journal.read(about["steps"]), snapshots, about["rate"], warnings=warnings)
+        return Result(*self.journal.read(about["steps"]), snapshots, about["rate"], warnings=warnings, mode=mode)
 
     def _snapshot(self, number: int) -> Snapshot:
         found: dict[str, Any] = _arrays(self.folder / f"snapshot-{number:02d}.npz")
@@ -151,7 +158,7 @@ class Checkpoint:
         return Snapshot(**found)
 
     def _position(self, about: Mapping[str, Any], result: Result) -> ProgramPosition:
-        """Where to go on; a changed target begins its phase where the spring stands now."""
+        """Where to resume; a changed target starts its phase from the current state of the spring."""
         saved = about["position"]
         redirected = saved["redirected"] and Stage(**saved["redirected"])
         if redirected and isinstance(redirected.steps, list):  # JSON has no tuples
@@ -168,7 +175,7 @@ class Checkpoint:
         return replace(position, height=height, force=force, on_path=Position(), redirected=None, begun=now)
 
     def _compare(self, about: Mapping[str, Any]) -> None:
-        """Spring, files and program must be the same; the phases behind too, and the rest may have changed."""
+        """Spring, files and version must be the same, and so must the finished phases; the rest may have changed."""
         old, new = about["case"], self.case
         for entry in SPRING_ENTRIES:
             if old.get(entry) != new[entry]:
@@ -193,6 +200,6 @@ def _arrays(path: Path) -> dict[str, np.ndarray]:
 def _without_cells(result: Result) -> Result:
     """For the other ranks: arrays of elements are gathered on rank 0 only."""
     none = np.empty(0)
-    return replace(result, snapshots=tuple(
+    return replace(result, frames=(), snapshots=tuple(
         replace(shot, triads=none, resultants=none, point_state=none, surface_state=none) for shot in result.snapshots
     ))  # fmt: skip

@@ -48,7 +48,7 @@ def point_state(setup: Setup, result: Result) -> LabelledData:
         {"title": "section points of the rod", "material": setup.material, "section_rule": rule.name,
          "section_kind": setup.section_kind},
     )  # fmt: skip
-    return data.merged(pressure_along_wire(setup, result))
+    return data.merged(way_of_wire(result)).merged(pressure_along_wire(setup, result))
 
 
 def _coordinates(setup: Setup, snapshots: Sequence[Snapshot]) -> dict[str, Variable]:
@@ -69,8 +69,23 @@ def _words(dimension: str, words: Sequence[str]) -> Variable:
     return Variable((dimension,), np.array(words))
 
 
+def way_of_wire(result: Result) -> LabelledData:
+    """Where the wire is after every step, and the stress on it."""
+    if not result.frames:
+        return LabelledData({}, {})
+    places, shear = (np.stack([getattr(frame, name) for frame in result.frames]) for name in ("x", "shear"))
+    about = "about the wire's axis, positive as in a compressed spring; mean of an element's two sections"
+    return LabelledData(
+        {
+            "step_position": Variable(("step", "station", "axis"), places, {"units": "mm"}),
+            "step_shear": Variable(("step", "element", "angle"), shear, {"units": "MPa", "about": about}),
+        },
+        {"step": Variable(("step",), np.array([step.number for step in result.steps]))},
+    )
+
+
 def pressure_along_wire(setup: Setup, result: Result) -> LabelledData:
-    """Force per length of wire of each kind of contact in every step, at the points of the wire that ever bear."""
+    """Force per length of wire for each kind of contact in every step, at the points that are ever in contact."""
     resultants, kinds = result.seats, setup.contacts
     wire_turns = next((kind.wire_turns for kind in kinds if len(kind.wire_turns)), None)
     if wire_turns is None or not resultants:
@@ -92,7 +107,7 @@ def pressure_along_wire(setup: Setup, result: Result) -> LabelledData:
 
 
 def with_origin(data: LabelledData, setup: Setup, result: Result, origin: Mapping[str, Any]) -> LabelledData:
-    """The data with what it was made with, and the run's warnings, as texts of JSON in its attributes."""
+    """The data with its provenance and the run's warnings, as JSON texts in its attributes."""
     warnings = [asdict(warning) for warning in run_warnings(setup, result)]
     texts = {name: value if isinstance(value, str) else json.dumps(value) for name, value in origin.items()}
     renamed = {"material_file" if name == "material" else name: text for name, text in texts.items()}
@@ -105,7 +120,7 @@ def write_points(folder: str | Path, data: LabelledData) -> None:
 
 
 def write_fields(folder: str | Path, setup: Setup, snapshots: Sequence[Snapshot]) -> None:
-    """fields/NN.vtu: the line mesh at each snapshot with resultants and the greatest stresses, for ParaView."""
+    """fields/NN.vtu: the line mesh at each snapshot with resultants and the maximum stresses, for ParaView."""
     import meshio
 
     folder = Path(folder) / "fields"

@@ -13,21 +13,20 @@ from coilset.model.results.folder import whole
 from coilset.model.results.labels import named_phases, plain, unnamed
 from coilset.model.results.record import Result, Setup, Snapshot
 from coilset.model.results.rings import ROUND, refined, rings
+from coilset.model.style import DIVERGING, STYLE
 
-STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False}
-DPI = 160
 NAMED = 6  # targets in a legend, at most
-BESIDE = 4  # lines of a legend that find room beside a characteristic
+BESIDE = 4  # lines of a legend that fit beside a characteristic
 
 
 def save(figure: Figure, path: str | Path) -> None:
     """Write a figure as PNG."""
     with whole(path) as partial:
-        figure.savefig(partial, dpi=DPI)
+        figure.savefig(partial, dpi=STYLE["savefig.dpi"])
 
 
 def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapping[str, Any]) -> None:
-    """Force over travel, one line a phase."""
+    """Force over travel, one line per phase."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(6.4, 4.2), layout="constrained")
         axes = figure.add_subplot()
@@ -53,13 +52,19 @@ def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapp
             axes.annotate("", (0, 0), (set_mm, 0), arrowprops={"arrowstyle": "<->", "lw": 0.9, "color": "0.3"})
             axes.annotate(f"set {set_mm:.3f} mm", (0.5 * set_mm, 0.02 * greatest), ha="center", va="bottom",
                           bbox={"fc": "w", "ec": "none", "pad": 0.5, "alpha": 0.8})  # fmt: skip
-        axes.set(xlabel="travel in mm", ylabel="axial force in N", title=f"Characteristic, {setup.material}")
+        axes.set(xlabel="travel in mm", ylabel="axial force in N", title=_found(summary))
         if len(axes.get_legend_handles_labels()[1]) <= BESIDE:
             axes.legend(fontsize=8)
         else:
             figure.legend(fontsize=8, loc="outside right upper")
         axes.grid(lw=0.3)
         save(figure, path)
+
+
+def _found(summary: Mapping[str, Any]) -> str:
+    set_mm = summary["set_mm"]
+    sets = "" if set_mm is None else f", the spring sets {plain(set_mm)} mm"
+    return f"Pressed with up to {plain(abs(summary['force_max_N']))} N{sets} ({summary['material']})"
 
 
 def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
@@ -78,21 +83,25 @@ def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
         return np.concatenate([from_inner @ at_points, refined(rim, ROUND)])
 
     distance = np.hypot(points[:, 0], points[:, 1])
-    around = (stress("t13") * points[:, 0] - stress("t12") * points[:, 1]) / np.where(distance > 0, distance, 1.0)
     inwards = np.cos(setup.inside.angle) > 0
+    with_load = setup.inside.sign * (1.0 if inwards else -1.0)  # makes the shear of a compressed spring positive
+    around = stress("t13") * points[:, 0] - stress("t12") * points[:, 1]
+    around *= with_load / np.where(distance > 0, distance, 1.0)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.2, 3.9), layout="constrained")
-        panels = ((around, "shear about the wire's axis"), (stress("s11"), "normal stress"))
+        panels = ((around, "shear about the wire's axis,\npositive with the load"), (stress("s11"), "normal stress"))
         for place, (values, name) in enumerate(panels):
             axes = figure.add_subplot(1, 2, place + 1)
             limit = max(float(np.abs(values).max()), 1e-9)
             levels = MaxNLocator(20, steps=[1, 2, 2.5, 5, 10], symmetric=True).tick_values(-limit, limit)
-            shown = axes.tricontourf(y, z, values, levels=levels, cmap="RdBu_r")
+            shown = axes.tricontourf(y, z, values, levels=levels, cmap=DIVERGING)
             axes.plot(*radius * setup.rule.points.T, "k.", ms=2, alpha=0.5)
             axes.plot(radius * np.cos([*angle, 0.0]), radius * np.sin([*angle, 0.0]), "k-", lw=0.8)
             direction = "towards" if inwards else "away from"
             axes.set(aspect="equal", xlabel=f"{direction} the coil's axis, mm", ylabel="across, mm", title=name)
             figure.colorbar(shown, ax=axes, label="MPa", shrink=0.85)
-        force = f"F = {plain(round(abs(snapshot.force), 9))} N"
-        figure.suptitle(f"Cross-section at mid height, {snapshot.name} ({force}); dots: section points")
+        low, high = (plain(value, 2).replace("-", "−") for value in (around.min(), around.max()))
+        figure.suptitle(
+            f"At {snapshot.name} the shear at mid height runs from {low} to {high} MPa; dots: section points"
+        )
         save(figure, path)

@@ -1,4 +1,4 @@
-"""The results folder: nothing is overwritten unasked, and no file is ever half written."""
+"""The results folder: nothing is overwritten unless asked, and no file is ever left half written."""
 
 import contextlib
 import csv
@@ -16,7 +16,7 @@ from coilset.model.results.record import SeatReactions, Step
 
 @contextlib.contextmanager
 def whole(path: str | Path) -> Iterator[Path]:
-    """A path to write to, moved to `path` when all is written; a disk that is full is said in one line.
+    """A temporary path, moved to `path` once it is complete; a full disk is reported in one line.
 
     Raises:
         CoilsetError: if the file cannot be written.
@@ -25,7 +25,7 @@ def whole(path: str | Path) -> Iterator[Path]:
     partial = path.with_name(f".{path.stem}.partial{path.suffix}")
     try:
         yield partial
-        if not partial.exists():  # VTK says nothing, and removes what it could not finish
+        if not partial.exists():  # VTK reports nothing, and removes a file that it could not finish
             raise OSError(errno.EIO, "nothing of it was written; is the disk full?")
         os.replace(partial, path)
     except OSError as error:
@@ -35,7 +35,7 @@ def whole(path: str | Path) -> Iterator[Path]:
 
 
 def make(folder: str | Path) -> None:
-    """Make a folder, unless it is there.
+    """Make a folder, unless it exists.
 
     Raises:
         CoilsetError: if it cannot be made.
@@ -47,24 +47,25 @@ def make(folder: str | Path) -> None:
 
 
 def reserve(path: Path, size: int) -> None:
-    """Make sure that the disk has room for a file; the library of NetCDF crashes where there is none.
+    """Make sure that the disk has room for a file; the NetCDF library crashes otherwise.
 
     Raises:
-        OSError: if it has not.
+        OSError: if it does not.
     """
     if hasattr(os, "posix_fallocate"):
         with open(path, "wb") as file:
             os.posix_fallocate(file.fileno(), 0, size + HEADER)
 
 
-HEADER = 1 << 20  # bytes in a NetCDF file beside its numbers, at most
-RESULTS = ("summary.json", "history.csv", "seats.csv", "points.nc", "fields/*.vtu", "checkpoint/*.npz",
-           "checkpoint/*.jsonl", "characteristic.png", "springs.png", "cross_section.png", "force_centre.png",
-           "seat_pressure.png", "report.html")  # fmt: skip
+HEADER = 1 << 20  # maximum number of bytes in a NetCDF file besides its numbers
+RECORDS = ("summary.json", "history.csv", "seats.csv", "points.nc", "checkpoint/*.npz", "checkpoint/*.jsonl")
+DERIVED = ("fields/*.vtu", "fields/*.pvd", "characteristic.png", "springs.png", "cross_section.png", "force_centre.png",
+           "seat_pressure.png", "buckling_mode.png", "animation.gif", "report.html")  # fmt: skip
+RESULTS = RECORDS + DERIVED
 
 
 def refuse_obstacles(folder: str | Path, files: Iterable[str], folders: Iterable[str] = ()) -> None:
-    """Look whether files can be put to their places, before any is.
+    """Check whether all files can be written, before any is.
 
     Raises:
         InputError: if a folder has the name of a file, or a file that of a folder.
@@ -83,7 +84,7 @@ def prepare(folder: str | Path, force: bool) -> Path:
     """Make the results folder.
 
     Raises:
-        InputError: if it holds results or an interrupted run already and `force` is not given, or cannot be made.
+        InputError: if it already holds results or an interrupted run and `force` is not given, or cannot be made.
     """
     plain = [name for name in RESULTS if "*" not in name]
     refuse_obstacles(folder, [*plain, "log.txt", "checkpoint/state.npz", "checkpoint/steps.jsonl"],
@@ -103,13 +104,17 @@ def prepare(folder: str | Path, force: bool) -> Path:
     return folder
 
 
-def clear(folder: str | Path) -> None:
-    """Remove the results of an earlier run, the summary first: what is there is never of two runs.
+def clear(folder: str | Path, patterns: Sequence[str] = RESULTS) -> None:
+    """Remove the results of an earlier run, the summary first, so that a folder never mixes two runs.
+
+    Args:
+        folder: results folder.
+        patterns: which files; `DERIVED` are those made from the others, which a continued run makes out of date.
 
     Raises:
         CoilsetError: if a file cannot be removed.
     """
-    for pattern in RESULTS:
+    for pattern in patterns:
         for path in Path(folder).glob(pattern):
             try:
                 path.unlink()
@@ -124,12 +129,12 @@ def write_summary(folder: str | Path, summary: Mapping[str, Any]) -> None:
 
 
 def write_history(folder: str | Path, steps: Sequence[Step]) -> None:
-    """history.csv: one row a step; numbers with all their digits."""
+    """history.csv: one row per step; numbers with all their digits."""
     _write_table(Path(folder) / "history.csv", [item.name for item in fields(Step)], [asdict(step) for step in steps])
 
 
 def write_seats(folder: str | Path, seats: Sequence[SeatReactions]) -> None:
-    """seats.csv: one row a step."""
+    """seats.csv: one row per step."""
     rows = [one.row() for one in seats]
     _write_table(Path(folder) / "seats.csv", list(rows[0]) if rows else ["step"], rows)
 

@@ -7,8 +7,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from coilset.model.results.figures import STYLE, save
+from coilset.model.results.figures import save
 from coilset.model.standards.goodman import Cycle, Line
+from coilset.model.style import STYLE
 
 
 def draw(path: Path, title: str, endured: Line, cycle: Cycle, residual: float | None) -> None:

@@ -1,4 +1,4 @@
-"""Texts in pictures: numbers of any size in few digits, and which phases of a program a legend names."""
+"""Texts in pictures: numbers of any size with few digits, and the phases that a legend names."""
 
 import math
 from collections.abc import Sequence
@@ -7,14 +7,14 @@ MOST_DECIMALS = 6
 
 
 def decimals(size: float, digits: int = 3) -> int:
-    """Decimals with which a number of this size has so many digits."""
+    """Number of decimals with which a number of this size has the given number of digits."""
     if not size or not math.isfinite(size):
         return 0
     return min(max(digits - 1 - math.floor(math.log10(abs(size))), 0), MOST_DECIMALS)
 
 
 def plain(value: float, digits: int = 4) -> str:
-    """A number in so many digits, without an exponent and without zeros at its end: `120,200`, `1.103`, `0.0042`."""
+    """A number with the given number of digits, without exponent or trailing zeros: `120,200`, `1.103`, `0.0042`."""
     text = f"{value:,.{decimals(value, digits)}f}"
     text = text.rstrip("0").rstrip(".") if "." in text else text
     return "0" if text == "-0" else text
@@ -32,6 +32,6 @@ def named_phases(phases: Sequence[str], most: int) -> list[tuple[int, str | None
 
 
 def unnamed(phases: Sequence[str], most: int) -> str | None:
-    """What a legend says of the targets that it does not name."""
+    """The line of a legend for the targets that it does not name."""
     more = len(dict.fromkeys(phases)) - most
     return f"and {more} more" if more > 0 else None

@@ -1,4 +1,4 @@
-"""Labelled arrays and their NetCDF file, without the libraries that read such files and take a while to load."""
+"""Labelled arrays and their NetCDF file, without the libraries for reading such files, which are slow to load."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -30,19 +30,19 @@ class Variable:
 
 @dataclass(frozen=True)
 class LabelledData:
-    """What `xarray.Dataset` is: variables, coordinates along their dimensions, and texts about all of it."""
+    """Like `xarray.Dataset`: variables, coordinates along their dimensions, and attributes."""
 
     variables: Mapping[str, Variable]
     coordinates: Mapping[str, Variable]
     attrs: Mapping[str, str] = field(default_factory=dict)
 
     def merged(self, other: "LabelledData") -> "LabelledData":
-        """With the variables and coordinates of another one, too."""
+        """A copy with the variables and coordinates of another one added."""
         return replace(self, variables={**self.variables, **other.variables},
                        coordinates={**self.coordinates, **other.coordinates})  # fmt: skip
 
     def with_attrs(self, attrs: Mapping[str, str]) -> "LabelledData":
-        """With more texts."""
+        """A copy with more attributes."""
         return replace(self, attrs={**self.attrs, **attrs})
 
     def to_xarray(self) -> "xr.Dataset":
@@ -60,7 +60,7 @@ class LabelledData:
         yield from self.coordinates.items()
 
     def beside(self, name: str) -> str:
-        """Names of the coordinates of a variable that no dimension of it is named after, as CF has them in a text."""
+        """Names of a variable's auxiliary coordinates, in the text form of the CF conventions."""
         dims = set(self.variables[name].dims)
         return " ".join(one for one, coordinate in self.coordinates.items()
                         if coordinate.dims != (one,) and dims.issuperset(coordinate.dims))  # fmt: skip

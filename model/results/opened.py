@@ -1,4 +1,4 @@
-"""A results folder read back: the summary, the tables and the section points, for reports and for studies."""
+"""Reading a results folder: the summary, the tables and the section points, for reports and studies."""
 
 import json
 from dataclasses import dataclass
@@ -21,16 +21,18 @@ UNITS = {
     "_turns": "1",
     "hours": "h",
     "_K": "K",
+    "_deg": "degrees",
+    "_turn": "1",
     "_percent": "%",
 }
 
 
 @dataclass(frozen=True)
 class Run:
-    """A run as its folder tells it.
+    """A run, read from its folder.
 
     Attributes:
-        folder: where it lies.
+        folder: its path.
         summary: of summary.json.
         data: history.csv and seats.csv along the dimension `step`, and all of points.nc; each with its `units`.
     """
@@ -47,7 +49,7 @@ class Run:
 
     @property
     def snapshots(self) -> list[str]:
-        """What moments there are: the start, and the end of each phase."""
+        """Names of the snapshots: the start, and the end of each phase."""
         return [str(name) for name in self.data["snapshot"].values]
 
 
@@ -55,7 +57,7 @@ def open_run(folder: str | Path) -> Run:
     """Read a results folder of `coilset solve`.
 
     Raises:
-        InputError: if there is no run in it, or a file of it cannot be read.
+        InputError: if it holds no run, or a file cannot be read.
     """
     folder = Path(folder)
     path = folder / "summary.json"
@@ -77,15 +79,16 @@ def open_run(folder: str | Path) -> Run:
 
 
 def _table(path: Path) -> xr.Dataset:
-    """Columns of a CSV as variables along `step`, NaN where nothing is written."""
+    """Columns of a CSV as variables along `step`, NaN for empty fields."""
     rows = np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True, encoding="utf-8"))
     names = rows.dtype.names or ()
     if not names or len(rows.shape) == 0 or names == ("step",):
         return xr.Dataset()
     number = names[0]  # of the step
-    columns = {name: ("step", rows[name], {"units": _unit(name)}) for name in names if name != number}
+    columns = {name: ("step", rows[name], {"units": unit_of(name)}) for name in names if name != number}
     return xr.Dataset(columns, coords={"step": rows[number].astype(int)})
 
 
-def _unit(name: str) -> str:
+def unit_of(name: str) -> str:
+    """Unit of a number by its name, as in `set_mm`; 1 where it has none."""
     return next((unit for end, unit in UNITS.items() if name.endswith(end)), "1")

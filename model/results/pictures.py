@@ -1,4 +1,4 @@
-"""All pictures of a run, in parts that can be drawn side by side; their libraries are loaded when they are needed."""
+"""All pictures of a run, in parts that can be drawn in parallel; their libraries are loaded when they are needed."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -28,11 +28,13 @@ Draw = Callable[[Path, Run], list[str]]
 
 
 def load_figures() -> Draw:
-    """Load what draws characteristic.png, cross_section.png, force_centre.png and seat_pressure.png."""
-    from coilset.model.results import figures, seat_figures
+    """Load the libraries of the figures: characteristic, cross section, force centre, seats, buckling mode."""
+    from coilset.model.results import buckling_figure, figures, seat_figures
 
     def draw(out: Path, run: Run) -> list[str]:
         figures.characteristic(out / "characteristic.png", run.setup, run.result, run.summary)
+        if run.result.mode is not None:
+            buckling_figure.buckling_mode(out / "buckling_mode.png", run.setup, run.result, run.summary)
         figures.cross_section(out / "cross_section.png", run.setup, run.result.snapshots[-1])
         if run.result.steps:
             seat_figures.force_centre(out / "force_centre.png", run.setup, run.result)
@@ -43,7 +45,7 @@ def load_figures() -> Draw:
 
 
 def load_scene() -> Draw:
-    """Load what draws springs.png, and start the virtual display that it may need."""
+    """Load the libraries for springs.png, and start a virtual display if it needs one."""
     from coilset.model.results import display, scene
 
     there = display.ensure()

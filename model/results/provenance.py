@@ -1,4 +1,4 @@
-"""What a run was made with: the whole case, the content of the files that it names, the program and the machine."""
+"""Provenance of a run: the whole case, the content of the files that it names, the program and the machine."""
 
 import hashlib
 import platform
@@ -15,7 +15,7 @@ DIGEST_BYTES = 16
 
 
 def contents(case: Case) -> dict[str, str]:
-    """Digest of what the case names but does not hold, by entry: constants of the material, file of the spring.
+    """Digests of what the case refers to, by entry: constants of the material, file of the spring.
 
     Raises:
         InputError: if a file cannot be read or is wrong.
@@ -37,7 +37,7 @@ def provenance(case: Case) -> dict[str, object]:
 
 
 def origin(case: Case) -> dict[str, Any]:
-    """What is needed to run a case again and to know whether it is the same: for results that stand by themselves.
+    """Everything needed to run a case again and to recognise it, so that results are self-contained.
 
     Args:
         case: Case.
@@ -58,7 +58,7 @@ def origin(case: Case) -> dict[str, Any]:
 
 
 def changed(then: object, now: dict[str, object]) -> str | None:
-    """The first entry whose content is another one now, `version` for another program, or None; see `provenance`."""
+    """The first entry whose content has changed, `version` for another program, or None; see `provenance`."""
     then = then if isinstance(then, dict) else {}
     if then.get("version") != now["version"]:
         return "version"

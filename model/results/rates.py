@@ -1,4 +1,4 @@
-"""Rates of a spring from its characteristic: as makers measure it, and at travels that are asked for."""
+"""Rates of a spring from its characteristic: as spring makers measure it, and at given travels."""
 
 from collections.abc import Sequence
 
@@ -10,7 +10,7 @@ MAKERS = (0.3, 0.7)  # of the travel to block, between which EN 15800 measures t
 
 
 def first_compression(steps: Sequence[Step]) -> tuple[np.ndarray, np.ndarray]:
-    """Travel, mm, and force, N, from the start to where the spring is first let go again."""
+    """Travel, mm, and force, N, from the start to the first release."""
     travel, force = [0.0], [0.0]
     for step in steps:
         if step.travel_mm <= travel[-1]:
@@ -21,7 +21,7 @@ def first_compression(steps: Sequence[Step]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def last_release(steps: Sequence[Step], height: float) -> tuple[np.ndarray, np.ndarray]:
-    """Travel from the height at which the spring is free of load in the end, mm, and force, N, of the last release."""
+    """Travel, mm, counted from the final free length, and force, N, of the last release."""
     travel, force = [0.0], [0.0]
     for step in reversed(steps[:-1]):
         if height - step.seat_height_mm <= travel[-1]:
@@ -32,7 +32,7 @@ def last_release(steps: Sequence[Step], height: float) -> tuple[np.ndarray, np.n
 
 
 def makers_rate(travel: np.ndarray, force: np.ndarray, whole: float) -> float | None:
-    """Force over travel between 30 and 70 % of the travel to block, N/mm; None if the curve does not reach so far.
+    """Force over travel between 30 and 70 % of the travel to block, N/mm; None if the curve does not extend that far.
 
     Args:
         travel, force: ascending travels, mm, and forces, N.
@@ -54,12 +54,12 @@ def rate_at(travel: np.ndarray, force: np.ndarray, at: float) -> float | None:
 
 
 def rates(setup: Setup, result: Result, is_released: bool) -> dict[str, object]:
-    """Entries of the summary: the rates between 30 and 70 % of the travel to block, and those that are asked for.
+    """Entries of the summary: the rate between 30 and 70 % of the travel to block, and the requested rates.
 
     Args:
         setup: Setup.
         result: Result.
-        is_released: whether the spring is free of load where the run stands.
+        is_released: whether the spring is free of load at the current state.
     """
     travel, force = first_compression(result.steps)
     block, height = setup.spring.block_height, result.snapshots[-1].height

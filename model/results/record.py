@@ -1,6 +1,7 @@
 """What a run has found, as frozen records: writers, figures and checkpoints take these and nothing else."""
 
 from dataclasses import asdict, dataclass, field, fields
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from coilset.meshes.placement import Placement
 from coilset.meshes.spring import Spring
 from coilset.model.contact.base import ENDS
+from coilset.model.results.frame import Frame
 from coilset.model.rod.kinematics import GAUSS
 from coilset.model.section import surface
 from coilset.model.section.rules import DiskRule
@@ -26,9 +28,9 @@ class Step:
         negative_pivots: negative eigenvalues of the tangent; the state is unstable if there are any.
         left_branch: 1 if the spring snapped on the way to it, from a path that ends or is unstable, else 0.
         released_energy_Nmm: potential energy that it lost then.
-        axis_offset_mm: greatest distance by which a turn's mean has moved off the spring's axis.
+        axis_offset_mm: maximum distance by which a turn's mean has moved off the spring's axis.
         least_eigenvalue: of the tangent, N/mm; None where it was not asked for.
-        plastic_work_max_N_per_mm2: greatest b* on the wire's surface.
+        plastic_work_max_N_per_mm2: maximum b* on the wire's surface.
         lift_off_mm: clearance between the wire and the seat that it has left; 0 while both seats press.
         least_rise: least rise from a coil to the next, over the rise with which it lies on it; None where coils pass
             each other by their shape, or there is only one.
@@ -142,7 +144,7 @@ class SeatReactions:
     Attributes:
         step: number of the step.
         active_turns: turns that bear the load, ∫ (Mt/(F r))² dt: the number of turns under the torque F r throughout
-            that would hold as much torsional energy, as in R = G d⁴/(64 r³ n). On release, and up to the greatest force
+            that would hold as much torsional energy, as in R = G d⁴/(64 r³ n). On release, and up to the maximum force
             so far, of the step's changes of Mt and F: a spring that has set keeps a torque that goes with no force.
         free_turns: turns of wire that touch neither seat nor coil.
         bottom, top: SeatReactions of the ends.
@@ -200,8 +202,8 @@ class Limits:
     Attributes:
         plastic_work: b* up to which the material's constants are valid, N/mm².
         strength: least tensile strength of the wire, MPa; None if no wire of a standard is named.
-        penetration: usual greatest penetration, mm.
-        accuracy: error by the steps' length that is asked for, over the greatest force and over the set.
+        penetration: usual maximum penetration, mm.
+        accuracy: error by the steps' length that is asked for, over the maximum force and over the set.
     """
 
     plastic_work: float
@@ -229,6 +231,7 @@ class Setup:
         limits: Limits.
         rates_at: travels, mm, at which the rate is asked for.
         warnings: Warnings about the case, before it ran.
+        coiling_diameter: mean diameter to which the wire was coiled at mid-wire, mm; None: it was not coiled.
     """
 
     spring: Spring
@@ -245,6 +248,7 @@ class Setup:
     limits: Limits
     rates_at: tuple[float, ...] = ()
     warnings: tuple[Warning, ...] = ()
+    coiling_diameter: float | None = None
 
     @property
     def section_turns(self) -> np.ndarray:
@@ -256,7 +260,7 @@ class Setup:
         """Where the inside of the coil is on the wire's surface."""
         return surface.Inside.of(self.section_kind != "plane", self.spring.hand)
 
-    @property
+    @cached_property
     def mean_diameter(self) -> float:
         """Mean diameter of the coil at half of its turns, mm."""
         return 2.0 * float(self.spring.mean_radius(0.5 * self.spring.turns))
@@ -269,24 +273,45 @@ class Setup:
 
 
 @dataclass(frozen=True)
+class BucklingMode:
+    """How a slender spring would go off its axis: the weakest mode of its tangent where that was least.
+
+    Attributes:
+        travel_mm, force_N: of the step.
+        eigenvalue: of the tangent there, N/mm.
+        x: station positions, shape (n + 1, 3), mm.
+        displacement: of the stations, the greatest 1 mm, shape (n + 1, 3).
+    """
+
+    travel_mm: float
+    force_N: float
+    eigenvalue: float
+    x: np.ndarray
+    displacement: np.ndarray
+
+
+@dataclass(frozen=True)
 class Result:
     """What a run has found up to now; `complete` is False if it ended before its program did.
 
     Attributes:
-        steps: converged Steps, seats: SeatReactions after each of them.
+        steps: converged Steps, seats: SeatReactions after each of them, frames: Frames of the wire.
         snapshots: Snapshots at the start and after each phase.
         rate: initial rate, N/mm; NaN where no equilibrium was found for it.
         warnings: Warnings of moments that its other records do not show.
+        mode: BucklingMode of a spring that is slender enough to buckle; else None.
     """
 
     steps: tuple[Step, ...] = ()
     seats: tuple[SeatReactions, ...] = ()
+    frames: tuple[Frame, ...] = field(default=(), repr=False)
     snapshots: tuple[Snapshot, ...] = field(default=(), repr=False)
     rate: float = float("nan")
     complete: bool = False
     warnings: tuple[Warning, ...] = ()
+    mode: BucklingMode | None = field(default=None, repr=False)
 
     @property
     def greatest_force(self) -> float:
-        """Size of the greatest force so far, N."""
+        """Magnitude of the largest force so far, N."""
         return max((abs(step.force_N) for step in self.steps), default=0.0)

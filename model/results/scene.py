@@ -16,18 +16,18 @@ from coilset.model.results.record import Snapshot
 POINTS_PER_ELEMENT = 6
 WIDTH, LEAST_HEIGHT, MOST_HEIGHT = 1500, 620, 1500  # of the picture, pixels
 LABELS, BAR = 100, 130  # pixels above the springs and below them
-COLUMN = 320  # pixels that a label needs
-ABOVE = 0.22  # tangent of the angle from which the springs are looked down upon
+COLUMN = 320  # pixels per label
+ABOVE = 0.22  # tangent of the angle of view above the horizontal
 NICE = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0)  # ends of a scale whose quarters have few digits
 
 
 @dataclass(frozen=True)
 class Frame:
-    """Where springs stand in a picture so that all of them are in it, however tall.
+    """Arrangement of springs in a picture so that all of them fit, however tall.
 
     Attributes:
         height: of the picture, pixels.
-        scale: pixels of a millimetre.
+        scale: pixels per millimetre.
         column: distance from spring to spring, mm.
     """
 
@@ -37,7 +37,7 @@ class Frame:
 
     @classmethod
     def of(cls, across: float, tall: float, springs: int) -> "Frame":
-        """The frame for so many springs of a width and a height, mm."""
+        """The frame for a number of springs of the given width and height, mm."""
         seen = tall + ABOVE * across
         scale = min(WIDTH / (1.35 * across * springs), (MOST_HEIGHT - LABELS - BAR) / seen)
         column = max(1.35 * across, min(COLUMN, WIDTH / springs) / scale)
@@ -45,7 +45,7 @@ class Frame:
 
 
 def scale_end(greatest: float) -> float:
-    """End of a scale from zero that has room for the greatest value."""
+    """End of a scale from zero that has room for the maximum value."""
     if greatest <= 0.0:
         return 1.0
     power = 10.0 ** math.floor(math.log10(greatest))
@@ -63,7 +63,7 @@ def tube(x: np.ndarray, radius: np.ndarray, values: np.ndarray, name: str) -> pv
 
 
 def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.ndarray) -> None:
-    """Draw the snapshots side by side, coloured by the greatest shear stress in each cross-section, surface included.
+    """Draw the snapshots side by side, coloured by the maximum shear stress in each cross-section, surface included.
 
     Args:
         path: PNG to write.
@@ -75,7 +75,7 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.nda
     x = np.concatenate([shot.x for shot in snapshots])
     low, high = float(x[:, 2].min() - radius.max()), float(x[:, 2].max() + radius.max())
     across = float(np.ptp(x[:, :2], axis=0).max()) + 2.0 * float(radius.max())
-    aside = 0.5 * float(x[:, 0].min() + x[:, 0].max())  # a buckled spring goes off its axis to one side
+    aside = 0.5 * float(x[:, 0].min() + x[:, 0].max())  # a buckled spring deflects to one side
     frame, end = Frame.of(across, high - low, len(snapshots)), scale_end(max(float(s.shear.max()) for s in snapshots))
     force = max(abs(shot.force) for shot in snapshots)
     middle = aside + 0.5 * frame.column * (len(snapshots) - 1)
@@ -105,7 +105,7 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.nda
 
 
 def _bar(frame: Frame, title: str) -> dict[str, Any]:
-    """The colour bar, of the same size in pictures of all heights; an empty line keeps its title off the numbers."""
+    """The colour bar, of the same size in all pictures; an empty line separates its title from the numbers."""
     bar = BAR - 28.0
     return {
         "title": f"{title}\n", "color": "black", "n_labels": 5, "fmt": "%.3g", "title_font_size": 17,

@@ -1,4 +1,4 @@
-"""Figures of where the force goes: path of the force centre, pressure along the end coils, turns that are active."""
+"""Figures of the seats: path of the force centre, pressure along the end coils, active turns."""
 
 from pathlib import Path
 from typing import Any
@@ -11,14 +11,15 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from coilset.model.contact.base import ENDS
-from coilset.model.results.figures import STYLE, save
-from coilset.model.results.labels import decimals, named_phases, unnamed
+from coilset.model.results.figures import save
+from coilset.model.results.labels import decimals, named_phases, plain, unnamed
 from coilset.model.results.record import ContactRecord, Result, Setup
+from coilset.model.style import STYLE
 
-COLOURS = {"bottom": "C0", "top": "C3"}
-DRAWN = {  # what both seats of a symmetric spring share stays to be seen
+COLOURS = {"bottom": "C0", "top": "C1"}
+DRAWN = {  # both curves of a symmetric spring stay visible
     "bottom": {"color": "C0", "lw": 3.0, "alpha": 0.45, "ms": 5.0},
-    "top": {"color": "C3", "lw": 1.0, "ms": 2.5},
+    "top": {"color": "C1", "lw": 1.0, "ms": 2.5},
 }
 LINES = ("-", "--", ":", "-.")  # of the phases' targets
 TURNS = (  # what is drawn of them: name in the records, words, line
@@ -26,10 +27,10 @@ TURNS = (  # what is drawn of them: name in the records, words, line
     ("free_turns", "touching nothing", {"color": "0.5", "lw": 1.0, "ms": 2.5}),
 )
 OVER_LINES: dict[str, Any] = {"frameon": True, "framealpha": 0.8, "edgecolor": "none"}  # legends where there is no room
-FAINT = 0.02  # part of the greatest force below which a force centre says little and is not drawn
+FAINT = 0.02  # part of the maximum force below which a force centre says little and is not drawn
 REACH = 1.3  # of the picture, in coil radii
 DECADES = 3  # of the pressure's colours
-LEAST_TURNS = 0.2  # that are shown from the tip on, though nothing bears there
+LEAST_TURNS = 0.2  # shown from the tip on, even without contact
 
 
 def phases(result: Result) -> dict[int, list[int]]:
@@ -46,7 +47,7 @@ def phase_styles(setup: Setup) -> list[str]:
 
 
 def name_styles(axes: Axes, setup: Setup) -> None:
-    """Say in the legend which line goes to which target."""
+    """Name the line of each target in the legend."""
     for number, name in named_phases(setup.phases, len(LINES)):
         if name is not None:
             axes.plot([], [], LINES[number], lw=1.0, color="k", label=f"to {name}")
@@ -86,7 +87,7 @@ def force_centre(path: str | Path, setup: Setup, result: Result) -> None:
                 over.plot(travel[joined], distance[joined], style, marker="o", **DRAWN[end])
         radius = float(np.hypot(*setup.spring.centre_line(np.array([0.0, setup.spring.turns]))[:, :2].T).max())
         plan.plot(0, 0, "k+", ms=9)
-        plan.set(aspect="equal", xlabel="x in mm", ylabel="y in mm", title="force centre, seen along the axis",
+        plan.set(aspect="equal", xlabel="x in mm", ylabel="y in mm", title=_at_greatest(result, force),
                  xlim=(-REACH * radius, REACH * radius), ylim=(-REACH * radius, REACH * radius))  # fmt: skip
         plan.legend(fontsize=6.5, loc="upper right")
         for end in ENDS:
@@ -99,6 +100,13 @@ def force_centre(path: str | Path, setup: Setup, result: Result) -> None:
         for axes in (plan, over):
             axes.grid(lw=0.3)
         save(figure, path)
+
+
+def _at_greatest(result: Result, force: np.ndarray) -> str:
+    """Where the greatest force passes."""
+    step = int(np.argmax(force))
+    away = max(getattr(result.seats[step], end).eccentricity_mm for end in ENDS)
+    return f"At {plain(float(force[step]))} N the force passes {away:.2g} mm beside the axis"
 
 
 def seat_pressure(path: str | Path, setup: Setup, result: Result) -> bool:
@@ -124,7 +132,9 @@ def seat_pressure(path: str | Path, setup: Setup, result: Result) -> bool:
         shown = None
         for axes, (end, (kind, contact)) in zip(maps, seats.items(), strict=False):
             shown = draw_pressure(axes, result, kind, contact, greatest) or shown
-            axes.set_title(f"pressure on the {end} seat")
+            there = rows[rows[:, 0] == kind, 2].max(initial=0.0)
+            pressed = f"Up to {there:.3g} N/mm press" if there else "Nothing presses"
+            axes.set_title(f"{pressed} the {end} seat")
         if shown is not None:
             figure.colorbar(shown, ax=maps, label="force per length of wire in N/mm")
         styles = phase_styles(setup)
@@ -139,8 +149,12 @@ def seat_pressure(path: str | Path, setup: Setup, result: Result) -> bool:
             lengths.plot([], [], "-", marker="o", **DRAWN[end], label=f"{end} seat")
         for _name, words, drawn in TURNS:
             turns.plot([], [], "-", marker="o", **drawn, label=words)
-        lengths.set(xlabel="travel in mm", ylabel="wire in contact with the seat in mm")
-        turns.set(xlabel="travel in mm", ylabel="turns", ylim=(0.0, 1.5 * setup.spring.turns))
+        most = result.seats[int(np.argmax(np.abs([step.force_N for step in result.steps])))]
+        bearing = " and ".join(f"{getattr(most, end).length_mm:.3g}" for end in seats)
+        lengths.set(xlabel="travel in mm", ylabel="wire in contact with the seat in mm",
+                    title=f"{bearing} mm bear at the greatest force")  # fmt: skip
+        turns.set(xlabel="travel in mm", ylabel="turns", ylim=(0.0, 1.5 * setup.spring.turns),
+                  title=f"At the greatest force {most.active_turns:.3g} turns are active")  # fmt: skip
         for axes in (lengths, turns):
             name_styles(axes, setup)
             axes.legend(fontsize=7, **OVER_LINES)

@@ -1,10 +1,11 @@
-"""Where the force goes: reactions at both ends of the spring, pressure along the wire, active turns."""
+"""Reactions at both ends of the spring, pressure along the wire, active turns."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from coilset.model.contact.base import ENDS, SEAT_DOFS, BearsOnWire, Contact, Contribution
+from coilset.model.contact.base import ENDS, SEAT_DOFS, Contact, Contribution
 from coilset.model.contact.resultants import Wrench, station_forces, station_moments
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.layout import LineLayout
@@ -14,10 +15,11 @@ from coilset.model.rod.rod import Rod
 from coilset.model.rotations.vectors import rotation_matrix
 
 ROUNDING = 2e-13  # axial forces below this part of E A are rounding, whatever came before
-FAINT = 1e-6  # axial forces below this part of the greatest one so far have no centre and load no turns
+FAINT = 1e-6  # axial forces below this part of the largest one so far have no centre and load no turns
 
 
 Parts = Sequence[tuple[Contact, Contribution]]
+OnWire = Sequence[tuple[int, Any, Contribution]]  # contacts that bear on the wire (BearsOnWire), with their numbers
 
 
 def seat_reactions(
@@ -28,14 +30,14 @@ def seat_reactions(
     greatest_force: float,
     before: tuple[float, np.ndarray],
 ) -> SeatReactions:
-    """Reactions at the equilibrium that was just reached; collective.
+    """Reactions at the equilibrium just reached; collective.
 
     Args:
         system: System of a Rod.
         control: AxialControl.
         turns: of the stations, shape (n + 1,).
         step: number of the step.
-        greatest_force: size of the greatest axial force so far, this one's included, N.
+        greatest_force: magnitude of the largest axial force so far, this one's included, N.
         before: axial force, N, and `mean_torque` of the last equilibrium but this.
 
     Returns:
@@ -43,18 +45,18 @@ def seat_reactions(
     """
     observer, force = _Observer(system, control), control.force
     faint = faint_force(observer.layout.rod, greatest_force)
-    pressure = pressures(observer.parts)
+    pressure = pressures(observer.on_wire)
     bottom, top = (observer.reaction(end, faint) for end in ENDS)
     rod = observer.layout.rod
-    if abs(force) >= greatest_force:  # never was it loaded so far: the whole force counts
+    if abs(force) >= greatest_force:  # not loaded before: the whole force counts
         before = 0.0, np.zeros_like(before[1])
     change = force - before[0]
     active = active_turns(rod, turns, change, before[1]) if min(abs(force), abs(change)) > faint else np.nan
-    return SeatReactions(step, active, free_turns(observer.parts, pressure), bottom, top, pressure)
+    return SeatReactions(step, active, free_turns(observer.on_wire, pressure), bottom, top, pressure)
 
 
 def faint_force(rod: Rod, greatest_force: float) -> float:
-    """Axial force that is as good as none, N; `greatest_force` is the size of the greatest one so far."""
+    """Axial force below which it counts as zero, N; `greatest_force` is the magnitude of the largest one so far."""
     return max(FAINT * greatest_force, ROUNDING * rod.axial_force)
 
 
@@ -67,9 +69,10 @@ class _Observer:
         self.x = self.layout.gather(system.state["x"].trial)
         self.chart = self.layout.gather(self.layout.rod.chart)
         self.parts: Parts = list(zip(system.contacts, system.last.contributions, strict=True))
+        self.on_wire: OnWire = [(kind, *self.parts[kind]) for kind, bears in enumerate(system.bearing) if bears]
 
     def wrench(self, end: str) -> Wrench:
-        """Of everything that an end's seat, or its held unknowns, does to the wire."""
+        """Resultant of all that an end's seat, or its prescribed unknowns, exert on the wire."""
         own = [part for contact, part in self.parts if contact.end == end]
         station, components = self.control.tips[end]
         reaction = np.zeros(6)
@@ -83,8 +86,8 @@ class _Observer:
         side = 1.0 if end == "bottom" else -1.0  # the bottom pushes up
         crossing = wrench.crossing(centre) if abs(wrench.force[2]) > faint else np.full(2, np.nan)
         spot, length, down = np.full(2, np.nan), 0.0, 0.0
-        for contact, part in self.parts:
-            if contact.end == end and isinstance(contact, BearsOnWire):
+        for _, contact, part in self.on_wire:
+            if contact.end == end:
                 bears = part.bears
                 number, wire = part.point[bears], contact.points
                 points = wire.at(self.x)[number]
@@ -94,7 +97,7 @@ class _Observer:
                     spot = part.pressure[bears] @ points[:, :2] / part.pressure[bears].sum()
         axial = side * wrench.force[2]
         if not self.control.clamped and axial < -faint:
-            axial = 0.0  # a seat cannot pull: that is the spring which holds a tip that has lifted off
+            axial = 0.0  # a seat cannot pull: tension comes from the spring that holds a lifted tip
         numbers = (axial, *wrench.force[:2], *wrench.about(centre), *crossing, np.hypot(*crossing),
                    *spot, length, down, self.tilt(end))  # fmt: skip
         return SeatReaction(*map(float, numbers))
@@ -125,11 +128,11 @@ def active_turns(rod: Rod, turns: np.ndarray, change: float, before: np.ndarray)
     return float(line.mesh.comm.allreduce(active))
 
 
-def pressures(parts: Parts) -> np.ndarray:
-    """Rows of SeatReactions.pressure: forces of each kind of contact summed over what bears at a point."""
+def pressures(parts: OnWire) -> np.ndarray:
+    """Rows of SeatReactions.pressure: forces of each kind of contact, summed at each point."""
     rows: list[np.ndarray] = [np.empty((0, 3))]
-    for kind, (contact, part) in enumerate(parts):
-        if not isinstance(contact, BearsOnWire) or not len(part.point):
+    for kind, contact, part in parts:
+        if not len(part.point):
             continue
         force = np.bincount(part.point, np.where(part.bears, part.pressure, 0.0), len(contact.points))
         bears = np.flatnonzero(force)
@@ -138,11 +141,11 @@ def pressures(parts: Parts) -> np.ndarray:
     return np.concatenate(rows)
 
 
-def free_turns(parts: Parts, pressure: np.ndarray) -> float:
-    """Turns of wire that touch nothing, each point for the turns that it stands for."""
-    points = next((contact.points for contact, _ in parts if isinstance(contact, BearsOnWire)), None)
-    if points is None:
+def free_turns(parts: OnWire, pressure: np.ndarray) -> float:
+    """Turns of wire that touch nothing, weighted by the turns assigned to each point."""
+    if not parts:
         return float("nan")
+    points = parts[0][1].points
     step = 0.5 * np.diff(points.turns)
     bedding_length = np.append(step, 0.0) + np.append(0.0, step)
     return float(bedding_length.sum() - bedding_length[np.unique(pressure[:, 1].astype(int))].sum())

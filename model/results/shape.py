@@ -1,4 +1,4 @@
-"""What the shape of a pressed spring says about it: has a seat been left, have coils slipped past each other?"""
+"""Checks of a compressed spring's shape: has it left a seat, have coils slipped past each other?"""
 
 import numpy as np
 
@@ -7,11 +7,11 @@ from coilset.meshes.geometry import Spring
 from coilset.model.contact.seat import Seat
 from coilset.model.equilibrium.system import System
 
-PASSING = 0.5  # of the wire: a rise to touch below this part of it is that of coils that pass each other by their shape
+PASSING = 0.5  # of the wire diameter: with a smaller touching pitch, coils pass each other by their shape
 
 
 def clearance(system: System, x: np.ndarray) -> float:
-    """Greatest distance between a seat and the wire, mm; 0 where both touch, or there are none.
+    """Maximum distance between a seat and the wire, mm; 0 where both touch, or there are none.
 
     Args:
         system: System.
@@ -22,10 +22,10 @@ def clearance(system: System, x: np.ndarray) -> float:
 
 
 def least_rise(x: np.ndarray, turns: np.ndarray, spring: Spring) -> float | None:
-    """Least rise of the wire over a turn, over the rise with which a coil lies on the next: 1 at block.
+    """Smallest rise of the wire over one turn, relative to the rise at which adjacent coils touch: 1 at block.
 
-    Contact cannot hold a coil that has slipped sideways past the next one; then this falls far below 1, and below 0
-    where it has passed.
+    Contact cannot hold a coil that has slipped sideways past the next one; the value then falls far below 1, and
+    below 0 once it has passed.
 
     Args:
         x: station positions, shape (n, 3), mm.
@@ -33,7 +33,7 @@ def least_rise(x: np.ndarray, turns: np.ndarray, spring: Spring) -> float | None
         spring: the stress-free spring.
 
     Returns:
-        None without two coils one above the other.
+        None unless there are two coils, one above the other.
     """
     lower = turns[turns <= turns[-1] - 1.0]
     diameter = 0.5 * (spring.wire_diameter(lower) + spring.wire_diameter(lower + 1.0))

@@ -1,4 +1,4 @@
-"""The few numbers that answer the question."""
+"""The summary of a run."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -16,11 +16,11 @@ from coilset.model.section import surface
 
 
 def summarise(setup: Setup, result: Result) -> dict[str, Any]:
-    """Summary of a run as plain numbers, units in the names; what is not known (no release, no block) is None.
+    """Summary of a run as plain numbers, with units in the names; unknown values (no release, no block) are None.
 
     Args:
         setup: Setup.
-        result: Result, complete or not; its snapshots are whole on rank 0 only.
+        result: Result, complete or not; its snapshots are complete on rank 0 only.
     """
     last = result.snapshots[-1]
     forces = [step.force_N for step in result.steps]
@@ -47,6 +47,7 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         **plastic_work(setup, result),
         **step_errors(result),
         "load_loss_percent": load_loss(result),
+        "coiling_diameter_mm": setup.coiling_diameter,
         "steps": len(result.steps),
         "iterations": sum(step.iterations for step in result.steps),
         "evaluations": sum(step.evaluations for step in result.steps),
@@ -67,13 +68,13 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
 
 
 def load_loss(result: Result) -> float | None:
-    """Part of its force that the spring had lost when time last passed at constant height, per cent."""
+    """Percentage of the force that the spring had lost when time last passed at constant height."""
     losses = [step.load_loss_percent for step in result.steps if step.load_loss_percent is not None]
     return losses[-1] if losses else None
 
 
 def step_errors(result: Result) -> dict[str, float | None]:
-    """What the length of the steps has left wrong: in the greatest force, and in the set."""
+    """Errors due to the step size: of the maximum force, and of the set."""
     top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
     return {
         "estimated_force_error_N": None if top is None else top.estimated_force_error_N,
@@ -89,10 +90,10 @@ def is_middle(setup: Setup) -> np.ndarray:
 
 
 def shear_peak(setup: Setup, snapshot: Snapshot, ends: bool = False) -> surface.Peak:
-    """The greatest shear stress on the wire's surface in the middle turns or, if asked, on the ends beside them.
+    """The maximum shear stress on the wire's surface in the middle turns or, on request, in the end turns.
 
-    It is a number of the spring: in the core, too, shear remains, and more of it, but what the section points see of
-    that hangs on where they lie.
+    The surface value is a property of the spring. The core holds a larger residual shear stress, but the value found
+    there depends on the position of the section points.
     """
     among = is_middle(setup) != ends
     stress = surface.shear(snapshot.surface_state, snapshot.components)
@@ -100,7 +101,7 @@ def shear_peak(setup: Setup, snapshot: Snapshot, ends: bool = False) -> surface.
 
 
 def ends_peak(setup: Setup, snapshot: Snapshot | None) -> dict[str, float | None]:
-    """The greatest residual shear on the ends' surface, MPa, its turn and its angle from the coil's inside, degrees."""
+    """The maximum residual shear on the ends' surface, MPa, its turn and its angle from the coil's inside, degrees."""
     top = None if snapshot is None else shear_peak(setup, snapshot, ends=True)
     value, turn, angle = (None,) * 3 if top is None else (top.value, top.turn, top.angle)
     return {
@@ -113,14 +114,14 @@ def ends_peak(setup: Setup, snapshot: Snapshot | None) -> dict[str, float | None
 def shear_inside(setup: Setup, snapshot: Snapshot) -> float:
     """Shear stress on the wire's surface at the inside of the coil, MPa, positive as in a compressed spring.
 
-    That of greatest magnitude in the middle turns.
+    The value of largest magnitude in the middle turns.
     """
     middle = setup.inside.shear(snapshot.surface_state, snapshot.components)[is_middle(setup)]
     return float(middle[np.argmax(np.abs(middle))])
 
 
 def peaks(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, float | None]:
-    """The greatest shear and equivalent stress on the surface in the snapshots, MPa, and where: turn, and angle from
+    """The maximum shear and equivalent stress on the surface in the snapshots, MPa, and where: turn, and angle from
     the inside of the coil, degrees; None without snapshots."""
     found = {}
     for name, stress in (("shear", surface.shear), ("equivalent", surface.equivalent)):
@@ -133,7 +134,7 @@ def peaks(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str,
 
 
 def plastic_work(setup: Setup, result: Result) -> dict[str, float | None]:
-    """The greatest plastic work b* on the surface, where it is, and up to which the material's constants are valid."""
+    """The maximum plastic work b* on the surface, where it is, and up to which the material's constants are valid."""
     tops = [surface.peak(surface.component(shot.surface_state, shot.components, "b"), setup.section_turns, setup.inside)
             for shot in result.snapshots]  # fmt: skip
     top = max(tops, key=lambda one: one.value)

@@ -1,4 +1,4 @@
-"""What a run has to say about itself, read from its records, so that a resumed run says the same."""
+"""Warnings of a run, derived from its records, so that a resumed run gives the same ones."""
 
 from collections.abc import Callable, Iterator
 from itertools import pairwise
@@ -11,8 +11,8 @@ from coilset.model.standards.working import presetting_warning
 from coilset.model.warning import Warning
 
 SLIPPED = 0.7  # of the rise to touch: coils of one wire that lie so are shifted sideways by 0.71 of their diameter
-# Percent of the force for one of the travel at the end of a way, from which the spring stands on a wall there: a spring
-# of constant rate has 1, the example at block 1.1, the cone 160.
+# Change of the force over that of the travel, both in per cent, from which a spring counts as standing on a wall: a
+# spring of constant rate has 1, the example at block 1.1, the cone 160.
 WALL = 20.0
 Check = Callable[[Setup, Result], Iterator[Warning]]
 
@@ -45,7 +45,7 @@ def accuracy_warning(error: float, asked: float, place: str) -> Warning | None:
 
 
 def beyond_validity(greatest: float, limit: float, material: str, place: str) -> Warning:
-    """Plastic work beyond that up to which a material's constants are valid, N/mm²; `place` is where it began."""
+    """Plastic work beyond the range in which the material's constants are valid, N/mm²; `place` is where it began."""
     message = (
         f"the plastic work b* reaches {greatest:.4g} N/mm², but the constants of {material} are valid up to "
         f"{limit:.4g} N/mm² only; exceeded since {place}"
@@ -87,7 +87,7 @@ def _slipped(setup: Setup, result: Result) -> Iterator[Warning]:
 
 
 def _wall(setup: Setup, result: Result) -> Iterator[Warning]:
-    """At the end of a way on which the spring is pressed."""
+    """At the end of a compression."""
     accuracy = setup.limits.accuracy
     for before, step in pairwise(result.steps):
         travel = step.travel_mm - before.travel_mm
@@ -209,7 +209,7 @@ def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
 
 
 def released(result: Result) -> bool:
-    """Whether the spring is free of load where the run stands; one that has left a seat hangs on its tip springs."""
+    """Whether the spring is free of load now; one that has left a seat is held by its tip springs only."""
     greatest = max((abs(step.force_N) for step in result.steps), default=0.0)
     if not result.steps or result.steps[-1].lift_off_mm:
         return False

@@ -1,15 +1,15 @@
-"""The sections of a rod once more, over the same strains in finer increments: what the steps leave wrong in the forces.
+"""A copy of the rod's sections that follows the same strains in finer increments, to estimate the error of the steps.
 
-A step integrates the law along a straight path of strains. Both errors of that are of second order: the law's own, and
-that of the path, which is bent in truth. So after each step the sections follow the step's strains a second time, from
-where they came so, in two halves that meet beside the straight path, where a parabola through the strains at the last
-three equilibria says. Where coils or seats close or open the path is kinked within the step: at worst in its middle,
-and there it lies off the chord by four times as much. That divides the law's error and the area between path and chord
-by 4, so that
+A step integrates the law along a straight strain path. This causes two errors of second order: the law's own, and that
+of the path, which is really curved. After each step the sections therefore follow the step's strains again, from their
+own previous state, in two halves that meet on a parabola through the strains at the last three equilibria. If coils or
+seats
+close or open, the path has a kink within the step: at worst in its middle, where it deviates from the chord by four
+times as much. This divides the law's error and the area between path and chord by 4, so that
 
     s* − s ≈ 4/3 (s_finer − s)
 
-is the error of the section forces. What the law forgets on the way, it forgets here too.
+is the error of the section forces. Errors that plastic flow erases are erased here, too.
 """
 
 import numpy as np
@@ -37,22 +37,22 @@ class FinerPath:
         self._increment = state.add("strain_increment", np.zeros(shape), Where.ELEMENT)
         self._first = state.add("first_strain_increment", np.zeros(shape), Where.ELEMENT)
         self._error = state.add("section_force_error", np.zeros(shape), Where.ELEMENT)
-        self._fields = {name: state.add(f"finer_{name}", rows, Where.ELEMENT)
-                        for name, rows in sections.initial_state().items() if name != "surface_state"}  # fmt: skip
+        self._fields = {name: state.add(f"finer_{name}", state[name].equilibrium.copy(), Where.ELEMENT)
+                        for name in sections.initial_state() if name != "surface_state"}  # fmt: skip
         self._half = {name: field.trial.copy() for name, field in self._fields.items()}
         self._s, self._D = np.empty(shape), np.empty((*shape, 6))
 
     def follow(self, s: np.ndarray, ratio: float, kinked: bool = False) -> bool:
-        """Bring the finer path to the strains on trial.
+        """Advance the finer path to the trial strains.
 
         Args:
-            s: section forces on trial, shape (cells, 2, 6), N and N mm.
+            s: trial section forces, shape (cells, 2, 6), N and N mm.
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
-            kinked: is the path kinked within the step, in its middle at worst?
+            kinked: whether the path has a kink within the step, at worst in its middle.
 
         Returns:
-            False if the law found no solution on this rank: the finer path then goes on from the step's own end, and
-            the error is left as it was.
+            False if the law found no solution on this rank: the finer path then continues from the step's own end, and
+            the error is not changed.
         """
         strain, change = self._strain, self._strain.trial - self._strain.equilibrium
         # of the path's middle from the chord's
@@ -78,7 +78,7 @@ class FinerPath:
         return bool(good)
 
     def rejoin(self) -> None:
-        """Go on from the sections' own last equilibrium; the error up to there stays as it was."""
+        """Continue from the sections' own last equilibrium; the error so far is not changed."""
         for name, field in self._fields.items():
             field.equilibrium[:] = field.trial[:] = self._state[name].equilibrium
 

@@ -7,6 +7,7 @@ rotations do not add.
 """
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import basix.ufl
@@ -45,6 +46,21 @@ def cell_element(shape: tuple[int, ...]) -> Any:
     return basix.ufl.element("DG", "interval", 0, shape=shape)
 
 
+# The coefficients of RodForms by name, in the order of its arguments: what makes the element of each.
+FIELDS = {
+    "xi": partial(section_element, ()),
+    "timoshenko_factor": partial(cell_element, ()),
+    "E": partial(cell_element, (3, 3)),
+    "T": partial(cell_element, (2, 3, 3)),
+    "P": partial(cell_element, (2, 3, 3)),
+    "W": partial(cell_element, (3, 3)),
+    "e": partial(section_element, (6,)),
+    "s": partial(section_element, (6,)),
+    "foreseen": partial(section_element, (6,)),
+    "D": partial(section_element, (6, 6)),
+}
+
+
 def matrices(coefficient: Any) -> list[Any]:
     """The two 3×3 matrices of a coefficient of shape (2, 3, 3)."""
     return [as_matrix([[coefficient[a, i, j] for j in range(3)] for i in range(3)]) for a in range(2)]
@@ -70,17 +86,17 @@ def section_strains(
 ) -> Any:
     """ε, γ12, γ13, φ′, −w″, v″ of an increment in the triad E (columns), from (5.2.4).
 
-    Rotations count against the triad, whose transverse spin is the chord's and whose spin about the chord is `spin`.
-    `P`, shape (2, 3, 3), makes of the relative spins the exact rates of the rotations; without it the rotations are
+    Rotations are relative to the triad, whose transverse spin is the chord's and whose spin about the chord is `spin`.
+    `P`, shape (2, 3, 3), maps the relative spins to the exact rates of the rotations; without it the rotations are
     small, as in the thesis.
 
-    The element's own unknowns are the shear angles in excess of those that its rotations ask of an elastic
+    The element's own unknowns are the shear angles in excess of those that its rotations produce in an elastic
     element, u = shear − c ½ (t1 + t2), c = Φ/(1 + Φ), Φ = 12 E I/(G A l²); `timoshenko_factor` is c. The chord's curve
     is H1 … H4 with the same bow b = u + ½ (t1 + t2) at both ends and ±(t2 − t1)/2 besides. The solution does not
-    depend on c, but a finite rotation within an iteration leaves an error of second order: with c = 0 in the
-    curvature, 6/l times as large, which asks for more iterations the shorter the elements are; with c = 1 in the shear
-    angle, which does so the longer they are. With Timoshenko's c it does least, and the matrix has no entries 12 E
-    I/l³ that cancel.
+    depend on c, but a finite rotation within an iteration leaves an error of second order: with c = 0 in the curvature,
+    6/l times as large, which needs more iterations the shorter the elements are; with c = 1 in the shear angle, which
+    needs more the longer they are. With Timoshenko's c its effect is smallest, and the matrix has no entries 12 E I/l³
+    that cancel.
     """
     d = E.T * increment.d
     frame = as_vector([spin, -d[2] / l, d[1] / l])
@@ -116,10 +132,10 @@ class RodForms:
         V: space of rod_element.
         xi: abscissa ξ of the Gauss sections.
         timoshenko_factor: c of section_strains, one value per element.
-        E: triad of the element, columns, shape (3, 3).
+        E: triad of the element (columns), shape (3, 3).
         T: tangents of the rotation charts of both nodes, shape (2, 3, 3).
         P: rates of the rotations for a relative spin, shape (2, 3, 3), see section_strains.
-        W: what makes the triad's spin about its chord, shape (3, 3), see coilset.model.rod.kinematics.mean_triad.
+        W: for the triad's spin about its chord, shape (3, 3), see coilset.model.rod.kinematics.mean_triad.
         e: section strains ε, γ12, γ13, φ′, −w″, v″.
         s: section resultants N, Q2, Q3 in N and Mt, M2, M3 in N mm.
         foreseen: section resultants that the frame stiffness is built with, see coilset.model.rod.prediction.
@@ -154,7 +170,7 @@ class RodForms:
         self.dx = ufl.dx(domain=mesh, metadata=QUADRATURE)
 
     def strains(self, increment: Increment) -> Any:
-        """Section strains of an increment in the current triad, for small rotations against it."""
+        """Section strains of an increment in the current triad, for small rotations relative to it."""
         return section_strains(increment, self.E, self.l, self.xi, self.timoshenko_factor)
 
     @property
@@ -173,8 +189,8 @@ class RodForms:
     def frame_stiffness(self) -> Any:
         """Change of the internal forces as the element's triad rotates and its chord changes length under the forces.
 
-        With K_l it is the derivative of the residual where the foreseen resultants are the true ones, but for the
-        charts' curvature, which goes with the out-of-balance moments.
+        With K_l it is the derivative of the residual if the foreseen resultants are the true ones, except for the
+        charts' curvature, which is proportional to the out-of-balance moments.
         """
         e1 = self.E[:, 0]
         rotated = spun(self.test, cross(e1, self.trial.d) / self.l + self.spin * e1)

@@ -1,4 +1,4 @@
-"""From nodes to section strains: the moving triad of each element, and the rotations against it (5.2.5–5.2.14)."""
+"""From nodes to section strains: the moving triad of each element, and the rotations relative to it (5.2.5–5.2.14)."""
 
 import math
 
@@ -19,7 +19,7 @@ GAUSS = np.array([0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0)])  # ab
 def chord_triads(chords: np.ndarray) -> np.ndarray:
     """Right-handed orthonormal triads (columns) with the first axis along the chords, shape (n, 3) → (n, 3, 3).
 
-    The second axis lies as level as it can; for a round wire its direction is free (the external node 3 of 5.2.5).
+    The second axis is as level as possible; for a round wire its direction is free (the external node 3 of 5.2.5).
     """
     e1 = chords / np.linalg.norm(chords, axis=1, keepdims=True)
     helper = np.where(np.abs(e1[:, 2:]) < 0.9, [[0.0, 0.0, 1.0]], [[1.0, 0.0, 0.0]])
@@ -41,7 +41,7 @@ def mean_triad(
     B: np.ndarray,
     v: np.ndarray,
 ) -> None:
-    """Write into `E` the element's triad: the mean of the two rotated node triads, swung onto the chord (5.2.11).
+    """Write into `E` the element's triad: the mean of the two rotated node triads, rotated onto the chord (5.2.11).
 
     With the relative rotation φ = φ n of the nodes, the first axis t of their mean triad and the chord's direction c,
     the triad spins about its chord by
@@ -49,7 +49,8 @@ def mean_triad(
         W1 · d + W2 · ω1 + W3 · ω2,  W1 = c × t/(l (1 + t·c)),  W2, W3 = ½ (w ± tan(φ/4) w × n),  w = (t + c)/(1 + t·c),
 
     where d is the rate of the chord and ω1, ω2 are the nodes' spins: the mean rotation spins by ½ (ω1 + ω2) −
-    ½ tan(φ/4) n × (ω2 − ω1), and the swing from t to c is the rotation by π about t followed by that about t + c.
+    ½ tan(φ/4) n × (ω2 − ω1), and the smallest rotation from t to c is the rotation by π about t followed by that about
+    t + c.
 
     A, B are 3×3 and v is a 3-vector of work space.
     """
@@ -98,8 +99,8 @@ def section_strains(
 ) -> None:
     """Section strains of all elements at their two Gauss sections, from (5.2.4) in the element's moving triad.
 
-    The nodes' rotations θ are measured against the triad of the current configuration, so no restriction to small
-    rotations within an increment is needed and the strains do not depend on the path.
+    The nodes' rotations θ are measured relative to the triad of the current configuration, so rotations within an
+    increment need not be small, and the strains do not depend on the path.
 
     Args:
         cells: node numbers, shape (cells, 2).

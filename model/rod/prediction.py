@@ -1,9 +1,9 @@
-"""Section forces as a Newton correction foresees them: the stiffness of the turning frame is built with these.
+"""Section forces predicted by a Newton correction, with which the stiffness of the rotating frame is built.
 
-A correction δ turns the elements by finite angles, and the axial and shear strains of where it ends are wrong by terms
-of second order, ½ w′². In a slender rod the forces E A ½ w′² that come of it are far greater than the true ones, and a
-frame stiffness built with them leads astray. So it is built with s + D B δ, the forces that the linear solve has found,
-as with mixed integration points: D. Magisano, L. Leonetti, G. Garcea, How to improve efficiency and robustness of the
+A correction δ rotates the elements by finite angles, and the axial and shear strains at its end are wrong by terms of
+second order, ½ w′². In a slender rod the resulting forces E A ½ w′² are much larger than the true ones, and a frame
+stiffness built with them is misleading. It is therefore built with s + D B δ, the forces found by the linear solve, as
+with mixed integration points: D. Magisano, L. Leonetti, G. Garcea, How to improve efficiency and robustness of the
 Newton method in geometrically non-linear structural problem discretized via displacement-based finite elements, Comput.
 Methods Appl. Mech. Engrg. 313 (2017). At equilibrium both are the same.
 """
@@ -11,13 +11,14 @@ Methods Appl. Mech. Engrg. 313 (2017). At equilibrium both are the same.
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
 from coilset.model.rod.kinematics import GAUSS
 
 
 @dataclass(frozen=True)
 class Frames:
-    """What the linear strains of the elements depend on, see coilset.model.rod.forms.
+    """Data on which the linear strains of the elements depend, see coilset.model.rod.forms.
 
     Attributes:
         cells: node numbers, shape (cells, 2).
@@ -50,28 +51,74 @@ def linear_strains(frames: Frames, u: np.ndarray, turns: np.ndarray, shear: np.n
     Returns:
         ε, γ12, γ13, φ′, −w″, v″ at the two Gauss sections, shape (cells, 2, 6).
     """
-    first, second = frames.cells.T
-    chord, l = u[second] - u[first], frames.length
-    spins = np.einsum("naij,naj->nai", frames.T, turns[frames.cells])
-    about = np.einsum("nki,nki->n", frames.W, np.stack([chord, spins[:, 0], spins[:, 1]], axis=1))
-    d = np.einsum("nji,nj->ni", frames.E, chord)
-    frame = np.stack([about, -d[:, 2] / l, d[:, 1] / l], axis=1)
-    t = np.einsum("naij,naj->nai", frames.P, np.einsum("nji,naj->nai", frames.E, spins) - frame[:, None])
-    mean, difference = 0.5 * (t[:, 0] + t[:, 1]), t[:, 1] - t[:, 0]
-    excess = shear - frames.shear_fraction[:, None] * mean[:, 1:]
-    e = np.empty((len(l), 2, 6))
-    e[..., 0] = (d[:, 0] / l)[:, None]
-    e[..., 1], e[..., 2] = excess[:, 1, None], -excess[:, 0, None]
-    e[..., 3] = (difference[:, 0] / l)[:, None]
-    bow = np.einsum("g,ni->ngi", 12.0 * GAUSS - 6.0, excess + mean[:, 1:])  # H2″ + H4″, times l²
-    e[..., 4:] = (difference[:, None, 1:] + bow) / l[:, None, None]
-    e[..., 3:] -= (d[:, 0] / l)[:, None, None] * frames.strain[..., 3:]  # a longer chord is bent less
+    e = np.empty((len(frames.cells), 2, 6))
+    _linear_strains(
+        frames.cells, frames.length, frames.E, frames.T, frames.P, frames.W, frames.shear_fraction, frames.strain, u,
+        turns, shear, GAUSS, e,
+    )  # fmt: skip
     return e
+
+
+@njit(cache=True)
+def _linear_strains(
+    cells: np.ndarray,
+    length: np.ndarray,
+    E: np.ndarray,
+    T: np.ndarray,
+    P: np.ndarray,
+    W: np.ndarray,
+    shear_fraction: np.ndarray,
+    strain: np.ndarray,
+    u: np.ndarray,
+    turns: np.ndarray,
+    shear: np.ndarray,
+    xi: np.ndarray,
+    e: np.ndarray,
+) -> None:
+    """As `linear_strains`, into `e`; `xi` are the abscissae of the Gauss sections."""
+    spins, t, frame, d = np.empty((2, 3)), np.empty((2, 3)), np.empty(3), np.empty(3)
+    for c in range(len(cells)):
+        first, l = cells[c, 0], length[c]
+        second = cells[c, 1]
+        frame[0] = 0.0
+        for i in range(3):
+            d[i] = 0.0
+            for a in range(2):
+                spins[a, i] = 0.0
+                for j in range(3):
+                    spins[a, i] += T[c, a, i, j] * turns[cells[c, a], j]
+        for i in range(3):
+            chord = u[second, i] - u[first, i]
+            frame[0] += W[c, 0, i] * chord + W[c, 1, i] * spins[0, i] + W[c, 2, i] * spins[1, i]
+            for j in range(3):
+                d[j] += E[c, i, j] * chord
+        frame[1], frame[2] = -d[2] / l, d[1] / l
+        for a in range(2):
+            for i in range(3):
+                t[a, i] = 0.0
+            for j in range(3):
+                relative = -frame[j]
+                for i in range(3):
+                    relative += E[c, i, j] * spins[a, i]
+                for i in range(3):
+                    t[a, i] += P[c, a, i, j] * relative
+        stretch = d[0] / l
+        for g in range(2):
+            H = 12.0 * xi[g] - 6.0  # H2″ + H4″, times l²
+            e[c, g, 0] = stretch
+            e[c, g, 3] = (t[1, 0] - t[0, 0]) / l
+            for k in range(2):  # about the second axis and the third
+                mean = 0.5 * (t[0, 1 + k] + t[1, 1 + k])
+                excess = shear[c, k] - shear_fraction[c] * mean
+                e[c, g, 2 - k] = -excess if k == 0 else excess
+                e[c, g, 4 + k] = (t[1, 1 + k] - t[0, 1 + k] + H * (excess + mean)) / l
+            for i in range(3, 6):
+                e[c, g, i] -= stretch * strain[c, g, i]  # a longer chord is bent less
 
 
 @dataclass(frozen=True)
 class Prediction:
-    """What a correction foresees, from the state before it.
+    """Prediction of a correction, from the state before it.
 
     Attributes:
         forces, strain: section forces and strains there, shape (cells, 2, 6).
@@ -89,8 +136,8 @@ class Prediction:
         return self.forces + length * np.einsum("ngij,ngj->ngi", self.tangent, self.change)
 
     def without_turning(self, length: float, forces: np.ndarray, strain: np.ndarray) -> np.ndarray:
-        """Section forces after `length` of the correction, without what strains of second order add: s − D (e − e_lin).
+        """Section forces after `length` of the correction, without the part of second-order strains: s − D (e − e_lin).
 
-        In an elastic rod they are the foreseen ones; where wire yields, what yielding takes off is still off.
+        In an elastic rod they are the foreseen ones; where the wire yields, the reduction by yielding remains.
         """
         return forces - np.einsum("ngij,ngj->ngi", self.tangent, strain - self.strain - length * self.change)

@@ -1,11 +1,7 @@
 """A rod structure, a Body: state of its nodes and section points, and the forms assembled from them."""
 
-from typing import Any
-
 import numpy as np
 from dolfinx import fem
-from dolfinx import mesh as dmesh
-from dolfinx.fem.petsc import assemble_matrix
 from mpi4py import MPI
 from petsc4py import PETSc
 
@@ -16,6 +12,7 @@ from coilset.model.body import Moment
 from coilset.model.material.creep_law import CreepLaw
 from coilset.model.material.law import Law
 from coilset.model.rod import forms
+from coilset.model.rod.assembly import add_element_vectors
 from coilset.model.rod.compiled import compiled_forms
 from coilset.model.rod.finer_path import FinerPath
 from coilset.model.rod.kinematics import GAUSS, chord_triads, section_strains
@@ -25,26 +22,21 @@ from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule
 from coilset.model.state import State, Where
 
-CLOCKS = "clock", "halfway_clock"  # at a step's end, and half way on its path
-NODAL_ENTRIES = 22  # in a row of the tangent: three nodes with 6 unknowns each, and two elements with 2
+CLOCKS = "clock", "halfway_clock"  # at the end of a step, and half way along its path
+NODAL_ENTRIES = 22  # per row of the tangent: three nodes with 6 unknowns each, and two elements with 2
 SHEAR_ENTRIES = 14  # two nodes and the element's own 2
 
 
 def comm_max(comm: MPI.Comm, value: float) -> float:
-    """Greatest value of all ranks."""
+    """Maximum of a value over all ranks."""
     return comm.allreduce(float(value), op=MPI.MAX) if comm.size > 1 else float(value)
 
 
 class CellField:
-    """A coefficient of the forms, its values reached as an array in the order of the cells."""
+    """A coefficient of the forms, with the values of the owned cells."""
 
-    def __init__(self, mesh: dmesh.Mesh, element: Any, shape: tuple[int, ...], cells: int) -> None:
-        self.function = fem.Function(fem.functionspace(mesh, element))
-        dofs = self.function.function_space.dofmap.list[:cells]
-        if not np.array_equal(dofs.ravel(), np.arange(dofs.size)):
-            raise RuntimeError("DOLFINx numbers the values of cells out of their order; CellField needs them in order")
-        size = int(np.prod(shape))
-        self.values = self.function.x.array[: cells * size].reshape(cells, *shape)
+    def __init__(self, shape: tuple[int, ...], cells: int) -> None:
+        self.values = np.zeros((cells, *shape))
 
 
 class Rod:
@@ -55,9 +47,9 @@ class Rod:
         radius: wire radius of every element in the order of the elements, shape (elements,), mm.
         law: material law (`coilset.model.material.library.load`).
         rule: quadrature of the wire's disk, DiskRule.
-        placement: Placement of the true sections in relation to the chords, in the order of the elements; None for
+        placement: Placement of the true sections relative to the chords, in the order of the elements; None for
             straight rods.
-        temperature: of the rod, K; where plastic work heats it, at the start. None: the material's first.
+        temperature: of the rod, K; at the start, if plastic work heats it. None: the first one of the material.
         kind: of the sections, see `coilset.model.section.kinds`, and `degree` of those that warp.
 
     Raises:
@@ -65,7 +57,7 @@ class Rod:
 
     Attributes:
         increment: function of the increments since the last equilibrium.
-        correction: function of the last correction to them, which `predict` takes.
+        correction: function of the last correction to them, the input of `predict`.
         state: State with `x`, mm, and `R`, rotations since the stress-free state, of the local nodes; `chord`, mm,
             `shear`, `strain`, shape (cells, 2, 6), and the arrays of the sections, of the owned cells; of these
             `point_state`, shape (cells, 2, points, n_state), and `surface_state` are always there.
@@ -101,33 +93,28 @@ class Rod:
         self.increment = fem.Function(self.V)
         self._number_dofs()
         self.cells = np.ascontiguousarray(geometry_dofs(mesh)[:n])
+        self._nodes = self.cells.astype(np.int32)
         x = mesh.geometry.x
         chords = x[self.cells[:, 1]] - x[self.cells[:, 0]]
         self.l0, self.E0 = np.linalg.norm(chords, axis=1), chord_triads(chords)
 
-        self.xi = CellField(mesh, forms.section_element(()), (2,), n)
+        self.xi = CellField((2,), n)
         self.xi.values[:] = GAUSS
-        self.timoshenko_factor = CellField(mesh, forms.cell_element(()), (1,), n)
+        self.timoshenko_factor = CellField((1,), n)
         Φ = 3.0 * law.E * self.radius**2 / (law.G * self.l0**2)  # 12 E I/(G A l²)
         self.timoshenko_factor.values[:, 0] = Φ / (1.0 + Φ)
-        self.triads = CellField(mesh, forms.cell_element((3, 3)), (3, 3), n)
-        self.T = CellField(mesh, forms.cell_element((2, 3, 3)), (2, 3, 3), n)
-        self.P = CellField(mesh, forms.cell_element((2, 3, 3)), (2, 3, 3), n)
-        self.W = CellField(mesh, forms.cell_element((3, 3)), (3, 3), n)
-        self.e = CellField(mesh, forms.section_element((6,)), (2, 6), n)
-        self.s = CellField(mesh, forms.section_element((6,)), (2, 6), n)
-        self.D = CellField(mesh, forms.section_element((6, 6)), (2, 6, 6), n)
-        self.foreseen = CellField(mesh, forms.section_element((6,)), (2, 6), n)
+        self.triads, self.W = CellField((3, 3), n), CellField((3, 3), n)
+        self.T, self.P = CellField((2, 3, 3), n), CellField((2, 3, 3), n)
+        self.e, self.s, self.foreseen = (CellField((2, 6), n) for _ in range(3))
+        self.D = CellField((2, 6, 6), n)
         fields = (
             self.xi, self.timoshenko_factor, self.triads, self.T, self.P, self.W, self.e, self.s, self.foreseen, self.D,
         )  # fmt: skip
         self.correction = fem.Function(self.V)
         self._prediction: Prediction | None = None
         self._finer: FinerPath | None = None
-        functions = [field.function for field in fields]
-        made = sorted(functions, key=lambda function: function.count())
-        compiled = compiled_forms(mesh.comm, tuple(one.function_space.ufl_element() for one in made))
-        self._residual, self._tangent = compiled.on(self.V, functions)
+        values = {name: field.values for name, field in zip(forms.FIELDS, fields, strict=True)}
+        self._residual, self._tangent = compiled_forms(mesh.comm).on(values)
         self.row_entries = np.full(self.V.dofmap.index_map.size_local, NODAL_ENTRIES, dtype=PETSc.IntType)
         self.row_entries[self.shear_dofs] = SHEAR_ENTRIES
         self.largest_radius = comm_max(mesh.comm, self.radius.max(initial=0.0))
@@ -138,17 +125,18 @@ class Rod:
         self._start(x)
 
     def _number_dofs(self) -> None:
-        """Local dofs of the nodes' displacements and rotations, shape (nodes, 3), and of the cells' shear angles."""
+        """Number the local dofs of displacements and rotations, shape (nodes, 3), and of the cells' shear angles."""
         nodes = geometry_dofs(self.mesh)
         self.u_dofs, self.rotation_dofs = np.empty((2, len(self.mesh.geometry.x), 3), dtype=np.int32)
         nodal, shear = self.V.sub(0), self.V.sub(1)
         for i in range(3):
             self.u_dofs[nodes, i] = nodal.sub(i).dofmap.list
             self.rotation_dofs[nodes, i] = nodal.sub(i + 3).dofmap.list
+        self._dofs = self.V.dofmap.list[: self.line.owned_cells]  # of the cells, shape (cells, 14)
         self.shear_dofs = np.stack([shear.sub(i).dofmap.list[: self.line.owned_cells, 0] for i in range(2)], axis=1)
 
     def _start(self, x: np.ndarray) -> None:
-        """The stress-free state; the mesh's coordinates are the trial positions, as forms need it."""
+        """The stress-free state; the mesh's coordinates are the trial positions, as the forms require."""
         n, state = len(self.cells), State()
         self._x = state.add("x", x, Where.STATION)
         self._R = state.add("R", np.tile(np.eye(3), (len(x), 1, 1)), Where.STATION)
@@ -171,7 +159,8 @@ class Rod:
     @property
     def clock(self) -> np.ndarray:
         """Hours since the start, temperature (K) and warm hours at the last equilibrium; see PassesTime."""
-        return self.state["clock"].equilibrium if self.creep is not None else np.array([0.0, self.temperature, 0.0])
+        clocks = (self.state[name].equilibrium for name in ("clock", "heat_clock") if name in self.state)
+        return next(clocks, np.array([0.0, self.temperature, 0.0]))
 
     def pass_time(self, middle: Moment, end: Moment) -> None:
         """Set the clocks of the state on trial; see PassesTime."""
@@ -201,9 +190,9 @@ class Rod:
     # ---- Body ------------------------------------------------------------------------------------------------------
 
     def update(self) -> bool:
-        """Bring the trial state to the increments; see Body."""
+        """Update the trial state to the increments; see Body."""
         increment = self.increment.x.array
-        # Chords are carried on by differences of the increments: those of the positions would lose digits in l/L.
+        # Chords are updated by differences of the increments: differences of the positions would lose digits as l/L.
         moved = increment[self.u_dofs]
         np.add(self._x.equilibrium, moved, out=self._x.trial)
         np.add(self._chord.equilibrium, moved[self.cells[:, 1]] - moved[self.cells[:, 0]], out=self._chord.trial)
@@ -221,15 +210,15 @@ class Rod:
         return has_stress
 
     def follow(self) -> None:
-        """Bring the points on the wire's surface to the end of the increment; see Body."""
+        """Update the points on the wire's surface to the end of the increment; see Body."""
         self.sections.update_surface(self._strain.trial, self._section_start, self._section_trial)
 
     def estimate_errors(self) -> None:
-        """Follow each step on a finer path from now on; see EstimatesErrors."""
+        """Follow every step on a finer path from now on; see EstimatesErrors."""
         self._finer = FinerPath(self.sections, self.state)
 
     def error_works(self, ratio: float, kinked: bool) -> tuple[float, float, float, float]:
-        """Works of what the steps up to here and the last one leave wrong; see EstimatesErrors."""
+        """Works of the errors of all steps so far and of the last one; see EstimatesErrors."""
         assert self._finer is not None, "estimate_errors comes before"
         if not self._finer.follow(self.s.values, ratio, kinked):
             return np.nan, np.nan, np.nan, np.nan
@@ -241,7 +230,7 @@ class Rod:
         self._finer.rejoin()
 
     def predict(self) -> None:
-        """Foresee the section forces after `correction`, from the trial state; see Foresees."""
+        """Predict the section forces after `correction`, from the trial state; see Foresees."""
         values = self.correction.x.array
         frames = Frames(
             self.cells, np.linalg.norm(self._chord.trial, axis=1), self.triads.values, self.T.values, self.P.values,
@@ -251,16 +240,16 @@ class Rod:
         self._prediction = Prediction(self.s.values.copy(), self._strain.trial.copy(), self.D.values.copy(), change)
 
     def foresee(self, length: float) -> None:
-        """Build the next tangents' frame stiffness with the foreseen section forces; see Foresees."""
+        """Build the frame stiffness of the next tangents with the predicted section forces; see Foresees."""
         assert self._prediction is not None  # `predict` comes before
         self.foreseen.values[:] = self._prediction.forces_after(length)
 
     def stop_foreseeing(self) -> None:
-        """Build the tangents with the section forces as they are; see Foresees."""
+        """Build the tangents with the actual section forces; see Foresees."""
         self.foreseen.values[:] = self.s.values
 
     def forces_without_turning(self, vector: np.ndarray, length: float) -> None:
-        """As `internal_forces`, without what strains of second order in the correction add; see Foresees."""
+        """As `internal_forces`, without the contribution of strains of second order in the correction; see Foresees."""
         actual = self.s.values.copy()
         assert self._prediction is not None  # `predict` comes before
         self.s.values[:] = self._prediction.without_turning(length, actual, self._strain.trial)
@@ -269,16 +258,16 @@ class Rod:
 
     def internal_forces(self, vector: np.ndarray) -> None:
         """Add ∫ ¹σ : δΔE_l of the owned cells; see Body."""
-        fem.assemble_vector(vector, self._residual)
+        add_element_vectors(self._residual(self._x.trial, self._nodes), self._dofs, vector)
 
     def to_charts(self, values: np.ndarray) -> None:
-        """Tᵀ m for the moments at the owned nodes; see HasRotations."""
+        """Replace the moments m at the owned nodes by Tᵀ m; see HasRotations."""
         mine = (self.rotation_dofs < self.V.dofmap.index_map.size_local).all(axis=1)
         dofs = self.rotation_dofs[mine]
         values[dofs] = np.einsum("nji,nj->ni", self.chart[mine], values[dofs])
 
     def create_matrix(self, rows: int) -> PETSc.Mat:
-        """A matrix of the rod's unknowns and the seats'; see Body."""
+        """A matrix for the unknowns of the rod and the seats; see Body."""
         index_map, comm = self.V.dofmap.index_map, self.mesh.comm
         matrix = PETSc.Mat().create(comm)
         matrix.setSizes(((rows, None), (rows, None)))
@@ -289,8 +278,9 @@ class Rod:
         return matrix
 
     def tangent(self, matrix: PETSc.Mat) -> None:
-        """Add K_l and the stiffness of the turning frame; see Body."""
-        assemble_matrix(matrix, self._tangent)
+        """Add K_l and the stiffness of the rotating frame; see Body."""
+        values = self._tangent(self._x.trial, self._nodes)
+        matrix.setValuesLocalRCV(self._dofs, self._dofs, values, addv=PETSc.InsertMode.ADD_VALUES)
 
     @property
     def constraint_weight(self) -> float:
@@ -298,19 +288,19 @@ class Rod:
         return self._constraint_weight
 
     def hold(self, matrix: PETSc.Mat, rows: np.ndarray) -> None:
-        """Rows of prescribed increments; columns stay, so that a correction from afar meets them at once; see Body."""
+        """Rows of prescribed increments; columns stay, so that even a large correction meets them; see Body."""
         matrix.zeroRows(rows.astype(PETSc.IntType), diag=self.constraint_weight)
 
     def rounding(self, increments: np.ndarray) -> float:
-        """The greatest of three errors of rounding, N; see Body.
+        """The largest of three rounding errors, N; see Body.
 
         That of the increments, times the axial stiffness of the shortest element. That of the rotation matrices,
         ε = 2.2e-16 whatever the increments are, times the bending stiffness E I/l of an element: a floor of moments,
-        which short elements lift. And a strain of the wire by 1e-14, so that a step without any change of load is at
-        rest too.
+        which short elements raise. And a strain of the wire of 1e-14, so that a step without any change of load also
+        counts as being at rest.
         """
         greatest = comm_max(self.mesh.comm, np.abs(increments).max(initial=0.0))
-        greatest = min(greatest, self.extent)  # what flies away is not at rest
+        greatest = min(greatest, self.extent)  # a diverging body is not at rest
         size = self.mesh.comm.allreduce(len(increments)) if self.mesh.comm.size > 1 else len(increments)
         stiffest = max(greatest * self.constraint_weight, self._bending_stiffness)
         return max(np.finfo(float).eps * np.sqrt(size) * stiffest, 1e-14 * self.axial_force)

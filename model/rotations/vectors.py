@@ -108,7 +108,7 @@ def rotate_back(v: np.ndarray, θ: np.ndarray) -> np.ndarray:
 
 
 def moment_to_chart(M: np.ndarray, θ: np.ndarray) -> np.ndarray:
-    """Tᵀ M: what does the work of the moment M on a change of θ, M · ω = (Tᵀ M) · θ̇; shape (…, 3), real or complex."""
+    """Tᵀ M, the force conjugate to θ of the moment M: M · ω = (Tᵀ M) · θ̇; shape (…, 3), real or complex."""
     _, _, c2, c3, *_ = stumpff(_squares(θ))
     across = np.cross(θ, M)
     return M - c2 * across + c3 * np.cross(θ, across)

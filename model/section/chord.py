@@ -1,4 +1,4 @@
-"""From the chord's strains to those of the true section, and back with its resultants and its tangent."""
+"""Strains from the chord to the true section, and resultants and tangent back."""
 
 import numpy as np
 from numba import njit

@@ -8,8 +8,8 @@ from numba import njit
 from coilset.model.material.kernel import KERNEL
 from coilset.model.material.point_law import solid_point
 
-# A change of the warping, a strain, that ends the iteration. What it would change in the resultants is added to them,
-# so that they are right to its square over the strain at which the law bends, some 1e-3.
+# A change of the warping, a strain, that ends the iteration. Its effect on the resultants is added to them, so that
+# their error is its square over the strain at which the law's slope changes, some 1e-3.
 TOLERANCE = 1e-10
 MAX_ITERATIONS = 40
 SHORTEST = 1e-3  # part of a correction
@@ -76,8 +76,9 @@ def find_warping(
 ) -> bool:
     """Newton's method for the warping `a` at the section strain increment in the first six places of `step`.
 
-    Far from the solution a correction may lead beyond it, since flow makes the section soft. One that meets more work
-    of the leftover forces, r_a · Δa, than it set out with is shortened to where a straight line through both has none.
+    Far from the solution a correction may overshoot, since flow makes the section soft. If the work of the residual
+    forces, r_a · Δa, is larger in magnitude after it than before, it is shortened to the zero of a straight line
+    through both.
 
     K, r: written, stiffness and forces of strains and warping; X: written, D_aa⁻¹ (D_ae, r_a) in its last columns.
 
@@ -184,7 +185,7 @@ def add_rows(b: np.ndarray, CB: np.ndarray, i: int, K: np.ndarray) -> None:
 def eliminate(X: np.ndarray) -> bool:
     """Solve in place: the first n columns of X, shape (n, n + m), are a matrix, the others right-hand sides.
 
-    Gauss's elimination with the greatest pivot of each column; False if the matrix is singular.
+    Gaussian elimination with partial pivoting; False if the matrix is singular.
     """
     n, columns = X.shape
     for k in range(n):

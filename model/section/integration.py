@@ -7,7 +7,7 @@ With S = g ∂(ε11, γ12, γ13)/∂(ε, γ2, γ3, φ′, κ2, κ3) at a point y
         0  a32  a33  y  0  0
 
 the strains are S d/g, the resultants ∫ Sᵀ σ dA and their tangent ∫ Sᵀ C S dA/g. The kinds of sections differ in g and
-in the a. Sums over points are made of several partial ones, so that the processor adds neighbouring points at once.
+in the a. Sums over points consist of several partial sums, so that neighbouring points can be added at once.
 """
 
 import math
@@ -19,7 +19,6 @@ from coilset.model.material.kernel import KERNEL
 from coilset.model.material.point_law import rod_points
 
 SUMS = KERNEL | {"fastmath": {"contract", "reassoc", "nsz"}, "forceinline": True}
-SHAPE = 5  # rows of `shape`: g, a22, a23, a32, a33
 Six = tuple[float, float, float, float, float, float]
 NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
@@ -38,7 +37,7 @@ def update_points(
     with_tangent: bool,
     count: np.ndarray,
 ) -> bool:
-    """Bring the points of a section to the end of an increment.
+    """Advance the points of a section to the end of an increment.
 
     Args:
         p: parameters of the material law, or a Creeping.
@@ -46,7 +45,7 @@ def update_points(
         shape: g, a22, a23, a32, a33 of the points, shape (5, points).
         d: increments of the section strains, shape (6,).
         old, new: states of the points at the start, and at the end, which is written, shape (points, n_state).
-        strain: room, shape (3, points).
+        strain: work space, shape (3, points).
         C, with_tangent, count: as in `rod_points.return_map_points`.
 
     Returns:

@@ -1,8 +1,8 @@
-"""The kinds of sections: what a wire's cross-section may do, and what it knows of the wire's curvature.
+"""The kinds of sections: how a wire's cross-section deforms, and whether it includes the wire's curvature.
 
-- plane: the thesis's; it stays plane and knows nothing of the curvature,
-- curved: its fibres are as long as the curved wire makes them, and it warps as its transverse force asks,
-- warping: it warps as the curved and twisted wire asks, and bears all six stresses.
+- plane: the thesis's; it stays plane and neglects the curvature,
+- curved: it has the fibre lengths of the curved wire, and warps under its transverse force,
+- warping: it warps freely with the curved and twisted wire, and has all six stresses.
 """
 
 from collections.abc import Callable
@@ -12,8 +12,7 @@ import numpy as np
 
 from coilset.meshes.placement import Placement
 from coilset.model.material.law import Law
-from coilset.model.section.curved import CurvedSections
-from coilset.model.section.plane import PlaneSections
+from coilset.model.section.fibres import FibreSections
 from coilset.model.section.rules import DiskRule
 from coilset.model.section.warping import WarpingSections
 
@@ -21,7 +20,7 @@ KINDS = ("plane", "curved", "warping")
 
 
 class Sections(Protocol):
-    """What the rod asks of its sections; `PlaneSections` says what the methods do."""
+    """Interface of sections for the rod; `FibreSections` documents the methods."""
 
     @property
     def components(self) -> tuple[str, ...]:
@@ -35,12 +34,12 @@ class Sections(Protocol):
 
     @property
     def update(self) -> Callable[..., Any]:
-        """Bring all sections to the end of an increment."""
+        """Advance all sections to the end of an increment."""
         ...
 
     @property
     def update_surface(self) -> Callable[..., None]:
-        """Bring the points on the surface to the end of an increment."""
+        """Advance the points on the surface to the end of an increment."""
         ...
 
 
@@ -54,7 +53,7 @@ def make_sections(
     temperature: float | None = None,
     degree: int = 3,
 ) -> Sections:
-    """The sections of a kind; arguments as in `PlaneSections` and, for the degree, `WarpingSections`.
+    """The sections of a kind; arguments as in `FibreSections` and, for the degree, `WarpingSections`.
 
     Raises:
         ValueError: if there is no such kind.
@@ -63,5 +62,4 @@ def make_sections(
         raise ValueError(f"kind '{kind}' is none of {', '.join(KINDS)}")
     if kind == "warping":
         return WarpingSections(law, parameters, rule, radius, placement, temperature, degree)
-    sections = CurvedSections if kind == "curved" else PlaneSections
-    return sections(law, parameters, rule, radius, placement, temperature)
+    return FibreSections(law, parameters, rule, radius, placement, kind == "curved", temperature)

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from coilset.model.material.back_stresses import BackStresses
 from coilset.model.material.creep import Creeping
 from coilset.model.material.creep_law import CREEP_COLUMNS, CreepLaw
 from coilset.model.material.law import Law
@@ -11,7 +12,7 @@ from coilset.model.material.points import initial_state
 
 
 class LawOverTime:
-    """What the compiled loops over the points take as their law.
+    """The law as passed to the compiled loops over the points.
 
     Args:
         law: the material.
@@ -20,13 +21,17 @@ class LawOverTime:
 
     Attributes:
         creep: CreepLaw, or None for a material that does not creep.
-        columns: names of what creep adds to a point's state.
     """
 
     def __init__(self, law: Law, parameters: np.ndarray, temperature: float | None) -> None:
-        self._law, self._parameters, self._temperature = law, parameters, temperature
+        self._law, self._temperature = law, temperature
+        self._point_law = law.point_law(temperature) if law.n_terms else parameters
         self.creep = CreepLaw(law.creep, parameters) if law.creep else None
-        self.columns = CREEP_COLUMNS if self.creep else ()
+
+    def columns(self, back_stress: tuple[str, ...]) -> tuple[str, ...]:
+        """Names of what the law adds to the columns of a point's state; `back_stress` names one back stress's."""
+        further = tuple(f"{name}_{term}" for term in range(1, self._law.n_terms) for name in back_stress)
+        return further + (CREEP_COLUMNS if self.creep else ())
 
     def unstressed(self, components: int) -> np.ndarray:
         """The row of an unstressed point of 3 or 6 stresses, shape (1, columns)."""
@@ -36,12 +41,13 @@ class LawOverTime:
         start = self._law.reference_temperature if self._temperature is None else self._temperature
         return np.append(row, [[start, 0.0]], axis=1)
 
-    def over(self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]) -> np.ndarray | Creeping:
-        """The law from one state to the other; where no `clock` goes between them it is the law without time.
+    def over(
+        self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]
+    ) -> np.ndarray | Creeping | BackStresses:
+        """The law from one state to the next; without a `clock` between them it is the law without time.
 
-        A row with the columns of creep is one of the law with a temperature of its own, which the return mapping takes
-        as it is.
+        To the return mapping, a row with the columns of creep is one with a temperature of its own.
         """
         if self.creep is None or "clock" not in trial or np.array_equal(start["clock"], trial["clock"]):
-            return self._parameters
+            return self._point_law
         return self.creep.over(start["clock"], trial["clock"])

@@ -49,8 +49,8 @@ def polar(radial: int = 8, angular: int = 20, staggered: bool = True) -> DiskRul
 
 
 def upper_half(rule: DiskRule) -> DiskRule:
-    """The points of a symmetric rule with z ≥ 0, the weights of those above doubled: for what is the same, or opposite,
-    at z and −z."""
+    """The points of a symmetric rule with z ≥ 0, with doubled weights for z > 0: for functions that are even or odd
+    in z."""
     y, z = rule.points.T
     z = np.where(np.abs(z) > ON_AXIS, z, 0.0)
     kept = z >= 0.0

@@ -1,11 +1,11 @@
-"""Stress on the wire's surface: at the inside of the coil, and where it is greatest.
+"""Stress on the wire's surface: at the inside of the coil, and where it is highest.
 
-The points on the surface are strained with the section and bear no weight in it (`update_surface` of the sections), so
-that their stress is the law's own answer to the strain there, with the hardening that they have gone through. Nothing
-is extrapolated from the section points, because residual stress is steep there: in a spring of D/d = 8 the residual
+The points on the surface follow the section's strains without weight in its integrals (`update_surface` of the
+sections), so that their stress is the law's response to the strain there, including their own hardening. Nothing is
+extrapolated from the section points, because residual stress is steep there: in a spring of D/d = 8 the residual
 shear at the inside is 40 MPa at 0.9 of the radius and 58 MPa on the surface.
 
-They lie at equal angles about the wire's axis, from the section's y axis on. In a section that knows of the curvature y
+They lie at equal angles about the wire's axis, from the section's y axis on. In a section that includes the curvature y
 points to the centre of curvature, the inside of the coil, and z along the binormal.
 """
 
@@ -36,7 +36,7 @@ def equivalent(state: np.ndarray, components: tuple[str, ...]) -> np.ndarray:
     return np.sqrt(0.5 * ((s1 - s2) ** 2 + (s2 - s3) ** 2 + (s3 - s1) ** 2) + 3.0 * shears)
 
 
-TIE = 1e-8  # of the greatest value: symmetric springs have it twice, but for rounding; the first place is told
+TIE = 1e-8  # of the maximum value: symmetric springs have it twice, except for rounding; the first location is reported
 
 
 @dataclass(frozen=True)
@@ -55,12 +55,26 @@ class Inside:
     def of(cls, knows_curvature: bool, hand: int) -> "Inside":
         """The inside of a coil of the `hand` +1 or −1.
 
-        A section that knows of no curvature has its y axis level: in a right-handed coil it points inwards, in a
+        A section without curvature has its y axis level: in a right-handed coil it points inwards, in a
         left-handed one outwards, and its z axis points upwards. The binormal does so in a right-handed coil only.
         """
         if knows_curvature:
             return cls(0.0, -float(hand))
         return cls(0.0 if hand > 0 else math.pi, -1.0)
+
+    def shear_around(self, state: np.ndarray, components: tuple[str, ...]) -> np.ndarray:
+        """Shear stress about the wire's axis at the points on the surface, positive as in a compressed spring.
+
+        Args:
+            state: shape (..., surface points, components).
+            components: names of the columns.
+
+        Returns:
+            Shape (..., surface points), MPa.
+        """
+        angle = 2.0 * math.pi * np.arange(state.shape[-2]) / state.shape[-2]
+        t12, t13 = (component(state, components, name) for name in ("t12", "t13"))
+        return self.sign * math.cos(self.angle) * (t13 * np.cos(angle) - t12 * np.sin(angle))
 
     def shear(self, state: np.ndarray, components: tuple[str, ...]) -> np.ndarray:
         """Shear stress at the inside, positive as in a compressed spring, shape of `state` without its last two."""
@@ -70,7 +84,7 @@ class Inside:
 
 @dataclass(frozen=True)
 class Peak:
-    """The greatest value on the surface.
+    """The maximum value on the surface.
 
     Attributes:
         value: MPa.
@@ -84,7 +98,7 @@ class Peak:
 
 
 def peak(values: np.ndarray, turns: np.ndarray, inside: Inside) -> Peak:
-    """The greatest of the values at the points on the surface.
+    """The largest of the values at the points on the surface.
 
     Args:
         values: shape (sections, surface points), or (n, 2, surface points).
@@ -101,14 +115,14 @@ def peak(values: np.ndarray, turns: np.ndarray, inside: Inside) -> Peak:
     bend = before - 2.0 * here + after
     off = 0.5 * (before - after) / bend if bend < 0.0 else 0.0
     angle = math.degrees(2.0 * math.pi * (at[-1] + off) / points - inside.angle)
-    angle = round((angle + 180.0) % 360.0 - 180.0, 6)  # where a peak is flat its place takes up rounding first
+    angle = round((angle + 180.0) % 360.0 - 180.0, 6)  # the location of a flat peak is sensitive to rounding
     return Peak(here - 0.25 * (before - after) * off, float(turns[at[:-1]]), angle)
 
 
 def is_middle(turns: np.ndarray, first: float, last: float) -> np.ndarray:
     """Whether turns are a turn away from the ends of those between `first` and `last`.
 
-    Of less than two turns and a half the quarters of a turn on both sides of the middle are left.
+    With less than two and a half turns, a quarter of a turn on both sides of the middle remains.
     """
     reach = max(0.5 * (last - first) - 1.0, 0.25)
     return np.abs(turns - 0.5 * (first + last)) <= reach

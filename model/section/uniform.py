@@ -10,13 +10,13 @@ import numpy as np
 from numba import njit
 
 from coilset.model.material.kernel import INLINE
-from coilset.model.material.rod import return_map
-from coilset.model.section.curved import shear_by_force
+from coilset.model.material.point_law import rod_point
+from coilset.model.section.shape import shear_by_force
 
 RADIUS, INCLINATION, RISE, TURN = range(4)  # the coordinates q = (R̄, ϑ, h̄, λ)
 MAX_ITERATIONS = 25
 PRECISION = 1e-9  # out-of-balance force over that which the step puts on the coil
-ROUNDING = 1e-13  # below which, times the greatest resultant, nothing is out of balance
+ROUNDING = 1e-13  # below which, times the maximum resultant, nothing is out of balance
 
 # One coil and how it is driven: constants of the law; radius R, rise h, j = √(R² + h²); places and areas of the points;
 # dm/dy, R/j² or, for a plain section, 0; m ∂(γ₁₂, γ₁₃)/∂Γ₃ at the points.
@@ -25,7 +25,7 @@ Rod = namedtuple("Rod", "p R h j y z area bend across along by_force free")
 
 @njit(cache=True)
 def force_shear(r: float, y: np.ndarray, z: np.ndarray, bend: float) -> tuple[np.ndarray, np.ndarray]:
-    """m ∂(γ₁₂, γ₁₃)/∂Γ₃ at points y (outward), z of a wire of radius r, mm, as in `coilset.model.section.curved`."""
+    """m ∂(γ₁₂, γ₁₃)/∂Γ₃ at points y (outward), z of a wire of radius r, mm, as in `coilset.model.section.shape`."""
     across, along = np.empty_like(y), np.empty_like(y)
     for k in range(len(y)):
         # y is outward here, towards the centre there
@@ -96,7 +96,7 @@ def integrate(
         across, along = rod.across[k], rod.along[k]
         g12 = (across * (E[1] - old_E[1]) + (E[2] - old_E[2]) * z) / m
         g13 = (along * (E[1] - old_E[1]) - y * (E[2] - old_E[2])) / m
-        if return_map(rod.p, old[k], e11, g12, g13, new[k], C) < 0:
+        if rod_point(rod.p, old[k], e11, g12, g13, new[k], C) < 0:
             return False
         dA = rod.area[k] * m
         # ∂(ε₁₁, γ₁₂, γ₁₃)/∂E: (a, 0, 0, ya), b (0, across, z, 0), b (0, along, −y, 0)

@@ -32,7 +32,7 @@ from coilset.model.section.rules import DiskRule, rim
 
 
 class WarpingSections:
-    """All sections of a rod on this rank; arguments as in `PlaneSections`.
+    """All sections of a rod on this rank; arguments as in `FibreSections`.
 
     Args:
         degree: of the polynomials.
@@ -58,14 +58,14 @@ class WarpingSections:
     ) -> None:
         self.radius, self.placement, self.weights = radius, placement, rule.weights
         self.law_over_time = LawOverTime(law, parameters, temperature)
-        self.components += self.law_over_time.columns
+        self.components += self.law_over_time.columns(self.components[6:12])
         self.points = _with_polynomials(rule.points, degree)
         self.rim = _with_polynomials(rim(), degree)
         self.unknowns = 3 + 3 * self.points[2].shape[2]
         self.iterations = np.zeros(2, dtype=np.int64)  # sections brought up to date, local iterations on the way
 
     def initial_state(self) -> dict[str, np.ndarray]:
-        """Unstressed points, `point_state` and `surface_state` as in `PlaneSections`, and the warping.
+        """Unstressed points, `point_state` and `surface_state` as in `FibreSections`, and the warping.
 
         `warping` are the a, shape (cells, 2, unknowns), and `warping_slope` is da/de, shape (cells, 2, unknowns, 6).
         """
@@ -87,7 +87,7 @@ class WarpingSections:
         D: np.ndarray,
         with_tangent: bool = True,
     ) -> bool:
-        """Bring all sections to the end of the increment; as `PlaneSections.update`, but always with the tangent."""
+        """Bring all sections to the end of the increment; as `FibreSections.update`, but always with the tangent."""
         place, law = self.placement, self.law_over_time.over(start, trial)
         status = update_sections(
             law, *self.points, self.weights, self.radius, place.curvature, place.torsion,
@@ -98,7 +98,7 @@ class WarpingSections:
         return status == 0
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
-        """Bring the points on the wire's surface to the end of the increment; as `PlaneSections.update_surface`."""
+        """Bring the points on the wire's surface to the end of the increment; as `FibreSections.update_surface`."""
         place, law = self.placement, self.law_over_time.over(start, trial)
         update_surface(
             law, *self.rim, self.radius, place.curvature, place.torsion, strain - start["strain"],
@@ -141,7 +141,7 @@ def update_sections(
         p: parameters of the material law.
         y, z, f, w: points, polynomials and weights of the unit disk.
         radius, curvature, torsion: of the wire, shape (cells,), (cells, 2), (cells, 2), mm and 1/mm.
-        de, placement, stretch, s, D: as in `plane.update_sections`.
+        de, placement, stretch, s, D: as in `fibres.update_sections`.
         old, old_a, old_slope: state of the points with all six stresses, warping, and its slope da/de in the section's
             own strains, at the last equilibrium, shapes (cells, 2, points, n_state), (cells, 2, unknowns) and
             (cells, 2, unknowns, 6); not changed.

@@ -1,1 +1,1 @@
-"""The helical slice: one section of a uniform coil as the whole three-dimensional problem."""
+"""The helical slice: one section of a uniform coil represents the whole three-dimensional problem."""

@@ -18,12 +18,12 @@ from coilset.model.slice.slice import Coil, Slice
 from coilset.model.slice.watch import Watch
 from coilset.model.standards.wires.law import case_law
 
-ACROSS, INSIDE = 5.75, 2.0  # triangles across the section, how much finer at the inside: 600 unknowns of a round wire
-AUTOMATIC = 16  # equal steps of a phase whose steps are `auto`
-PROBE = 1e-6  # travel by which the initial rate is measured, in free lengths
+ACROSS, INSIDE = 5.75, 2.0  # triangles across the section, how much finer at the inside: 600 unknowns for a round wire
+AUTOMATIC = 16  # number of equal steps of a phase whose steps are `auto`
+PROBE = 1e-6  # travel over which the initial rate is measured, in free lengths
 TOUCHING = 1e-7  # gap at which coils count as touching, in wire diameters
 APPROACHES = 8
-SAME = 1e-9  # relative difference below which a quantity counts as the same in all turns
+SAME = 1e-9  # relative difference below which a quantity counts as constant over the turns
 
 
 @dataclass(frozen=True)
@@ -46,13 +46,13 @@ class SliceStep:
 
 @dataclass
 class SliceSnapshot:
-    """The section at one moment.
+    """The section at one point of the load program.
 
     Attributes:
-        name: what moment it is, such as `start`, `block`, `force 0 N`.
+        name: of that point, such as `start`, `block`, `force 0 N`.
         height, force: of the spring, mm and N.
-        x: positions of the lattice's points, shape (points, 3), mm.
-        stress: σ11, σ22, σ33, τ12, τ13, τ23 there in the section's axes, shape (points, 6), MPa.
+        x: positions of the lattice points, shape (points, 3), mm.
+        stress: σ11, σ22, σ33, τ12, τ13, τ23 there, in the section's axes, shape (points, 6), MPa.
         work: plastic work b* there, shape (points,), N/mm².
         line: the stress on the line η = 0, shape (points, 6), MPa.
     """
@@ -68,7 +68,7 @@ class SliceSnapshot:
 
 @dataclass
 class SliceResult:
-    """What a run has found; `complete` is False if it ended before its program did.
+    """Result of a run; `complete` is False if it ended before its load program did.
 
     Attributes:
         rate: N/mm; inside_factor: elastic shear at the inside of a round wire over 8 F D/(π d³), None for others.
@@ -85,20 +85,23 @@ class SliceAnalysis:
     """The slice of a cylindrical spring with its load program, ready to run.
 
     Args:
-        case: Case; its mesh, seats' shapes and solver do not matter here.
-        outline: of the section; default is the round wire. `wire_diameter` must be its height along the spring.
+        case: Case; its mesh, seat shapes and solver are ignored.
+        outline: of the section; default is the round wire. `wire_diameter` must equal its height along the spring.
         across: triangles across the section; degree: of the displacements, see `meshes.section`.
 
     Attributes:
         spring, law, coil, body, problem: geometry, Law, Coil, Slice, SliceProblem.
-        lattice, points: Lattice over the section and the Watch of its places; line: Watch along η = 0.
+        lattice, points: Lattice over the section and the Watch of its points; line: Watch along η = 0.
 
     Raises:
-        InputError: if the spring is no cylinder, or does not fit the section.
+        InputError: if the spring is not cylindrical, or does not match the section.
     """
 
     def __init__(self, case: Case, outline: Outline | None = None, across: float = ACROSS, degree: int = 2):
         self.case, self.spring = case, case.spring.build()
+        if getattr(case.spring, "made_by", None):
+            problem = "a slice begins free of stress; leave 'made_by' out, or use 'coilset solve'"
+            raise InputError(problem, "spring.made_by")
         self.law = case_law(case, self.spring)
         d, D, pitch = (_same_in_all_turns(self.spring, name) for name in ("wire_diameter", "mean_diameter", "pitch"))
         self.wire_diameter, self.mean_diameter, self.is_round = d, D, outline is None
@@ -120,7 +123,7 @@ class SliceAnalysis:
 
     @property
     def height(self) -> float:
-        """Distance of the seats, mm."""
+        """Distance between the seats, mm."""
         return self.spring.free_length - self.travel
 
     def run(self, report: Callable[[SliceStep], None] = lambda step: None) -> SliceResult:
@@ -130,7 +133,7 @@ class SliceAnalysis:
             report: called with each converged SliceStep.
 
         Raises:
-            SolveError: no equilibrium was found; `result` holds what was found up to there.
+            SolveError: if no equilibrium was found; `result` holds the results so far.
         """
         result = self.result
         self._probe()
@@ -171,7 +174,7 @@ class SliceAnalysis:
         return self.coil.rise - (self.spring.free_length - height) / (2.0 * np.pi * self.turns)
 
     def _target(self, phase: Phase) -> tuple[str, float]:
-        """Kind (`force` or `height`) and value of a phase's end, N or mm."""
+        """Kind (`force` or `height`) and value of a phase's target, N or mm."""
         to = phase.to
         if to == "block":
             return "height", self.spring.block_height
@@ -183,7 +186,7 @@ class SliceAnalysis:
         return "height", self.spring.free_length - to.travel
 
     def check_targets(self) -> None:
-        """Refuse a load program that asks for less height than that of the coils lying on each other.
+        """Reject a load program with a height below that at which the coils touch.
 
         Raises:
             InputError: with the phase.
@@ -198,7 +201,7 @@ class SliceAnalysis:
                                  f"loading.{index}.to")  # fmt: skip
 
     def _close(self, height: float) -> Effort:
-        """Go on to where the coils just touch, which by the wire's inclination is a little before block's height."""
+        """Continue until the coils just touch, slightly above the block height because of the wire's inclination."""
         rise, limit = self._rise(height), TOUCHING * self.wire_diameter
         iterations = cuts = 0
         for _ in range(APPROACHES):
@@ -211,7 +214,7 @@ class SliceAnalysis:
         return type(effort)(iterations, cuts)
 
     def _probe(self) -> None:
-        """Initial rate and the factor at the inside from the linear answer to a small travel."""
+        """Initial rate and the stress factor at the inside, from the linear response to a small travel."""
         travel = PROBE * self.spring.free_length
         force, stress = self.problem.probe(self.coil.rise - travel / (2.0 * np.pi * self.turns), self.line)
         self.result.rate = force / travel
@@ -220,7 +223,7 @@ class SliceAnalysis:
             self.result.inside_factor = float(abs(stress[0, 4]) / nominal)
 
     def snapshot(self, name: str) -> SliceSnapshot:
-        """The section as it stands."""
+        """The current state of the section."""
         positions = self.lattice.positions(self.body.x)
         return SliceSnapshot(name, self.height, float(self.problem.force), positions, self.points.section_stress(),
                              self.points.state[:, 12].copy(), self.line.section_stress())  # fmt: skip

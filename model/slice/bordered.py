@@ -11,8 +11,8 @@ class BorderedMatrix:
 
     Args:
         form: the compiled form of K_uu on a blocked vector space.
-        gauge: degrees of freedom that are held, their rows and columns become those of the identity.
-        coupled: blocks of degrees of freedom that all act on each other besides, as contact makes them.
+        gauge: fixed degrees of freedom, whose rows and columns become those of the identity.
+        coupled: blocks of degrees of freedom that are additionally coupled by contact.
 
     Attributes:
         petsc: the matrix, of order 3 blocks + 2.
@@ -50,7 +50,7 @@ class BorderedMatrix:
         )
 
     def places(self, i: np.ndarray, j: np.ndarray) -> np.ndarray:
-        """Where the entries (i, j) lie in `values`; they must be in the pattern."""
+        """Positions of the entries (i, j) in `values`; they must be in the pattern."""
         order = len(self._indptr) - 1
         keys = np.repeat(np.arange(order), np.diff(self._indptr)) * order + self._indices
         return np.searchsorted(keys, i * order + j)
@@ -61,7 +61,7 @@ class BorderedMatrix:
         Args:
             columns, rows: of h̄ and λ, arrays of shape (size,), None for zeros.
             corner: shape (2, 2).
-            more: places and values that are added before the gauge is held.
+            more: positions and values that are added before the gauge is fixed.
         """
         self._blocked.data[:] = 0.0
         fem.assemble_matrix(self._blocked, self._form)

@@ -1,4 +1,4 @@
-"""The surface of the section as edges of the mesh: their degrees of freedom, in order round the section."""
+"""The surface of the section as edges of the mesh: their degrees of freedom, in order around the section."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""A coil on its own neighbour: a one-sided bedding between the section's surface and that of the next coil."""
+"""Contact of adjacent coils: a unilateral elastic bedding between the section's surface and that of the next coil."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -11,22 +11,22 @@ from coilset.model.slice.forms import RISE, TURN
 from coilset.model.slice.gap import gaps
 from coilset.model.slice.slice import Slice
 
-STIFFNESS = 10.0  # default bedding over E/d: as stiff as the triangles at the surface
+STIFFNESS = 10.0  # default stiffness of the bedding over E/d: as stiff as the triangles at the surface
 ONSET = 1e-4  # distance over which contact sets in, in equivalent wire diameters
-STEEP = 0.3  # component of the normal along the coil's axis from which an edge may touch
-GAUSS = 4  # points of contact on an edge
+STEEP = 0.3  # minimum component of the normal along the coil's axis for an edge that may touch
+GAUSS = 4  # contact points per edge
 
 
 @dataclass
 class Pressure:
-    """What contact does at an increment.
+    """Contact at an increment of the body.
 
     Attributes:
-        gap: least gap, mm.
-        bearing: number of points that press.
+        gap: smallest gap, mm.
+        bearing: number of points in contact.
         force: pressure times area of all points, per turn of wire, N.
         forces: on the displacements, shape (blocks, 3), N; numbers: on h̄ and λ, shape (2,), N and N mm.
-        rows, columns, values: entries of its stiffness; h̄ and λ are the unknowns after the displacements.
+        rows, columns, values: entries of its stiffness; h̄ and λ follow the displacements as the last unknowns.
     """
 
     gap: float
@@ -40,7 +40,7 @@ class Pressure:
 
 
 class SliceContact(Protocol):
-    """What stands between the coils: their contact, or nothing.
+    """Interaction of the coils: contact, or none.
 
     Attributes:
         onset: distance over which contact sets in, mm.
@@ -61,13 +61,13 @@ class NoContact:
     onset, blocks = 0.0, np.empty(0, int)
 
     def evaluate(self) -> Pressure:
-        """Nothing presses, and no gap closes."""
+        """No pressure and no closing gap."""
         none, places = np.empty(0), np.empty(0, int)
         return Pressure(np.inf, 0, 0.0, np.zeros((1, 3)), np.zeros(2), places, places, none)
 
 
 class SelfContact:
-    """Contact of a slice with the coil above it, and so of the coil below with the slice.
+    """Contact of a slice with the coil above it, and thus of the coil below with the slice.
 
     Args:
         body: Slice.
@@ -93,7 +93,7 @@ class SelfContact:
         self._gradient, self._hessian = np.empty((points, size)), np.empty((points, size, size))
 
     def _points_areas(self, weights: np.ndarray) -> np.ndarray:
-        """Surface of the unloaded wire that each point stands for, per radian, mm²."""
+        """Surface of the unloaded wire that each point represents, per radian, mm²."""
         t, powers = self._gauss[:, None], np.arange(len(self._edges.polynomials))
         values = t**powers @ self._edges.polynomials.T
         slopes = powers * t ** np.maximum(powers - 1, 0) @ self._edges.polynomials.T
@@ -113,7 +113,7 @@ class SelfContact:
         pressure, slope = one_sided(self._gap[a, k], self.stiffness * self._areas[a, k], self.onset)
         load = -pressure[:, None] * gradient
         K = slope[:, None, None] * gradient[:, :, None] * gradient[:, None, :] - pressure[:, None, None] * hessian
-        # κ = h̄/λ: its share goes to both numbers
+        # κ = h̄/λ: its contribution goes to both numbers
         first = np.array([1.0 / λ, -h / λ**2])
         second = np.array([[0.0, -1.0 / λ**2], [-1.0 / λ**2, 2.0 * h / λ**3]])
         onto = np.zeros((gradient.shape[1], gradient.shape[1] + 1))

@@ -1,15 +1,16 @@
 """UFL forms of the helical slice on the mesh of its section; docs/slice.md derives them.
 
-A point of the coil is x = Q(λt) x₀(ξ, η) + h̄ t e_z: Q turns about the coil's axis e_z, x₀ is where the slice t = 0
-lies, h̄ the rise and λ the turn per radian of the unloaded coil. With Ω v = e_z × v its tangents at t = 0 are
+A point of the coil is x = Q(λt) x₀(ξ, η) + h̄ t e_z: Q rotates about the coil's axis e_z, x₀ is the position of the
+slice t = 0, h̄ the rise and λ the rotation per radian of the unloaded coil. With Ω v = e_z × v its tangents at t = 0
+are
 
     F̂ = [ x₀,ξ | x₀,η | λ Ω x₀ + h̄ e_z ]
 
-and a variation (v, μ, χ) of (x₀, λ, h̄) has the gradient L = Ĝ F̂⁻¹ in space,
+and a variation (v, μ, χ) of (x₀, λ, h̄) has the spatial gradient L = Ĝ F̂⁻¹,
 
     Ĝ(v, μ, χ) = [ v,ξ | v,η | λ Ω v + μ Ω x₀ + χ e_z ].
 
-Virtual work per radian is ∫ σ : L |det F̂| dξ dη; the factor of χ is the axial force, that of μ the torque.
+The virtual work per radian is ∫ σ : L |det F̂| dξ dη; the factor of χ is the axial force, that of μ the torque.
 """
 
 from typing import Any
@@ -21,9 +22,9 @@ from dolfinx import fem
 
 from coilset.meshes.section import SectionMesh
 
-# Order of the six components: 11, 22, 33, 12, 13, 23; strains carry twice the shear.
+# Order of the six components: 11, 22, 33, 12, 13, 23; shear strains are doubled.
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-# Points that carry the state integrate products of gradients exactly on a triangle with straight sides.
+# The points that carry the state integrate products of gradients exactly on a triangle with straight sides.
 QUADRATURE_DEGREE = {2: 2, 3: 4}
 RISE, TURN = 0, 1  # the two numbers h̄ and λ
 
@@ -65,10 +66,10 @@ class SliceForms:
     Attributes:
         V: vector space of positions and displacements on the section.
         x: x₀ at the last equilibrium, mm; u: its increment since then, mm.
-        old: h̄ in mm/rad and λ at the last equilibrium; increment: what was added since, each a Constant of shape (2,).
+        old: h̄ in mm/rad and λ at the last equilibrium; increment: their change since; each a Constant of shape (2,).
         stress: Cauchy stress at the points, 6 components, MPa; moduli: A of `solid.kinematics.push_forward`, 6 × 6.
         points: reference points that carry the state, shape (n, 2); weights: of the quadrature, shape (n,).
-        cells: all of the mesh.
+        cells: all cells of the mesh.
     """
 
     def __init__(self, section: SectionMesh):
@@ -101,7 +102,7 @@ class SliceForms:
             return ufl.inner(σ, G * inverse) * volume * dx
 
         def change(G: Any, dG: Any, second: Any = None) -> Any:
-            """Change of the work of the variation G by the motion dG, and by what the motion does to G itself."""
+            """Change of the work of the variation G due to the motion dG, including its effect on G itself."""
             L, dL = G * inverse, dG * inverse
             material = ufl.dot(strain_components(L), ufl.dot(self.moduli, strain_components(dL)))
             form = (material + ufl.inner(L, dL * σ)) * volume * dx
@@ -127,26 +128,26 @@ class SliceForms:
         self.cells = np.arange(mesh.topology.index_map(2).size_local, dtype=np.int32)
 
     def __getitem__(self, name: str | tuple) -> fem.Form:
-        """A compiled form; those that a run does not need are never compiled.
+        """A form, compiled on first use.
 
         Args:
             name: ``residual``, virtual work of v per radian, N; ``tangent``, its derivative by u; ``("column", k)``,
                 its derivative by h̄ or λ; ``("row", k)``, derivative of force or torque by u; ``("corner", k, m)``, by
-                h̄ or λ; ``("resultant", k)``, axial force (tension positive, N) or torque (N mm). k: RISE or TURN.
+                h̄ or λ; ``("resultant", k)``, axial force (tension positive, N) or torque (N mm). k is RISE or TURN.
         """
         if name not in self._compiled:
             self._compiled[name] = fem.form(self._expressions[name]())
         return self._compiled[name]
 
     def _motion(self, F: Any, inverse: Any) -> None:
-        """1 − F̂_old F̂⁻¹ = ΔF̂ F̂⁻¹, the increment's gradient in its end configuration, and F̂ itself."""
+        """1 − F̂_old F̂⁻¹ = ΔF̂ F̂⁻¹, the gradient of the increment in its final configuration, and F̂ itself."""
         x, u, old, new = self.x, self.u, self.old, self.increment
         third = new[TURN] * about_axis(x + u) + old[TURN] * about_axis(u) + along_axis(new[RISE])
         self._gradient = fem.Expression(tangents(u, third) * inverse, self.points)
         self._tangents = F
 
     def evaluate_gradient(self) -> np.ndarray:
-        """ΔF̂ F̂⁻¹ at the points, from which `solid.kinematics.stretches` has the increment; (cells × points, 3, 3)."""
+        """ΔF̂ F̂⁻¹ at the points, the input of `solid.kinematics.stretches`, shape (cells × points, 3, 3)."""
         return self._gradient.eval(self.mesh, self.cells).reshape(-1, 3, 3)
 
     def evaluate_tangents(self) -> np.ndarray:
@@ -157,5 +158,5 @@ class SliceForms:
 
 
 def assemble(form: fem.Form) -> np.ndarray:
-    """A linear form as an array over the space."""
+    """A linear form assembled to an array over the space."""
     return fem.assemble_vector(form).array

@@ -1,9 +1,9 @@
 """Gap between a coil and the next one, compiled, with its first and second derivatives.
 
-Both coils are the same surface, which a screw about the axis carries into itself: it is known by its curve in a half
+Both coils are the same surface, which a screw about the axis maps onto itself: it is given by its curve in a half
 plane through the axis, m(X) = (r, z − κθ) of its points X = (r cos θ, r sin θ, z), κ = h̄/λ. The next coil's curve is
-this one raised by its pitch 2πκ. With q = m(P) − m(C(s)) − 2πκ e_ζ from the closest place C(s) of the next coil to a
-point P of this one, n the normal out of the next coil there and τ its tangent,
+this one raised by the pitch 2πκ. With q = m(P) − m(C(s)) − 2πκ e_ζ from the closest point C(s) of the next coil to a
+point P of this one, n the outward normal of the next coil there and τ its tangent,
 
     g = n·q,   g_a = n·q_a,   s_a = (q_a·C′ + g n·C′_a)/(|C′|² − g n·C″),
     g_ab = n·q_ab − (τ·q_a) n·(C′_b + C″ s_b)/|C′| − n·C′_a s_b.
@@ -14,7 +14,7 @@ import math
 import numpy as np
 from numba import njit
 
-SAMPLES = 4  # places of an edge that are looked at for the closest one, intervals
+SAMPLES = 4  # intervals of an edge in the search for the closest point
 ITERATIONS = 12
 
 
@@ -97,14 +97,14 @@ def closest(
     room: tuple[np.ndarray, ...],
     start: np.ndarray,
 ) -> tuple[int, float, bool]:
-    """Edge (a number in `below`) and t of the closest place of the next coil's lower side to p in the half plane.
+    """Edge (an index into `below`) and t of the point on the next coil's lower side closest to p in the half plane.
 
     Args:
-        start: of every edge, its places at the samples, shape (edges of `below`, SAMPLES + 1, 2).
-        room: arrays for `curve`.
+        start: positions of the samples on every edge, shape (edges of `below`, SAMPLES + 1, 2).
+        room: work arrays for `curve`.
 
     Returns:
-        Number in `below`, t, and whether the place lies inside its edge.
+        Index into `below`, t, and whether the point lies inside its edge.
     """
     N, X, m, D, H, turned, C = room
     best, number, t = math.inf, 0, 0.0
@@ -130,7 +130,7 @@ def closest(
                 break
         if inside or attempt == 1:
             break
-        # at an end: the place may lie beyond it, on an edge that begins or ends there
+        # at an end: the point may lie beyond it, on an edge that begins or ends there
         meets = edge[0] if t == 0.0 else edge[-1]
         found = -1
         for e in range(len(below)):
@@ -161,15 +161,15 @@ def gaps(
 
     Args:
         x: positions of the nodes, shape (blocks, 3), mm; κ: h̄/λ, mm/rad.
-        edges, polynomials: of `Boundary`; above, below: numbers of its edges on the upper and on the lower side.
-        gauss: places t on the edges above, shape (points,).
-        limit: derivatives are wanted of gaps below it, mm.
+        edges, polynomials: of `Boundary`; above, below: indices of its edges on the upper and on the lower side.
+        gauss: t of the Gauss points on the edges above, shape (points,).
+        limit: gap below which derivatives are computed, mm.
         gap: written, shape (edges above, points), mm.
-        where: written for the wanted, the edge above, the point and the edge below, shape (edges above × points, 3).
-        gradient, hessian: written for the wanted, by the nodes of the edge above, of the edge below, and by κ.
+        where: written for gaps below the limit, edge above, point and edge below, shape (edges above × points, 3).
+        gradient, hessian: written for the same gaps, by the nodes of the edge above, of the edge below, and by κ.
 
     Returns:
-        Number of gaps whose derivatives are wanted.
+        Number of gaps with derivatives.
     """
     n = edges.shape[1]
     size, count = 6 * n + 1, 0

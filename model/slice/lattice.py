@@ -1,4 +1,4 @@
-"""Places all over the section, for pictures, files and the greatest stress: a lattice in each triangle of the mesh."""
+"""Points all over the section, for pictures, files and the maximum stress: a lattice in each triangle of the mesh."""
 
 import basix
 import numpy as np
@@ -6,11 +6,11 @@ import numpy as np
 from coilset.meshes.compat import geometry_dofs
 from coilset.model.slice.slice import Slice
 
-DIVISIONS = 4  # of the sides of the mesh's triangles
+DIVISIONS = 4  # per side of a triangle of the mesh
 
 
 class Lattice:
-    """A finer triangulation of a slice's section; points on common sides are there once for each triangle.
+    """A refined triangulation of a slice's section; points on shared sides occur once for each triangle.
 
     Args:
         body: Slice.
@@ -18,7 +18,7 @@ class Lattice:
     Attributes:
         places: ξ, η, shape (n, 2), mm.
         triangles: three points each, shape (m, 3).
-        surface: numbers of the points on the surface; rim: the same by sides of triangles, shape (sides, points).
+        surface: indices of the points on the surface; rim: the same by triangle sides, shape (sides, points).
     """
 
     def __init__(self, body: Slice):
@@ -41,14 +41,14 @@ class Lattice:
         self.surface = np.unique(self.rim)
 
     def positions(self, x: np.ndarray) -> np.ndarray:
-        """Where the points lie in space, by coefficients of the position, shape (blocks, 3) → (n, 3), mm."""
+        """Positions of the points in space from coefficients of the position, shape (blocks, 3) → (n, 3), mm."""
         return np.einsum("qb,cbi->cqi", self._shape, x[self._dofs]).reshape(-1, 3)
 
 
 def _small_triangles() -> np.ndarray:
-    """The triangles of one cell's lattice, whose points are ordered by rows."""
+    """The triangles of a cell's lattice, whose points are ordered by rows."""
     n = DIVISIONS
-    first = np.cumsum([0] + [n + 1 - j for j in range(n)])  # number of each row's first point
+    first = np.cumsum([0] + [n + 1 - j for j in range(n)])  # index of the first point of each row
     up = [(first[j] + i, first[j] + i + 1, first[j + 1] + i) for j in range(n) for i in range(n - j)]
     down = [(first[j] + i + 1, first[j + 1] + i + 1, first[j + 1] + i) for j in range(n) for i in range(n - j - 1)]
     return np.array(up + down)

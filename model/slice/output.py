@@ -8,14 +8,15 @@ import pyvista
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from coilset.model.results.figures import STYLE, save
+from coilset.model.results.figures import save
 from coilset.model.results.folder import make, whole
 from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot
 from coilset.model.slice.watch import equivalent, shear
+from coilset.model.style import STYLE
 
 
 def write_fields(folder: Path, analysis: SliceAnalysis) -> None:
-    """One .vtu file a snapshot: the section where it lies in space, with its fields.
+    """One .vtu file per snapshot: the section in its current position, with its fields.
 
     Fields: `displacement` (mm), `stress` (11, 22, 33, 12, 13, 23 with 1 along the wire, 2 outward, 3
     upward, MPa), `shear stress` in the section and `von Mises stress` (MPa), `plastic work` (N/mm²).
@@ -38,14 +39,14 @@ def write_fields(folder: Path, analysis: SliceAnalysis) -> None:
 
 
 def around_the_wire(places: np.ndarray, stress: np.ndarray) -> np.ndarray:
-    """Shear stress along circles about the section's middle, positive anticlockwise in (ξ, η), MPa."""
+    """Shear stress along circles about the section's centre, positive anticlockwise in (ξ, η), MPa."""
     distance = np.hypot(*places.T)
     turned = stress[:, 4] * places[:, 0] - stress[:, 3] * places[:, 1]
     return turned / np.where(distance > 0, distance, 1.0)
 
 
 def figure(path: Path, analysis: SliceAnalysis) -> None:
-    """Stress over the section under the greatest force and at the end: shear, von Mises stress, on a diameter."""
+    """Stress over the section at maximum force and at the end: shear, von Mises stress, and along a diameter."""
     shots = analysis.result.snapshots
     loaded = max(shots, key=lambda shot: abs(shot.force))
     rows = [loaded, shots[-1]] if shots[-1] is not loaded else [loaded]

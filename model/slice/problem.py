@@ -1,4 +1,4 @@
-"""Equilibrium of the slice as a SNES problem of its displacements and of the two numbers h̄ and λ."""
+"""Equilibrium of the slice as a SNES problem in its displacements and the two numbers h̄ and λ."""
 
 import itertools
 from collections.abc import Callable
@@ -17,8 +17,8 @@ from coilset.model.slice.forms import RISE, TURN, assemble
 from coilset.model.slice.slice import Slice
 from coilset.model.slice.watch import Watch
 
-# PETSc's own factorisation: below some thousands of unknowns MUMPS costs several times as much. Minimum degree puts the
-# dense border last.
+# PETSc's own factorisation: below a few thousand unknowns MUMPS costs several times as much. Minimum degree
+# ordering eliminates the dense border last.
 OPTIONS = {
     "snes_type": "newtonls", "snes_linesearch_type": "bt", "snes_max_it": 20, "ksp_type": "preonly", "pc_type": "lu",
     "pc_factor_mat_ordering_type": "qmd",
@@ -29,29 +29,29 @@ _numbers = itertools.count()
 
 @dataclass(frozen=True)
 class Effort:
-    """What it took to reach an equilibrium: iterations of Newton's method and cuts of the step."""
+    """Effort for an equilibrium: Newton iterations and cuts of the step."""
 
     iterations: int
     cuts: int
 
 
 class SliceProblem:
-    """Steps of a slice from equilibrium to equilibrium.
+    """Takes a slice from equilibrium to equilibrium.
 
     The two numbers are the last unknowns, h̄ and λ times the coil's radius, so that all unknowns are in mm and all
-    residuals in N. Where one of them is prescribed its equation is its value.
+    residuals in N. If one of them is prescribed, its equation sets its value.
 
     Args:
         body: Slice.
-        free_ends: the ends may turn about the coil's axis (no torque); else they cannot (λ = 1).
-        contact: SelfContact of the body; without it coils pass through each other. It takes part from the first step
-            on that would press coils into each other.
-        precision: ε of (6.3.1): out-of-balance forces over those that the step puts on the slice.
+        free_ends: the ends may turn about the coil's axis (no torque); otherwise they cannot (λ = 1).
+        contact: SelfContact of the body; without it coils pass through each other. It becomes active in the first step
+            in which coils would penetrate.
+        precision: ε of (6.3.1): out-of-balance forces relative to those that the step applies to the slice.
 
     Attributes:
         force: axial force at the last equilibrium, compression positive, N; torque: about the axis, N mm.
-        pressure: `Pressure` of the contact there.
-        touching: whether contact takes part.
+        pressure: `Pressure` of the contact at the last equilibrium.
+        touching: whether contact is active.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class SliceProblem:
         self.body, self.free_ends, self.precision = body, free_ends, precision
         self.contact: SliceContact = contact or NoContact()
         centre = int(np.argmin(np.linalg.norm(body.start - [body.coil.radius, 0.0, 0.0], axis=1)))
-        # a shift along the axis and a turn about it change nothing: they are taken out at the middle of the section
+        # translation along the axis and rotation about it change nothing: they are fixed at the middle of the section
         self._gauge = np.array([3 * centre + 1, 3 * centre + 2])
         self._scale = np.array([1.0, body.coil.radius])
         self._n = body.u.size
@@ -72,7 +72,7 @@ class SliceProblem:
         self._let_touch(False)
 
     def _let_touch(self, touching: bool) -> None:
-        """Take contact, and the room it needs in the matrix, in or out."""
+        """Activate or deactivate contact and its entries in the matrix."""
         self.touching = touching
         if touching not in self._solvers:
             coupled = self.contact.blocks if touching else None
@@ -110,7 +110,7 @@ class SliceProblem:
         return self._good
 
     def resultants(self) -> np.ndarray:
-        """Axial force, tension positive, N, and torque, N mm, at the increment, what contact bears included."""
+        """Axial force, tension positive, N, and torque, N mm, at the increment, including the contact's share."""
         return self.body.resultants() + (self._pressure.numbers if self.touching else 0.0)
 
     def _residual_forces(self) -> np.ndarray:
@@ -130,7 +130,7 @@ class SliceProblem:
             F.set(np.inf)
 
     def _tangent(self, snes: PETSc.SNES, X: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
-        self._set(X)  # a line search may have looked elsewhere last
+        self._set(X)  # a line search may have evaluated another increment last
         self._assemble()
 
     def _assemble(self) -> None:
@@ -145,7 +145,7 @@ class SliceProblem:
         self._matrix.assemble(columns, rows, corner, self._of_contact(free, moves))
 
     def _of_contact(self, free: list[bool], moves: list[bool]) -> Any:
-        """Places and values in the matrix of the contact's stiffness, without equations of prescribed numbers."""
+        """Positions and values of the contact stiffness in the matrix, without the equations of prescribed numbers."""
         if not self.touching:
             return None
         pressure, n = self._pressure, self._n
@@ -164,26 +164,26 @@ class SliceProblem:
     # ---- steps -----------------------------------------------------------------------------------------------------
 
     def go_to_rise(self, rise: float, turn: float | None = None) -> Effort:
-        """Find the equilibrium at a rise h̄, mm/rad; a step that does not converge is cut in halves.
+        """Find the equilibrium at a rise h̄, mm/rad; a step that does not converge is halved.
 
         Args:
             rise: h̄ at the end of the step.
-            turn: λ at the end of the step, where the ends are turned; not with free ends.
+            turn: λ at the end of the step if the ends are turned; not with free ends.
 
         Raises:
-            SolveError: if there is none even after `MAX_CUTS` cuts; the last equilibrium is kept.
+            SolveError: if none is found even after `MAX_CUTS` cuts; the last equilibrium is kept.
         """
         return self._go(lambda: self.body.rise, rise, by_force=False, turn=turn)
 
     def go_to_force(self, force: float) -> Effort:
-        """Find the equilibrium under an axial force, compression positive, N; else as `go_to_rise`."""
+        """Find the equilibrium under an axial force, compression positive, N; otherwise as `go_to_rise`."""
         return self._go(lambda: self.force, force, by_force=True)
 
     def probe(self, rise: float, watch: Watch) -> tuple[float, np.ndarray]:
-        """Linear answer to a small change of the rise from the last equilibrium, which stays.
+        """Linear response to a small change of the rise from the last equilibrium, which is kept.
 
         Returns:
-            Axial force, compression positive, N, and the stress at the watch's places in the section's axes, MPa.
+            Axial force, compression positive, N, and the stress at the points of the watch in the section's axes, MPa.
         """
         self._linear_answer(rise, by_force=False)
         self._set(self._X)
@@ -219,7 +219,7 @@ class SliceProblem:
         return Effort(iterations, cuts)
 
     def _sinks_in(self) -> bool:
-        """Whether coils lie in each other at an equilibrium that was found without contact."""
+        """Whether coils penetrate at an equilibrium that was found without contact."""
         return not self.touching and self.contact.evaluate().gap < 0.0
 
     def _accept(self) -> None:
@@ -231,7 +231,7 @@ class SliceProblem:
             self._let_touch(False)
 
     def _attempt(self, value: float, by_force: bool, turning: float) -> bool:
-        """Newton's method from the linear answer at the last moduli, K Δu = −R − ∂R/∂h̄ Δh̄; whether it converged."""
+        """Newton's method from the linear response at the last moduli, K Δu = −R − ∂R/∂h̄ Δh̄; whether it converged."""
         self._linear_answer(value, by_force, turning)
         if by_force and not self.touching:
             self._hold_back(value)
@@ -239,7 +239,7 @@ class SliceProblem:
         return self.snes.getConvergedReason() > 0 and self._set(self._X)
 
     def _hold_back(self, value: float) -> None:
-        """Begin where coils have just come to bear, if a force without their contact would press them in deeper."""
+        """Start where coils have just touched, if a force without their contact would make them penetrate deeper."""
         falls = -2.0 * np.pi * self._X.getArray(readonly=True)[-2] / self.body.turn
         reach = self.pressure.gap + 2.0 * self.contact.onset
         if falls > reach:

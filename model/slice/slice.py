@@ -1,7 +1,7 @@
-"""The slice as a body: where it is, the state of its points, its forces and their derivatives."""
+"""The slice as a body: its position, the state of its points, its forces and their derivatives."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from dolfinx import fem
@@ -15,8 +15,12 @@ from coilset.model.slice.forms import RISE, TURN, SliceForms, assemble
 from coilset.model.solid.kinematics import push_forward, stretches
 from coilset.model.solid.points import update_points
 
-if TYPE_CHECKING:
-    from coilset.model.slice.watch import Watch
+
+class Follower(Protocol):
+    """Something that follows a slice from equilibrium to equilibrium."""
+
+    def accept(self) -> None:
+        """Make the slice's increment the equilibrium."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +29,7 @@ class Coil:
 
     Attributes:
         radius: of the centre line, R, mm.
-        pitch: rise in one turn, p, mm; 0 makes a ring, which may slide through itself.
+        pitch: rise per turn, p, mm; 0 makes a ring, which may pass through itself.
     """
 
     radius: float
@@ -44,7 +48,7 @@ class Coil:
 
 
 class Slice:
-    """One section of a uniform coil, updated Lagrange: increments count from the last equilibrium.
+    """One section of a uniform coil, updated Lagrange: increments start at the last equilibrium.
 
     Args:
         section: SectionMesh.
@@ -56,14 +60,14 @@ class Slice:
         section, coil, law, forms: as given; SliceForms.
         u: increment of x₀, shape (blocks, 3), mm; a view.
         increment: of h̄, mm/rad, and λ, shape (2,); a view.
-        state: history rows at the last equilibrium, shape (points, n_state), in space; trial: at the increment.
+        state: history rows at the last equilibrium, shape (points, n_state), in spatial axes; trial: at the increment.
         forces: virtual work of the displacements at the increment, shape (blocks, 3), N.
-        gradient: of the increment at the points in its end configuration, shape (points, 3, 3).
+        gradient: of the increment at the points in its final configuration, shape (points, 3, 3).
         places, areas: of the points in the unloaded section, shapes (points, 2), mm, and (points,), mm².
-        watches: each `Watch` is told of every new equilibrium.
+        watches: each is notified of every new equilibrium.
 
     Raises:
-        InputError: a section that reaches the coil's axis, or a temperature outside of the material's table.
+        InputError: a section that reaches the coil's axis, or a temperature outside the material's table.
     """
 
     def __init__(self, section: SectionMesh, coil: Coil, law: Law, temperature: float | None = None):
@@ -77,8 +81,8 @@ class Slice:
         self.start = self.forms.x.x.array.reshape(-1, 3).copy()
         self.forms.old.value[:] = coil.rise, 1.0
         self.increment = self.forms.increment.value
-        self.temperature, self.parameters = temperature, law.parameters(temperature)
-        self.watches: list[Watch] = []
+        self.temperature, self.parameters = temperature, law.point_law(temperature)
+        self.watches: list[Follower] = []
         n = len(self.forms.cells) * len(self.forms.points)
         self.state = initial_state(law, n, 6, temperature)
         self.trial = self.state.copy()
@@ -91,7 +95,7 @@ class Slice:
         self._committed = self._stress.copy(), self._moduli.copy()
 
     def _places(self) -> tuple[np.ndarray, np.ndarray]:
-        """Where the points lie in the unloaded section, shape (points, 2), mm, and their areas, mm²."""
+        """Positions of the points in the unloaded section, shape (points, 2), mm, and their areas, mm²."""
         mesh, element = self.section.mesh, self.section.mesh.ufl_domain().ufl_coordinate_element().basix_element
         nodes = mesh.geometry.x[geometry_dofs(mesh)][:, :, :2]
         tables = element.tabulate(1, self.forms.points)[:, :, :, 0]
@@ -101,9 +105,9 @@ class Slice:
         return places, (np.abs(jacobian) * self.forms.weights).ravel()
 
     def axes(self) -> np.ndarray:
-        """Axes of the section as it lies now, columns: along the wire, outward, upward.
+        """Current axes of the section as columns: along the wire, outward, upward.
 
-        The plane of the section is that of the mean of its tangents x₀,ξ and x₀,η; in it, both are turned alike.
+        The plane of the section is that of its mean tangents x₀,ξ and x₀,η; within it, both are rotated equally.
         """
         mean = np.average(self.forms.evaluate_tangents(), axis=0, weights=self.areas)[:, :2]
         U, _, V = np.linalg.svd(mean, full_matrices=False)
@@ -112,7 +116,7 @@ class Slice:
 
     @property
     def x(self) -> np.ndarray:
-        """x₀ now, coefficients, shape (blocks, 3), mm."""
+        """Coefficients of the current x₀, shape (blocks, 3), mm."""
         return self.forms.x.x.array.reshape(-1, 3) + self.u
 
     @property
@@ -126,10 +130,10 @@ class Slice:
         return float(self.forms.old.value[TURN] + self.increment[TURN])
 
     def update(self) -> bool:
-        """Bring stresses, moduli and forces to the increment.
+        """Update stresses, moduli and forces to the increment.
 
         Returns:
-            False if it turns a point inside out or the law finds no solution somewhere.
+            False if it inverts the material at some point or the law finds no solution somewhere.
         """
         self.gradient = self.forms.evaluate_gradient()
         if stretches(self.gradient, self._strain, self._axes, self._rotation, self._log) != 0:
@@ -141,7 +145,7 @@ class Slice:
         return True
 
     def commit(self) -> None:
-        """Make the increment of the last `update` the equilibrium; its moduli stay, for the next step to begin with."""
+        """Make the increment of the last `update` the equilibrium; its moduli are kept to start the next step."""
         for watch in self.watches:
             watch.accept()
         self.forms.x.x.array[:] += self.forms.u.x.array
@@ -152,7 +156,7 @@ class Slice:
             kept[:] = now
 
     def restore(self) -> None:
-        """Go back to the last equilibrium, its stresses and moduli included."""
+        """Go back to the last equilibrium, including its stresses and moduli."""
         self.u[:], self.increment[:] = 0.0, 0.0
         for kept, now in zip(self._committed, (self._stress, self._moduli), strict=True):
             now[:] = kept
@@ -160,7 +164,7 @@ class Slice:
         self.forces = assemble(self.forms["residual"]).reshape(-1, 3)
 
     def start_elastic(self) -> None:
-        """Take the elastic moduli for the next step's beginning, as is right where the load turns back."""
+        """Start the next step with the elastic moduli, as is correct when the load reverses."""
         self.u[:], self.increment[:] = 0.0, 0.0
         self.update()
 

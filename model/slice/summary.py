@@ -1,4 +1,4 @@
-"""The few numbers of a slice's run, by the names that a spring's run gives them, and some more."""
+"""The main numbers of a slice's run, under the names used for a spring's run, and some more."""
 
 import csv
 from dataclasses import asdict, fields
@@ -13,7 +13,7 @@ from coilset.model.slice.watch import equivalent, shear
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.warning import Warning
 
-# Entries of a spring's summary that one section cannot know, for it has no axis that could bend, or tells otherwise:
+# Entries of a spring's summary that a single section, whose axis cannot bend, does not have or gives differently:
 # its stresses at the surface are in `loaded` and `released`.
 UNSEEN = (
     "unstable_steps", "buckled", "buckling_travel_mm", "buckling_force_N", "buckling_travel_EN_13906_1_mm",
@@ -25,12 +25,12 @@ UNSEEN = (
     "shear_surface_max_angle_deg", "equivalent_surface_max_MPa", "equivalent_surface_max_turn",
     "equivalent_surface_max_angle_deg", "evaluations", "failed_solves", "section_kind",
     "rate_30_70_N_per_mm", "rate_30_70_after_N_per_mm", "rates", "plastic_work_max_turn", "plastic_work_max_angle_deg",
-    "lift_off_max_mm", "estimated_force_error_N", "estimated_set_error_mm", "load_loss_percent",
+    "lift_off_max_mm", "estimated_force_error_N", "estimated_set_error_mm", "load_loss_percent", "coiling_diameter_mm",
 )  # fmt: skip
 
 
 def summarise(analysis: SliceAnalysis) -> dict:
-    """Summary of a run as plain numbers; what is not known (no release) is None. Units are in the names."""
+    """Summary of a run as plain numbers; unknown ones (no release) are None. Units are in the names."""
     result, spring = analysis.result, analysis.spring
     last, section = result.snapshots[-1], analysis.body.section
     forces = [step.force_N for step in result.steps]
@@ -69,7 +69,7 @@ def summarise(analysis: SliceAnalysis) -> dict:
 
 
 def slice_warnings(analysis: SliceAnalysis) -> list[Warning]:
-    """Warnings about the case, and of plastic work beyond the material's validity."""
+    """Warnings about the case, and about plastic work beyond the material's validity."""
     found, limit = list(case_warnings(analysis.case, analysis.spring, analysis.law)), analysis.law.validity.plastic_work
     beyond = [shot for shot in analysis.result.snapshots if shot.work.max() > limit]
     if beyond:
@@ -79,9 +79,9 @@ def slice_warnings(analysis: SliceAnalysis) -> list[Warning]:
 
 
 def at_surface(analysis: SliceAnalysis, shot: SliceSnapshot) -> dict:
-    """Shear at the inside and the outside of the coil (signed), greatest shear and equivalent stress at the surface.
+    """Shear at the inside and the outside of the coil (signed), maximum shear and equivalent stress at the surface.
 
-    A place is (ξ, η) in the unloaded section, mm.
+    A position is (ξ, η) in the unloaded section, mm.
     """
     surface, ends = analysis.lattice.surface, [0, -1]
     places = np.concatenate([analysis.lattice.places[surface], analysis.line.places[ends]])
@@ -99,7 +99,7 @@ def at_surface(analysis: SliceAnalysis, shot: SliceSnapshot) -> dict:
 
 
 def write_history(folder: Path, steps: list[SliceStep]) -> None:
-    """history.csv: one row a step; numbers with all their digits."""
+    """history.csv: one row per step, numbers with all digits."""
     with whole(Path(folder) / "history.csv") as path, open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, [column.name for column in fields(SliceStep)])
         writer.writeheader()

@@ -1,9 +1,9 @@
-"""Stress at chosen places of the section, its surface included: the law is integrated there, too.
+"""Stress at selected points of the section, including its surface: the law is integrated there as well.
 
-The strain increments of a place are carried to it from the integration points by a quadratic least-squares polynomial
-through the nearest ones (patches of points after Zienkiewicz and Zhu, IJNME 33 (1992) 1331); strains are smooth also
-where plastic flow begins, stresses are not. The law then makes the stress of the place's own history, so that no yield
-condition is broken there.
+The strain increments at such a point are obtained from the integration points by a quadratic least-squares polynomial
+through the nearest ones (patches of points after Zienkiewicz and Zhu, IJNME 33 (1992) 1331); strains are smooth even
+where plastic flow begins, stresses are not. The law then gives the stress from the point's own history, so no yield
+condition is violated there.
 """
 
 import numpy as np
@@ -15,14 +15,14 @@ from coilset.model.slice.slice import Slice
 from coilset.model.solid.kinematics import push_forward, stretches
 from coilset.model.solid.points import update_points
 
-NEIGHBOURS = 20  # integration points of a patch
+NEIGHBOURS = 20  # integration points per patch
 
 
 class Watch:
-    """Places of a slice, followed as material points; to be made before the first step.
+    """Points of a slice, followed as material points; create it before the first step.
 
     Args:
-        body: Slice; it tells its watches of every equilibrium.
+        body: Slice, which notifies its watches of every equilibrium.
         places: ξ, η, shape (n, 2), mm.
 
     Attributes:
@@ -38,10 +38,10 @@ class Watch:
         body.watches.append(self)
 
     def evaluate(self) -> np.ndarray:
-        """Point states at the body's increment, shape (n, n_state); a view that the next call overwrites.
+        """Point states at the body's increment, shape (n, n_state); a view, overwritten by the next call.
 
         Raises:
-            SolveError: if the law finds no solution at a place.
+            SolveError: if the law finds no solution at some point.
         """
         n = len(self.places)
         gradient = np.einsum("np,pij->nij", self._weights, self.body.gradient)
@@ -58,7 +58,7 @@ class Watch:
         self.state[:] = self.evaluate()
 
     def section_stress(self, state: np.ndarray | None = None) -> np.ndarray:
-        """Stress in the axes of the section as it lies now: 1 along the wire, 2 outward, 3 upward.
+        """Stress in the current axes of the section: 1 along the wire, 2 outward, 3 upward.
 
         Args:
             state: point states; default are those at the last equilibrium.
@@ -86,10 +86,10 @@ def equivalent(stress: np.ndarray) -> np.ndarray:
 
 
 def patch_weights(points: np.ndarray, samples: np.ndarray) -> np.ndarray:
-    """Weights that carry values at points to samples, exact for quadratic polynomials, shape (samples, points).
+    """Weights that map values at points to samples, exact for quadratic polynomials, shape (samples, points).
 
     Args:
-        points, samples: places in the plane, shapes (m, 2) and (n, 2).
+        points, samples: positions in the plane, shapes (m, 2) and (n, 2).
     """
     size = min(NEIGHBOURS, len(points))
     distance, nearest = cKDTree(points).query(samples, k=size)

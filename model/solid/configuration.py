@@ -1,4 +1,4 @@
-"""The moving mesh: current positions as coefficients of the displacement space, and the rigid modes in it."""
+"""The moving mesh: current positions as coefficients of the displacement space, and its rigid modes."""
 
 import basix.ufl
 import numpy as np
@@ -17,15 +17,15 @@ QUADRATURE_DEGREE = {"hexahedron": 3, "tetrahedron": 2}
 class Configuration:
     """Position of the body, a function of the displacement space, and the DOLFINx mesh that follows it.
 
-    Positions lie in the displacement space itself (the element is isoparametric), so that every rigid motion is in
-    the space. A hexahedron's face and interior nodes follow from its edges, and its mesh is made so at the start.
+    Positions belong to the displacement space itself (the element is isoparametric), so that every rigid motion is in
+    the space. A hexahedron's face and interior nodes follow from its edges; the initial mesh is built accordingly.
 
     Attributes:
         mesh: the mesh that moves.
         V: vector displacement space of second order.
         x: coefficients of the position at the last equilibrium, shape (blocks with ghosts, 3), mm.
         start: positions of the geometry's nodes at the start, shape (nodes, 3), mm.
-        quadrature_degree: of the points that carry the state.
+        quadrature_degree: degree of the quadrature whose points carry the state.
     """
 
     def __init__(self, mesh: dmesh.Mesh) -> None:
@@ -47,7 +47,7 @@ class Configuration:
         return self.V.dofmap.index_map.size_local
 
     def move(self, x: np.ndarray) -> None:
-        """Put the mesh where the position coefficients say, shape (blocks with ghosts, 3), mm."""
+        """Move the mesh to the position coefficients x, shape (blocks with ghosts, 3), mm."""
         self.mesh.geometry.x[:] = self._nodes @ x
 
     def rigid_modes(self, x: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""UFL forms of the solid on the current configuration: virtual work, its linearisation, the gradient."""
+"""UFL forms of the solid on the current configuration: virtual work, its linearisation, displacement gradient."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -11,7 +11,7 @@ from ufl.core.expr import Expr
 
 from coilset.model.solid.configuration import Configuration
 
-# Order of the six components: 11, 22, 33, 12, 13, 23; strains carry twice the shear.
+# Order of the six components: 11, 22, 33, 12, 13, 23; shear strains are doubled.
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
@@ -57,9 +57,9 @@ class SolidForms:
         initial = ufl.inner(ufl.grad(v), ufl.dot(ufl.grad(du), σ))
         self.residual = fem.form(work)
         self.tangent = fem.form((material + initial) * self.dx)
-        # ∂Δu/∂x in the current configuration, from which the increment F = (1 − ∂Δu/∂x)⁻¹ follows
+        # ∂Δu/∂x in the current configuration, which gives the increment F = (1 − ∂Δu/∂x)⁻¹
         self.gradient = fem.Expression(ufl.grad(self.u), self.points)
 
     def evaluate_gradient(self, cells: np.ndarray) -> np.ndarray:
-        """∂Δu/∂x at the points of the cells on the mesh as it stands, shape (cells × points, 3, 3)."""
+        """∂Δu/∂x at the points of the cells on the current mesh, shape (cells × points, 3, 3)."""
         return self.gradient.eval(self.u.function_space.mesh, np.asarray(cells, np.int32)).reshape(-1, 3, 3)

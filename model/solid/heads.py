@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Motion:
-    """Where a head is, measured from its start: rotated about its start centre, then moved.
+    """Motion of a head from its initial position: rotated about its initial centre, then translated.
 
     Attributes:
         translation: mm, shape (3,).
@@ -26,18 +26,18 @@ class Motion:
     rotation: tuple = (0.0, 0.0, 0.0)
 
     def between(self, other: "Motion", part: float) -> "Motion":
-        """The motion a `part` of the way from this one to the other; both rotate about one axis."""
+        """The motion a fraction `part` of the way from this one to the other; both rotate about the same axis."""
         mix = lambda a, b: tuple((1 - part) * np.asarray(a, float) + part * np.asarray(b, float))  # noqa: E731
         return Motion(mix(self.translation, other.translation), mix(self.rotation, other.rotation))
 
 
 @dataclass(frozen=True)
 class Reaction:
-    """What a head does to the wire.
+    """Force and moment of a head on the wire.
 
     Attributes:
         force: N, shape (3,).
-        moment: about the point that was asked for, N mm, shape (3,).
+        moment: about the requested point, N mm, shape (3,).
     """
 
     force: np.ndarray
@@ -54,7 +54,7 @@ class Head:
     Attributes:
         blocks: blocks of degrees of freedom on the face, ghosts included.
         centre: of the face at the start, mm, shape (3,).
-        motion: Motion now prescribed.
+        motion: the currently prescribed Motion.
     """
 
     def __init__(self, solid: "Solid", group: str) -> None:

@@ -3,11 +3,11 @@
 The increment is `F = R U` from the last equilibrium. The law is integrated in the unrotated frame with the strain
 increment `ln U`, and stress and back stress are rotated by R. On the path `R(t) exp(t ln U)` the spin of R is the
 material's spin W, so this integrates the Zaremba-Jaumann rate of chapter 3 without error of its own; a rigid motion
-superposed on the increment turns the result and changes nothing else, and `tr ln U` is the logarithm of the change of
+superposed on the increment only rotates the result, and `tr ln U` is the logarithm of the change of
 volume.
 
-Six components are ordered 11, 22, 33, 12, 13, 23. Inside, Mandel's basis is used (shear times √2), in which rotations
-of tensors are orthogonal 6 × 6 matrices.
+Six components are ordered 11, 22, 33, 12, 13, 23. Internally, Mandel's basis is used (shear times √2), in which
+rotations of tensors are orthogonal 6 × 6 matrices.
 """
 
 import math
@@ -92,7 +92,7 @@ def stretches(
         log_stretch: written, logarithms of the eigenvalues of U, shape (points, 3).
 
     Returns:
-        0, or -1 if the increment turns some point inside out.
+        0, or -1 if the increment inverts the material at some point.
     """
     back, F, C, W = np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3)), np.empty((3, 3))
     for point in range(len(gradient)):
@@ -158,7 +158,7 @@ def principal_moduli(s: np.ndarray, ln: np.ndarray, C: np.ndarray, A: np.ndarray
         δ(ln U)ij = x / sinh x · dij        (δR Rᵀ)ij = wij − tanh(x/2) dij
 
     so that δσ = w σ − σ w + C : δ ln U − N s + s N with N = tanh(x/2) ∘ d. The current volume adds σ tr d, and the
-    turning of the gradient −σ (d − w); what is left of both beside the initial-stress term is −(d s + s d).
+    rotation of the gradient −σ (d − w); what remains of both besides the initial-stress term is −(d s + s d).
 
     Args:
         s: stress in the axes of U, 3 × 3.

@@ -1,8 +1,8 @@
-"""Multigrid for the solid: quadratic elements, then the same elements with vertices only, then smoothed aggregation.
+"""Multigrid for the solid: quadratic elements, the same elements with vertices only, then smoothed aggregation.
 
-Smoothed aggregation straight on the quadratic basis needs more iterations, with aggregates too small for six rigid
-modes. The vertices' space is nested in the quadratic one: a function linear along the edges has on an edge the mean
-(hexahedra) or the mid-edge value (tetrahedra) that is half the sum of the edge's end values.
+Smoothed aggregation directly on the quadratic basis needs more iterations, with aggregates too small for six rigid
+modes. The vertex space is nested in the quadratic one: a function that is linear along the edges has, on each edge, a
+mean (hexahedra) or a mid-edge value (tetrahedra) of half the sum of its values at the ends of the edge.
 """
 
 import basix
@@ -14,11 +14,11 @@ from coilset.model.solid.configuration import Configuration
 
 
 class VertexMultigrid:
-    """Two levels of PCMG, whose coarse level is solved by one cycle of GAMG about the rigid modes of the vertices.
+    """Two levels of PCMG; the coarse one is solved by one cycle of GAMG with the rigid modes of the vertices.
 
     Args:
         configuration: Configuration.
-        held: blocks with prescribed displacement; the coarse space vanishes there, so that it corrects no head.
+        held: blocks with prescribed displacement; the coarse space vanishes there, so that the heads are not corrected.
         pc: PETSc PC to set up; its further options come from the options database.
     """
 
@@ -55,14 +55,14 @@ class VertexMultigrid:
 
 
 def _number_vertices(V: fem.FunctionSpace, held: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Global numbers of the vertices that are not held, -1 for other blocks, and this rank's own ones."""
+    """Global numbers of the vertices that are not held, -1 for other blocks, and those owned by this rank."""
     index_map, comm = V.dofmap.index_map, V.mesh.comm
     n = index_map.size_local
     n_vertices = len(basix.topology(V.mesh.basix_cell())[0])
     vertex = np.zeros(n + index_map.num_ghosts, dtype=bool)
     vertex[V.dofmap.list[:, :n_vertices]] = True
     vertex[held] = False
-    # a block at the edge of this rank's part may be a vertex that only another rank's cells show to be one
+    # whether a block at the edge of this rank's part is a vertex may be known only from another rank's cells
     marks = la.vector(index_map, 1, dtype=np.int64)
     marks.array[:] = vertex
     marks.scatter_reverse(la.InsertMode.add)

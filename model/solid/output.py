@@ -1,4 +1,4 @@
-"""The solid's fields for ParaView, and pictures of them."""
+"""Fields of the solid for ParaView, and pictures of them."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -26,9 +26,9 @@ def mises(stress: np.ndarray) -> np.ndarray:
 
 
 def at_nodes(solid: Solid, values: np.ndarray) -> np.ndarray:
-    """Carry values of the integration points to the geometry's nodes of this rank, averaged over its cells.
+    """Extrapolate values of the integration points to the geometry nodes of this rank, averaged over its cells.
 
-    A cell's values stay within those of its points: beyond, no yield condition holds.
+    A cell's nodal values stay within the range of its points: beyond it, the yield condition need not hold.
 
     Args:
         solid: Solid.
@@ -85,7 +85,7 @@ def write_fields(path: str | Path, solid: Solid) -> None:
 
 
 def picture(path: str | Path, bodies: Mapping[str, pyvista.DataSet], field: str, unit: str) -> None:
-    """Draw the far halves (y > 0) of bodies beside each other, coloured by a field; the cut shows their sections.
+    """Draw the far halves (y > 0) of bodies side by side, coloured by a field; the cut shows their sections.
 
     Needs a display, see `coilset.model.results.display`.
 
@@ -101,7 +101,7 @@ def picture(path: str | Path, bodies: Mapping[str, pyvista.DataSet], field: str,
     for column, (name, body) in enumerate(bodies.items()):
         plotter.subplot(0, column)
         half = body.tessellate(max_n_subdivide=2).clip(normal=(0, -1, 0), origin=(0, 1e-3, 0))
-        half = half.connectivity("largest")  # without what a turn's second end has on this side
+        half = half.connectivity("largest")  # without the part of the turn's other end on this side
         bar = {"title": f"{field} in {unit}\n", **BAR}
         plotter.add_mesh(half, scalars=field, clim=(0.0, greatest), cmap="viridis", ambient=0.3, scalar_bar_args=bar)
         plotter.add_text(name, position=(0.42, 0.9), viewport=True, font_size=13, color="black")

@@ -1,4 +1,4 @@
-"""The solid between its two rigid heads: equilibrium where the heads move as prescribed."""
+"""The solid between its two rigid heads: equilibrium under prescribed motion of the heads."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -25,20 +25,20 @@ STEPS = StepControl(smallest=2.0**-6)
 
 
 class SolidProblem:
-    """Equilibrium of a solid whose heads move as prescribed.
+    """Equilibrium of a solid under prescribed motion of its heads.
 
     Args:
         wire: SolidMesh.
         points: the law at the points, as `MaterialPoints`.
         solver: ``direct``, ``multigrid``, ``multigrid-cg`` or ``auto``, see coilset.model.equilibrium.methods.
-        precision: ε of (6.3.1): out-of-balance forces over the change of the heads' forces in the step.
-        options: further PETSc options, which replace those of the solver.
+        precision: ε of (6.3.1): out-of-balance forces relative to the change of the heads' forces in the step.
+        options: further PETSc options, which override those of the solver.
         steps: StepControl.
 
     Attributes:
         solid: Solid.
         bottom, top: Head.
-        unknowns: number of degrees of freedom, those of the heads included.
+        unknowns: number of degrees of freedom, including those of the heads.
         newton: Newton.
     """
 
@@ -63,7 +63,7 @@ class SolidProblem:
         self._multigrid: VertexMultigrid | None = None
         if self.solver.startswith("multigrid"):
             self._multigrid = VertexMultigrid(solid.configuration, held, self.newton.snes.getKSP().getPC())
-            self.newton.snes.setFromOptions()  # now that the preconditioner has its levels
+            self.newton.snes.setFromOptions()  # now that the preconditioner's levels exist
         self.predictor = HeadPredictor(self.newton, solid, held)
         self._held = held[held < solid.configuration.owned]
         self.continuation = Continuation(self.newton, steps, starts=self._starts)
@@ -75,16 +75,16 @@ class SolidProblem:
         return self.solid.state["reactions"].equilibrium.reshape(-1, 3)
 
     def step(self, top: Motion, bottom: Motion | None = None) -> tuple[Outcome, int]:
-        """Move the heads to where the motions say and find the equilibrium there; cut where it is not found.
+        """Move the heads as prescribed and find the equilibrium there; the step is cut if it is not found.
 
         Args:
-            top, bottom: Motion from the start; default for the bottom is to stay.
+            top, bottom: Motion from the start; by default the bottom stays.
 
         Returns:
-            Outcome of all that it took, a predictor counted as an iteration, and the number of cuts.
+            Total Outcome, in which a predictor counts as an iteration, and the number of cuts.
 
         Raises:
-            SolveError: if there is no equilibrium down to the smallest step; the last equilibrium is kept.
+            SolveError: if no equilibrium is found down to the smallest step; the last equilibrium is kept.
         """
         targets = (self.bottom.motion if bottom is None else bottom, top)
         origin, continuation = (self.bottom.motion, self.top.motion), self.continuation
@@ -103,7 +103,7 @@ class SolidProblem:
         return [a.between(b, min(part, 1.0)) for a, b in zip(origin, targets, strict=True)]
 
     def load(self, bottom: Motion, top: Motion) -> Load:
-        """The load that brings the heads from the last equilibrium to where the motions say."""
+        """The load that takes the heads from the last equilibrium to the prescribed motions."""
         increment = np.zeros_like(self.solid.u)
         for head, motion in ((self.bottom, bottom), (self.top, top)):
             increment[head.blocks] = head.positions(motion) - self.solid.state["x"].equilibrium[head.blocks]
@@ -119,17 +119,17 @@ class SolidProblem:
             self._multigrid.update(matrix, self.solid.x)
 
     def reactions(self, point: np.ndarray) -> tuple[Reaction, Reaction]:
-        """Reactions of bottom and top head at the last equilibrium, with moments about a point, mm."""
+        """Reactions of the bottom and top heads at the last equilibrium, with moments about a point, mm."""
         return self.bottom.reaction(self.forces, point), self.top.reaction(self.forces, point)
 
 
 class HeadPredictor:
-    """The linear answer to the heads' motion g, K_ff u = −K_fh g − r: where Newton's method begins.
+    """The linear response to the heads' motion g, K_ff u = −K_fh g − r: the start of Newton's method.
 
-    It tears no end element, and the body stays at the last equilibrium.
+    It does not tear the elements at the ends, and the body stays at the last equilibrium.
 
     Args:
-        newton: Newton of the solid.
+        newton: the solid's Newton.
         solid: Solid.
         held: blocks of the heads, ghosts included.
     """
@@ -141,7 +141,7 @@ class HeadPredictor:
         self._start, self._residual_forces = (newton.system.layout.vector() for _ in range(2))
 
     def __call__(self, load: Load) -> Start:
-        """Solve for it; one iteration is counted; collective."""
+        """Solve for it; counts as one iteration; collective."""
         system, newton, solid = self.newton.system, self.newton, self.solid
         system.last_tangent(load, newton.matrix)
         newton.prepare(newton.matrix.mat)
@@ -157,5 +157,5 @@ class HeadPredictor:
         ksp = newton.snes.getKSP()
         ksp.setOperators(newton.matrix.mat)
         ksp.solve(self._residual_forces, self._start)
-        self._start.getArray()[load.held] = load.increments  # exactly, also if the solve is iterative
+        self._start.getArray()[load.held] = load.increments  # exactly, even if the solve is iterative
         return Start(self._start, 1, ksp.getIterationNumber())

@@ -1,4 +1,4 @@
-"""Load programs of a coil section between its heads: pressed along the coil's axis, and released to zero force."""
+"""Load programs of a coil section between its heads: compressed along the coil's axis, and released to zero force."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,14 +12,14 @@ from coilset.model.solid.problem import SolidProblem
 
 @dataclass(frozen=True)
 class Station:
-    """An equilibrium on the way.
+    """An equilibrium along the load program.
 
     Attributes:
-        travel: how far the top head has come down, mm.
+        travel: downward displacement of the top head, mm.
         force: axial force of the top head, positive in compression, N.
         torque: moment of the top head about the coil's axis, N mm.
-        iterations: linear solves from the last station to here.
-        linear_iterations: iterations inside them.
+        iterations: linear solves since the last station.
+        linear_iterations: iterations within them.
     """
 
     travel: float
@@ -30,10 +30,10 @@ class Station:
 
 
 class AxialProgram:
-    """Moves the top head of a SolidProblem along z, without rotating it, and records what it meets.
+    """Moves the top head of a SolidProblem along z, without rotating it, and records the reactions.
 
     Args:
-        problem: SolidProblem of a coil about the z axis; the bottom head stays.
+        problem: SolidProblem of a coil about the z axis; the bottom head is fixed.
         report: called with every Station.
 
     Attributes:
@@ -63,17 +63,17 @@ class AxialProgram:
             self.go(travel * part)
 
     def release(self, steps: int, precision: float = 1e-5) -> Station:
-        """Go back to zero axial force: in equal steps to where the rate of release brings it, then by secants.
+        """Go back to zero axial force: in equal steps to the travel that the rate of release predicts, then by secants.
 
         Args:
-            steps: of the first part, after a small one that shows the rate.
-            precision: force that is left, over the greatest force so far.
+            steps: number in the first part, after a small step that gives the rate.
+            precision: remaining force over the maximum force so far.
 
         Returns:
             Station at zero force; its travel is the set.
 
         Raises:
-            SolveError: if there is no equilibrium, or the force does not come to zero.
+            SolveError: if there is no equilibrium, or the force does not reach zero.
         """
         limit = precision * max(abs(station.force) for station in self.stations)
         last = self.stations[-1]

@@ -1,6 +1,6 @@
-"""Stress at chosen material points of a cross-section, in the frame of the section as it lies now.
+"""Stress at selected material points of a cross-section, in the current frame of the section.
 
-The stresses of these elements are best at their integration points. From there they are carried to a sample point, the
+The stresses of these elements are most accurate at their integration points. They are carried to a sample point, the
 wire's surface included, by a quadratic least-squares polynomial through the nearest ones (superconvergent patch
 recovery, Zienkiewicz and Zhu, IJNME 33 (1992) 1331, with patches of points).
 """
@@ -13,7 +13,7 @@ from coilset.meshes.compat import geometry_dofs
 from coilset.meshes.solid import SolidMesh
 from coilset.model.solid.solid import Solid
 
-Patches = tuple[np.ndarray, np.ndarray]  # points of each patch, and their weights
+Patches = tuple[np.ndarray, np.ndarray]  # points of each patch and their weights
 NEIGHBOURS = 16  # integration points of a patch in each of the four planes of points about the section
 
 
@@ -23,7 +23,7 @@ class SectionSample:
     Args:
         solid: Solid.
         section: arc length of the section, mm.
-        y, z: places in the section, outward and t × outward, shape (n,), mm.
+        y, z: positions in the section, outward and along t × outward, shape (n,), mm.
 
     Attributes:
         y, z: as given.
@@ -41,13 +41,13 @@ class SectionSample:
         self._shape = solid.V.element.basix_element.tabulate(0, solid.forms.points)[0, :, :, 0]
         places = self._gather(places) - [0.0, 0.0, section]
         planes = 4 if solid.n_points == 8 else 8
-        ring = np.stack(disk_grid(0.4 * solid.wire.wire_diameter, 2, 8), axis=1)  # shows how the section lies
+        ring = np.stack(disk_grid(0.4 * solid.wire.wire_diameter, 2, 8), axis=1)  # shows the section's orientation
         self._patches = _patches(places, np.stack([self.y, self.z], axis=1), planes * NEIGHBOURS)
         self._ring = _patches(places, ring, planes * NEIGHBOURS)
         self._start, self._axes = self._positions(self._ring), _axes(solid.wire, section)
 
     def _gather(self, values: np.ndarray) -> np.ndarray:
-        """Values at the integration points of the cells about the section, from all ranks, shape (points, …)."""
+        """Values at the integration points of the cells around the section, from all ranks, shape (points, …)."""
         return np.concatenate(self.solid.comm.allgather(values.reshape(-1, *values.shape[2:])))
 
     def _recover(self, values: np.ndarray, patches: Patches) -> np.ndarray:
@@ -60,13 +60,13 @@ class SectionSample:
         return self._recover(np.einsum("qb,cbi->cqi", self._shape, self.solid.x[blocks]), patches)
 
     def positions(self) -> np.ndarray:
-        """Where the sample points are now, shape (n, 3), mm."""
+        """Current positions of the sample points, shape (n, 3), mm."""
         return self._positions(self._patches)
 
     def frame(self) -> tuple[np.ndarray, np.ndarray]:
-        """Centre of the section, mm, and its axes t, outward, t × outward as columns, as the section lies now.
+        """Current centre of the section, mm, and its current axes t, outward, t × outward as columns.
 
-        The section's rotation since the start is the one that carries rings of its points best.
+        The section's rotation since the start is the one that best fits rings of its points.
         """
         now = self._positions(self._ring)
         a, b = self._start - self._start.mean(axis=0), now - now.mean(axis=0)
@@ -87,7 +87,7 @@ class SectionSample:
 
 
 def disk_grid(radius: float, rings: int = 8, spokes: int = 24) -> tuple[np.ndarray, np.ndarray]:
-    """Places y, z of a polar grid on the wire's disk, centre first and surface included, each of shape (n,), mm."""
+    """Positions y, z of a polar grid on the wire's disk, centre first, surface included, each of shape (n,), mm."""
     r = radius * np.arange(1, rings + 1) / rings
     φ = 2 * np.pi * np.arange(spokes) / spokes
     y, z = np.outer(r, np.cos(φ)).ravel(), np.outer(r, np.sin(φ)).ravel()
@@ -107,16 +107,16 @@ def _patches(places: np.ndarray, samples: np.ndarray, size: int) -> Patches:
     """Nearest points of each sample in the section's plane, and their weights in the sample's least-squares value.
 
     Args:
-        places: y, z, s of the points, s from the section, shape (points, 3), mm.
+        places: y, z, s of the points, s measured from the section, shape (points, 3), mm.
         samples: y, z, shape (n, 2), mm.
-        size: points of a patch; more where several are as far as the last one.
+        size: points per patch; more if several are equally far as the last one.
 
     Returns:
         Indices and weights, each of shape (n, 2 size); the weights are 0 outside of the patch.
     """
     distance, points = cKDTree(places[:, :2]).query(samples, k=min(2 * size, len(places)))
     reach = distance[:, size - 1 : size]
-    # all that are as far as the last one belong to the patch: which of them comes first depends on the partition
+    # all that are equally far as the last one belong to the patch: which one comes first depends on the partition
     weight = np.where(distance < (1 + 1e-6) * reach, np.exp(-2 * (distance / reach) ** 2), 0.0)
     y, z = np.moveaxis((places[points, :2] - samples[:, None]) / reach[:, :, None], 2, 0)
     s = places[points, 2] / np.abs(places[:, 2]).max()

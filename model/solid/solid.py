@@ -14,7 +14,7 @@ from coilset.model.solid.forms import SolidForms
 from coilset.model.solid.kinematics import push_forward, stretches
 from coilset.model.state import State, Where
 
-# Cells whose points are worked on at a time; bounds the memory of what is not kept between iterations.
+# Cells whose points are processed at a time; bounds the memory for what is not kept between iterations.
 CHUNK = 2048
 
 
@@ -22,21 +22,21 @@ class PointLaw(Protocol):
     """A material law at points, as coilset.model.solid.points.MaterialPoints."""
 
     def initial_state(self, points: int) -> np.ndarray:
-        """Rows of unstressed points, shape (points, n_state); first stress and back stress, 6 entries each."""
+        """Rows of unstressed points, shape (points, n_state); stress and back stress come first, 6 entries each."""
         ...
 
     def update(self, old: np.ndarray, strain: np.ndarray, new: np.ndarray, C: np.ndarray) -> bool:
-        """Write new rows and moduli; False if the law found no solution."""
+        """Write new rows and moduli; returns False if the law found no solution."""
         ...
 
 
 class Solid:
-    """A wire as a 3D body, updated Lagrange: increments count from the last equilibrium, forms from where it is now.
+    """A wire as a 3D body, updated Lagrange: increments start at the last equilibrium, forms use the current mesh.
 
     Args:
         wire: SolidMesh; its mesh will move with the body.
         points: the law at the points.
-        symmetric: keep only the symmetric part of the moduli, for solvers that need it.
+        symmetric: keep only the symmetric part of the moduli, for solvers that require it.
 
     Attributes:
         wire, configuration, forms: mesh, positions, UFL forms.
@@ -67,18 +67,18 @@ class Solid:
 
     @property
     def x(self) -> np.ndarray:
-        """Coefficients of the position on trial, shape (blocks with ghosts, 3), mm."""
+        """Trial coefficients of the position, shape (blocks with ghosts, 3), mm."""
         return self._x.trial
 
     @property
     def point_state(self) -> np.ndarray:
-        """Rows of the owned cells' points on trial, shape (cells, points, n_state), MPa."""
+        """Trial rows of the owned cells' points, shape (cells, points, n_state), MPa."""
         return self._points.trial
 
     # ---- Body ------------------------------------------------------------------------------------------------------
 
     def update(self) -> bool:
-        """Bring mesh, stresses and moduli to the increment; see Body."""
+        """Update mesh, stresses and moduli to the increment; see Body."""
         began = time.perf_counter()
         np.add(self._x.equilibrium, self.u, out=self._x.trial)
         self.configuration.move(self.x)
@@ -87,7 +87,7 @@ class Solid:
         return good
 
     def follow(self) -> None:
-        """Nothing in a solid bears no load; see Body."""
+        """Nothing to do: all of a solid carries load; see Body."""
 
     def _update_chunk(self, first: int) -> bool:
         cells = slice(first, min(first + CHUNK, self.n_cells))
@@ -117,20 +117,20 @@ class Solid:
         return create_matrix(self.forms.tangent)
 
     def tangent(self, matrix: PETSc.Mat) -> None:
-        """Add the material part and that of initial stress; see Body."""
+        """Add the material and the initial-stress part; see Body."""
         began = time.perf_counter()
         assemble_matrix(matrix, self.forms.tangent)
         self.seconds["assembly"] += time.perf_counter() - began
 
     @property
     def constraint_weight(self) -> float:
-        """Rows and columns of the heads are those of the identity, N/mm; see Body."""
+        """The rows and columns of the heads are those of the identity, N/mm; see Body."""
         return 1.0
 
     def hold(self, matrix: PETSc.Mat, rows: np.ndarray) -> None:
         """Rows and columns of prescribed increments, so that the matrix stays symmetric; see Body.
 
-        Increments that go with this matrix meet what is prescribed from their start on, see `HeadPredictor`.
+        Increments used with this matrix satisfy the prescribed values from the start, see `HeadPredictor`.
         """
         matrix.zeroRowsColumns(rows.astype(PETSc.IntType), diag=self.constraint_weight)
         diagonal = matrix.getDiagonal()
@@ -138,5 +138,5 @@ class Solid:
         self._rounding = diagonal.norm()
 
     def rounding(self, increments: np.ndarray) -> float:
-        """What rounding the positions does to the forces, by the diagonal of the last tangent; see Body."""
+        """Effect of rounding the positions on the forces, from the diagonal of the last tangent; see Body."""
         return self._rounding

@@ -1,1 +1,1 @@
-"""What spring makers know: the formulas and tables of standards, their wires, and what they would warn of."""
+"""Spring makers' knowledge: the formulas and tables of standards, standard wires, and warnings."""

@@ -1,4 +1,4 @@
-"""All that a spring maker would warn of about a case before it runs: its entries, its spring, its working lengths."""
+"""Everything a spring maker would warn about in a case before it runs: its entries, its spring, its working lengths."""
 
 from collections.abc import Iterator
 
@@ -32,7 +32,7 @@ def _renamed(case: Case) -> Iterator[Warning]:
 
 
 def _working(case: Case, spring: Spring, law: Law) -> list[Warning]:
-    """About the load program, of cylinders of one wire, which the formulas are for."""
+    """Warnings about the load program, for cylinders of constant wire diameter, to which the formulas apply."""
     try:
         cylinder = Cylinder.of(spring)
     except InputError:
@@ -49,7 +49,7 @@ def sheet_warnings(made: Sheet, to_block: list[float]) -> list[Warning]:
 
     Args:
         made: Sheet.
-        to_block: the block length, mm, if the spring goes there, for the stress alone.
+        to_block: the block length, mm, if the spring is compressed to it; checked for stress only.
     """
     found = gap_warnings(made.spring, made.lengths, made.dynamic)
     if made.wire:

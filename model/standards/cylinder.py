@@ -1,4 +1,4 @@
-"""The cylindrical spring of one wire that EN 13906-1 is about, read off a spring's geometry."""
+"""The cylindrical spring of constant wire diameter that EN 13906-1 covers, from a spring's geometry."""
 
 from dataclasses import dataclass
 from math import atan, pi
@@ -10,7 +10,7 @@ from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
 
 CylinderEnds = Literal["open", "closed", "closed and ground", "mixed"]
-SAME = 1e-9  # relative change of diameter and wire along a cylinder
+SAME = 1e-9  # maximum relative change of coil and wire diameter along a cylinder
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Cylinder:
         length: free length L0.
         pitch: mean rise of an active turn.
         ends: form of both ends; `mixed` if they differ.
-        solid: block length of the geometry, every coil on the next.
+        solid: block length of the geometry, with every coil touching the next.
     """
 
     d: float
@@ -39,7 +39,7 @@ class Cylinder:
 
     @classmethod
     def of(cls, spring: Spring) -> "Cylinder":
-        """The cylinder that a spring is.
+        """The cylinder equivalent to a spring's geometry.
 
         Raises:
             InputError: if its coil or wire diameter changes.

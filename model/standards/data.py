@@ -1,4 +1,4 @@
-"""The data of a spring that a drawing or an order asks for."""
+"""The data of a spring that a drawing or an order requires."""
 
 from dataclasses import dataclass
 
@@ -12,7 +12,7 @@ from coilset.model.standards.steel import STEEL, Elastic
 
 @dataclass(frozen=True)
 class SpringData:
-    """Data of a spring, mm, N and kg; ranges are pairs of the least and the greatest value."""
+    """Data of a spring in mm, N and kg; ranges are pairs of minimum and maximum."""
 
     turns: float
     active_turns: float
@@ -33,7 +33,7 @@ class SpringData:
 
     @property
     def is_cylinder(self) -> bool:
-        """Whether diameter and wire do not change, so that the rate is that of EN 13906-1."""
+        """Whether coil and wire diameter are constant, so that the rate is that of EN 13906-1."""
         return all(high - low < 1e-9 * high for low, high in (self.wire_diameter, self.mean_diameter))
 
     def rows(self) -> list[tuple[str, str, str]]:

@@ -1,4 +1,4 @@
-"""Compression springs of round wire after EN 13906-1: each formula a function, with its source or its derivation.
+"""Compression springs of round wire according to EN 13906-1: one function per formula, with its source or derivation.
 
 Symbols of the standard: d wire diameter, D mean coil diameter, w = D/d, n active and n_t all turns, s travel, F force,
 L0 free and Lc block length. N, mm, MPa, kg; frequency in Hz.
@@ -16,13 +16,13 @@ __all__ = [
     "outer_diameter_growth", "rate", "stress", "stress_correction", "wire_length",
 ]  # fmt: skip
 
-DYNAMIC_GAPS = 1.5  # EN 13906-1: Sa of cold coiled springs under alternating load over that at rest
+DYNAMIC_GAPS = 1.5  # EN 13906-1: Sa of cold coiled springs under alternating load over that under static load
 
 
 def rate(shear_modulus: float, d: float, D: float, n: float) -> float:
     """Spring rate R = G d⁴/(8 D³ n), N/mm.
 
-    Castigliano for the wire's torsion alone: the moment F D/2 on the length π D n with G π d⁴/32.
+    Castigliano for the wire's torsion alone: the moment F D/2 over the length π D n with G π d⁴/32.
     """
     return shear_modulus * d**4 / (8 * D**3 * n)
 
@@ -54,9 +54,9 @@ def block_length(ends: Ends, turns: float, greatest_d: float) -> float:
 
 
 def gap_sum(d: float, D: float, n: float, dynamic: bool = False) -> float:
-    """Least sum of the gaps between the active coils of a cold coiled spring, Sa = n (0.0015 D²/d + 0.1 d), mm.
+    """Minimum sum of the gaps between the active coils of a cold coiled spring, Sa = n (0.0015 D²/d + 0.1 d), mm.
 
-    It stays free at the smallest working length Ln = Lc + Sa; under alternating load 1.5 times as much.
+    It remains at the smallest permissible working length Ln = Lc + Sa; under alternating load it is 1.5 times as much.
     """
     return n * (0.0015 * D**2 / d + 0.1 * d) * (DYNAMIC_GAPS if dynamic else 1.0)
 
@@ -67,7 +67,7 @@ def energy(spring_rate: float, travel: float) -> float:
 
 
 def wire_length(D: float, turns: float) -> float:
-    """Length of the wire without the pitch, l = π D n_t, mm; a helix is longer by 1/cos α."""
+    """Length of the wire, neglecting the pitch, l = π D n_t, mm; a helix is longer by the factor 1/cos α."""
     return pi * D * turns
 
 
@@ -77,9 +77,9 @@ def mass(density: float, d: float, length: float) -> float:
 
 
 def natural_frequency(shear_modulus: float, density: float, d: float, D: float, n: float) -> float:
-    """First natural frequency of a spring whose both ends are held, f = d/(2π n D²) √(G/(2ρ)), Hz.
+    """First natural frequency of a spring with both ends fixed, f = d/(2π n D²) √(G/(2ρ)), Hz.
 
-    A standing wave of half a length: f = ½ √(R/m) with the mass m of the active turns. With G in MPa, ρ in kg/dm³ and
+    A standing half wave: f = ½ √(R/m) with the mass m of the active turns. With G in MPa, ρ in kg/dm³ and
     mm this is the standard's f = 3560 d/(n D²) √(G/ρ): 10⁶ √10⁻³ /(2√2 π) = 3559.
 
     Args:
@@ -93,10 +93,10 @@ def natural_frequency(shear_modulus: float, density: float, d: float, D: float, 
 
 
 def outer_diameter_growth(d: float, D: float, pitch: float, nu: float = 0.25) -> float:
-    """Growth of the diameter from the free spring to its block if the ends may turn, mm.
+    """Growth of the coil diameter from the free spring to block if the ends may turn, mm.
 
-    Derivation: by the twist the pitch angle goes from α0 = m/(π D) to α = d/(π D), with the force F r² = G Ip (α0 − α);
-    its moment F r sin α bends the wire by F r α/(EI). From κ = cos²α/r follows, to the second order,
+    Derivation: twisting changes the pitch angle from α0 = m/(π D) to α = d/(π D), with the force F r² = G Ip (α0 − α);
+    its moment F r sin α bends the wire by F r α/(EI). From κ = cos²α/r it follows, to second order,
 
         ΔD = [m² − m d/(1 + ν) − d² ν/(1 + ν)]/(π² D).
 

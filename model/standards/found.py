@@ -1,4 +1,4 @@
-"""What a results folder says about the quantities that the formulas give."""
+"""What a results folder contains about the quantities that the formulas give."""
 
 import csv
 import json
@@ -11,12 +11,12 @@ import numpy as np
 
 from coilset.meshes.errors import InputError
 
-MIDDLE = (0.25, 0.75)  # part of the turns that is the body, away from the ends
+MIDDLE = (0.25, 0.75)  # part of the turns that counts as the body, away from the ends
 
 
 @dataclass(frozen=True)
 class Found:
-    """Numbers of a run, N, mm, MPa; None where the run did not reach what is asked.
+    """Numbers of a run, N, mm, MPa; None for what the run did not reach.
 
     Attributes:
         summary: summary.json.
@@ -33,7 +33,7 @@ class Found:
     ring: float | None
 
     def get(self, name: str) -> float | None:
-        """An entry of the summary; None if it is not there."""
+        """An entry of the summary; None if it is missing."""
         value = self.summary.get(name)
         return None if value is None else float(value)
 
@@ -48,7 +48,7 @@ class Found:
         return float(self.forces[i] + fraction * (self.forces[i + 1] - self.forces[i]))
 
     def work_to(self, length: float) -> float | None:
-        """Work of the first compression to a length, ∫ F ds, N mm; None if it was not reached so."""
+        """Work of the first compression to a length, ∫ F ds, N mm; None if the first compression did not reach it."""
         first = int(np.argmin(self.heights)) + 1
         heights, forces = self.heights[:first], self.forces[:first]
         if length < heights[-1] - 1e-9 or np.any(np.diff(heights) > 0):
@@ -62,7 +62,7 @@ def read(folder: str | Path) -> Found:
     """Read a results folder of `coilset solve`.
 
     Raises:
-        InputError: if it holds no summary or history that can be read.
+        InputError: if it contains no readable summary or history.
     """
     folder = Path(folder)
     summary = _read(folder / "summary.json", lambda file: json.load(file))
@@ -88,7 +88,7 @@ def _read(path: Path, parse: Callable[[TextIO], Parsed]) -> Parsed:
 
 
 def _residual(path: Path) -> tuple[float | None, float | None]:
-    """Residual shear about the wire's axis, signed by the load's, and the radius of its ring over the wire's."""
+    """Residual shear about the wire's axis, signed as the load's, and the radius of its ring over the wire's."""
     if not path.exists():
         return None, None
     import xarray as xr

@@ -1,4 +1,4 @@
-"""Goodman diagram of a wire: which upper corrected stress it endures over which lower one."""
+"""Goodman diagram of a wire: the upper corrected stress that it endures for a given lower one."""
 
 from dataclasses import dataclass
 from math import log10
@@ -10,7 +10,7 @@ SUPERSCRIPT = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 @dataclass(frozen=True)
 class Line:
-    """Endurance at one diameter, corrected stresses τk in MPa: straight from `at_zero` to `limit` at `knee`."""
+    """Endurance at one diameter, corrected stresses τk in MPa: a straight line from `at_zero` to `limit` at `knee`."""
 
     at_zero: float
     knee: float
@@ -20,16 +20,16 @@ class Line:
 
     @property
     def times(self) -> str:
-        """The number of cycles in words, as 10⁷."""
+        """The number of cycles as text, such as 10⁷."""
         power = round(log10(self.cycles))
         return f"10{str(power).translate(SUPERSCRIPT)}" if 10.0**power == self.cycles else f"{self.cycles:g}"
 
     def upper(self, lower: float) -> float:
-        """Upper stress that is endured over a lower one; below zero the line goes on."""
+        """Upper stress endured for a lower one; the line extends below zero."""
         return min(self.at_zero + (self.limit - self.at_zero) * lower / self.knee, self.limit)
 
     def stress_range(self, lower: float) -> float:
-        """Range of stress that is endured over a lower stress; 0 where the lower one is above the limit."""
+        """Stress range endured above a lower stress; 0 if the lower stress is above the limit."""
         return max(self.upper(lower) - lower, 0.0)
 
 
@@ -41,7 +41,7 @@ class Cycle:
     upper: float
 
     def shifted(self, residual: float) -> "Cycle":
-        """The cycle with a residual stress on both, signed as the load's stress: presetting leaves a negative one."""
+        """The cycle with a residual stress added to both, signed as the load's stress; presetting leaves a negative."""
         return Cycle(self.lower + residual, self.upper + residual)
 
 

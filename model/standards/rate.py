@@ -1,4 +1,4 @@
-"""The rate of a spring from its wire's torsion alone."""
+"""The rate of a spring from the torsion of its wire alone."""
 
 from typing import Literal
 
@@ -9,7 +9,7 @@ from coilset.meshes.geometry import Spring
 
 
 def torsion_rate(spring: Spring, shear_modulus: float) -> float:
-    """Initial rate if only the wire's torsion counts and the pitch is small, N/mm.
+    """Initial rate for torsion of the wire alone and small pitch, N/mm.
 
     Castigliano's `1/R = 64/G ∫ r³/d⁴ dt` over the active turns: R = G d⁴/(8 D³ n) of EN 13906-1 for a cylinder, and
     R = G d⁴/(2 n (D1 + D2)(D1² + D2²)) for a cone (Wahl, Mechanical Springs, chapter on conical springs).
@@ -25,15 +25,15 @@ def torsion_rate(spring: Spring, shear_modulus: float) -> float:
 
 
 def pitch_compliance(angle: float, nu: float, ends: Literal["turning", "held"] = "turning") -> float:
-    """Compliance of a cylindrical spring over that of R = G d⁴/(8 D³ n), because its wire rises.
+    """Compliance of a cylindrical spring over that of R = G d⁴/(8 D³ n), due to the wire's pitch angle.
 
     An axial force F on a helix of radius r and pitch angle α twists the wire by F r cos α and bends it by F r sin α,
     over the length 2π r n/cos α. With EI = (1 + ν) G Ip of round wire, Castigliano gives for ends that may turn
 
         cos α (1 + tan²α/(1 + ν)) = 1 + tan²α (1 − ν)/(2 (1 + ν)) + O(α⁴).
 
-    Ends that are held add a couple T about the axis, which makes the rotation zero; the moments are F r cos α + T sin α
-    and F r sin α − T cos α, and what remains is 1/[cos α (cos²α + (1 + ν) sin²α)] = 1 + tan²α (½ − ν) + O(α⁴).
+    Fixed ends add a couple T about the axis, which makes the rotation zero; the moments are F r cos α + T sin α
+    and F r sin α − T cos α, and the result is 1/[cos α (cos²α + (1 + ν) sin²α)] = 1 + tan²α (½ − ν) + O(α⁴).
 
     Args:
         angle: pitch angle α, rad; tan α = pitch/(π D).

@@ -1,4 +1,4 @@
-"""Rows of a spring's sheet: quantities by formula, how it was checked, what a run found, and why they differ."""
+"""Rows of a spring's sheet: quantities by formula, how each was checked, the result of a run, and why they differ."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from coilset.model.standards.wires.law import poisson_ratio
 
 DERIVED, TWO, ONE, GIVEN = "derived", "two sources", "one source", "given"
 SHORT = {"checked against a second source": TWO, "one source": ONE, "estimate": "estimate"}
-AT_BLOCK = 0.01  # of the wire: nearer to the block length of the geometry a run was at block
+AT_BLOCK = 0.01  # of the wire diameter: a run closer than this to the block length of the geometry reached block
 
 
 @dataclass(frozen=True)
@@ -21,10 +21,10 @@ class Row:
 
     Attributes:
         label, unit: what it is.
-        value: by the formula; None if it cannot be said, and `why` says it.
-        formula: in the letters of the standard.
+        value: by the formula; None if there is none, for the reason in `why`.
+        formula: in the symbols of the standard.
         sure: how the formula or number was checked.
-        found: by the run.
+        found: value from the run.
         why: why the two differ, or why there is no value.
     """
 
@@ -38,7 +38,7 @@ class Row:
 
 
 def sections(sheet: Sheet) -> list[tuple[str, list[Row]]]:
-    """All rows under their headings; headings without rows are left out."""
+    """All rows under their headings; headings without rows are omitted."""
     parts = {
         "Dimensions": _dimensions,
         "Rate, block and buckling": _spring,
@@ -81,7 +81,7 @@ def _spring(sheet: Sheet) -> Iterator[Row]:
     why = "the formula is an upper bound; the geometry's coils touch"
     if sheet.block is None:
         why = f"EN 13906-1 has none for {s.ends} ends"
-    yield Row("block length Lc", sheet.block, "mm", formula, ONE, sheet.at_run("block_height_mm"), why)
+    yield Row("block length Lc", sheet.block, "mm", formula, TWO, sheet.at_run("block_height_mm"), why)
     force = sheet.at_run("force_max_N") if _was_at_block(sheet) else None
     yield Row("force at block Fc", rate * (s.length - solid), "N", f"R (L0 − {solid:.4g} mm)", DERIVED, force,
               _why_block(sheet))  # fmt: skip
@@ -179,10 +179,10 @@ def _tolerances(sheet: Sheet) -> Iterator[Row]:
         return
     found = en15800.tolerances(grade, sheet.elastic.shear_modulus, s.d, s.D, s.n, s.length)
     yield Row("mean diameter ±", found.coil_diameter, "mm", "table", TWO)
-    yield Row("free length ±", found.free_length, "mm", "a_F k_f Q/R", ONE)
+    yield Row("free length ±", found.free_length, "mm", "a_F k_f Q/R", TWO)
     for length in sorted(sheet.lengths, reverse=True):
         spread = en15800.force_tolerance(grade, s.d, s.D, s.n, sheet.force(length))
-        yield Row(f"force at {length:.5g} mm ±", spread, "N", "(a_F k_f + 0.015 F) Q", ONE)
+        yield Row(f"force at {length:.5g} mm ±", spread, "N", "(a_F k_f + 0.015 F) Q", TWO)
     yield Row("lean e1", found.lean, "mm", f"{en15800.LEAN[grade]:g} L0", ONE)
     if s.ends == "closed and ground":
         yield Row("parallelism e2", found.parallelism, "mm", f"{en15800.PARALLELISM[grade]:g} De", ONE)

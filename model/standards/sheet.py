@@ -1,4 +1,4 @@
-"""The sheet of a spring: what the formulas of EN 13906-1 and EN 15800 are given, and the values that rows share."""
+"""The sheet of a spring: the input of the formulas of EN 13906-1 and EN 15800, and the values that rows share."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,20 +13,20 @@ from coilset.model.standards.wires.wire import Wire
 
 @dataclass(frozen=True)
 class Sheet:
-    """What the sheet is made from; lengths in mm.
+    """The input of the sheet; lengths in mm.
 
     Attributes:
         spring: the cylinder.
         elastic: moduli and density.
         helix: true length of the wire's centre line, mm.
-        wire: wire of a standard, for strength, allowed stress and endurance; None if the material is no such wire.
+        wire: standard wire, for strength, allowed stress and endurance; None if the material is not a standard wire.
         lengths: working lengths.
         grade: of EN 15800.
-        surface: `as coiled` or `shot peened`, for the endurance.
-        dynamic: whether the load alternates, for Sa.
-        found: of a run; None without one.
+        surface: `as coiled` or `shot peened`, for endurance.
+        dynamic: whether the load alternates, which affects Sa.
+        found: results of a run; None without one.
         clamped: whether the ends of the run were clamped.
-        yield_stress: of the run's material in tension, MPa; None if it is not known or elastic.
+        yield_stress: of the run's material in tension, MPa; None if it is unknown or the material is elastic.
     """
 
     spring: Cylinder
@@ -56,7 +56,7 @@ class Sheet:
 
     @property
     def block(self) -> float | None:
-        """Lc of the standard, mm; None for ends that it has no formula for."""
+        """Lc of the standard, mm; None for ends without a formula."""
         s = self.spring
         if s.ends not in ("closed and ground", "closed"):
             return None
@@ -64,12 +64,12 @@ class Sheet:
 
     @property
     def tolerance_of_wire(self) -> float:
-        """Tolerance of d that counts in d_max, mm; 0 if it is not known."""
+        """Tolerance of d included in d_max, mm; 0 if unknown."""
         return (self.wire.diameter_tolerance(self.spring.d) if self.wire else None) or 0.0
 
     @property
     def cycle(self) -> goodman.Cycle | None:
-        """Corrected stresses between the longest and the shortest working length; None with less than two."""
+        """Corrected stresses at the longest and the shortest working length; None with fewer than two."""
         if len(self.lengths) < 2:
             return None
         k = en13906.stress_correction(self.spring.index)
@@ -77,22 +77,22 @@ class Sheet:
 
     @property
     def endured(self) -> goodman.Line | None:
-        """Endurance of the wire; None if it is not known."""
+        """Endurance of the wire; None if unknown."""
         endurance = self.wire.endurance(self.surface) if self.wire else None
         return goodman.line(endurance, self.spring.d) if endurance else None
 
     def at_run(self, name: str) -> float | None:
-        """An entry of the run's summary; None without a run, or if the run did not reach it."""
+        """An entry of the run's summary; None without a run, or if the run did not get that far."""
         return self.found.get(name) if self.found else None
 
 
 def working_lengths(phases: Sequence[Phase], free_length: float, rate: float, block: float) -> list[float]:
-    """Lengths that a load program goes to, mm: without block, the unloaded spring, and what is beyond both.
+    """Lengths that a load program goes to, mm, strictly between block and the unloaded spring.
 
     Args:
         phases: the case's `loading`.
         free_length: L0, mm.
-        rate: R, for targets that are forces, N/mm.
+        rate: R, for force targets, N/mm.
         block: block length of the geometry, mm.
     """
     found: list[float] = []

@@ -1,11 +1,11 @@
-"""Constants of spring steel for the data of a spring whose material does not say them."""
+"""Constants of spring steel for springs whose material does not give them."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True)
 class Elastic:
-    """What the data of a spring need of a material.
+    """The material constants that the data of a spring require.
 
     Attributes:
         shear_modulus: G, MPa.
@@ -19,4 +19,4 @@ class Elastic:
 
 
 STEEL = Elastic(shear_modulus=81500.0, young_modulus=206000.0, density=7.85e-6)
-"""Patented drawn spring wire after EN 10270-1, values of EN 13906-1."""
+"""Patented drawn spring wire according to EN 10270-1, values of EN 13906-1."""

@@ -1,4 +1,4 @@
-"""What a spring maker would warn of, each warning with its numbers; nothing here forbids a spring."""
+"""What a spring maker would warn about, each warning with its numbers; nothing here rejects a spring."""
 
 from collections.abc import Iterator
 
@@ -13,7 +13,7 @@ from coilset.model.warning import Warning
 INDEX_USUAL = (4.0, 20.0)  # EN 15800, table 1: cold coiled springs
 WIRE_USUAL = (0.07, 20.0)  # mm; EN 15800, table 1 and, from 16 mm on, annex A
 ACTIVE_LEAST = 2.0  # EN 13906-1: number of active coils
-TIP_LEAST = 0.25  # of the wire's diameter
+TIP_LEAST = 0.25  # of the wire diameter
 
 
 def spring_warnings(spring: Spring) -> list[Warning]:
@@ -23,7 +23,7 @@ def spring_warnings(spring: Spring) -> list[Warning]:
 
 
 def _wire(spring: Spring) -> Iterator[Warning]:
-    """Lengths in metres or inches are most easily seen by the wire."""
+    """Lengths in metres or inches are most easily detected by the wire diameter."""
     t = spring.breaks
     wire, (low, high) = spring.wire_diameter(t), WIRE_USUAL
     i = np.argmin(wire) if wire.min() < low else np.argmax(wire)

@@ -1,4 +1,4 @@
-"""What a spring maker would warn of at the working lengths and about presetting; `warnings` is on the spring itself."""
+"""What a spring maker would warn about at the working lengths and in presetting; see `warnings` for the spring."""
 
 from collections.abc import Sequence
 
@@ -23,7 +23,7 @@ def gap_warnings(spring: Cylinder, lengths: Sequence[float], dynamic: bool = Fal
 
 
 def stress_warnings(spring: Cylinder, shear_modulus: float, lengths: Sequence[float], wire: Wire) -> list[Warning]:
-    """Lengths, mm, at which the nominal uncorrected stress is above what the wire is allowed at block."""
+    """Lengths, mm, at which the nominal uncorrected stress exceeds that allowed for the wire at block."""
     allowed = wire.block_stress(spring.d)
     rate = en13906.rate(shear_modulus, spring.d, spring.D, spring.n)
     found = []
@@ -38,7 +38,7 @@ def stress_warnings(spring: Cylinder, shear_modulus: float, lengths: Sequence[fl
 
 
 def endurance_warnings(cycle: Cycle, endured: Line) -> list[Warning]:
-    """A cycle of corrected stresses whose range is greater than the wire endures over its lower stress."""
+    """A cycle of corrected stresses whose range exceeds what the wire endures above its lower stress."""
     spread, allowed = cycle.upper - cycle.lower, endured.stress_range(cycle.lower)
     if spread <= allowed:
         return []
@@ -50,7 +50,7 @@ def endurance_warnings(cycle: Cycle, endured: Line) -> list[Warning]:
 def presetting_warning(set_mm: float, travel: float) -> Warning | None:
     """Presetting that takes less than a tenth of the travel to block.
 
-    Such a spring goes on setting in service. The bound is a rule of thumb for which no source was found.
+    Such a spring continues to set in service. The bound is a rule of thumb for which no source was found.
 
     Args:
         set_mm: shortening of the free spring by presetting, mm.

@@ -1,1 +1,1 @@
-"""Sweeps: one base case, some entries varied, every case run once, and what they found in one labelled data set."""
+"""Sweeps: one base case, some entries varied, every case run once, and the results in one labelled data set."""

@@ -1,5 +1,7 @@
-"""A sweep as one labelled data set: inputs, responses, characteristic and fate of each case."""
+"""A sweep as one labelled data set: inputs, responses, characteristic and status of each case."""
 
+import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -8,6 +10,7 @@ import xarray as xr
 
 from coilset.model.case import Case
 from coilset.model.case.reference import entry_unit
+from coilset.model.case.settings import located
 from coilset.model.results.folder import reserve, whole
 from coilset.model.sweep.journal import read_records
 from coilset.model.sweep.plan import Plan
@@ -17,7 +20,7 @@ CURVE = {"travel_mm": "mm", "seat_height_mm": "mm", "force_N": "N", "phase": "1"
 
 
 def quantity(name: str) -> tuple[str, str]:
-    """Words and unit of a response by its name, as in `set_mm`."""
+    """Description and unit of a response from its name, as in `set_mm`."""
     for ending, unit in UNITS.items():
         if name.endswith(ending):
             return name.removesuffix(ending).replace("_", " "), unit
@@ -25,7 +28,7 @@ def quantity(name: str) -> tuple[str, str]:
 
 
 def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
-    """All cases of a plan that a journal holds.
+    """All cases of a plan, from the journal.
 
     Args:
         plan: Plan.
@@ -33,8 +36,8 @@ def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
 
     Returns:
         xarray.Dataset with the dimensions `case` and `step`. A case that has not been run has the status "missing"; a
-        case that failed has no responses, but its reason and its characteristic up to there. Characteristics shorter
-        than the longest end in NaN. A response with the name of an input gets the ending `_found`.
+        case that failed has no responses, but its reason and its characteristic so far. Characteristics shorter than
+        the longest are filled with NaN. A response with the name of an input gets the suffix `_found`.
     """
     places: dict[str, list[int]] = {}
     for place, key in enumerate(plan.keys):
@@ -71,9 +74,21 @@ def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
     }
     coordinates: dict[str, Any] = {name: ("case", *_input(plan, k)) for k, name in enumerate(plan.names)}
     attributes: dict[str, Any] = {"title": f"sweep {plan.path.stem}", "design": plan.spec.design, "inputs": plan.names}
+    attributes |= _recipe(plan)
     if plan.spec.samples is not None:
         attributes |= {"samples": plan.spec.samples, "seed": plan.spec.seed}
     return xr.Dataset(data, coordinates | {"key": ("case", plan.keys)}, attributes)
+
+
+def _recipe(plan: Plan) -> dict[str, str]:
+    """What makes a case of its inputs, as texts of JSON: the base case, the entries that an input sets, and its values
+    by their words where they are no numbers."""
+    folder = plan.case_path.parent.absolute()
+    base = {name: located(name, value, folder) for name, value in plan.base.items()}
+    choices = {name: {str(row[k]): row[k] for row in plan.rows}
+               for k, name in enumerate(plan.names) if not _numeric([row[k] for row in plan.rows])}  # fmt: skip
+    entries = {name: plan.entries(name) for name in plan.names}
+    return {name: json.dumps(value) for name, value in (("base", base), ("entries", entries), ("choices", choices))}
 
 
 def _attributes(words: str, unit: str) -> dict[str, str]:
@@ -83,13 +98,16 @@ def _attributes(words: str, unit: str) -> dict[str, str]:
 def _input(plan: Plan, k: int) -> tuple[Any, dict[str, str]]:
     """Values of an input for all cases, words where they are not all numbers, and its attributes."""
     vary, values = plan.spec.vary[plan.names[k]], [row[k] for row in plan.rows]
-    numbers = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values)
     words = vary.label or plan.names[k]
-    if not numbers:
+    if not _numeric(values):
         return np.array([str(value) for value in values], dtype=object), _attributes(words, vary.unit or "")
     units = {entry_unit(Case, entry) for entry in vary.entries or [plan.names[k]]}
     own = units.pop() if len(units) == 1 else ""
     return np.array(values, dtype=float), _attributes(words, own if vary.unit is None else vary.unit)
+
+
+def _numeric(values: Sequence[Any]) -> bool:
+    return all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values)
 
 
 def write(path: str | Path, data: xr.Dataset) -> None:

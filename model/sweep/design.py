@@ -1,4 +1,4 @@
-"""How inputs are combined: grids of their values, or samples of the unit cube carried to their distributions."""
+"""How inputs are combined: grids of their values, or samples of the unit cube mapped to their distributions."""
 
 import itertools
 from typing import Any
@@ -20,7 +20,7 @@ def rows(spec: SweepSpec, base: Any) -> list[Row]:
         base: value of each input in the base case, needed by one_at_a_time only, a dict.
 
     Returns:
-        List of tuples, one a case, the values in the order of `spec.vary`.
+        List of tuples, one per case, the values in the order of `spec.vary`.
 
     Raises:
         InputError: an input that the design cannot use.

@@ -1,4 +1,4 @@
-"""One case of a sweep, from raw data to the record that is kept of it."""
+"""One case of a sweep, from raw data to its record."""
 
 import gc
 import math
@@ -19,17 +19,17 @@ from coilset.model.results.summary import summarise
 
 
 def evaluate(data: dict[str, Any], comm: MPI.Comm, file: str = "", time_limit: float | None = None) -> dict[str, Any]:
-    """Run a case; nothing that goes wrong in it gets out, but is recorded.
+    """Run a case; errors are recorded instead of raised.
 
     Args:
         data: raw data of the case, as a case file holds it.
         comm: communicator of the ranks that solve it.
         file: the base case's file, from whose folder other files count.
-        time_limit: seconds after which it is given up at the end of its step.
+        time_limit: seconds after which it is stopped at the end of its step.
 
     Returns:
         The record, plain data: `status` ("done" or "failed"), `reason`, `seconds`, `summary`, `steps` (columns of the
-        history). A case that fails on its way keeps what it found up to there.
+        history). A case that fails midway keeps its results so far.
     """
     began = time.perf_counter()
     reason, analysis = "", None
@@ -40,7 +40,7 @@ def evaluate(data: dict[str, Any], comm: MPI.Comm, file: str = "", time_limit: f
         reason = str(error)
     except Exception as error:
         traceback.print_exc(file=sys.stderr)
-        if comm.size > 1:  # perhaps on this rank only: the others would wait for it for ever
+        if comm.size > 1:  # perhaps on this rank only: the others would wait for it forever
             comm.Abort(1)
         reason = f"{type(error).__name__}: {error}"
     result = getattr(analysis, "result", None)
@@ -50,19 +50,19 @@ def evaluate(data: dict[str, Any], comm: MPI.Comm, file: str = "", time_limit: f
         rows = [asdict(step) for step in result.steps]
         record["steps"] = {column.name: [plain(row[column.name]) for row in rows] for column in fields(Step)}
     del analysis, result
-    gc.collect()  # solver and system hold each other
+    gc.collect()  # solver and system refer to each other
     return {**record, "seconds": time.perf_counter() - began}
 
 
 def plain(value: Any) -> Any:
-    """A value that JSON can hold: what is not a number becomes None."""
+    """A value that JSON can hold: NaN becomes None."""
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
 
 
 def watch(comm: MPI.Comm, began: float, time_limit: float | None) -> Callable[[Step], None]:
-    """A report for each step that gives the case up when its time is over; rank 0's clock counts."""
+    """A report for each step that stops the case at its time limit, by rank 0's clock."""
 
     def report(step: Step) -> None:
         if time_limit is not None and comm.bcast(time.perf_counter() - began > time_limit):

@@ -12,17 +12,18 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from coilset.meshes.errors import InputError
-from coilset.model.results.figures import STYLE, save
+from coilset.model.results.figures import save
+from coilset.model.style import STYLE
 from coilset.model.sweep import spec as sp
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.sensitivity import rank_correlation, sobol_indices
 
-LINE_LIMIT = 5000  # curves drawn in a family; more are thinned out evenly
+LINE_LIMIT = 5000  # curves drawn in a family; of more, an even selection
 COLOURS = "viridis"
 
 
 def chosen(plan: Plan) -> list[Any]:
-    """The figures that the sweep file asks for, or those that suit its design."""
+    """The figures that the sweep file requests, or the defaults of its design."""
     spec, names = plan.spec, plan.names
     if spec.figures is not None:
         return spec.figures
@@ -63,7 +64,7 @@ def draw(folder: Path, plan: Plan, data: xr.Dataset) -> tuple[list[str], list[In
 
 
 def _axis(data: xr.Dataset, name: str) -> str:
-    """Text of an axis: the words of a variable and its unit."""
+    """Label of an axis: description and unit of a variable."""
     attributes = data[name].attrs
     return attributes["long_name"] + (f" in {attributes['units']}" if attributes["units"] else "")
 
@@ -77,7 +78,7 @@ def _response(data: xr.Dataset, name: str, place: Any) -> np.ndarray:
 
 
 def _levels(data: xr.Dataset, name: str) -> list[tuple[Any, np.ndarray]]:
-    """Distinct values of an input in their order, and for each the cases that have it; one level if `name` is None."""
+    """Distinct values of an input in order, and for each the cases that have it; one level if `name` is None."""
     if name is None:
         return [(None, np.ones(data.sizes["case"], dtype=bool))]
     column = data[name].to_numpy()
@@ -116,7 +117,7 @@ def lines(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
 
 
 def contours(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
-    """A response over two inputs; dots where cases have been run."""
+    """A response over two inputs; dots mark the cases."""
     values = _response(data, figure.of, place)
     good = np.isfinite(values)
     x, y = (data[name].to_numpy() for name in (figure.x, figure.y))
@@ -137,7 +138,7 @@ def contours(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
 
 
 def characteristics(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
-    """Force over travel of all cases, in the colours of an input or a response."""
+    """Force over travel of all cases, coloured by an input or a response."""
     travel, force = data["curve_travel_mm"].to_numpy(), data["curve_force_N"].to_numpy()
     words = None
     if figure.colour not in plan.names:
@@ -234,7 +235,7 @@ def _bars(
 
 
 def convergence(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
-    """Relative distance of each response from its value at the greatest value of the input, over that input."""
+    """Relative distance of each response from its value at the maximum value of the input, over that input."""
     names = [name for name in plan.names if data[name].dtype.kind == "f"]
     drawn = Figure(figsize=(1.2 + 2.9 * len(names), 3.6), layout="constrained")
     panels = drawn.subplots(1, len(names), sharey=True, squeeze=False).ravel()

@@ -1,4 +1,4 @@
-"""The journal of a sweep: one JSON line for each case that has ended, written as soon as it has."""
+"""The journal of a sweep: one JSON line for each finished case, written as soon as it ends."""
 
 import fcntl
 import json
@@ -14,10 +14,10 @@ SYNC_SECONDS = 1.0
 
 
 class Journal:
-    """Appends records, and reads them back; at most the last line can be torn, and then it does not count.
+    """Appends records and reads them back; only the last line can be incomplete, and is then ignored.
 
     Args:
-        path: the file, made if it is not there.
+        path: the file, created if necessary.
 
     Raises:
         InputError: if it cannot be opened, or another process writes to it.
@@ -37,10 +37,10 @@ class Journal:
         self._file.truncate(whole_length(self.path))
 
     def append(self, record: dict[str, Any]) -> None:
-        """Write a record; it outlives the process at once, and the machine after a second.
+        """Write a record; it survives a crash of the process at once, and of the machine after a second.
 
         Raises:
-            CoilsetError: if it cannot be written; nothing of it is left then.
+            CoilsetError: if it cannot be written; then nothing of it remains.
         """
         length, line = os.fstat(self._file.fileno()).st_size, json.dumps(record, allow_nan=False).encode() + b"\n"
         try:
@@ -57,13 +57,13 @@ class Journal:
         self._synced = time.monotonic()
 
     def close(self) -> None:
-        """Bring all to disk and let go of the lock."""
+        """Flush to disk and release the lock."""
         self._sync()
         self._file.close()
 
 
 def whole_length(path: str | Path) -> int:
-    """Length of the file up to the end of its last whole line, in bytes."""
+    """Length of the file up to the end of its last complete line, in bytes."""
     with open(path, "rb") as file:
         end = file.seek(0, os.SEEK_END)
         while end > 0:
@@ -80,7 +80,7 @@ def read_records(path: str | Path) -> Iterator[dict[str, Any]]:
     """The records of a journal, one after the other; none if there is no file.
 
     Raises:
-        InputError: a line that is no record, with its number.
+        InputError: for a line that is not a record, with its number.
     """
     path = Path(path)
     if not path.exists():

@@ -1,4 +1,4 @@
-"""Cases on the ranks of an MPI job, by mpi4py.futures: rank 0 leads, the others solve, one or several to a case."""
+"""Cases on the ranks of an MPI job, by mpi4py.futures: rank 0 leads, the others solve, one or several per case."""
 
 import gc
 import signal
@@ -17,7 +17,7 @@ _group: MPI.Comm = None  # communicator of the ranks that share a case with this
 
 
 def solve_in_group(task: dict[str, Any]) -> dict[str, Any]:
-    """On the first rank of a group: hand the task to the group's other ranks, and solve it with them."""
+    """On the first rank of a group: pass the task to the group's other ranks, and solve it with them."""
     _group.bcast(task)
     return evaluate(comm=_group, **task)
 
@@ -34,7 +34,7 @@ def mpi_pool(comm: MPI.Comm, ranks_per_case: int) -> Iterator[Pool | None]:
         Pool on rank 0; None on the other ranks, and only after the sweep has ended.
 
     Raises:
-        InputError: if the ranks cannot be split so.
+        InputError: if the ranks cannot be divided in this way.
     """
     global _group
     groups = (comm.size - 1) // ranks_per_case
@@ -42,11 +42,11 @@ def mpi_pool(comm: MPI.Comm, ranks_per_case: int) -> Iterator[Pool | None]:
         need = f"one leads, and {ranks_per_case} share a case"
         raise InputError(f"{comm.size} ranks are too few: {need}", "--ranks-per-case")
     if comm.rank:
-        for number in (signal.SIGINT, signal.SIGUSR1):  # the latter is how mpirun hands on the former
-            signal.signal(number, signal.SIG_IGN)  # Ctrl-C is for the rank that leads
+        for number in (signal.SIGINT, signal.SIGUSR1):  # mpirun passes the former on as the latter
+            signal.signal(number, signal.SIG_IGN)  # Ctrl-C is handled by the leading rank
     gc.collect()
-    gc.freeze()  # the collection after each case need not go through the libraries
-    number = (comm.rank - 1) // ranks_per_case  # of this rank's group; -1 for the one that leads
+    gc.freeze()  # so that collection after each case skips the libraries' objects
+    number = (comm.rank - 1) // ranks_per_case  # of this rank's group; -1 for the leading rank
     idle = number >= groups
     _group = comm.Split(number + 1 if not idle else groups + 1, comm.rank)
     first = _group.rank == 0 and not idle

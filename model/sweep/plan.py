@@ -1,4 +1,4 @@
-"""The plan of a sweep: its cases as data, checked, and a key for each that says whether it has been run already."""
+"""The plan of a sweep: its cases as checked data, and a key for each that identifies its results."""
 
 import copy
 import hashlib
@@ -32,16 +32,16 @@ class Plan:
 
     Attributes:
         spec: SweepSpec.
-        case_path: file of the base case, from whose folder the files that it names count; files that the sweep file
-            names count from the sweep file's.
+        case_path: file of the base case. Paths in it are relative to its folder; paths in the sweep file, to the
+            folder of the sweep file.
         names: names of the inputs.
-        rows: values of the inputs, a tuple a case.
+        rows: values of the inputs, one tuple per case.
         keys: key of each case: a digest of all its entries and of its material's constants.
-        notices: what the user should know about the entries of the cases, one line each.
+        notices: for the user, about entries of the cases, one line each.
 
     Raises:
-        InputError: if a file cannot be read, a case breaks the schema, or an input has a value with which no case can
-            be built; one line with file, place and value.
+        InputError: if a file cannot be read, a case violates the schema, or no case can be built with a value of an
+            input; one line with file, place and value.
     """
 
     def __init__(self, path: str | Path) -> None:
@@ -68,11 +68,11 @@ class Plan:
         return self.spec.vary[name].entries or [name]
 
     def task(self, row: Row) -> dict[str, Any]:
-        """What is needed to run a case: its raw data, the base case's file, and the time limit."""
+        """The task of running a case: its raw data, the base case's file, and the time limit."""
         return {"data": self.data(row), "file": str(self.case_path), "time_limit": self.spec.time_limit}
 
     def data(self, row: Row) -> dict[str, Any]:
-        """The raw data of one case, as a case file would hold it."""
+        """The raw data of one case, as in a case file."""
         data = copy.deepcopy(self.base)
         for name, value in zip(self.names, row, strict=True):
             for entry in self.entries(name):
@@ -83,7 +83,7 @@ class Plan:
         return located(entry, value, self.path.parent.absolute())
 
     def _base_value(self, name: str) -> Any:
-        """The base case's value of an input, None if the base case leaves it out."""
+        """The base case's value of an input, None if it is left out there."""
         value = self.base
         for part in self.entries(name)[0].split("."):
             try:
@@ -126,14 +126,14 @@ def _digest(content: bytes) -> str:
 @lru_cache
 def material_digest(material: str | NamedWire) -> str:
     """Digest of a material's constants, so that a changed material file makes new cases."""
-    if isinstance(material, NamedWire):  # its diameter is the spring's, which is in the digest of the case
+    if isinstance(material, NamedWire):  # its diameter is that of the spring, which is in the digest of the case
         return _digest(wire(material.wire).entry.model_dump_json().encode())
     return _digest(library.load(material).content())
 
 
 @lru_cache
 def file_digest(path: Path) -> str:
-    """Digest of a file; that of nothing if it cannot be read, which its case will complain of."""
+    """Digest of a file; that of an empty one if it cannot be read, which its case will report."""
     try:
         return _digest(path.read_bytes())
     except OSError:

@@ -1,6 +1,6 @@
 """Where the cases of a sweep run: processes of this machine, or the ranks of an MPI job.
 
-Both give `submit(task)`, which returns a future of the record, and `workers`, the number of cases run at a time.
+Both provide `submit(task)`, which returns a future of the record, and `workers`, the number of cases run at a time.
 """
 
 import json
@@ -17,12 +17,11 @@ WORKER = [sys.executable, "-m", "coilset.model.sweep.worker"]
 
 
 class Process:
-    """One worker process; it is started again if a case takes it down.
+    """One worker process; it is restarted if a case crashes it.
 
     Args:
-        environment: of the process. MPI changes the environment of a process that has started it, so this one is kept
-            from before.
-        log: file for what it prints.
+        environment: of the process, saved before MPI starts, which changes it.
+        log: file for its output.
     """
 
     def __init__(self, environment: Mapping[str, str], log: IO[str]) -> None:
@@ -30,7 +29,7 @@ class Process:
         self.process: subprocess.Popen[str] | None = None
 
     def run(self, task: dict[str, Any]) -> dict[str, Any]:
-        """The record of a task; a process that dies is the reason of a failed case."""
+        """The record of a task; the case fails if the process dies."""
         if self.process is None:
             self.process = subprocess.Popen(
                 WORKER, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.log, env=self.environment, text=True,
@@ -54,7 +53,7 @@ class Process:
                 "seconds": None}  # fmt: skip
 
     def close(self) -> None:
-        """End the process, whatever it is doing."""
+        """Kill the process."""
         process, self.process = self.process, None
         if process is not None:
             process.kill()
@@ -66,7 +65,7 @@ class Process:
 
 @contextmanager
 def local_pool(jobs: int, environment: Mapping[str, str], log: IO[str]) -> Iterator["Pool"]:
-    """A pool of `jobs` processes on this machine; leaving it ends them."""
+    """A pool of `jobs` processes on this machine; leaving the context ends them."""
     own = threading.local()
     started, lock = [], threading.Lock()
 
@@ -89,7 +88,7 @@ def local_pool(jobs: int, environment: Mapping[str, str], log: IO[str]) -> Itera
 
 
 class Pool:
-    """The workers of a sweep, for the one that leads it."""
+    """The workers of a sweep, for the process that leads it."""
 
     def __init__(self, submit: Callable[[dict[str, Any]], Future[dict[str, Any]]], workers: int) -> None:
         self.submit, self.workers = submit, workers

@@ -1,7 +1,7 @@
-"""What a sweep tries before any of its cases runs: whether they can be built at all.
+"""Checks before any case of a sweep runs: whether the cases can be built at all.
 
-A case that cannot be built where inputs scatter or combine is one failed case of many. A listed value with which none
-can be built is a mistake in the sweep file, and so is a sweep without any case that can.
+If inputs scatter or are combined, a case that cannot be built is one failed case of many. A listed value with which no
+case can be built is a mistake in the sweep file, and so is a sweep in which no case can be built.
 """
 
 from typing import Any
@@ -15,10 +15,10 @@ from coilset.model.sweep.spec import SweepSpec, Values
 
 
 def build_input(case: Case) -> None:
-    """Build the spring, its nodes and the material of a case, judge its targets, and forget them.
+    """Build the spring, its nodes and the material of a case, check its targets, and discard them.
 
     Raises:
-        InputError: with what is wrong, as the case itself would when it runs.
+        InputError: with the same message as the case would give when it runs.
     """
     spring = case.spring.build()
     spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
@@ -29,7 +29,7 @@ def build_input(case: Case) -> None:
 
 
 class Rehearsal:
-    """Builds cases until each listed value has been in one that can be built.
+    """Builds cases until each listed value has occurred in one that can be built.
 
     Args:
         spec: SweepSpec.
@@ -42,12 +42,12 @@ class Rehearsal:
         for column, (name, vary) in enumerate(spec.vary.items()):
             if isinstance(vary, Values):
                 self._listed.append(column)
-                for value in vary.values:  # they may be dicts: told apart by their identity
+                for value in vary.values:  # they may be dicts: distinguished by identity
                     self._problems[column, id(value)] = None
                     self._words[column, id(value)] = f"no case with {name} = {shown(value)} can be built"
 
     def try_case(self, row: tuple[Any, ...], case: Case) -> None:
-        """Build a case, if one of its values has not been in one that could be built."""
+        """Build a case if one of its values has not yet occurred in one that could be built."""
         open_ones = [place for place in self._places(row) if place in self._problems]
         if not open_ones:
             return
@@ -61,7 +61,7 @@ class Rehearsal:
                 del self._problems[place]
 
     def conclude(self) -> None:
-        """All cases have been tried.
+        """To be called when all cases have been tried.
 
         Raises:
             InputError: a value, or the sweep itself, with which no case could be built.

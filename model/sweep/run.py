@@ -1,4 +1,4 @@
-"""Run what is missing of a plan, and record each case as it ends."""
+"""Run the missing cases of a plan, and record each as it ends."""
 
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, wait
@@ -10,16 +10,16 @@ from coilset.model.sweep.journal import Journal, read_records
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.pools import Pool
 
-AHEAD = 2  # tasks handed out for each worker, so that none waits
+AHEAD = 2  # tasks submitted per worker, so that none is idle
 
 
 def finished(path: str | Path, retry: bool = False) -> set[str]:
-    """Keys of the cases that a journal holds; without the failed ones if they are to be tried again."""
+    """Keys of the cases in a journal, without the failed ones if they are to be rerun."""
     return {record["key"] for record in read_records(path) if not (retry and record["status"] == "failed")}
 
 
 def missing(plan: Plan, done: Iterable[str]) -> Iterator[tuple[Row, str]]:
-    """Rows and keys of the cases that are not in `done`, each once."""
+    """Rows and keys of the cases not in `done`, each once."""
     seen = set(done)
     for row, key in zip(plan.rows, plan.keys, strict=True):
         if key not in seen:
@@ -41,7 +41,7 @@ def run(
         todo: rows and keys, see `missing`.
         pool: where they run.
         journal: Journal.
-        report: called with each record, after it has been written.
+        report: called with each record after it is written.
     """
     waiting: dict[Future[dict[str, Any]], str] = {}
     try:

@@ -1,4 +1,4 @@
-"""How much of a response each input explains."""
+"""Sensitivity of a response to each input."""
 
 from dataclasses import dataclass
 
@@ -14,9 +14,9 @@ class Indices:
     """Sobol indices of one response, shape (inputs,); the intervals have shape (inputs, 2).
 
     Attributes:
-        first: share of the variance that an input explains alone, total: with all its interactions.
+        first: share of the variance explained by an input alone; total: including its interactions.
         first_interval, total_interval: 95 % intervals by bootstrap.
-        samples: base samples that were used.
+        samples: number of base samples used.
     """
 
     first: np.ndarray
@@ -31,7 +31,7 @@ def sobol_indices(values: np.ndarray, inputs: int, samples: int, seed: int = 0) 
 
     Args:
         values: response of the cases in the design's order (blocks A, B, AB₁ …), shape (samples (inputs + 2),). Base
-            samples in which a case has no value are left out; of the others as many as a power of 2 allows are used.
+            samples in which a case has no value are left out; of the others, the largest power of 2 is used.
         inputs: number of inputs.
         samples: base samples.
         seed: of the bootstrap.

@@ -11,8 +11,8 @@ from scipy import stats
 
 from coilset.model.entries.entry import Strict, Whole, shortened
 
-LISTED = 8  # names in a message, at most
-# numbers of a case's summary, and how long it took
+LISTED = 8  # maximum number of names in a message
+# numbers of a case's summary, and its duration
 RESPONSES = (
     "free_length_before_mm", "free_length_after_mm", "set_mm", "rate_N_per_mm", "rate_30_70_N_per_mm",
     "rate_30_70_after_N_per_mm", "force_max_N", "block_height_mm", "plastic_work_max_N_per_mm2",
@@ -23,14 +23,14 @@ RESPONSES = (
     "equivalent_surface_max_turn", "equivalent_surface_max_angle_deg", "residual_shear_surface_max_MPa",
     "residual_shear_surface_max_turn", "residual_shear_surface_max_angle_deg", "residual_equivalent_surface_max_MPa",
     "residual_equivalent_surface_max_turn", "residual_equivalent_surface_max_angle_deg",
-    "estimated_force_error_N", "estimated_set_error_mm", "load_loss_percent", "steps", "iterations",
-    "evaluations", "failed_solves", "unstable_steps",
+    "estimated_force_error_N", "estimated_set_error_mm", "load_loss_percent", "coiling_diameter_mm", "steps",
+    "iterations", "evaluations", "failed_solves", "unstable_steps",
     "buckling_travel_mm", "buckling_force_N", "buckling_travel_EN_13906_1_mm", "elements", "seconds",
 )  # fmt: skip
 
 
 class Input(Strict):
-    """What every varied input has."""
+    """Entries common to all varied inputs."""
 
     entries: Annotated[
         list[str] | None, Field(min_length=1, description="entries of the case that get the value; default: the name")
@@ -54,7 +54,7 @@ class Values(Input):
 
 
 class Range(Input):
-    """From here to there; a sampling design spreads values evenly over it."""
+    """A range; a sampling design distributes values uniformly over it."""
 
     start: Annotated[float, Unit("of the entry"), Field(alias="from", description="first value")]
     stop: Annotated[float, Unit("of the entry"), Field(alias="to", description="last value")]
@@ -70,7 +70,7 @@ class Range(Input):
         return self
 
     def grid(self) -> list[Any]:
-        """`count` values, both ends among them."""
+        """`count` values, including both ends."""
         if self.count is None:
             raise ValueError("a grid needs 'count', the number of values in the range")
         return self.at(np.linspace(0.0, 1.0, self.count))
@@ -83,7 +83,7 @@ class Range(Input):
 
 
 class Normal(Input):
-    """Manufacturing scatter: normal about the mean, parts outside mean ± tolerance are sorted out."""
+    """Manufacturing scatter: normal about the mean; parts outside mean ± tolerance are rejected."""
 
     mean: Annotated[float, Unit("of the entry"), Field(description="middle of the tolerance")]
     tolerance: Annotated[float, Unit("of the entry"), Field(gt=0, description="half of the tolerance's width")]
@@ -92,7 +92,7 @@ class Normal(Input):
     ] = 3.0
 
     def grid(self) -> list[Any]:
-        """There is none."""
+        """A scatter has no grid."""
         raise ValueError("a scatter has no grid; take the design latin_hypercube, sobol or sobol_indices")
 
     def at(self, q: Sequence[float] | np.ndarray) -> list[Any]:
@@ -102,7 +102,7 @@ class Normal(Input):
 
 
 def _kind(value: Any) -> str:
-    """Which of the three an input is, by the entries that only it has."""
+    """The kind of an input, from the entries that only this kind has."""
     given = value if isinstance(value, dict) else getattr(value, "__dict__", {})
     if "values" in given:
         return "(values)"
@@ -117,7 +117,7 @@ AnyInput = Annotated[
 
 
 class Lines(Strict):
-    """A response over one input, a line for each value of a second, a panel for each value of a third."""
+    """A response over one input, with a line for each value of a second and a panel for each value of a third."""
 
     kind: Literal["lines"]
     of: Annotated[str, Field(description="entry of the summary, such as set_mm")] = "set_mm"
@@ -150,7 +150,7 @@ class Scatter(Strict):
 
 
 class Sensitivity(Strict):
-    """How much of a response each input explains: Sobol indices where the design allows, else rank correlation."""
+    """Sensitivity of a response to each input: Sobol indices if the design allows, else rank correlations."""
 
     kind: Literal["sensitivity"]
     of: Annotated[list[str], Field(min_length=1, description="entries of the summary")] = Field(["set_mm"])
@@ -200,9 +200,9 @@ class SweepSpec(Strict):
     ] = "grid"
     samples: Annotated[Whole | None, Field(ge=2, le=100_000_000, description="cases of a sampling design")] = None
     seed: Annotated[Whole, Field(ge=0, description="of a sampling design's random numbers")] = 0
-    time_limit: Annotated[
-        float | None, Unit("s"), Field(gt=0, description="seconds after which a case is given up")
-    ] = None
+    time_limit: Annotated[float | None, Unit("s"), Field(gt=0, description="seconds after which a case is stopped")] = (
+        None
+    )
     figures: Annotated[
         list[AnyFigure] | None, Field(description="figures to draw; default: those that suit the design")
     ] = None
@@ -219,7 +219,7 @@ class SweepSpec(Strict):
 
     @model_validator(mode="after")
     def _figures_fit(self) -> Self:
-        """Every name in a figure is that of an input or of a response; known before any case runs."""
+        """Check, before any case runs, that every name in a figure is an input or a response."""
         responses = [f"{name}_found" if name in self.vary else name for name in RESPONSES]
         for number, figure in enumerate(self.figures or []):
             for role in ("x", "y", "panels", "colour", "of"):

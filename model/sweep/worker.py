@@ -1,7 +1,7 @@
-"""A process that runs cases one after the other: JSON lines in, JSON lines out; it ends when its input ends.
+"""A process that runs cases one after another: JSON lines in, JSON lines out; it ends when its input ends.
 
-Imports, compiled forms and compiled kernels stay warm from case to case. It ends with whoever started it, however that
-ended.
+Imports, compiled forms and compiled kernels are reused from case to case. It ends with the process that started it,
+however that ends.
 """
 
 import gc
@@ -17,9 +17,9 @@ from coilset.model.processes import end_with_parent
 def main() -> None:
     """`python -m coilset.model.sweep.worker`."""
     end_with_parent()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that leads
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is handled by the leading process
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)  # what libraries print must not get between the answers
+    os.dup2(2, 1)  # output of libraries must not mix with the answers
 
     load_without_compiler()
     from mpi4py import MPI
@@ -27,7 +27,7 @@ def main() -> None:
     from coilset.model.sweep.evaluate import evaluate
 
     gc.collect()
-    gc.freeze()  # the collection after each case need not go through the libraries
+    gc.freeze()  # so that collection after each case skips the libraries' objects
     for line in sys.stdin:
         record = evaluate(comm=MPI.COMM_SELF, **json.loads(line))
         answers.write(json.dumps(record, allow_nan=False) + "\n")

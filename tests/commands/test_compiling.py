@@ -1,14 +1,18 @@
 """A cold start says so, a warm one does not."""
 
+import fcntl
 import logging
 import os
 import subprocess
 import sys
+import threading
 
 import numba
 import pytest
 
-from coilset.scripts.compiling import NOTICE, announce_compiling, announce_if_cold
+from coilset.meshes.errors import InputError
+from coilset.scripts import compiling
+from coilset.scripts.compiling import NOTICE, announce_compiling, compile_first, compiled
 
 SMALL = ["--set", "loading=[{to: {travel: 2}, steps: 1}]", "--set", "mesh.elements_per_turn=8", "--no-pictures"]
 
@@ -44,15 +48,96 @@ def test_ffcx_is_heard_whatever_level_it_sets(announced):
     assert said == [NOTICE, "what a user should read"]
 
 
-def test_an_empty_folder_of_kernels_is_cold(monkeypatch, tmp_path):
-    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "none"))
+@pytest.fixture
+def cold(monkeypatch, tmp_path):
+    """A folder of kernels that is empty; COMPILE leaves lines in `log`, and the file that ends it."""
+    folder = tmp_path / "none"
+    script = 'echo compiled >> "$1/log"; env >> "$1/log"; touch "$2"'
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(folder))
+    monkeypatch.setattr(compiling, "COMPILE", ["sh", "-c", script, "sh", str(folder), str(compiled())])
+    monkeypatch.setenv("OMPI_COMM_WORLD_RANK", "0")
+    return folder
+
+
+def test_kernels_are_compiled_by_a_process_of_its_own(cold):
+    """Once, and not as a rank."""
     said = []
-    announce_if_cold(said.append)
+    for _ in range(2):
+        compile_first(say=said.append)
     assert said == [NOTICE]
-    (tmp_path / "none" / "law").mkdir(parents=True)
-    (tmp_path / "none" / "law" / "kernel.nbi").touch()
-    announce_if_cold(said.append)
-    assert said == [NOTICE]
+    log = (cold / "log").read_text()
+    assert log.count("compiled\n") == 1
+    assert "OMPI_COMM_WORLD" not in log
+
+
+def test_another_that_compiles_is_waited_for(cold):
+    cold.mkdir()
+    with open(compiled().with_suffix(".lock"), "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        waits = threading.Thread(target=compile_first, kwargs={"say": lambda line: None})
+        waits.start()
+        waits.join(0.3)
+        assert waits.is_alive()
+        compiled().touch()
+    waits.join(10.0)
+    assert not waits.is_alive()
+    assert not (cold / "log").exists()
+
+
+def test_kernels_of_another_checkout_do_not_count(cold, monkeypatch):
+    """They lie beside each other, each under the folder of its sources."""
+    compile_first(say=lambda line: None)
+    monkeypatch.setattr(compiling, "SOURCES", "elsewhere")
+    assert not compiled().exists()
+
+
+def test_wrong_input_is_refused_before_anything_is_compiled(cold):
+    def check():
+        raise InputError("is wrong", "place")
+
+    with pytest.raises(InputError):
+        compile_first(check, pytest.fail)
+    assert not cold.exists()
+
+
+def test_a_folder_that_cannot_be_made_hinders_nobody(monkeypatch, tmp_path):
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "file" / "none"))
+    compile_first(say=lambda line: None)
+
+
+KERNELS = """
+import gc, sys
+from mpi4py import MPI
+from numba.core.dispatcher import Dispatcher
+from coilset.model.analysis import Analysis
+from coilset.model.case import read_case
+from coilset.model.design.surrogate import guess
+from coilset.scripts.warm import warm
+
+def used():
+    kernels = [thing for thing in gc.get_objects() if isinstance(thing, Dispatcher)]
+    return {f"{kernel.py_func.__qualname__} {signature}" for kernel in kernels for signature in kernel.overloads}
+
+warm()
+compiled = used()
+for file in sys.argv[1:]:
+    case = read_case(file, [])
+    phases = [f"loading.{number}.steps={2 if 'time' in file else 6}" for number in range(len(case.loading))]
+    coarse = ["mesh.elements_per_turn=8", "mesh.section={radial: 2, angular: 8}"]
+    Analysis(read_case(file, [*coarse, *phases]), MPI.COMM_SELF).run()
+guess(read_case(sys.argv[1], []), [])
+print(len(compiled), *sorted(used() - compiled), sep="\\n")
+"""
+
+
+def test_shipped_examples_need_no_kernel_that_is_not_compiled_before(example):
+    springs, time = (example.parent / name for name in ("springs", "time"))
+    files = [example, springs / "closed_and_ground.yaml", time / "relaxation.yaml"]
+    done = subprocess.run([sys.executable, "-c", KERNELS, *files], capture_output=True, text=True, check=True)
+    count, *missing = done.stdout.splitlines()
+    assert int(count) > 8  # those that are called by Python; the others are in them
+    assert missing == []
 
 
 def test_a_warm_solve_does_not_say_it(example, tmp_path):

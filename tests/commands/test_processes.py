@@ -4,6 +4,7 @@ import json
 import os
 import signal
 import subprocess
+import sys
 import time
 import uuid
 from pathlib import Path
@@ -159,6 +160,16 @@ def test_ctrl_c_while_it_starts(start, example, ranks, seconds):
     os.kill(running.process.pid, signal.SIGINT)
     code = running.process.wait(PATIENCE)
     assert code in (130, -signal.SIGINT)
+    running.until(lambda: not running.alive())
+
+
+def test_ctrl_c_while_the_environment_is_looked_for(start, example, tmp_path):
+    """An empty cache folder: the shell waits for Python there, and hears of the signal afterwards."""
+    running = start(coilset("solve", example, "--out", "out", *LONG), COILSET_CACHE=str(tmp_path / "cache"),
+                    COILSET_PYTHON=sys.executable)  # fmt: skip
+    running.until((tmp_path / "cache" / "checkouts").exists)
+    os.kill(running.process.pid, signal.SIGINT)
+    assert running.process.wait(PATIENCE) == 130
     running.until(lambda: not running.alive())
 
 

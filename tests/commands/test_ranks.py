@@ -66,7 +66,7 @@ def alone(example, folder):
 @pytest.mark.parametrize(("begun", "ended"), [(COMM.size, other) for other in range(1, COMM.size + 1)]
                          + [(other, COMM.size) for other in range(1, COMM.size)])  # fmt: skip
 def test_begun_and_ended_on_any_ranks(example, folder, alone, begun, ended):
-    """All files agree to 1e-10 of the greatest magnitude of each quantity; what is counted agrees exactly."""
+    """All files agree to 1e-10 of the largest magnitude of each quantity; what is counted agrees exactly."""
     out = folder / f"{begun} {ended}"
     run(example, out, begun, [DOWN])
     run(example, out, ended, [DOWN, UP], resume=True)

@@ -2,10 +2,12 @@
 
 import io
 import os
+import subprocess
 
 import pytest
 
 from coilset.meshes.errors import InputError
+from coilset.model.processes import mpi_environment, mpirun
 from coilset.scripts.ranks import RULER, MpirunMessages, check
 
 
@@ -38,3 +40,11 @@ def test_mpirun_s_own_words_are_kept_apart():
     assert target.getvalue() == 2 * own
     messages.tell()
     assert target.getvalue() == 2 * own + theirs + b"[vm:1] PMIX ERROR: lost\n"
+
+
+def test_more_ranks_than_cores_start_without_a_word():
+    """The setting that allows them is known to this mpirun, and is not an earlier name of which it would warn."""
+    ranks = len(os.sched_getaffinity(0)) + 1
+    done = subprocess.run([*mpirun(ranks), "echo", "here"], env=mpi_environment(), capture_output=True, text=True,
+                          check=False)  # fmt: skip
+    assert (done.returncode, done.stdout, done.stderr) == (0, "here\n" * ranks, "")

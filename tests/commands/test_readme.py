@@ -11,6 +11,7 @@ import pytest
 
 from coilset.model.case import read_case
 from coilset.model.sweep.rehearsal import build_input
+from coilset.scripts import test as suite
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 README = (REPOSITORY / "README.md").read_text(encoding="utf-8")
@@ -31,6 +32,14 @@ def test_commands_follow_each_other():
         taken.add(folder)
         settings = [value for word, value in itertools.pairwise(words) if word == "--set"]
         build_input(read_case(case, settings))
+
+
+def test_readme_tells_the_time_that_the_tests_tell(monkeypatch, capsys):
+    monkeypatch.setattr(suite, "usable_cores", lambda: 1)
+    monkeypatch.setattr(suite, "run", lambda *_: 0)
+    assert suite.test([]) == 0
+    (told,) = re.findall(r"\w+ minutes on two cores", capsys.readouterr().out)
+    assert told in " ".join(README.split())
 
 
 def stated(words):

@@ -5,6 +5,7 @@ import pytest
 
 from coilset.model.contact.base import TrialPositions
 from coilset.model.contact.coils import Coils
+from coilset.model.contact.curve import curve_weights
 
 SEATS = np.zeros(12)
 
@@ -92,3 +93,25 @@ def test_coils_that_lie_on_each_other_from_the_start_are_free_of_force(points, h
     assert coils.evaluate(squeezed).closed > 40
     # 1 % of the pitch closer: 0.0495 mm but for the slope of the coils
     assert coils.max_penetration(squeezed) == pytest.approx(0.0495, rel=0.01)
+
+
+def test_what_is_not_sought_does_not_touch(make_coils, helix, monkeypatch):
+    """Coils that come nearer by small steps: as if they had been sought at each, and a fourth of it is not."""
+    coils, sought, near = make_coils(), [], Coils.near
+    monkeypatch.setattr(Coils, "near", lambda self, *given: (sought.append(self is coils), near(self, *given))[1])
+    pitches = np.linspace(7.0, 4.9, 90)
+    for seed, pitch in enumerate(pitches):
+        trial = TrialPositions(helix(pitch, seed=seed, noise=0.004), SEATS)
+        found, expected = coils.evaluate(trial), make_coils().evaluate(trial)
+        np.testing.assert_array_equal(found.dofs, expected.dofs)
+        np.testing.assert_array_equal(found.forces, expected.forces)
+    assert found.closed > 40
+    assert sum(sought) < 68
+
+
+def test_no_point_moves_farther_than_the_amplification_says(points):
+    """The bound is met by the worst of all motions of the stations, each by 1 mm to and fro."""
+    line = points(thin=2.2).line
+    xi = np.linspace(0.0, 1.0, 201)
+    weights = np.array([curve_weights(np.repeat(cubic[None], len(xi), 0), xi) for cubic in line.cubic])
+    assert 1.0 < np.abs(weights).sum(axis=2).max() <= line.amplification() < 1.5

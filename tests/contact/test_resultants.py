@@ -46,7 +46,7 @@ def test_a_resultant_crosses_where_its_moments_vanish():
 
 
 def test_seats_contacts_and_sections_are_in_balance_in_every_step(example_runs):
-    """1e-8 of the greatest force (times the mean diameter) at every cut; (6.3.1) with ε = 1e-9 leaves less."""
+    """1e-8 of the maximum force (times the mean diameter) at every cut; (6.3.1) with ε = 1e-9 leaves less."""
     for name, (analysis, lacks) in example_runs.items():
         force = max(step.force_N for step in analysis.result.steps)
         diameter = 2.0 * float(analysis.spring.mean_radius(0.5 * analysis.spring.turns))

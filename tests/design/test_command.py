@@ -1,11 +1,15 @@
 """`coilset design` from the command line: its folder, and what is left of a wish that is refused."""
 
+import base64
+import gzip
 import json
+import re
 
 import pytest
 import yaml
 
 from coilset.meshes.errors import InputError
+from coilset.model.report.design_page import write_design_report
 from coilset.model.sweep.journal import read_records
 from coilset.scripts.design import design
 
@@ -22,6 +26,7 @@ def test_a_folder_is_not_overwritten_unasked_and_a_cut_journal_is_gone_on_from(w
         "height": said["found"]["loading.0.to.height"]
     }
     assert "off by" in capsys.readouterr().out
+    page_of(out, said)
     with pytest.raises(InputError, match="holds a design already"):
         design(path, str(out), False, False)
     lines = (out / "evaluations.jsonl").read_text(encoding="utf-8").splitlines(keepends=True)
@@ -36,6 +41,22 @@ def test_a_folder_is_not_overwritten_unasked_and_a_cut_journal_is_gone_on_from(w
     ]
     again = json.loads((out / "design.json").read_text(encoding="utf-8"))
     assert again["found"] == said["found"]
+
+
+def page_of(folder, said):
+    """Its page begins with what was found, and tells each evaluation."""
+    text = write_design_report(folder).read_text(encoding="utf-8")
+    assert f"<strong>{said['found']['loading.0.to.height']:.4f} mm</strong>" in text
+    assert f"<strong>{said['summary']['set_mm']:.3f} mm</strong>" in text
+    assert (folder / "found.yaml").read_text(encoding="utf-8").splitlines()[-1] in text
+    (trace,) = unpacked(text, "data")["figures"]["search"]["data"]
+    assert trace["y"] == [abs(r["values"][0] - 25.0) / 25.0 for r in read_records(folder / "evaluations.jsonl")]
+
+
+def unpacked(page, name):
+    """What a page keeps compressed."""
+    kept = re.search(rf'<script type="text/plain" id="{name}">(.*?)</script>', page).group(1)
+    return json.loads(gzip.decompress(base64.b64decode(kept)))
 
 
 def test_nothing_is_left_of_a_wish_that_is_refused(wish, tmp_path):

@@ -1,4 +1,4 @@
-"""The uniform rod in the place of a spring, against closed formulas."""
+"""The uniform rod instead of a spring, against closed formulas."""
 
 import numpy as np
 import pytest

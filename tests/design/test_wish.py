@@ -21,7 +21,7 @@ def build(path):
     ("find", "such_that", "problem"),
     [
         ({"spring.pitch": [15, 9]}, SUCH, "find.spring.pitch: from 15 to 9 is no range"),
-        ({"spring.pitch": 9}, SUCH, "find.spring.pitch: must be the least and the greatest value"),
+        ({"spring.pitch": 9}, SUCH, "find.spring.pitch: must be the minimum and the maximum value"),
         (FIND, {}, "such_that: there is no condition"),
         (FIND, {"free_length_after": 25.0}, "is free_length_after_mm meant?"),
         (FIND, {"force_at": {"height": 30.0}}, "such_that.force_at.0.N: this entry is required"),

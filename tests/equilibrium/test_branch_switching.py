@@ -2,13 +2,17 @@
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
+from coilset.model.analysis import Analysis
+from coilset.model.case import read_case
 from coilset.model.equilibrium.branch_switching import Snap
 from coilset.model.equilibrium.load import Drag, Load
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.stability import Stability
+from coilset.model.examples import EXAMPLES
 from coilset.model.material import library
 from coilset.model.section.rules import abramowitz9
 from coilset.verification.frame import Frame
@@ -113,3 +117,19 @@ def test_drag_resists_and_its_derivative_is_in_the_tangent():
     held = free_of_drag.held
     assert np.array_equal(F1[held], F0[held])
     assert np.array_equal(K1[held], K0[held])
+
+
+def test_a_yielding_path_forks_without_a_snap():
+    """Where the hourglass's coils first touch: a stable state without a jump of force, and no energy from nothing."""
+    settings = ["mesh.section.rule=abramowitz9", "mesh.elements_per_turn=8"]
+    program = "loading=[{to: {travel: 25.93}, steps: 6}, {to: {travel: 30.25}, steps: 1}]"
+    analysis = Analysis(read_case(EXAMPLES / "springs/hourglass.yaml", [*settings, program]), MPI.COMM_SELF)
+    steps = analysis.run().steps
+    forks = [number for number, step in enumerate(steps) if step.left_branch]
+    assert forks
+    assert all(step.negative_pivots == 0 for step in steps)
+    for number in forks:
+        before, fork = steps[number - 1], steps[number]
+        assert fork.released_energy_Nmm == 0.0
+        # found: 0.0035, over 0.07 mm of travel
+        assert fork.force_N == pytest.approx(before.force_N, rel=5e-3)

@@ -100,8 +100,9 @@ def listened(analysis):
     return outcomes
 
 
-def test_steps_count_what_failed_before_them(make):
+def test_steps_count_what_failed_before_them(make, caplog):
     """All evaluations of all solves but the initial rate's are in the steps, and each failure is counted once."""
+    caplog.set_level(logging.INFO, logger="coilset.steps")
     analysis = make("[{to: block, steps: 2}]", "solver.options.snes_max_it=5")
     analysis.initial_rate()
     solved = listened(analysis)
@@ -111,6 +112,7 @@ def test_steps_count_what_failed_before_them(make):
     failed = [outcome for outcome in of_steps if not outcome.converged]
     assert len(failed) >= sum(step.cuts for step in result.steps) > 0
     parts = sum(outcome.failed_solves for outcome in of_steps)
+    assert parts == sum("of the whole step yet" in record.message for record in caplog.records) > 0
     assert sum(step.failed_solves for step in result.steps) == len(failed) + parts
     evaluations = sum(step.evaluations for step in result.steps)
     assert evaluations == sum(outcome.evaluations for outcome in of_steps)
@@ -143,6 +145,15 @@ def test_a_stagnated_solve_is_not_repeated_from_elsewhere(make, stagnated, solve
     outcome = analysis.continuation.attempt(analysis.control.to_height(20.0), [Start(), Start()])
     assert len(asked) == solves
     assert (outcome.failed_solves, outcome.evaluations) == (solves - 1, 7 * solves)
+
+
+def test_a_solve_that_stagnates_says_so(make):
+    """Given no patience at all, Newton stops where the norm first grows, as it does where coils close."""
+    analysis = make("[{to: block, steps: 1}]", "solver.control.newton.stagnation=1")
+    outcome = analysis.newton.solve(analysis.control.to_height(17.5))
+    assert "stagnates" in outcome.reason
+    assert outcome.stagnated
+    assert (outcome.converged, outcome.left_branch, outcome.negative_pivots) == (False, False, 0)
 
 
 def test_an_initial_rate_without_equilibrium_is_no_end(make):

@@ -56,7 +56,7 @@ def test_options_of_the_user_win(example):
     outcome = Newton(analysis.system, method, 1e-9).solve(load)
     assert not outcome.converged
     assert outcome.iterations == 1
-    assert "greatest number of iterations" in outcome.reason
+    assert "maximum number of iterations" in outcome.reason
     analysis.system.restore()
     patient = rod_method("newton", 1, own | {"snes_max_it": 30})
     assert Newton(analysis.system, patient, 1e-9).solve(load).converged

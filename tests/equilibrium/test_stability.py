@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from coilset.model.equilibrium.stability import negative_pivots, vanishing
 from coilset.model.results.buckling import axis_offset, buckling, critical_travel
 from coilset.model.results.record import Step
 from coilset.model.results.summary import summarise
+from coilset.scripts.telling import Lines
 
 LONG = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 40, "pitch": 12.0}
 HARINGX = 39.16  # mm, of this spring between clamped heads; coilset.verification.references.stability
@@ -61,14 +63,20 @@ def test_few_steps_end_on_the_stable_branch():
     np.testing.assert_allclose(forces, forces[-1], rtol=1e-6)
 
 
-def test_critical_travel_is_haringxs():
-    """Steps of 4 mm; 1.5 % since Haringx leaves out the pitch, and what 8 rods a turn leave."""
+def test_critical_travel_is_haringxs(capsys):
+    """Steps of 4 mm; 1.5 % since Haringx leaves out the pitch, and what 8 rods a turn leave. The last lines say it."""
     analysis = pressed(44.0, 11)
     summary = summarise(analysis.setup, analysis.run())
     assert summary["buckled"]
     assert summary["buckling_travel_mm"] == pytest.approx(HARINGX, rel=0.02)
     assert summary["buckling_force_N"] == pytest.approx(96.51, rel=0.02)
     assert summary["buckling_travel_EN_13906_1_mm"] == pytest.approx(HARINGX, rel=0.02)
+    (told,) = (one for one in summary["warnings"] if one["name"] == "buckled")
+    assert told["value"] == summary["buckling_travel_mm"]
+    assert f"buckled at a travel of {told['value']:.4g} mm" in told["message"]
+    Lines().conclude(summary, Path("out"))
+    printed = " ".join(capsys.readouterr().out.split())
+    assert printed.rindex(told["message"]) > printed.index("results in")
 
 
 def test_a_short_spring_does_not_buckle(example):

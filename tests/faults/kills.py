@@ -2,11 +2,11 @@
 
     scripts/coilset python tests/faults/kills.py --kills 100
 
-A small spring with contact and friction, on one and on two ranks, and a sweep. Each is killed (`kill -9`) again and
-again, at a random moment after something new was kept, until it comes to its end; then it begins anew. Says how often
-each was killed, what differed, and how many processes were left; exits 1 if there is anything of either. Where two runs
-that nobody disturbs differ, as on two ranks where MUMPS adds what arrives first, numbers are to agree to `AGREEMENT`,
-and how often was iterated does not count.
+A small spring with contact and friction, on one and on two ranks, a sweep, and a search for a design. Each is killed
+(`kill -9`) again and again, at a random moment after something new was kept, until it comes to its end; then it begins
+anew. Says how often each was killed, what differed, and how many processes were left; exits 1 if there is anything of
+either. Where two runs that nobody disturbs differ, as on two ranks where MUMPS adds what arrives first, numbers are to
+agree to `AGREEMENT`, and how often was iterated does not count.
 """
 
 import argparse
@@ -38,14 +38,25 @@ case: case.yaml
 change: {contact: {}, loading.0.steps: 4, loading.1.steps: 3}
 vary: {spring.pitch: {from: 11, to: 13, count: 12}}
 """
+WISH = """
+spring: {wire_diameter: 5.0, mean_diameter: 40.0, turns: 2.5, pitch: 12.0}
+mesh: {elements_per_turn: 8, section: {rule: abramowitz9}}
+loading:
+  - {to: {height: 20.0}}
+  - {to: {force: 0}}
+find: {loading.0.to.height: [18, 34], spring.wire_diameter: [4.5, 5.5]}
+such_that: {free_length_after_mm: 25.0, force_at: {height: 21.0, N: 160.0}}
+"""
+JOURNALS = {"sweep": "journal.jsonl", "design": "evaluations.jsonl"}  # a line for each case
 LONGEST = 0.5  # seconds after something was kept, at most, in which the kill comes
-AGREEMENT = 1e-9  # of a quantity's greatest magnitude, and absolutely, in N, mm and MPa
+AGREEMENT = 1e-9  # of a quantity's largest magnitude, and absolutely, in N, mm and MPa
 COUNTED = ("iterations", "evaluations", "failed_solves")  # work that takes another way where bits differ
 WAIT = 120.0  # seconds for something to be kept
 COMMANDS = {
     "solve": ["solve", "case.yaml", "--no-pictures", "--out", "out"],
     "solve on 2 ranks": ["-n", "2", "solve", "case.yaml", "--no-pictures", "--out", "out"],
     "sweep": ["sweep", "sweep.yaml", "--no-pictures", "--jobs", "2", "--out", "out"],
+    "design": ["design", "wish.yaml", "--out", "out"],
 }
 
 
@@ -86,8 +97,9 @@ class Running:
 
 def kept(folder: Path) -> tuple[float, int]:
     """When the state was kept last, and how long the journal is; zeros if nothing was kept."""
-    state, journal = folder / "out" / "checkpoint" / "state.npz", folder / "out" / "journal.jsonl"
-    return (state.stat().st_mtime if state.exists() else 0.0, journal.stat().st_size if journal.exists() else 0)
+    state, journals = folder / "out" / "checkpoint" / "state.npz", (folder / "out" / name for name in JOURNALS.values())
+    size = sum(journal.stat().st_size for journal in journals if journal.exists())
+    return (state.stat().st_mtime if state.exists() else 0.0, size)
 
 
 def to_the_end(name: str, folder: Path, kills: int, left: list[int]) -> int:
@@ -114,9 +126,10 @@ def to_the_end(name: str, folder: Path, kills: int, left: list[int]) -> int:
 def found(name: str, folder: Path) -> dict[str, object]:
     """What a run has found, without times and dates."""
     out = folder / "out"
-    if name == "sweep":
-        records = [json.loads(line) for line in (out / "journal.jsonl").read_text().splitlines()]
-        return {one["key"]: {entry: value for entry, value in one.items() if entry != "seconds"} for one in records}
+    if name in JOURNALS:
+        records = [json.loads(line) for line in (out / JOURNALS[name]).read_text().splitlines()]
+        cases = {one["key"]: {entry: value for entry, value in one.items() if entry != "seconds"} for one in records}
+        return cases | ({"found": (out / "found.yaml").read_text()} if name == "design" else {})
     tables = {}
     for path in ("history.csv", "seats.csv"):
         with open(out / path, encoding="utf-8") as file:
@@ -151,6 +164,7 @@ def fresh(folder: Path) -> Path:
     folder.mkdir()
     (folder / "case.yaml").write_text(CASE)
     (folder / "sweep.yaml").write_text(SWEEP)
+    (folder / "wish.yaml").write_text(WISH)
     return folder
 
 

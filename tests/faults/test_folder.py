@@ -56,6 +56,19 @@ def test_an_undamaged_one_goes_on(example, folder):
     assert json.loads((folder / "summary.json").read_text())["steps"] == 2
 
 
+def test_a_continued_run_leaves_nothing_that_shows_the_earlier_numbers(example, folder):
+    """Page, film, pictures and time series are drawn from results that are written anew."""
+    drawn = ["report.html", "animation.gif", "springs.png", "fields/line.pvd", "fields/line-01.vtu"]
+    (folder / "fields").mkdir()
+    for name in drawn:
+        (folder / name).write_text("old")
+    (folder / "notes.txt").write_text("mine")
+    resume(example, folder)
+    assert not [name for name in drawn if (folder / name).exists()]
+    assert (folder / "fields" / "00.vtu").exists()
+    assert (folder / "notes.txt").read_text() == "mine"
+
+
 def rewrite(path, change):
     with np.load(path) as file:
         arrays = {name: file[name] for name in file.files}
@@ -201,7 +214,7 @@ def test_nothing_to_go_on_from_leaves_nothing(example, tmp_path):
 
 
 def test_resume_and_force_are_not_both(example, folder):
-    with pytest.raises(InputError, match="--resume: goes on with a run, and --force throws it away"):
+    with pytest.raises(InputError, match="--resume: continues a run, and --force discards it"):
         solve(example, folder, True, SMALL, False, resume=True, comm=COMM)
     assert (folder / "checkpoint" / STATE).exists()
 
@@ -220,7 +233,7 @@ def test_an_interrupted_run_is_not_thrown_away(example, folder):
 
 
 def test_a_forced_run_leaves_nothing_of_the_old_one(example, folder, monkeypatch):
-    for name in ("summary.json", "springs.png", "history.csv"):
+    for name in ("summary.json", "springs.png", "history.csv", "report.html"):
         (folder / name).write_text("old")
     (folder / "log.txt").write_text("old\n")
 

@@ -131,7 +131,7 @@ def test_a_record_of_a_sweep_is_whole_or_not_there(tmp_path):
 
 def test_a_checkpoint_that_cannot_be_written_leaves_the_one_before(analysis, tmp_path):
     checkpoint, begun = Checkpoint(tmp_path, analysis.case), analysis.result
-    shorter = replace(begun, steps=begun.steps[:1], seats=begun.seats[:1])
+    shorter = replace(begun, steps=begun.steps[:1], seats=begun.seats[:1], frames=begun.frames[:1])
 
     def save(result):
         checkpoint.save(analysis.system.state, analysis.layout, analysis.program.position, result)

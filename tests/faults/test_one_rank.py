@@ -26,12 +26,23 @@ main.run()
 """
 
 
+def fail(where, folder, program=PROGRAM):
+    command = [*mpirun(2), sys.executable, "-c", program, str(where)]
+    return subprocess.run(command, cwd=folder, env=mpi_environment(), capture_output=True, text=True, timeout=100,
+                          check=False)  # fmt: skip
+
+
 @pytest.mark.parametrize("where", [-1, 0, 1])
 def test_an_error_on_one_rank_ends_all(tmp_path, where):
-    command = [*mpirun(2), sys.executable, "-c", PROGRAM, str(where)]
-    done = subprocess.run(command, cwd=tmp_path, env=mpi_environment(), capture_output=True, text=True, timeout=100,
-                          check=False)  # fmt: skip
+    done = fail(where, tmp_path)
     assert done.returncode == 2
     lines = [line for line in done.stderr.splitlines() if line.startswith("coilset:")]
     assert lines == ["coilset: place: is wrong"]
     assert "Traceback" not in done.stderr
+
+
+def test_an_unforeseen_error_on_one_rank_ends_all(tmp_path):
+    """A defect of the program: with its traceback, but the other rank does not wait for ever."""
+    done = fail(1, tmp_path, PROGRAM.replace('InputError("is wrong", "place")', 'IndexError("unforeseen")'))
+    assert done.returncode == 1
+    assert "IndexError: unforeseen" in done.stderr

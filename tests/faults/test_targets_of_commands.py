@@ -32,7 +32,7 @@ def test_a_target_that_cannot_be_gets_one_line(example, tmp_path, monkeypatch, c
     assert [path.name for path in tmp_path.iterdir()] == ["taken"]
 
 
-@pytest.mark.parametrize("target", ["new/x.foo", "new/x", ".msh", "new/x.vtu.gz"])
+@pytest.mark.parametrize("target", ["new/x.foo", "new/x.stl", "new/x", ".msh", "new/x.vtu.gz"])
 def test_a_mesh_of_no_format_makes_nothing(example, tmp_path, monkeypatch, target):
     """Not even the meshes before it, and its folder."""
     monkeypatch.chdir(tmp_path)

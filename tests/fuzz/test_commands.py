@@ -18,9 +18,10 @@ from hypothesis import strategies as st
 from coilset.meshes.errors import CoilsetError
 from coilset.model import analysis
 from coilset.model.slice import analysis as slices
-from coilset.scripts import main, material, mesh, ranks, solve, sweep, verify
+from coilset.scripts import design, main, material, mesh, ranks, report, solve, sweep, verify, warm
 from coilset.scripts import slice as slice_command
 from coilset.scripts.plain import typer
+from coilset.verification.benchmarks import everyday
 
 COMMANDS = {  # a right line each, and the options that it takes besides
     "solve case.yaml": ["--force", "--resume", "--no-pictures", "--interactive", "--method", "bfgs", "--out", "there"],
@@ -32,10 +33,15 @@ COMMANDS = {  # a right line each, and the options that it takes besides
     "material show ck15": ["--out", "there", "--force"],
     "material test ck15 program.yaml": ["--integrator", "heun", "--no-spin", "--out", "there", "--force"],
     "material fit test.csv --G 80000 --nu 0.3": ["--temperature", "300", "--no-saturation", "--name", "mine"],
+    "design wish.yaml": ["--force", "--resume", "--out", "there"],
+    "report run": ["--force", "--out", "there"],
+    "bench": ["--full", "--cold", "--against", "taken", "--out", "there"],
+    "compile": ["--force"],
     "verify bend-45": ["--fast", "--list", "--page", "page.md", "--out", "there"],
     "examples ck15_presetting": ["--force", "--out", "there"],
     "-n 2 solve case.yaml": ["--force"],
 }  # fmt: skip
+WISH = "case: case.yaml\nfind: {spring.pitch: [11.0, 13.0]}\nsuch_that: {set_mm: 13}\n"
 SETTINGS = ["spring.wire_diameter=4", "spring.pitch=5", "loading.0.steps=x", "loading.9.steps=1", "mesh=1", "=1", "a=b",
             "material=nowhere.yaml", "ends=clamped", "contact.friction.seats=0.1", "loading=[{to: {force: 1e9}}]",
             "seats.top.tilt=free", "spring.turns=[", "mesh.elements_per_turn=1e6", "rates_at=[1]"]  # fmt: skip
@@ -75,10 +81,13 @@ def place(tmp_path, monkeypatch):
                          ("test.csv", "material/fit/tension.csv")):  # fmt: skip
         (tmp_path / name).write_bytes((EXAMPLES / source).read_bytes())
     (tmp_path / "sweep.yaml").write_text("case: case.yaml\nvary: {spring.pitch: [11.0, 12.0]}\n")
+    (tmp_path / "wish.yaml").write_text(WISH)
     (tmp_path / "taken").write_text("mine")
+    (tmp_path / "run").mkdir()
     monkeypatch.chdir(tmp_path)
     for module, name in ((solve, "prepare"), (slice_command, "prepare"), (sweep, "_pool"), (ranks, "launch"),
                          (verify, "_run"), (mesh, "make"), (analysis, "line_mesh"), (slices.SliceAnalysis, "run"),
+                         (design, "find"), (everyday, "timed"), (warm, "warm"), (report, "open_run"),
                          (material, "_save"), (material, "_write_csv")):  # fmt: skip
         monkeypatch.setattr(module, name, reach)
     monkeypatch.setattr("coilset.model.material.identification.fit.fit", reach)

@@ -45,7 +45,7 @@ def follow(law, path, integrator, increment=INCREMENT, tolerance=None):
 
 
 def error(states, exact, k_squared):
-    """Greatest difference of stress, as equivalent stress, over the flow stress sqrt(1.5 k²)."""
+    """Maximum difference of stress, as equivalent stress, over the flow stress sqrt(1.5 k²)."""
     difference = states[:, :3] - exact[:, [0, 3, 4]]
     flow = np.sqrt([1.5 * k_squared(b) for b in exact[:, 12]])
     return float((np.sqrt(difference[:, 0] ** 2 + 3 * (difference[:, 1:] ** 2).sum(axis=1)) / flow).max())

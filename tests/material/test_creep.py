@@ -126,7 +126,7 @@ def _unit(rng, n):
 
 
 def error_along(law, rates, segments, first, n):
-    """Greatest error of stress at the segments' ends over the greatest stress, with n increments a segment."""
+    """Maximum error of stress at the segments' ends over the maximum stress, with n increments a segment."""
     creeping, components = CreepLaw(law.creep, law.parameters()), rates.n
     clock = creeping.clock(0.0, COLD)
     state, _ = advance(law, unstressed(components), first, clock, clock)
@@ -158,7 +158,7 @@ def test_paths_against_scipy(seed):
 
 @pytest.mark.parametrize("components", [3, 6])
 def test_time_hardening_against_scipy(components):
-    """The rate hangs on time; the temperature is that of the constants, for which the reference is written."""
+    """The rate depends on time; the temperature is that of the constants, for which the reference is written."""
     entries = CREEP | {"hardening": "time"}
     law, rates = law_of(entries), Rates(entries, components)
     segments, first = path(3, components)

@@ -84,7 +84,7 @@ WRONG = {
     "missing function": (
         lambda c: at(c).pop("kinematic"),
         "temperatures.0.kinematic: this entry is required; give its constants, or 'none' if the material has no such"
-        " function",
+        " function; or several back stresses",
     ),
     "negative k0²": (
         lambda c: at(c)["isotropic"].update(k0_squared=-5),
@@ -175,7 +175,7 @@ def test_loss_of_positive_definiteness_between_two_temperatures(tmp_path):
 
 def test_unknown_names_and_unreadable_files(tmp_path):
     with pytest.raises(
-        InputError, match=r"'ck16' is neither a material of the library \(ck15, .*elastic, .*\) nor a .yaml file"
+        InputError, match=r"'ck16' is neither a material of the library \(chaboche, .*elastic, .*\) nor a .yaml file"
     ):
         library.load("ck16")
     with pytest.raises(InputError, match=r"none\.yaml: the file cannot be read"):

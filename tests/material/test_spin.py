@@ -44,7 +44,7 @@ def test_closed_elastic_paths_close(spin):
 
 
 def test_in_one_piece_or_in_many(law):
-    """The end does not hang on the steps, nor on the way."""
+    """The end does not depend on the steps, nor on the way."""
     whole = after(law, INCREMENT)
     stress, back = STATE, BACK
     for piece in (INCREMENT * (1, 0, 0), INCREMENT * (0, 0, 1), INCREMENT * (0, 1, 0)):

@@ -85,7 +85,7 @@ def follow(law, path, integrator, n, warming=None, tolerance=None):
 
 
 def error(law, states, exact, reference):
-    """Greatest difference of a stress component over the flow stress."""
+    """Maximum difference of a stress component over the flow stress."""
     components = (states.shape[1] - 1) // 2
     held = [0, 3, 4] if components == 3 else range(6)
     flow = np.sqrt([1.5 * reference.k2(y) for y in exact])

@@ -125,6 +125,19 @@ def test_formats_without_wires_are_refused(barrel, tmp_path, suffix):
     assert not path.exists()
 
 
+@pytest.mark.parametrize("failure", [ModuleNotFoundError("No module named 'netCDF4'"), AssertionError()])
+def test_formats_whose_writers_fail_get_one_line(barrel, tmp_path, monkeypatch, failure):
+    """As those of .e, whose library may be missing, and of .bdf do."""
+
+    def fail(*_, **__):
+        raise failure
+
+    monkeypatch.setattr(meshio.Mesh, "write", fail)
+    reason = str(failure) or "AssertionError"
+    with pytest.raises(InputError, match=f"meshio cannot write a wire so: {reason}; take"):
+        write_mesh(barrel, barrel.stations(16), tmp_path / "spring.e")
+
+
 HEAD = "x,y,z,wire_diameter\n"
 POINTS = [f"{20 * np.cos(a):.6f},{20 * np.sin(a):.6f},{3 * a:.6f},5\n" for a in np.arange(0, 12, 0.5)]
 

@@ -2,7 +2,7 @@
 
     scripts/coilset python tests/numbers/compare.py BEFORE AFTER [--limit 1e-10] [--only NAME ...]
 
-One line a run: the greatest difference of its columns, over the largest magnitude of the column (of a number of
+One line a run: the maximum difference of its columns, over the largest magnitude of the column (of a number of
 verification that ought to vanish: over its tolerance); whole numbers, such as iterations, are compared exactly. Below
 it stand what is beyond the limit, counts that differ, texts that differ, and what one side alone has.
 

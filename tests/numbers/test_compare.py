@@ -42,7 +42,7 @@ def test_equal_numbers_are_equal(compare):
 @pytest.mark.parametrize(
     ("changed", "code", "words"),
     [
-        ({"force_N": [100.0, 250.0, 2e-8]}, 0, "8.0e-11  history.csv force_N"),  # over the greatest force
+        ({"force_N": [100.0, 250.0, 2e-8]}, 0, "8.0e-11  history.csv force_N"),  # over the maximum force
         ({"force_N": [100.0, 250.0, 5e-8]}, 1, "beyond: history.csv force_N: 2.0e-10 at (2,), 0 → 5e-08"),
         ({"force_N": [100.0, -250.0, 0.0]}, 1, "2.0e+00 at (1,), 250 → -250"),
         ({"force_N": [100.0, "nan", 0.0]}, 1, "inf at (1,)"),

@@ -3,35 +3,24 @@
 import base64
 import gzip
 import json
+import os
 import re
+import resource
+import signal
 
 import numpy as np
 import pytest
-from mpi4py import MPI
 
 from coilset.meshes.errors import InputError
 from coilset.model.report.glossary import GLOSSARY
 from coilset.model.report.page import CHAPTERS, write_report
 from coilset.model.report.scale import round_end
-from coilset.model.report.wire import tubes
 from coilset.model.results.opened import open_run
-from coilset.scripts.solve import solve
+from coilset.model.results.wire import moments, shear_around, tubes
+from coilset.scripts.report import report
+from coilset.scripts.sheet import sheet
 
-CASE = """
-spring: {wire_diameter: 5, mean_diameter: 40, turns: 2.5, pitch: 12}
-material: ck15
-loading: [{to: block, steps: 4}, {to: {force: 0}, steps: 2}]
-mesh: {elements_per_turn: 8, section: {kind: curved, radial: 2, angular: 8}}
-"""
 MOST = 15e6  # bytes of a page
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    place = tmp_path_factory.mktemp("run")
-    (place / "spring.yaml").write_text(CASE)
-    solve(place / "spring.yaml", place / "spring", False, [], pictures=False, comm=MPI.COMM_SELF)
-    return place / "spring"
 
 
 @pytest.fixture(scope="module")
@@ -43,6 +32,10 @@ def part(page, name):
     return re.search(rf'<script type="[^"]*" id="{name}">(.*?)</script>', page, re.S).group(1)
 
 
+def data(page):
+    return json.loads(gzip.decompress(base64.b64decode(part(page, "data"))))
+
+
 def test_it_stands_by_itself(page):
     """No address is asked for, whatever the library's own texts say."""
     assert len(page.encode()) < MOST
@@ -52,7 +45,7 @@ def test_it_stands_by_itself(page):
 
 
 def test_each_figure_is_there_with_a_text(page):
-    figures = json.loads(part(page, "figures"))
+    figures = data(page)["figures"]
     assert len(figures) >= sum(len(draw) for _, draw in CHAPTERS) - 2  # rate and error are not of every run
     for name in figures:
         assert re.search(rf'role="img" aria-label="[^"]{{30,}}" data-figure="{name}"', page), name
@@ -76,14 +69,47 @@ def test_words_of_the_glossary_are_explained(page):
         assert GLOSSARY[word].replace("'", "&#39;") in page
 
 
+def test_the_makers_sheet_is_that_of_the_command(folder, page, capsys):
+    """Each value and what the run found, as `coilset sheet` prints them."""
+    sheet(folder.parent / "spring.yaml", folder, pictures=False)
+    printed = capsys.readouterr().out.splitlines()
+    rows = re.findall(r'<th scope="row">([^<]*)</th><td>([^<]*)</td><td>([^<]*)</td>', page)
+    assert len(rows) > 20
+    for label, *numbers in rows:
+        (line,) = (one for one in printed if one.strip().startswith(f"{label} "))
+        for number in filter(None, numbers):
+            assert float(number.split()[0].replace("−", "-").replace(",", "")) in numbers_of(line), (label, number)
+
+
+def numbers_of(line):
+    return [float(word) for word in re.findall(r"-?\d+\.?\d*(?:e[+-]\d+)?", line)]
+
+
 def test_the_tube_is_round_the_wire(folder):
     """Each point of the surface is a wire radius from the centre line, the first of a ring towards the axis."""
-    places, stress = tubes(open_run(folder))
+    run = open_run(folder)
+    places, stress = tubes(run, moments(run), 81)
     centre = places[:, :, :-1].mean(axis=2)
     assert np.linalg.norm(places - centre[:, :, None], axis=-1) == pytest.approx(2.5, rel=1e-9)
     assert np.all(np.hypot(*np.moveaxis(places[:, :, 0, :2], -1, 0)) < np.hypot(*np.moveaxis(centre[..., :2], -1, 0)))
     assert np.array_equal(stress[:, :, 0], stress[:, :, -1])
-    assert stress[1].min() > 0.0 > stress[-1].min()  # with the load at block; against it, somewhere, after
+    assert stress[4].min() > 0.0 > stress[-1].min()  # with the load at block; against it, somewhere, after
+
+
+def test_each_step_can_be_slid_to(folder, page):
+    """As many moments as steps and the start, where phases end those of the snapshots, which are kept apart."""
+    run = open_run(folder)
+    shown = moments(run)
+    assert len(shown.labels) == run.summary["steps"] + 1 == len(data(page)["figures"]["spring"]["frames"])
+    height = [float(label.split(": ")[1].split()[0]) for label in shown.labels[1:]]
+    assert height == pytest.approx(run.data["travel_mm"].values, rel=1e-3, abs=1e-3)
+    around = shear_around(run).mean(axis=2)
+    for moment, snapshot in ((4, 1), (6, 2)):
+        assert np.array_equal(shown.x[moment], run.data["position"].values[snapshot])
+        assert shown.shear[moment] == pytest.approx(around[snapshot], rel=1e-6, abs=1e-4)  # single precision
+    few = moments(run, 4)
+    assert [label.split(":")[0] for label in few.labels] == ["start", "step 1, to block", "step 4, to block",
+                                                             "step 6, to force 0 N"]  # fmt: skip
 
 
 @pytest.mark.parametrize(("value", "end"), [(0.0, 1.0), (1.0, 1.0), (101.0, 150.0), (0.037, 0.04), (9.9e5, 1e6)])
@@ -97,3 +123,26 @@ def test_a_folder_without_a_run_is_refused(tmp_path):
     (tmp_path / "summary.json").write_text("{")
     with pytest.raises(InputError, match="not readable"):
         open_run(tmp_path)
+
+
+def test_a_folder_in_the_way_of_the_page_is_seen_before(tmp_path):
+    (tmp_path / "report.html").mkdir()
+    with pytest.raises(InputError, match="cannot be written: there is a folder of this name"):
+        report(tmp_path)
+
+
+def test_a_kill_while_it_is_written_leaves_the_page_before(folder, page):
+    """The kernel kills the process in the midst of the file; the next page is whole, and nothing lies beside it."""
+    path = folder / "report.html"
+    path.write_text("the page before")
+    child = os.fork()
+    if child == 0:
+        signal.signal(signal.SIGXFSZ, signal.SIG_DFL)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, resource.RLIM_INFINITY))
+        write_report(open_run(folder))
+        os._exit(0)
+    assert os.WTERMSIG(os.waitpid(child, 0)[1]) == signal.SIGXFSZ
+    assert path.read_text() == "the page before"
+    write_report(open_run(folder))
+    assert path.read_text(encoding="utf-8") == page
+    assert not list(folder.glob(".*"))

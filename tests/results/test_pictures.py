@@ -1,7 +1,9 @@
 """All that a picture shows is in it: springs of any shape, programs of many cycles, numbers of any size."""
 
 from dataclasses import replace
+from pathlib import Path
 
+import matplotlib.axes
 import matplotlib.figure
 import numpy as np
 import pytest
@@ -11,9 +13,12 @@ from mpi4py import MPI
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.results import figures, seat_figures
+from coilset.model.results.buckling_figure import axis, buckling_mode, column, plane
+from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.display import ensure
 from coilset.model.results.labels import plain
-from coilset.model.results.record import Step
+from coilset.model.results.record import BucklingMode, Step
+from coilset.model.results.rings import ROUND
 from coilset.model.results.scene import ABOVE, BAR, COLUMN, LABELS, MOST_HEIGHT, WIDTH, Frame, scale_end, springs
 from coilset.model.results.summary import summarise
 
@@ -32,6 +37,8 @@ def test_springs_are_whole_in_their_picture(across, tall, springs):
 @pytest.mark.parametrize(("greatest", "end"), [(197.3, 200.0), (65.8, 80.0), (2.0, 2.0), (0.0, 1.0), (3.1e-7, 4e-7)])
 def test_scales_end_on_few_digits(greatest, end):
     assert scale_end(greatest) == pytest.approx(end)
+    labels = np.linspace(0.0, scale_end(greatest), 5)  # as many as the colour bar has, of three digits each
+    assert [float(f"{label:.3g}") for label in labels] == pytest.approx(labels, rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -67,6 +74,21 @@ def test_a_buckled_spring_is_whole_in_its_picture(analysis, tmp_path, aside):
     assert drawn[-1] < WIDTH - 10
 
 
+def test_the_cross_section_is_round_and_reaches_the_surface(analysis, tmp_path, monkeypatch):
+    """Its section points alone make a polygon, within which the maximum stress is not to be seen."""
+    drawn, distances = matplotlib.axes.Axes.tricontourf, []
+
+    def keep(axes, y, z, values, **style):
+        distances.append(np.hypot(y, z))
+        return drawn(axes, y, z, values, **style)
+
+    monkeypatch.setattr(matplotlib.axes.Axes, "tricontourf", keep)
+    figures.cross_section(tmp_path / "a.png", analysis.setup, analysis.result.snapshots[-1])
+    assert len(distances) == 2
+    for distance in distances:
+        assert np.isclose(distance, analysis.setup.wire_radius[0], rtol=1e-12).sum() >= ROUND
+
+
 def test_cycles_make_no_legend_of_their_own(analysis, monkeypatch):
     """Twenty phases to two targets have two lines in the legend; twenty targets have six, and how many more."""
     steps = tuple(Step(k, k, 1.0, 35.0 - k % 2, k % 2, 9.0 * (k % 2), 1, 1, 0, 0, 0, 0.0) for k in range(20))
@@ -89,3 +111,46 @@ def test_cycles_make_no_legend_of_their_own(analysis, monkeypatch):
     assert many[0] == [*(f"to travel {k} mm" for k in range(6)), "and 14 more"]
     assert many[2:] == [[*(f"to travel {k} mm" for k in range(4)), "and 16 more"]] * 3
     assert max(len(one) for figure in legends for one in figure) <= 10
+
+
+def with_mode(analysis, direction):
+    """A run with a mode that goes off as a clamped column does, in a direction across the axis."""
+    x = analysis.rod.line.stations
+    away = column(x[:, 2], x[0, 2], x[-1, 2])[:, None] * np.array([*direction, 0.0])
+    return replace(analysis.result, mode=BucklingMode(1.0, 9.0, 0.5, x, away))
+
+
+@pytest.mark.parametrize("direction", [(1.0, 0.0), (-0.6, 0.8)])
+def test_a_buckling_mode_is_seen_in_its_plane_and_drawn(analysis, tmp_path, direction):
+    result, turns = with_mode(analysis, direction), analysis.setup.turns
+    across = plane(result.mode, turns)
+    assert across == pytest.approx(direction, abs=1e-9)  # to the side where it goes
+    height, aside = axis(result.mode, turns, across)
+    ends = height[0], height[-1]
+    assert aside.max() > 0.5
+    assert ends[0] < ends[1]
+    buckling_mode(tmp_path / "mode.png", analysis.setup, result, summarise(analysis.setup, result))
+    assert (imread(tmp_path / "mode.png")[:, :, :3].min(axis=-1) < 0.9).mean() > 0.01
+
+
+def test_a_checkpoint_keeps_the_buckling_mode(analysis, tmp_path):
+    result = with_mode(analysis, (0.6, 0.8))
+    checkpoint = Checkpoint(tmp_path, analysis.case)
+    checkpoint.save(analysis.system.state, analysis.layout, analysis.program.position, result)
+    found = checkpoint.load(MPI.COMM_SELF).result.mode
+    for name, value in vars(result.mode).items():
+        np.testing.assert_array_equal(getattr(found, name), value)
+
+
+def test_all_figures_share_one_look():
+    """What the file says is what they are drawn with; no figure brings parameters of its own."""
+    import matplotlib as mpl
+
+    from coilset.model.style import FILE, STYLE
+
+    with mpl.rc_context():
+        mpl.style.use(FILE)
+        assert {name: mpl.rcParams[name] for name in STYLE} == dict(STYLE)
+    repository = Path(__file__).resolve().parents[2]
+    sources = [path for room in ("model", "verification") for path in (repository / room).rglob("*.py")]
+    assert not [path for path in sources if "axes.spines" in path.read_text(encoding="utf-8")]

@@ -151,6 +151,6 @@ def test_a_checkpoint_keeps_warnings(example, tmp_path):
     case = read_case(example, [*COARSE, "loading=[{to: {travel: 1}, steps: 1}]"])
     analysis, checkpoint = Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case)
     warning = Warning("initial rate", "start", "the initial rate is not known")
-    analysis.result = replace(analysis.result, warnings=(warning,))
+    analysis.recorder.result = replace(analysis.result, warnings=(warning,))
     analysis.run(save=checkpoint.save)
     assert checkpoint.load(MPI.COMM_SELF).result.warnings == (warning,)

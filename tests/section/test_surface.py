@@ -1,4 +1,4 @@
-"""Where the inside of a coil is, and the greatest value on the surface."""
+"""Where the inside of a coil is, and the maximum value on the surface."""
 
 import numpy as np
 import pytest

@@ -16,7 +16,7 @@ d, R, L = 5.0, 2.5, 40.0
 
 def moments(curvatures):
     """Bending moment over the beam's for ideal plasticity, at curvatures given over that of first yield."""
-    law = IdealPlastic(shear_yield=23.0)  # strains stay small, 3e-3 at the greatest curvature
+    law = IdealPlastic(shear_yield=23.0)  # strains stay small, 3e-3 at the maximum curvature
     yield_stress = np.sqrt(1.5) * law.k
     first = yield_stress / (2 * law.G * (1 + law.nu)) / R
     problem = SolidProblem(straight_wire(d, L, 12, MPI.COMM_SELF, SectionGrid(2, 1)), law, "direct")

@@ -26,7 +26,7 @@ def case(loading, elements=16, ends="clamped", **mesh):
     )
 
 
-def castigliano(E, G, turns=TURNS, pitch=PITCH, n=4000):
+def castigliano(E, G, turns=TURNS, pitch=PITCH, n=200):
     """Rate of the clamped helix from the complementary energy ∫ N²/EA + Q²/GA + Mt²/GIp + Mb²/EI ds, N/mm.
 
     Six redundant reactions at the top head, found from its displacements (0, 0, −1) and turns 0.

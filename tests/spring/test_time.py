@@ -129,13 +129,15 @@ COARSE = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9"]
 
 
 def test_examples_say_what_presetting_is_worth():
-    """The shipped cases, coarse and in few steps: presetting cold saves load, presetting warm saves more."""
+    """The shipped cases, coarse and in few steps: presetting saves load, warm more than cold; coiling costs some."""
     losses = []
-    for name in ("relaxation", "relaxation_cold_preset", "relaxation_warm_preset"):
+    names = ("relaxation", "relaxation_cold_preset", "relaxation_warm_preset", "coiled", "coiled_relieved")
+    for name in names:
         file = Path(__file__).resolve().parents[2] / "examples" / "time" / f"{name}.yaml"
         phases = len(read_case(file).loading)
         case = read_case(file, [*COARSE, *(f"loading.{k}.steps=4" for k in range(phases))])
         analysis = Analysis(case, MPI.COMM_SELF)
         summary = summarise(analysis.setup, analysis.run())
         losses.append(summary["load_loss_percent"])
-    assert losses == pytest.approx([9.72, 8.47, 0.54], abs=0.1)  # finer, as shipped, see docs/how-to/load-loss.md
+    assert losses[:3] == pytest.approx([9.72, 8.47, 0.54], abs=0.1)  # finer, as shipped, see docs/how-to/load-loss.md
+    assert losses[0] + 1.0 < losses[4] < losses[3] - 1.0  # nine points are too few for numbers of a coiled wire

@@ -1,17 +1,25 @@
 """Tolerances of EN 15800 against printed ones."""
 
 import pytest
+from catalogue import CATALOGUE, G
 
 from coilset.model.standards.en15800 import COIL, DIAMETERS, force_tolerance, outside, tolerances
 
-G = 81500.0
+
+@pytest.mark.parametrize("printed", CATALOGUE, ids=lambda printed: printed.name)
+def test_catalogue_springs(printed):
+    found = tolerances(2, G, printed.d, printed.D, printed.n, printed.L0)
+    assert found.free_length == pytest.approx(printed.L0_tolerance, abs=0.0051)
+    assert found.coil_diameter == printed.De_tolerance
 
 
-def test_free_length_of_a_catalogue_spring():
-    # Gutekunst D-313J-02, grade 2: d 3.6, De 31.6, n 5.5, L0 53.9 ± 1.44
+def test_force_of_a_catalogue_spring():
+    # Gutekunst D-313J-02: 327.711 N ± 25.38 N at its least length
+    assert force_tolerance(2, 3.6, 28.0, 5.5, 327.711) == pytest.approx(25.38, abs=0.005)
+
+
+def test_lean_and_parallelism_are_shares_of_length_and_diameter():
     found = tolerances(2, G, 3.6, 28.0, 5.5, 53.9)
-    assert found.free_length == pytest.approx(1.44, rel=0.025)
-    assert found.coil_diameter == 0.40
     assert found.lean == pytest.approx(0.05 * 53.9)
     assert found.parallelism == pytest.approx(0.03 * 31.6)
 

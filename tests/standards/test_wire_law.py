@@ -40,7 +40,7 @@ def test_validity_ends_with_the_uniform_strain():
     law = wire_law("EN 10270-1 DM", 2.0)
     plastic, stress = tensile_test(law)
     peak = stress.argmax()
-    # ∫ σ dεp up to the greatest force, with the true stress σ = s exp(εp) (1 + …)
+    # ∫ σ dεp up to the maximum force, with the true stress σ = s exp(εp) (1 + …)
     true = stress[:peak] * np.exp(plastic[:peak]) / (1 - law.nu * stress[:peak] / law.E) ** 2
     assert law.validity.plastic_work == pytest.approx(np.trapezoid(true, plastic[:peak]), rel=2e-2)
 

@@ -21,12 +21,12 @@ AGREEMENT = 1e-10
 
 
 def relative(found, expected):
-    """Greatest difference over the greatest magnitude."""
+    """Maximum difference over the largest magnitude."""
     return np.abs(np.asarray(found) - expected).max() / np.abs(expected).max()
 
 
 def apart(found, expected):
-    """Greatest difference between two springs by quantity, each over its own greatest magnitude; complete on rank 0."""
+    """Maximum difference between two springs by quantity, each over its own largest magnitude; complete on rank 0."""
     differences = {name: relative(*([getattr(step, name) for step in result.steps] for result in (found, expected)))
                    for name in ("seat_height_mm", "force_N")}  # fmt: skip
     for shot, other in zip(found.snapshots, expected.snapshots, strict=True):

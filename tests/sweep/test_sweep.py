@@ -172,7 +172,7 @@ def test_ctrl_c_keeps_what_has_ended(write_sweep, tmp_path):
     leader.send_signal(signal.SIGINT)
     said = leader.communicate(timeout=240)[0]
     assert leader.returncode == 130
-    assert b"interrupted; the same command with --resume goes on" in said
+    assert b"interrupted; run the same command with --resume to continue" in said
     wait_until(lambda: all(gone(pid) for pid in workers))
     with xr.open_dataset(out / "sweep.nc", engine="h5netcdf") as data:
         done = int((data.status == "done").sum())

@@ -66,6 +66,10 @@ def test_the_page_tells_what_uses_most_of_its_tolerance(tmp_path):
         "| `two-circles` | closed | 1 | odd | 2 | 1 | +100 % | – | not judged: unknown |",
     ]
     assert "| `elastica` |  |  |  |  |  |  |  | not run |" in page(tmp_path)
+    before = "| `elastica` | of before |\n| `two-circles` | of before |\n"
+    assert page(tmp_path, before) == page(tmp_path).replace(
+        "| `elastica` |  |  |  |  |  |  |  | not run |", "| `elastica` | of before |"
+    )
 
 
 def test_the_page_in_docs_names_every_case():

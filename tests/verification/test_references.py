@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from coilset.model.material import library
+from coilset.verification.references import creeping_ring
 from coilset.verification.references.elastica import cantilever
 from coilset.verification.references.rod_shooting import Stiffness, clamped_rod
 from coilset.verification.references.section_integrals import (
@@ -81,3 +82,15 @@ def test_hills_tube_is_hyperbolic_if_it_is_incompressible():
     angle = 1.0
     γ = tube_shear(300.0, 3.0 * G, G, angle)
     assert np.cos(angle) == pytest.approx(1.0 / np.cosh(np.sqrt(3.0) * G * γ / 300.0))
+
+
+def test_a_ring_that_creeps_is_a_straight_bar_where_it_is_large():
+    """Known numbers of the bar; a small ring starts with the force of its torsion by displacements, and loses more."""
+    z = 5.0 * 80000.0 * 1e-20 * 700.0**5 * np.array([1.0, 1e3, 1e5]) ** 0.3
+    straight = creeping_ring.straight(6.0, z)
+    assert straight == pytest.approx([0.951753, 0.809369, 0.668594], abs=1e-6)
+    for redistributed in (False, True):
+        assert creeping_ring.relaxation(1e4, 6.0, z, redistributed) == pytest.approx(straight, rel=1e-6)
+    alone, ring = (creeping_ring.relaxation(4.0, 6.0, z, redistributed) for redistributed in (False, True))
+    assert (ring < alone).all()
+    assert (alone < 0.98 * straight).all()

@@ -1,4 +1,4 @@
-"""The commands of every day, by the clock and from outside: how long until they say something, and until they end."""
+"""Elapsed time of everyday commands, measured from outside: until their first line and until they end."""
 
 import subprocess
 import sys
@@ -61,7 +61,7 @@ def timed(command: Sequence[str], environment: Mapping[str, str]) -> tuple[float
 
 
 def everyday(environment: Mapping[str, str], against: Path | None, repeats: int = REPEATS) -> list[dict[str, Any]]:
-    """Medians for this checkout and for another one, measured in turns; a first run of each, not counted, warms up.
+    """Medians for this checkout and for another one, measured alternately; a first run of each, not counted, warms up.
 
     Args:
         environment: of the commands, from before MPI.

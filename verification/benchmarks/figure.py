@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from coilset.model.results.figures import STYLE, save
+from coilset.model.results.figures import save
+from coilset.model.style import STYLE
 from coilset.verification.benchmarks.measure import STAGES
-from coilset.verification.benchmarks.run import LARGE
-from coilset.verification.benchmarks.target import FLAT, ITERATION, per_element, seconds
+from coilset.verification.benchmarks.target import FLAT, ITERATION, LARGE, per_element, seconds
 
 COLOURS = dict(zip(STAGES, mpl.colormaps["tab10"].colors, strict=False))
 

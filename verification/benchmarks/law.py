@@ -1,9 +1,9 @@
 """Throughput of the constitutive law on one core: `scripts/coilset python -m coilset.verification.benchmarks.law`.
 
 Ck 15, every point plastic. 4000 points (as many as fit into the cache) are strained by 0.4 % in random directions four
-times, then once more in the direction of the last time: that increment is timed. The return mapping gives its
-consistent tangent, Heun that of the rate equations. Best of many repetitions, by the clock. The error of stress is
-against Heun with a tolerance of 1e-7, relative to the flow stress, root mean square of 200 points.
+times, then once more in the last direction: that increment is timed. The return mapping gives its consistent tangent,
+Heun that of the rate equations. Best of many repetitions, elapsed time. The error of stress is against Heun with a
+tolerance of 1e-7, relative to the flow stress, root mean square of 200 points.
 """
 
 import os
@@ -37,7 +37,7 @@ def prepared(law: Law, components: int, increment: float) -> tuple[np.ndarray, n
 
 
 def rate(law: Law, integrator: str, state: np.ndarray, increments: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-    """Points a second, the best of `SECONDS`, through the compiled loop alone."""
+    """Points per second, the best of `SECONDS`, through the compiled loop alone."""
     loop, p = points.LOOPS[increments.shape[1], integrator], law.parameters()
     new, tangent = np.empty_like(state), np.empty((*increments.shape, increments.shape[1]))
     count = np.empty(len(state), dtype=np.int64)

@@ -4,10 +4,10 @@
     mpirun -n RANKS python -m coilset.verification.benchmarks.measure press ELEMENTS [REPEATS]
     python -m coilset.verification.benchmarks.measure cases COUNT
 
-The stages: `law` brings all section points up to date (strains of the sections, material law, resultants, tangents);
-`assemble` the forces and the matrix; `contact` finds and evaluates coils and seats; `factorise` and `solve` are
-PETSc's, from its own log; `other` is what is left of the iteration. `set-up` is what an analysis does before its first
-step, without the `mesh`.
+The stages: `law` updates all section points (strains of the sections, material law, resultants, tangents); `assemble`
+the forces and the matrix; `contact` finds and evaluates coils and seats; `factorise` and `solve` are PETSc's, from its
+own log; `other` is what is left of the iteration. `set-up` is what an analysis does before its first step, without the
+`mesh`.
 """
 
 import json
@@ -45,7 +45,7 @@ def watch_analysis(watch: Stopwatch, analysis: "Analysis") -> None:
 
 
 def petsc_seconds(events: Iterable[str]) -> float:
-    """Seconds that PETSc's log holds for these events, of the clock."""
+    """Elapsed seconds in PETSc's log for these events."""
     from petsc4py import PETSc
 
     return sum(PETSc.Log.Event(event).getPerfInfo()["time"] for event in events)
@@ -70,7 +70,7 @@ class Logged:
         self.before = now
 
 
-SAME = ("mesh.section.radial=4", "mesh.section.angular=12")  # so that times of all versions are of the same work
+SAME = ("mesh.section.radial=4", "mesh.section.angular=12")  # so that times of all versions refer to the same work
 STEPS = ("loading.0.steps=12", "loading.1.steps=12")
 
 
@@ -106,8 +106,8 @@ def example(repeats: int = 5) -> dict[str, Any]:
 
     Returns:
         Dict: `import`; `first`: the first analysis, which loads or compiles the kernels and forms; `stages`: seconds of
-        the following analyses, the least of all repeats for each stage; `analysis`: the least of their sums; `output`
-        and `pictures`; all as pairs of wall and CPU seconds. And counts.
+        the following analyses, the minimum of all repeats for each stage; `analysis`: the minimum of their sums;
+        `output` and `pictures`; all as pairs of wall and CPU seconds. And counts.
     """
     start = Stopwatch()
     with start.stage("import"):
@@ -170,11 +170,11 @@ def write(watch: Stopwatch, analysis: "Analysis") -> None:
 
 
 def press(elements: int, repeats: int = 1) -> dict[str, Any]:
-    """The example's spring between clamped heads, in many elements, pressed far into the plastic range in one step.
+    """The example's spring between clamped heads, in many elements, compressed far into the plastic range in one step.
 
     Returns:
         Dict of counts, the force, the share of plastic points, peak memory of a rank, and `stages`: wall and CPU
-        seconds, the greatest of the ranks, the least of the repeats.
+        seconds, the largest of the ranks, the smallest of the repeats.
     """
     from mpi4py import MPI
 
@@ -231,7 +231,7 @@ def cases(count: int) -> dict[str, Any]:
 
 
 def peak_memory() -> float:
-    """Greatest resident memory of this process so far, GiB."""
+    """Maximum resident memory of this process so far, GiB."""
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
 
 

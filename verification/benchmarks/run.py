@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from coilset.meshes.errors import CoilsetError
-from coilset.model.processes import MPI_SETTINGS, end_with_parent, mpirun
+from coilset.model.processes import end_with_parent, mpi_settings, mpirun
 from coilset.verification.benchmarks.everyday import everyday
 from coilset.verification.benchmarks.target import targets
 
@@ -21,7 +21,6 @@ FULL = ((40, 5), (400, 5), (4_000, 3), (16_000, 2), (40_000, 1), (100_000, 1), (
 SHARED = {"quick": 8_000, "full": 40_000}  # elements that one and two ranks are compared on
 RANKS = (1, 2)
 CASES = {"quick": 20, "full": 100}
-LARGE = 4_000  # elements from which on the cost of an element should not depend on their number
 
 
 def measure(environment: dict[str, str], job: str, *arguments: int, ranks: int = 1) -> dict[str, Any]:
@@ -38,7 +37,7 @@ def measure(environment: dict[str, str], job: str, *arguments: int, ranks: int =
     command = [sys.executable, "-m", MODULE, job, *map(str, arguments)]
     if ranks > 1:
         command = [*mpirun(ranks), *command]
-    done = subprocess.run(command, env=MPI_SETTINGS | environment, capture_output=True, text=True,
+    done = subprocess.run(command, env=mpi_settings() | environment, capture_output=True, text=True,
                           preexec_fn=end_with_parent)  # fmt: skip
     if done.returncode:
         reason = (done.stderr.strip() or "no message").splitlines()[-1]
@@ -62,7 +61,7 @@ def bench(
     """All measurements.
 
     Args:
-        full: up to 400,000 elements, which needs 10 GiB and a quarter of an hour; else up to 16,000.
+        full: up to 400,000 elements, which needs 10 GiB and a quarter of an hour; otherwise up to 16,000.
         with_cold: also time the compilers.
         environment: of the processes, from before MPI.
         report: called with the name of each measurement before it begins.

@@ -1,4 +1,4 @@
-"""Seconds by stage, of the clock and of the processor."""
+"""Seconds by stage, elapsed and of processor time."""
 
 import time
 from collections import defaultdict
@@ -11,7 +11,7 @@ class Stopwatch:
     """Charges time to the innermost open stage, so that stages do not count each other's time.
 
     Attributes:
-        wall, cpu: stage → seconds of the clock, and of this process on the processor.
+        wall, cpu: stage → elapsed seconds, and processor seconds of this process.
     """
 
     def __init__(self) -> None:
@@ -49,9 +49,9 @@ class Stopwatch:
         setattr(owner, function, watched)
 
     def split(self, name: str, shares: Mapping[str, float]) -> None:
-        """Divide a stage: `shares` maps new stages to wall seconds measured elsewhere; what is left keeps the name.
+        """Divide a stage: `shares` maps new stages to wall seconds measured elsewhere; the remainder keeps the name.
 
-        Seconds of the processor are divided in the same ratio.
+        Processor seconds are divided in the same ratio.
         """
         ratio = self.cpu[name] / self.wall[name] if self.wall[name] else 0.0
         for part, seconds in shares.items():

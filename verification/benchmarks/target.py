@@ -1,14 +1,15 @@
-"""What the measurements say: cost of an element in an iteration, its spread, and the numbers that were aimed at."""
+"""What the measurements say: cost of an element in an iteration, its spread, and the targets."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 ITERATION = ("law", "contact", "assemble", "factorise", "solve", "other")  # stages of the equilibrium iteration
+LARGE = 4_000  # number of elements above which the cost of an element should not depend on it
 FLAT = 0.2  # how much the cost of an element may differ above LARGE elements
 
 
 def seconds(stages: Mapping[str, Sequence[float]], kind: int = 1) -> float:
-    """Sum of all stages; kind 0: of the clock, 1: of the processor."""
+    """Sum of all stages; kind 0: elapsed time, 1: processor time."""
     return sum(pair[kind] for pair in stages.values())
 
 
@@ -19,15 +20,13 @@ def per_element(run: dict[str, Any], stage: str | None = None) -> float:
 
 
 def spread(runs: Sequence[dict[str, Any]], least: int) -> float | None:
-    """Greatest over least cost of an element, less one, from `least` elements on; None for fewer than two runs."""
+    """Highest over lowest cost of an element, minus one, from `least` elements on; None for fewer than two runs."""
     costs = [per_element(run) for run in runs if run["elements"] >= least]
     return max(costs) / min(costs) - 1.0 if len(costs) > 1 else None
 
 
 def targets(record: dict[str, Any]) -> list[dict[str, Any]]:
-    """Rows of what was aimed at: name, value, limit, unit; processor time is that of one core."""
-    from coilset.verification.benchmarks.run import LARGE
-
+    """Rows of the targets: name, value, limit, unit; processor time is that of one core."""
     rows = [("analysis of the example, warm, one core", record["example"]["analysis"][1], 0.3, "s")]
     for run in record["elements"]:
         if run["elements"] == 100_000:

@@ -2,14 +2,15 @@
 
 The problem of K.-J. Bathe and S. Bolourchi, Large displacement analysis of three-dimensional beam structures, Int. J.
 Num. Meth. Eng. 14 (1979) 961: an eighth of a circle of radius R = 100, clamped, with the dead force P = 300, 450, 600
-across its plane at the tip; E = 1e7, ν = 0, a square section of 1 × 1. Here the wire is round with the same EI; with ν
-= 0 its torsional stiffness is GJ = EI, 18 % above the square's true one. The reference is therefore computed for this
-wire (`references/rod_shooting.py`), and itself compared with the displacements that the paper gives for P = 600,
-(−23.5, −13.4, 53.4): 2 %, for eight elements, three digits and another torsional stiffness.
+at the tip, perpendicular to its plane; E = 1e7, ν = 0, a square section of 1 × 1. The wire here is round, with the same
+EI; with ν = 0 its torsional stiffness is GJ = EI, 18 % above the true one of the square. The reference is therefore
+computed for this wire (`references/rod_shooting.py`), and is itself compared with the displacements given in the paper
+for P = 600, (−23.5, −13.4, 53.4); the tolerance is 2 %, to allow for eight elements, three digits and a different
+torsional stiffness.
 
-Tolerance: a polygon of n rods errs by φ² = (π/4n)²; the factor 0.1 is 1.4 times what was found at n = 8. To it comes
-the axial strain P/EA, 6e-5, since the rod's strains are logarithmic and count per current length, the reference's per
-length at rest. The order is judged from 8, 16 and 32 elements.
+Tolerance: the error of a polygon of n rods is proportional to φ² = (π/4n)²; the factor 0.1 is 1.4 times the value found
+at n = 8. The axial strain P/EA, 6e-5, is added, because the rod's strains are logarithmic and refer to the current
+length, while those of the reference refer to the initial length. The order is judged from 8, 16 and 32 elements.
 """
 
 import matplotlib as mpl
@@ -17,7 +18,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.meshes.errors import SolveError
-from coilset.model.results.figures import STYLE
+from coilset.model.style import STYLE
 from coilset.verification.chain import Z, chain, elastic
 from coilset.verification.references.rod_shooting import Stiffness, clamped_rod
 from coilset.verification.study import Study

@@ -1,12 +1,13 @@
 """Ideally plastic bar bent about several axes: moment against the integral, for several section rules
 
-A round wire has no direction, a rule with equal angles has. A bar is bent to 2, 5 and 20 times the curvature at yield,
-about axes from 0° to 30°; the reference is ∫ σ z dA with σ = min(E κ z, σy). The kinks at the edge of the elastic core
-cross the rule's rings: the error is proportional to the square of the angle between points, 2π/n, and depends on where
-the axis lies between them.
+A round wire has no preferred direction, but a rule with equal angles has. A bar is bent to 2, 5 and 20 times the
+curvature at yield, about axes from 0° to 30°; the reference is ∫ σ z dA with σ = min(E κ z, σy). The kinks at the edge
+of the elastic core cross the rule's rings: the error is proportional to the square of the angle between points, 2π/n,
+and depends on where the axis lies between them.
 
-Tolerance: 0.08 (2π/n)² (0.5 % with 24, 0.14 % with 48 angles), of which two thirds to nine tenths were found; 12 angles
-know plastic bending up to 2 %. The default's rings are turned against each other: 0.2 %, with twenty angles on each.
+Tolerance: 0.08 (2π/n)² (0.5 % with 24, 0.14 % with 48 angles); the errors found are two thirds to nine tenths of that.
+12 angles give plastic bending to within 2 %. The rings of the default rule are rotated relative to each other: 0.2 %,
+with twenty angles on each ring.
 """
 
 import matplotlib as mpl
@@ -15,15 +16,15 @@ from matplotlib.figure import Figure
 
 from coilset.model.material import library
 from coilset.model.material.law import Law
-from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
+from coilset.model.style import STYLE
 from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, chain, drive, straight
 from coilset.verification.references.section_integrals import bending_moment
 from coilset.verification.study import Study
 
 FAST = True
 LENGTH, RADIUS, STEPS = 1.0, 2.5, 4  # mm
-RULES = ((4, 12, False), (8, 24, False), (8, 48, False), (8, 20, True))  # rings, angles, turned against each other
+RULES = ((4, 12, False), (8, 24, False), (8, 48, False), (8, 20, True))  # rings, angles, staggered
 FACTORS = (2.0, 5.0, 20.0)  # curvature over that at yield
 DIRECTIONS = np.arange(0.0, 31.0, 7.5)  # of the axis, degrees
 
@@ -48,7 +49,7 @@ def run(study: Study) -> None:
         for rule in RULES:
             errors[factor, rule] = [moment(law, rule, curvature, at) / exact - 1.0 for at in DIRECTIONS]
             worst = np.abs(errors[factor, rule]).max()
-            what = f"greatest error of the moment, {factor:g} κy, {polar(*rule).name}"
+            what = f"maximum error of the moment, {factor:g} κy, {polar(*rule).name}"
             tolerance = 2e-3 if rule[2] else 0.08 * (2.0 * np.pi / rule[1]) ** 2
             study.check(what, worst, 0.0, "∫ σ z dA", tolerance, "absolute")
     with mpl.rc_context(STYLE):

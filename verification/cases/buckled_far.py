@@ -1,13 +1,13 @@
-"""Long springs pressed far beyond buckling in 1, 2, 3, 4, 5, 10, 80 and automatic steps: the same stable state
+"""Long springs compressed far beyond buckling in 1, 2, 3, 4, 5, 10, 80 and automatic steps: the same stable state
 
-Elastic springs of wire 5, D 40 and pitch 12 with 40, 30 and 25 turns, 8 rods a turn, between clamped heads and between
-seats. They buckle at a tenth to a third of the travel; the axis then goes off, and with 30 and 25 turns the coils on
-the inside of the bend come to touch and slip past each other, so that several branches exist. Whatever the number of
-steps, the same stable state must come out, or the run must say that it left a branch (a warning `snapped` or
+Elastic springs of wire 5, D 40 and pitch 12 with 40, 30 and 25 turns, 8 rods per turn, between clamped heads and
+between seats. They buckle at a tenth to a third of the travel; the axis then deflects, and with 30 and 25 turns the
+coils on the inside of the bend touch and slip past each other, so several branches exist. Whatever the number of steps,
+the result must be the same stable state, or the run must report that it left a branch (a warning `snapped` or
 `unstable`).
 
-Judged are the force at the end against the median of all runs, for the runs that say nothing of a branch, within 0.5 %;
-how many runs end elsewhere without a word; and how many end unstable without one. The table has all runs.
+Three things are judged: the final force of the runs that report no branch, within 0.5 % of the median of all runs; how
+many runs end elsewhere without a warning; and how many end unstable without one. The table lists all runs.
 """
 
 from collections.abc import Sequence
@@ -22,8 +22,8 @@ from mpi4py import MPI
 from coilset.meshes.errors import SolveError
 from coilset.model.analysis import Analysis
 from coilset.model.case import Case, check
-from coilset.model.results.figures import STYLE
 from coilset.model.results.warnings import run_warnings
+from coilset.model.style import STYLE
 from coilset.verification.study import Study
 
 FAST = False
@@ -46,7 +46,7 @@ class End:
 
 
 def press(turns: int, ends: str, travel: float, steps: int | str) -> End:
-    """Press a spring in so many steps."""
+    """Compress a spring in the given number of steps."""
     spring = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": turns, "pitch": 12.0}
     mesh = {"elements_per_turn": 8, "section": {"kind": "plane", "radial": 2, "angular": 6}}
     loading = [{"to": {"travel": travel}, "steps": steps}]
@@ -77,13 +77,13 @@ def report(study: Study, found: Sequence[Sequence[End]]) -> None:
             farthest = max(silent, key=lambda force: np.inf if np.isnan(force) else abs(force - median))
             study.check(f"force at the end, N, {where}", farthest, median, "all numbers of steps", TOLERANCE)
         elsewhere = sum(not abs(end.force / median - 1.0) <= TOLERANCE and not end.branches for end in runs)
-        study.check(f"runs that end elsewhere without a word, {where}", elsewhere, 0, "wanted", kind="at_most")
+        study.check(f"runs that end elsewhere without a warning, {where}", elsewhere, 0, "required", kind="at_most")
         unstable = sum(end.negative_pivots > 0 and not end.branches for end in runs)
-        study.check(f"runs that end unstable without a word, {where}", unstable, 0, "wanted", kind="at_most")
+        study.check(f"runs that end unstable without a warning, {where}", unstable, 0, "required", kind="at_most")
         for steps, end in zip(STEPS, runs, strict=True):
             rows.append([turns, ends, travel, str(steps), end.force, 100.0 * (end.force / median - 1.0),
                          end.negative_pivots, ", ".join(end.branches), end.evaluations])  # fmt: skip
-    columns = ["turns", "ends", "travel, mm", "steps", "force, N", "off the median, %", "negative pivots", "it says",
+    columns = ["turns", "ends", "travel, mm", "steps", "force, N", "off the median, %", "negative pivots", "warnings",
                "states evaluated"]  # fmt: skip
     study.table("far beyond buckling", columns, rows)
     study.figure("buckled_far", draw(found))

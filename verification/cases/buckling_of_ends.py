@@ -1,14 +1,15 @@
 """Springs of L0/D = 6, 8, 10 between clamped heads and between seats: the travel at which they buckle, against Haringx
 
-Wire 5, D 40, pitch 12, elastic, 8 rods a turn. Seats hold the wire's tips sideways and against turning, unless a case
-says otherwise, and stay parallel: a spring between them buckles as between clamped heads, with the coefficient ½
-of EN 13906-1, and both are held against Haringx's clamped column (`references/stability.py`). What is judged is the
-travel at which the least eigenvalue vanishes as a run tells it (`model/results/buckling.py`). Whole and broken numbers
-of turns are among them; with broken ones the ends push the axis to one side from the start.
+Wire 5, D 40, pitch 12, elastic, 8 rods per turn. Seats hold the wire's tips sideways and against rotation, unless a
+case says otherwise, and stay parallel. A spring between them therefore buckles as it does between clamped heads, with
+the coefficient ½ of EN 13906-1, and both are compared with Haringx's clamped column (`references/stability.py`). What
+is judged is the travel at which the lowest eigenvalue vanishes, as reported by a run (`model/results/buckling.py`). The
+numbers of turns include whole and fractional ones; with a fractional number the ends push the axis to one side from the
+start.
 
-Beyond that travel the stable branch is drawn: the force hardly rises, the axis goes off.
+Beyond that travel the stable branch is drawn: the force hardly rises while the axis deflects.
 
-Tolerance: 2 %. Haringx leaves out the pitch, which counts with 1.4 % (case buckling-of-springs).
+Tolerance: 2 %. Haringx neglects the pitch, which contributes 1.4 % (case buckling-of-springs).
 """
 
 import matplotlib as mpl
@@ -20,8 +21,8 @@ from coilset.model.analysis import Analysis
 from coilset.model.case import Case, check
 from coilset.model.material import library
 from coilset.model.results.buckling import critical_travel
-from coilset.model.results.figures import STYLE
 from coilset.model.results.record import Step
+from coilset.model.style import STYLE
 from coilset.verification.references.stability import clamped_spring
 from coilset.verification.study import Study
 

@@ -1,14 +1,15 @@
-"""A cantilever pressed on a plane: force and place of the contact as it lies down, against the linear beam
+"""A cantilever pressed on a plane: force and position of the contact as it lies down, against the linear beam
 
-A beam of length L, clamped at an inclination α at the height h above a frictionless plane, touches it with its tip at
-h = α L. When the clamp goes down, the tip bears first: P = 3 EI (α L − h)/L³. Its slope vanishes at h = α L/3; from
-there on the beam lies flat from x = c outwards, free of force but for P at c itself, where the curvature is zero: the
-part up to c is a cantilever with α c − h = P c³/(3 EI) and α − P c²/(2 EI) = 0, so that
+A beam of length L, clamped at an inclination α at the height h above a frictionless plane, touches it with its tip at h
+= α L. As the clamp is lowered, only the tip bears at first: P = 3 EI (α L − h)/L³. Its slope vanishes at h = α L/3;
+from then on the beam lies flat from x = c outwards, free of force except for P at c itself, where the curvature is
+zero. The part up to c is a cantilever with α c − h = P c³/(3 EI) and α − P c²/(2 EI) = 0, so that
 
     c = 3 h/α,    P = 2 α EI/c² = 2 α³ EI/(9 h²).
 
-The contact's place is where the seat's force acts. Tolerances: the linear beam errs by some α² = 1e-4; the place is
-found between points 1.25 mm apart, and the bedding lets the beam sink in by less than 1e-3 of h.
+The contact is located where the force of the seat acts. Tolerances: the error of the linear beam is about α² = 1e-4;
+the position is found between points 1.25 mm apart, and the contact stiffness lets the beam sink in by less than 1e-3 of
+h.
 """
 
 import matplotlib as mpl
@@ -18,8 +19,8 @@ from matplotlib.figure import Figure
 from coilset.model.contact.base import SEAT_DOFS
 from coilset.model.contact.seat import Seat
 from coilset.model.material import library
-from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
+from coilset.model.style import STYLE
 from coilset.verification.frame import Frame
 from coilset.verification.study import Study
 from coilset.verification.wires import wire_points
@@ -32,7 +33,7 @@ LOWEST = 0.12  # h/(α L) at the end
 
 
 def press() -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
-    """Heights of the clamp (mm), forces on the plane (N) and places where they act (mm from the clamp)."""
+    """Heights of the clamp (mm), forces on the plane (N) and their positions (mm from the clamp)."""
     law = library.load("elastic")
     along = np.linspace(LENGTH, 0.0, ELEMENTS + 1)  # from the tip to the clamp
     nodes = np.stack([along * np.cos(SLOPE), 0 * along, (LENGTH - along) * np.sin(SLOPE) + RADIUS], axis=1)
@@ -54,14 +55,14 @@ def press() -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
 
 
 def closed_form(h: np.ndarray, EI: float) -> tuple[np.ndarray, np.ndarray]:
-    """Force and its place of the linear beam, N and mm."""
+    """Force and its position for the linear beam, N and mm."""
     tip = h > SLOPE * LENGTH / 3.0
     c = np.where(tip, LENGTH, 3.0 * h / SLOPE)
     return np.where(tip, 3.0 * EI * (SLOPE * LENGTH - h) / LENGTH**3, 2.0 * SLOPE * EI / c**2), c
 
 
 def run(study: Study) -> None:
-    """Forces and places on the way down."""
+    """Forces and positions as the clamp is lowered."""
     h, force, place, EI = press()
     P, c = closed_form(h, EI)
     for k in range(3, STEPS, 4):

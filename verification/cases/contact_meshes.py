@@ -1,13 +1,13 @@
-"""Cylinder, cone and barrel pressed to block and released: no step fails, and the meshes agree
+"""Cylinder, cone and barrel compressed to block and released: no step fails, and the meshes agree
 
-The three springs of `examples/springs` at 16, 32 and 64 elements a turn, with twelve equal steps down and up as with
-automatic ones. A solve that fails is made again from rest, or its step is cut; both are counted. Steps that are cut
-though they were solved, as their error is too large or their state unstable, are not. The table has, too, how often
-Newton's method came to no end within a step and balanced a part of it first. The bedding, E/40, is the same for all
-meshes, so that finer ones come to one state. Judged are the set, which must change by less than 1 % from 32 to 64
-elements, and the characteristic at the heights of the equal steps, whose change from 32 to 64 must be below 1 % of the
-greatest force and less than from 16 to 32. The force at block hangs on the places of several hundred contacts
-within some thousandths of a millimetre: it settles last.
+The three springs of `examples/springs` run at 16, 32 and 64 elements per turn, both with twelve equal steps each way
+and with automatic ones. A failed solve is repeated from rest, or its step is cut; both are counted. Steps that were
+solved but cut because their error was too large or their state unstable are not. The table also shows how often
+Newton's method did not converge within a step and a part of it was balanced first. The contact stiffness, E/40, is the
+same for all meshes, so that finer ones converge to one state. Two things are judged: the set, which must change by less
+than 1 % from 32 to 64 elements, and the characteristic at the heights of the equal steps, whose change from 32 to 64
+must be below 1 % of the maximum force and less than from 16 to 32. The force at block depends on the positions of
+several hundred contacts to within a few thousandths of a millimetre: it converges last.
 """
 
 import logging
@@ -20,8 +20,8 @@ from matplotlib.figure import Figure
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.examples import EXAMPLES
-from coilset.model.results.figures import STYLE
 from coilset.model.results.summary import summarise
+from coilset.model.style import STYLE
 from coilset.verification.study import Study
 
 SPRINGS = ("cylinder", "cone", "barrel")
@@ -76,26 +76,28 @@ def run(study: Study) -> None:
             for automatic in (False, True):
                 analysis, summary, counter = press(name, mesh, automatic)
                 kind = "automatic" if automatic else "equal"
-                place = f"{name}, {mesh} a turn, {kind} steps"
-                study.check(f"failed solves, {place}", counter.failed, 0, "issue", kind="at_most")
+                place = f"{name}, {mesh} per turn, {kind} steps"
+                study.check(f"failed solves, {place}", counter.failed, 0, "required", kind="at_most")
                 rows.append([name, mesh, kind, summary["steps"], summary["iterations"], counter.parts,
                              summary["set_mm"], summary["force_max_N"]])  # fmt: skip
                 curves[name, mesh, automatic] = analysis, summary
         compare(study, name, {mesh: curves[name, mesh, False] for mesh in MESHES})
-    columns = ["spring", "rods a turn", "steps", "steps done", "iterations", "in parts", "set, mm", "block force, N"]
+    columns = ["spring", "rods per turn", "steps", "steps done", "iterations", "in parts", "set, mm", "block force, N"]
     study.table("to block and back", columns, rows)
     draw(study, curves)
 
 
 def compare(study: Study, name: str, found: dict[int, Run]) -> None:
     """Set and loading characteristic of neighbouring meshes."""
-    finest = f"{MESHES[-1]} elements a turn"
+    finest = f"{MESHES[-1]} elements per turn"
     force = {mesh: characteristic(analysis, 0)[1] for mesh, (analysis, _) in found.items()}
     greatest = force[64].max()
     coarse, fine = (np.abs(force[a] - force[b]).max() / greatest for a, b in ((16, 32), (32, 64)))
-    study.check(f"{name}: set at 32 a turn, mm", found[32][1]["set_mm"], found[64][1]["set_mm"], finest, 0.01)
-    study.check(f"{name}: greatest change of force from 32 to 64, of the greatest", fine, 0.0, finest, 0.01, "absolute")
-    study.check(f"{name}: that over the change from 16 to 32", fine / coarse, 1.0, "convergence", kind="at_most")
+    study.check(f"{name}: set at 32 per turn, mm", found[32][1]["set_mm"], found[64][1]["set_mm"], finest, 0.01)
+    study.check(
+        f"{name}: maximum change of force from 32 to 64, over the maximum force", fine, 0.0, finest, 0.01, "absolute"
+    )
+    study.check(f"{name}: this change over that from 16 to 32", fine / coarse, 1.0, "convergence", kind="at_most")
 
 
 def draw(study: Study, curves: dict[tuple[str, int, bool], Run]) -> None:
@@ -106,10 +108,10 @@ def draw(study: Study, curves: dict[tuple[str, int, bool], Run]) -> None:
             for mesh, colour, marker in zip(MESHES, ("C3", "C1", "C0"), "o+x", strict=True):
                 equal, _ = curves[name, mesh, False]
                 place.plot(*characteristic(equal), marker, color=colour, ms=4, mfc="none", lw=0,
-                           label=f"{mesh} a turn, equal steps")  # fmt: skip
+                           label=f"{mesh} per turn, equal steps")  # fmt: skip
                 automatic, _ = curves[name, mesh, True]
                 place.plot(*np.insert(characteristic(automatic), 0, 0.0, axis=1), "-", color=colour, lw=0.8,
-                           label=f"{mesh} a turn, automatic")  # fmt: skip
+                           label=f"{mesh} per turn, automatic")  # fmt: skip
             place.set(xlabel="travel in mm", ylabel="axial force in N", title=f"{name}, Ck 15, to block and back")
             place.grid(lw=0.3)
         place.legend(fontsize=7)

@@ -1,15 +1,15 @@
-"""Two rods of different thickness that cross at 60°, pressed on each other: force against two beams in series
+"""Two rods of different thickness that cross at 60°, pressed together: force against two beams in series
 
-Rod 1 (length l1, radius r1) lies over rod 2 (l2, r2); both are clamped at both ends, the crossing is at the middle of
-rod 1 and at a quarter of rod 2. The ends of rod 1 go down by δ. A clamped beam loaded at the distances a and b from its
+Rod 1 (length l1, radius r1) lies over rod 2 (l2, r2); both are clamped at both ends and cross at the middle of rod 1
+and at a quarter of rod 2. The ends of rod 1 are lowered by δ. A clamped beam loaded at the distances a and b from its
 ends has the stiffness k = 3 l³ EI/(a³ b³), with shear 1/k = a³ b³/(3 l³ EI) + a b/(l GA); hence with the penetration p
 
     F = (δ − p)/(1/k1 + 1/k2).
 
-Where touching begins depends on both radii: the gap at the start is 0.025 mm. Tolerances: membrane forces count with
-(deflection/radius)², below 1e-3 of the force. The contact acts at one point of each rod, a station of both, and its
-stiffness c is the bedding of both points together: F is c p²/(4w) up to p = 2w and c (p − w) beyond, but for the small
-tilt of the connection.
+Where contact begins depends on both radii: the initial gap is 0.025 mm. Tolerances: membrane forces contribute in
+proportion to (deflection/radius)², below 1e-3 of the force. The contact acts at one point of each rod, a station of
+both, and its stiffness c is that of both points together: F is c p²/(4w) up to p = 2w and c (p − w) beyond, except for
+the small tilt of the line connecting the points.
 """
 
 import matplotlib as mpl
@@ -19,8 +19,8 @@ from matplotlib.figure import Figure
 from coilset.model.contact.coils import Coils
 from coilset.model.material import library
 from coilset.model.material.law import Law
-from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
+from coilset.model.style import STYLE
 from coilset.verification.frame import Frame
 from coilset.verification.study import Study
 from coilset.verification.wires import wire_points
@@ -84,7 +84,7 @@ def run(study: Study) -> None:
         at = f"at δ = {travel:.3f} mm"
         study.check(f"force {at}, N", F, (travel - GAP - p) / compliance(law), "beams in series", 1e-3)
         bedded = c * p**2 / (4.0 * ONSET) if p < 2.0 * ONSET else c * (p - ONSET)
-        study.check(f"force by the penetration {p:.6f} mm {at}, N", F, bedded, "law of the onset", 1e-3)
+        study.check(f"force from the penetration {p:.6f} mm {at}, N", F, bedded, "law of the onset", 1e-3)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.6, 3.8), layout="constrained")
         left, right = figure.subplots(1, 2)

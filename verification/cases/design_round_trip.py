@@ -1,9 +1,9 @@
 """Ten wishes for springs of different kinds: what `coilset design` finds, solved forward from its file
 
 Cylinders with open, closed and clamped ends, a cone, a barrel, an hourglass, springs of variable pitch and wire, a wire
-of a standard, small meshes of eight rods a turn; one to three unknowns among pitch, free length, wire, turns, a value
-of a table and preset height; lengths, sets, forces, rates and stresses as conditions. The wish is known from nowhere:
-the forward solve of the case that was written, read as a file, is the check.
+of a standard, small meshes of eight rods per turn; one to three unknowns among pitch, free length, wire, turns, a value
+of a table and preset height; lengths, sets, forces, rates and stresses as conditions. The solution is not known
+beforehand: the check is the forward solve of the case that was written, read as a file.
 
 Tolerance: 1e-6 of each condition. The table says how many runs each wish took, and how long.
 """
@@ -25,8 +25,8 @@ from coilset.model.design.design import find, make_search
 from coilset.model.design.output import found_data
 from coilset.model.design.search import Search
 from coilset.model.design.wish import read_wish
-from coilset.model.results.figures import STYLE
 from coilset.model.results.summary import summarise
+from coilset.model.style import STYLE
 from coilset.verification.study import Study
 
 MESH = {"elements_per_turn": 8, "section": {"radial": 3, "angular": 10}}
@@ -130,7 +130,7 @@ def draw(ways: dict[str, list[float]]) -> Figure:
                 range(1, len(off) + 1), np.maximum(off, 1e-13), f"C{number % 5}o{style}", ms=3, lw=1, label=name
             )
         axes.axhline(CLOSE, color="0.5", lw=0.8)
-        axes.set(xlabel="run", ylabel="farthest condition, relative", title="Ten wishes")
+        axes.set(xlabel="run", ylabel="largest deviation of a condition, relative", title="Ten wishes")
         axes.grid(lw=0.3)
         axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     return figure

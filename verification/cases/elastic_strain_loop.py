@@ -1,18 +1,19 @@
-"""Closed loop of elastic strain, with the material's spin and without: what remains, and what the rates alone leave
+"""Closed loop of elastic strain, with and without the material's spin: what remains, and what the rates alone leave
 
 A bar is stretched by 1 %, twisted to 2 % at its surface, shortened and twisted back. Hooke's law leaves nothing. The
-rates of the spin as the thesis has them (5.2.33), after Zaremba and Jaumann, have no energy behind them: something
-remains even if they are integrated without error (M. Kojić and K.-J. Bathe, Computers and Structures 26 (1987) 175). At
-the shear angle γ they are
+rates with spin in the form of the thesis (5.2.33), after Zaremba and Jaumann, do not derive from an energy: some stress
+remains even if they are integrated exactly (M. Kojić and K.-J. Bathe, Computers and Structures 26 (1987) 175). At the
+shear angle γ they are
 
     σ′ = −τ,  τ′ = G + ½ σ:    s = σ + 2G turns with γ/√2,   s = s0 cos(γ/√2) − √2 τ0 sin(γ/√2),
                                                               τ = τ0 cos(γ/√2) + s0/√2 sin(γ/√2),
 
 so that ½ E ε γ of shear remains to first order, 21.0 MPa here where σ rose to 2,100 MPa. The program's stress is a
-function of the elastic strain, that which the closed form has after stretch and twist (`model/material/spin.py`): both
-components must be the closed form's as long as the bar is only stretched and then twisted, and nothing may remain.
+function of the elastic strain, namely the one that the closed form gives after stretch and twist
+(`model/material/spin.py`): both components must agree with the closed form as long as the bar is only stretched and
+then twisted, and nothing may remain.
 
-Tolerance: 1e-6 MPa, in any number of steps; 3e-10 were found at most.
+Tolerance: 1e-6 MPa, in any number of steps; the maximum found is 3e-10.
 """
 
 import matplotlib as mpl
@@ -21,8 +22,8 @@ from matplotlib.figure import Figure
 
 from coilset.model.material import library
 from coilset.model.material.law import Law
-from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import DiskRule
+from coilset.model.style import STYLE
 from coilset.verification.chain import ALL, ROTATION_X, X, chain, drive, straight
 from coilset.verification.study import Study
 
@@ -40,7 +41,7 @@ def loop(law: Law, steps: int) -> np.ndarray:
     frame = chain(straight(LENGTH, 1), RADIUS, law, RING, [(0, ALL), (1, range(1, 6))])
     pull, turn, rows = frame.dof(1, X), frame.dof(1, ROTATION_X), [(0.0, 0.0)]
     length, twist = LENGTH * np.expm1(STRETCH), SHEAR / RADIUS * LENGTH
-    # φ′ counts per current length: as the bar is shortened, it is turned back so far that γ stays
+    # φ′ refers to the current length: as the bar is shortened, it is turned back so that γ stays the same
     more = twist * np.expm1(STRETCH)
 
     def keep() -> None:
@@ -74,19 +75,19 @@ def run(study: Study) -> None:
         paths[steps] = path = loop(law, steps)
         rows.append([steps, *path[2 * steps], *path[-1]])
         for k, name in enumerate("στ"):
-            study.check(f"{name} stretched and twisted, with spin, {steps} steps a part, MPa", path[2 * steps, k],
+            study.check(f"{name} stretched and twisted, with spin, {steps} steps per part, MPa", path[2 * steps, k],
                         exact[2, k], SOURCE, CLOSED, "absolute")  # fmt: skip
-        study.check(f"stress that remains with spin, {steps} steps a part, MPa", np.abs(path[-1]).max(), 0.0,
+        study.check(f"remaining stress with spin, {steps} steps per part, MPa", np.abs(path[-1]).max(), 0.0,
                     "a closed path", CLOSED, "absolute")  # fmt: skip
     left = np.abs(loop(none, STEPS[1])[-1]).max()
-    study.check("stress that remains without spin, MPa", left, 0.0, "Hooke's law", CLOSED, "absolute")
-    columns = ["steps a part", "σ, twisted", "τ, twisted", "σ that remains", "τ that remains"]
+    study.check("remaining stress without spin, MPa", left, 0.0, "Hooke's law", CLOSED, "absolute")
+    columns = ["steps per part", "σ, twisted", "τ, twisted", "remaining σ", "remaining τ"]
     study.table("with spin, MPa", columns, rows)
     study.note(f"The rates alone leave {exact[-1, 1]:.2f} MPa of shear, however small the steps are.")
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(5.2, 3.8), layout="constrained")
         axes = figure.add_subplot()
-        axes.plot(*paths[STEPS[1]].T, "o-", ms=3, lw=0.9, label=f"coilset, {STEPS[1]} steps a part")
+        axes.plot(*paths[STEPS[1]].T, "o-", ms=3, lw=0.9, label=f"coilset, {STEPS[1]} steps per part")
         axes.plot(*exact.T, "kx", ms=7, label=SOURCE)
         axes.set(xlabel="σ in MPa", ylabel="τ in MPa", title="Closed loop of elastic strain, with spin")
         axes.grid(lw=0.3)

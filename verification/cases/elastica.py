@@ -1,13 +1,13 @@
 """Cantilever under a transverse force, PL²/EI = 1, 5, 10, against elliptic integrals
 
-A straight cantilever under a dead force across it, ten equal steps. `references/elastica.py` has the inextensible rod
-without shear; the program's gives way to both. Against shooting with shear and extension (`references/rod_shooting.py`)
-the tolerance is 0.02 (PL²/EI)/n² for n rods: straight rods err by h², and the factor is 1.2 to 2 times what was found
-at n = 8. At the slenderness r/L = 1e-2 taken here shear and axial strain are seen against the elliptic integrals: they
-are up to P/GA = (PL²/EI) (E/G) (r/2L)², 6.5e-4 at the greatest load, and that is added there. Shooting itself meets the
-elliptic integrals at r/L = 1e-4 up to 1e-7.
+A straight cantilever under a dead force across it, ten equal steps. `references/elastica.py` gives the inextensible rod
+without shear; the program's rod has both. Against shooting with shear and extension (`references/rod_shooting.py`) the
+tolerance is 0.02 (PL²/EI)/n² for n rods: the error of straight rods is proportional to h², and the factor is 1.2 to 2
+times the value found at n = 8. At the slenderness r/L = 1e-2 used here, shear and axial strain are noticeable in the
+comparison with the elliptic integrals: they reach P/GA = (PL²/EI) (E/G) (r/2L)², 6.5e-4 at the maximum load, which is
+added there. Shooting itself agrees with the elliptic integrals to 1e-7 at r/L = 1e-4.
 
-More slender wires: see the case slender-rods.
+For more slender wires see the case slender-rods.
 """
 
 import matplotlib as mpl
@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 
 from coilset.meshes.errors import SolveError
 from coilset.model.material import library
-from coilset.model.results.figures import STYLE
+from coilset.model.style import STYLE
 from coilset.verification.chain import Y, chain, straight
 from coilset.verification.references.elastica import cantilever
 from coilset.verification.references.rod_shooting import Stiffness, clamped_rod
@@ -69,7 +69,7 @@ def run(study: Study) -> None:
             study.check(at, ours, inextensible[k], "elliptic integrals", shear + mesh, "absolute")
             study.check(at, ours, shot[k], "shooting", mesh, "absolute")
         rows.append([load, *(f"{np.abs(found[n][place] - shot).max():.1e}" for n in MESHES)])
-    study.table("greater error of u/L and v/L against shooting", ["PL²/EI", *(f"{n} rods" for n in MESHES)], rows)
+    study.table("larger error of u/L and v/L against shooting", ["PL²/EI", *(f"{n} rods" for n in MESHES)], rows)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(5.6, 3.8), layout="constrained")
         axes = figure.add_subplot()

@@ -1,18 +1,18 @@
 """Energy over a closed load cycle: the work of the head against what is stored, dissipated and kept in the back stress
 
-A spring of Ck 15 (wire 5, D 40, 2.5 turns of pitch 12) is pressed and let go to zero force: between clamped heads by
-12 mm, between seats to block. The head's work ∫ F ds must be found again in the section points,
+A spring of Ck 15 (wire 5, D 40, 2.5 turns of pitch 12) is compressed and released to zero force: by 12 mm between
+clamped heads, to block between seats. The work of the head ∫ F ds must be recovered in the section points,
 
     W = ∫ (½ σ²/E + ½ τ²/G) dV + ∫∫ B:dεp dV + ∫ b* dV,    b* = ∫ (σ′ − B):dεp,
 
-the elastic energy of the stress that stays, the work against the back stress, and the plastic work measure. With Ḃ = ζ
-ε̇p the second part is ∫ d(¾ B11² + B12² + B13²)/ζ, taken step by step. Contacts have given back what they stored: no
-force is left. F ds is taken by trapezia and ζ at the middle of a step's plastic work, as the law takes it, so that
-the sum hangs on the steps; the points' volumes are those of the curved wire at rest, the program's those of its rods,
-as they stand.
+the elastic energy of the residual stress, the work against the back stress, and the plastic work measure. With Ḃ = ζ
+ε̇p the second part is ∫ d(¾ B11² + B12² + B13²)/ζ, evaluated step by step. The contacts have returned what they stored,
+since no force is left. F ds is integrated by the trapezoidal rule, and ζ is taken at the middle of the plastic work of
+a step, as in the law, so the sum depends on the steps. The volumes of the points are those of the unloaded curved wire;
+the program uses those of its rods.
 
-Tolerance: 1e-4 between clamped heads and 3e-4 to block at 100 steps each way and 16 rods a turn. With 50 and 100 steps
-the sum was found off by 2.0e-4 and 9.4e-5 between the heads, by 2.3e-4 and 1.4e-4 to block.
+Tolerance: 1e-4 between clamped heads and 3e-4 to block with 100 steps each way and 16 rods per turn. With 50 and 100
+steps the deviations of the sum were 2.0e-4 and 9.4e-5 between the heads, and 2.3e-4 and 1.4e-4 to block.
 """
 
 import matplotlib as mpl
@@ -23,9 +23,9 @@ from mpi4py import MPI
 from coilset.meshes.placement import gauss_points
 from coilset.model.analysis import Analysis
 from coilset.model.case import Case, check
-from coilset.model.results.figures import STYLE
 from coilset.model.results.record import Step
 from coilset.model.rod.kinematics import GAUSS
+from coilset.model.style import STYLE
 from coilset.verification.study import Study
 
 FAST = True

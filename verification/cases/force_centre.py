@@ -1,7 +1,7 @@
 """Where the force goes: from the wire's tip inwards as the end coils lie down, and back at lift-off
 
 Springs with open and with closed ends between flat guided seats without friction; short grooves hold their tips
-sideways and let them roll (docs/contact.md). What is known of them:
+sideways and let them roll (docs/contact.md). What is known about them:
 
 - The end coils bear unevenly, so the resultant is off the axis, and wanders as they roll down on the seats (thesis,
   7.1, figures 7.2 and 7.3, and 7.2.2, after Huhnen, Draht 17 and 18, 1966/67, and Grueber, 1981). While they lie down
@@ -10,12 +10,13 @@ sideways and let them roll (docs/contact.md). What is known of them:
 - Springs with closed ends that are not ground are not linear at first: their end coils are out of balance and let the
   spring bend until it is stable (Cadet and others, Mechanics & Industry 22, 50, 2021: three slopes).
 
-Numbers come from closed formulas, by Castigliano with the flat coil's torque and bending moment only. A spring of n
-whole turns that bears on its tips alone is loaded along the line through them: at the angle φ the torque is
-F r (1 − cos φ) and the bending moment F r sin φ, so that it is softer than Wahl's by the factor 3/2 + G Ip/(2 E I).
-Lying down, R = G d⁴/(64 r³ n) with the active turns n = ∫ (Mt/F r)² dt. Tips that are held against turning give the
-force of a spring of n = k + ½ turns the distance e = 2 r/(π n (1 + G Ip/E I)) from the axis, across the line through
-the tips: the torque F r turns the ends by F r/(G Ip) ∫ t ds = 2 F r²/(G Ip), the moment F e turns them back.
+The reference values are closed formulas, from Castigliano's theorem with only the torque and bending moment of the flat
+coil. A spring of n whole turns that bears on its tips alone is loaded along the line through them: at the angle φ the
+torque is F r (1 − cos φ) and the bending moment F r sin φ, so it is softer than Wahl's formula by the factor 3/2 + G
+Ip/(2 E I). Lying down, R = G d⁴/(64 r³ n) with the active turns n = ∫ (Mt/F r)² dt. With tips held against rotation,
+the force of a spring of n = k + ½ turns acts at the distance e = 2 r/(π n (1 + G Ip/E I)) from the axis, perpendicular
+to the line through the tips: the torque F r rotates the ends by F r/(G Ip) ∫ t ds = 2 F r²/(G Ip), and the moment F e
+rotates them back.
 """
 
 from typing import Any
@@ -27,8 +28,8 @@ from mpi4py import MPI
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import check
-from coilset.model.results.figures import STYLE
 from coilset.model.results.seat_figures import draw_pressure
+from coilset.model.style import STYLE
 from coilset.verification.study import Study
 
 FAST = True
@@ -84,7 +85,7 @@ def run(study: Study) -> None:
     for ends, analysis in elastic.items():
         judge_path(study, ends, columns(analysis), wahl)
     first = columns(elastic["open"])["rate"][0]
-    study.check("open ends: first rate, on the tips alone, N/mm", first, tips, "Castigliano", 0.02)
+    study.check("open ends: initial rate, on the tips alone, N/mm", first, tips, "Castigliano", 0.02)
     for ends, analysis in plastic.items():
         after = judge_release(study, ends, columns(analysis), wahl)
         if ends == "open":
@@ -96,16 +97,16 @@ def run(study: Study) -> None:
 
 def judge_path(study: Study, ends: str, c: dict[str, np.ndarray], wahl: float) -> None:
     """The centre of pressure begins at the tip and goes inwards as soon as the coil touches elsewhere."""
-    study.check(f"{ends} ends: first centre of pressure over r", c["pressure"][0] / RADIUS, 1.0,
-                "the tip alone touches", 0.005)  # fmt: skip
-    study.check(f"{ends} ends: first force centre over r", c["centre"][0] / RADIUS, 1.0, "the same", 0.02)
+    study.check(f"{ends} ends: initial centre of pressure over r", c["pressure"][0] / RADIUS, 1.0,
+                "only the tip touches", 0.005)  # fmt: skip
+    study.check(f"{ends} ends: initial force centre over r", c["centre"][0] / RADIUS, 1.0, "the same", 0.02)
     on_tip = int(np.argmax(c["pressure"] < 0.995 * RADIUS))
     outwards = np.diff(c["pressure"][on_tip - 1 :]).max()
-    study.check(f"{ends} ends: greatest move outwards once the coil lies down, mm", outwards, 0.0, "thesis, 7.1",
+    study.check(f"{ends} ends: maximum outward movement once the coil lies flat, mm", outwards, 0.0, "thesis, 7.1",
                 kind="at_most")  # fmt: skip
-    study.check(f"{ends} ends: last centre of pressure over r", c["pressure"][-1] / RADIUS, 1 / 3, "thesis, 7.1",
+    study.check(f"{ends} ends: final centre of pressure over r", c["pressure"][-1] / RADIUS, 1 / 3, "thesis, 7.1",
                 kind="at_most")  # fmt: skip
-    study.check(f"{ends} ends: last rate, N/mm", c["rate"][-1], wahl / c["active"][-1],
+    study.check(f"{ends} ends: final rate, N/mm", c["rate"][-1], wahl / c["active"][-1],
                 "G d⁴/(64 r³ n), n active turns", 0.05)  # fmt: skip
     shown = {"travel, mm": c["travel"], "force, N": c["force"], "rate, N/mm": c["rate"],
              "pressure centre/r": c["pressure"] / RADIUS, "force centre/r": c["centre"] / RADIUS,
@@ -115,23 +116,23 @@ def judge_path(study: Study, ends: str, c: dict[str, np.ndarray], wahl: float) -
 
 
 def judge_release(study: Study, ends: str, c: dict[str, np.ndarray], wahl: float) -> float:
-    """Lift-off on the release path: one place bears alone, r from the axis, and the rate falls; the rate after it."""
+    """Lift-off during release: one contact remains, at r from the axis, and the rate falls; the rate after it."""
     release = np.arange(DOWN, DOWN + sum(UP) - 1)  # at zero force nothing bears
     is_alone = c["pressure"][release] > 0.99 * RADIUS
     lying, alone = release[~is_alone], release[is_alone]
     place, before, after = f"release, {ends} ends", c["rate"][lying[1]], c["rate"][alone[-1]]
-    study.check(f"{place}: rate with the coil down, N/mm", before, wahl / c["active"][lying[1]],
+    study.check(f"{place}: rate with the coil lying flat, N/mm", before, wahl / c["active"][lying[1]],
                 "G d⁴/(64 r³ n), n active turns", 0.05)  # fmt: skip
-    study.check(f"{place}: rate after lift-off over that before", after / before, 0.6, "it falls: thesis, 7.2.2",
+    study.check(f"{place}: rate after lift-off over the rate before", after / before, 0.6, "thesis, 7.2.2: it falls",
                 kind="at_most")  # fmt: skip
     where = "at the tip" if c["down"][alone[-1]] == 0.0 else f"{c['down'][alone[-1]]:.2f} turns from the tip"
     study.note(f"{place}: lift-off between {c['force'][lying[-1]]:.1f} and {c['force'][alone[0]]:.1f} N; then the wire "
-               f"bears {where}.")  # fmt: skip
+               f"touches {where} only.")  # fmt: skip
     return after
 
 
 def held_tips(study: Study, bending: float) -> None:
-    """Tips held against turning: force centre of springs of n + ½ turns at a small load."""
+    """Tips held against rotation: force centre of springs of n + ½ turns at a small load."""
     for n in (2.5, 4.5, 8.5):
         spring = {"wire_diameter": 2.0, "mean_diameter": 2 * RADIUS, "turns": n, "pitch": 4.0}
         analysis = press(spring, "elastic", [{"to": {"travel": 0.2}, "steps": 1}], {"hold": "tips"})

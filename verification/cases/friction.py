@@ -1,12 +1,14 @@
 """Friction: a dragged rod against μ N, a rolling one against s/r, and the cycle of a spring for three coefficients
 
-A straight rod lies on a seat and is pressed with N in all. Dragged along or across, held against turning, it pulls back
-with μ N; if it may turn about its axis it rolls by s/r instead, for its underside sticks, and needs no force: the
-tolerance is that of a step of 0.02 rad, over which the slip counts turns to the first order.
+A straight rod lies on a seat and is pressed on it with the total force N. Dragged lengthways or sideways and held
+against rotation, it resists with μ N. If it is free to rotate about its axis, it rolls by s/r instead, because its
+underside sticks, and needs no force; the tolerance is that of a step of 0.02 rad, over which the slip is linear in the
+rotations.
 
-A closed and ground spring, elastic, with end coils in grooves, is pressed by 15 mm and released, twice. Its coils and
-end coils slip a little where they lie down. What a cycle loses must be positive, the same in the second cycle as in the
-first within 1 %, and without friction no more than 1e-5 of the energy of the spring, the error of its increments.
+An elastic closed and ground spring with its end coils in grooves is compressed by 15 mm and released, twice. Its coils
+and end coils slip a little where they come into contact. The loss of a cycle must be positive and the same in the
+second cycle as in the first to within 1 %; without friction it must not exceed 1e-5 of the energy of the spring, the
+error of its increments.
 """
 
 import matplotlib as mpl
@@ -19,8 +21,8 @@ from coilset.model.contact.base import SEAT_DOFS
 from coilset.model.contact.friction import SeatFriction
 from coilset.model.contact.seat import Seat
 from coilset.model.material import library
-from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
+from coilset.model.style import STYLE
 from coilset.verification.frame import Frame
 from coilset.verification.study import Study
 from coilset.verification.wires import wire_points
@@ -49,7 +51,7 @@ def pressed_rod(free: tuple[int, ...]) -> tuple[Frame, dict[int, float]]:
 
 
 def drag(component: int, way: float, free: tuple[int, ...]) -> tuple[float, float]:
-    """Force that a rod needs to move by `way`, N, and its mean turn about its axis, rad."""
+    """Force needed to move a rod by `way`, N, and its mean rotation about its axis, rad."""
     frame, forces = pressed_rod(free)
     drawn = [frame.dof(node, component) for node in range(NODES)]
     before = frame.layout.gather(frame.system.state["R"].trial).copy()
@@ -75,7 +77,7 @@ def run(study: Study) -> None:
         study.check(f"force of a rod dragged {name}, N", force, MU * LOAD * NODES, "μ N", 1e-6)
     force, turn = drag(1, 0.04, (1, 3))
     study.check("force of a rolling rod over μ N", force / (MU * LOAD * NODES), 0.0, "it sticks", 1e-6, "absolute")
-    study.check("turn of a rolling rod, rad", turn, -0.04 / RADIUS, "s/r", 1e-3)
+    study.check("rotation of a rolling rod, rad", turn, -0.04 / RADIUS, "s/r", 1e-3)
     rows, curves = [], {}
     for mu in COLOURS:
         travel, force = curves[mu] = cycles(mu)
@@ -83,18 +85,20 @@ def run(study: Study) -> None:
         lost = [np.trapezoid(force[k : k + 2 * STEPS + 1], travel[k : k + 2 * STEPS + 1]) for k in (0, 2 * STEPS)]
         rows.append([mu, force.max(), *lost, lost[1] / energy])
         if mu:
-            name = f"second cycle's loss over the first one's, μ = {mu:g}"
+            name = f"loss of the second cycle over that of the first, μ = {mu:g}"
             study.check(name, lost[1] / lost[0], 1.0, "first cycle", 0.01)
-            study.check(f"0 over the loss of a cycle, μ = {mu:g}", -lost[1], 0.0, "second law", kind="at_most")
+            study.check(
+                f"loss of a cycle with reversed sign, N mm, μ = {mu:g}", -lost[1], 0.0, "second law", kind="at_most"
+            )
         else:
-            study.check("loss over the energy, μ = 0", lost[1] / energy, 0.0, "elasticity", 1e-5, "absolute")
+            study.check("loss over energy, μ = 0", lost[1] / energy, 0.0, "elasticity", 1e-5, "absolute")
     study.table("spring of 7.5 turns, two cycles to 15 mm",
-                ["μ", "greatest force, N", "loss 1, N mm", "loss 2, N mm", "of the energy"], rows)  # fmt: skip
+                ["μ", "maximum force, N", "loss 1, N mm", "loss 2, N mm", "loss 2 over energy"], rows)  # fmt: skip
     draw(study, curves)
 
 
 def draw(study: Study, curves: dict[float, np.ndarray]) -> None:
-    """Characteristics, and how far they lie beside that without friction."""
+    """Characteristics, and their deviation from the one without friction."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.2, 3.9), layout="constrained")
         left, right = figure.subplots(1, 2)
@@ -104,7 +108,7 @@ def draw(study: Study, curves: dict[float, np.ndarray]) -> None:
             if mu:
                 right.plot(travel, force - curves[0.0][1], ".-", color=colour, lw=0.8, ms=3, label=f"μ = {mu:g}")
         left.set(xlabel="travel in mm", ylabel="axial force in N", title="Closed and ground, two cycles")
-        right.set(xlabel="travel in mm", ylabel="force less that without friction, N")
+        right.set(xlabel="travel in mm", ylabel="force minus that without friction, N")
         for axes in (left, right):
             axes.grid(lw=0.3)
             axes.legend(fontsize=8)

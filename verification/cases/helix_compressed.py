@@ -1,14 +1,15 @@
-"""Elastic helix pressed to 80 % of its height against the uniform rod's two nonlinear equations
+"""Elastic helix compressed to 80 % of its height against the uniform rod's two nonlinear equations
 
-Two turns of wire 5, D 40 and pitch 12 and 30. Both ends are led as the uniform helix leads them (radius, rise,
-inclination; `references/uniform_helix.py`), so that no part of the spring knows of its ends: every node must then lie
-on the helix, and the ends bear the axial force F and the torque M about the axis that the equations give.
+Two turns of wire 5, D 40 and pitch 12 and 30. Both ends are driven as the uniform helix prescribes (radius, rise,
+inclination; `references/uniform_helix.py`), so that the ends do not disturb any part of the spring: every node must
+then lie on the helix, and the ends must carry the axial force F and the torque M about the axis that the equations
+give.
 
 Tolerance: the sections lie on the true centre line, but the rods are straight; with φ the angle of a rod and h/R the
-slope, F was found to err by 0.033 φ² (h/R)² from 8 to 32 rods a turn: 0.045 φ² (h/R)². To it comes a tenth of the
-strain F/GA, 1.5e-4 and 3.6e-4, since the rod's strains are logarithmic and count per current length. The torque about
-the axis is a small difference, Mt sin ϑ + M3 cos ϑ, of moments that the program takes about the chord and the
-reference about the section's normal, which shear has tilted by F/GA: judged over Mt, that much is added.
+slope, the error found in F is 0.033 φ² (h/R)² from 8 to 32 rods per turn; the tolerance is 0.045 φ² (h/R)². A tenth of
+the strain F/GA, 1.5e-4 and 3.6e-4, is added, because the rod's strains are logarithmic and refer to the current length.
+The torque about the axis is a small difference, Mt sin ϑ + M3 cos ϑ, of moments that the program takes about the chord
+and the reference about the section normal, which shear has tilted by F/GA; relative to Mt, that amount is added.
 """
 
 import matplotlib as mpl
@@ -18,8 +19,8 @@ from matplotlib.figure import Figure
 from coilset.meshes.placement import section_placement
 from coilset.meshes.spring import SpringSpec
 from coilset.model.material import library
-from coilset.model.results.figures import STYLE
 from coilset.model.rod.kinematics import GAUSS, chord_triads
+from coilset.model.style import STYLE
 from coilset.verification.chain import ROTATION_X, ROTATION_Y, ROTATION_Z, X, Y, Z, chain, drive
 from coilset.verification.references.rod_shooting import Stiffness
 from coilset.verification.references.uniform_helix import Helix, deformed
@@ -28,7 +29,7 @@ from coilset.verification.study import Study
 FAST = True
 WIRE, DIAMETER, TURNS, PITCHES = 5.0, 40.0, 2, (12.0, 30.0)  # mm
 LEFT = 0.8  # of the height
-MESHES = (8, 16, 32, 64)  # rods a turn
+MESHES = (8, 16, 32, 64)  # rods per turn
 JUDGED = (16, 64)
 STEPS = 4
 
@@ -47,7 +48,9 @@ def press(pitch: float, helix: Helix, mesh: int) -> tuple[float, float, np.ndarr
         way = {X: helix.radius - 0.5 * DIAMETER, Y: 0.0, Z: sinks, ROTATION_X: tilt, ROTATION_Y: 0.0, ROTATION_Z: 0.0}
         moves |= {frame.dof(node, component): value for component, value in way.items()}
     drive(frame, STEPS, moves)
-    frame.step(moves=dict.fromkeys(moves, 0.0))  # at rest: moments on turns belong to the chart, which starts anew here
+    frame.step(
+        moves=dict.fromkeys(moves, 0.0)
+    )  # at rest: moments on rotations refer to the chart, which starts anew here
     force, torque = frame.force(frame.dof(last, Z)), frame.force(frame.dof(last, ROTATION_Z))
     x = nodes + np.array([frame.moved(k) for k in range(last + 1)])
     torque += x[-1, 0] * frame.force(frame.dof(last, Y)) - x[-1, 1] * frame.force(frame.dof(last, X))
@@ -67,7 +70,7 @@ def run(study: Study) -> None:
             errors[pitch, mesh] = abs(force / helix.force - 1.0)
             rows.append([pitch, mesh, -force, errors[pitch, mesh], torque / helix.torque - 1.0, off])
             if mesh in JUDGED:
-                at = f"pitch {pitch:g}, {mesh} rods a turn"
+                at = f"pitch {pitch:g}, {mesh} rods per turn"
                 strain = abs(helix.force) / stiffness.GA
                 tolerance = 0.045 * (2 * np.pi / mesh * rise / R) ** 2 + 0.1 * strain
                 study.check(f"axial force, N, {at}", -force, -helix.force, "uniform helix", tolerance)
@@ -75,7 +78,7 @@ def run(study: Study) -> None:
                 study.check(f"torque over Mt, {at}", torque / Mt, helix.torque / Mt, "uniform helix",
                             tolerance + strain, "absolute")  # fmt: skip
                 study.check(f"radius of the nodes, off by R, {at}", off, 0.0, "uniform helix", tolerance, "absolute")
-    columns = ["pitch", "rods a turn", "force, N", "its error", "error of the torque", "radius, off by R"]
+    columns = ["pitch", "rods per turn", "force, N", "its error", "error of the torque", "radius, off by R"]
     study.table(f"pressed to {100 * LEFT:g} % of the height", columns, rows)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(5.2, 3.6), layout="constrained")
@@ -88,7 +91,7 @@ def run(study: Study) -> None:
             axes.loglog(MESHES, 0.045 * (2 * np.pi / np.array(MESHES) * slope) ** 2, ":", color=colour, lw=0.9)
         axes.set_xticks(MESHES, [str(n) for n in MESHES])
         axes.minorticks_off()
-        axes.set(xlabel="rods a turn", ylabel="error of the force", title="Helix at 80 % of its height; dotted: h²")
+        axes.set(xlabel="rods per turn", ylabel="error of the force", title="Helix at 80 % of its height; dotted: h²")
         axes.grid(lw=0.3)
         axes.legend(fontsize=8)
     study.figure("helix_compressed", figure)

@@ -1,13 +1,13 @@
 """Initial rates of clamped springs, D/d 4 to 12 and pitch 5° to 20°, against Castigliano's integral of the curved rod
 
-Nine cylinders of 2.5 turns, 16 rods a turn, with sections that know the wire's curvature (`curved`) and the thesis's
-(`plane`). The reference integrates the complementary energy of the true centre line with the six reactions of a
-clamped head (`springs/curved_rod.py`), for `curved` with stiffnesses of its own of such a section; it knows no
-elements. The rate is that at no travel: forces at 5e-5 and 1e-4 of the free length are extrapolated to zero, so that
-the characteristic's curvature counts with its second order only, 1e-8.
+Nine cylinders of 2.5 turns, 16 rods per turn, with sections that account for the curvature of the wire (`curved`) and
+the thesis's (`plane`). The reference integrates the complementary energy of the true centre line with the six reactions
+of a clamped head (`springs/curved_rod.py`), for `curved` with its own computation of the stiffnesses of such a section;
+it uses no elements. The rate is that at zero travel: it is extrapolated from the forces at 5e-5 and 1e-4 of the free
+length, so that the curvature of the characteristic enters to second order only, 1e-8.
 
-Tolerance: 3e-5, of which 0.7 to 2.3e-5 was found. The table of the formula G d⁴/8 D³ n, which knows neither pitch nor
-heads nor the sections' curvature, is for reading.
+Tolerance: 3e-5; the deviations found are 0.7 to 2.3e-5. The table of the formula G d⁴/8 D³ n, which neglects the pitch,
+the heads and the curvature of the sections, is for information.
 """
 
 import matplotlib as mpl
@@ -17,7 +17,7 @@ from mpi4py import MPI
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import Case, check
-from coilset.model.results.figures import STYLE
+from coilset.model.style import STYLE
 from coilset.verification.springs.curved_rod import clamped_rate
 from coilset.verification.study import Study
 
@@ -68,7 +68,9 @@ def draw(found: dict[str, np.ndarray]) -> Figure:
             for k, index in enumerate(INDICES):
                 errors = 1e6 * (found[kind][k, :, 0] / found[kind][k, :, 1] - 1.0)
                 axes.plot(ANGLES, errors, f"C{k}o{style}", ms=4, lw=1, label=f"{kind}, D/d = {index:g}")
-        axes.set(xlabel="pitch angle in °", ylabel="error of the rate in 10⁻⁶", title="Clamped springs, 16 rods a turn")
+        axes.set(
+            xlabel="pitch angle in °", ylabel="error of the rate in 10⁻⁶", title="Clamped springs, 16 rods per turn"
+        )
         axes.grid(lw=0.3)
         axes.legend(fontsize=8)
     return figure

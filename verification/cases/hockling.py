@@ -1,13 +1,13 @@
 """Torque at which a straight clamped rod leaves its axis (hockling), without and under tension, against Greenhill
 
-A straight wire is clamped at both ends; one end moves along and turns about the axis. Under tension of 0, ¼, ½ and ¾
-of 4π² EI/L² it is twisted until the least eigenvalue of the tangent's symmetric part is zero; there T is read off the
-sections. Without tension T L/EI = 2 · 4.493409, under tension it follows from a transcendental equation
-(`references/stability.py`). One per cent below no pivot of the tangent is negative, one per cent above two are: the
-rod may give way to any side.
+A straight wire is clamped at both ends; one end is free to move along the axis and is rotated about it. Under tension
+of 0, ¼, ½ and ¾ of 4π² EI/L² it is twisted until the lowest eigenvalue of the symmetric part of the tangent vanishes; T
+is read off the sections there. Without tension T L/EI = 2 · 4.493409, under tension it follows from a transcendental
+equation (`references/stability.py`). One per cent below that torque no pivot of the tangent is negative; one per cent
+above it two are, because the rod may deflect to any side.
 
-Tolerance: 0.05 (TL/EI)²/n², for 80 rods; the factor is 1.1 to 1.4 times what was found, and the error falls by a
-factor of 6 from 40 to 80 rods. r/L = 3e-3, so that shear counts with (r/2L)² (T L/EI)² E/G, up to 1e-3 of this.
+Tolerance: 0.05 (TL/EI)²/n², for 80 rods; the factor is 1.1 to 1.4 times what was found, and the error falls by a factor
+of 6 from 40 to 80 rods. r/L = 3e-3, so shear contributes (r/2L)² (T L/EI)² E/G, up to 1e-3 of this.
 """
 
 import matplotlib as mpl
@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 
 from coilset.meshes.errors import SolveError
 from coilset.model.material import library
-from coilset.model.results.figures import STYLE
+from coilset.model.style import STYLE
 from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, X, Y, Z, chain, straight
 from coilset.verification.references.stability import twisted_rod
 from coilset.verification.stability import lowest_eigenvalue, negative_pivots, tangent
@@ -53,14 +53,14 @@ class TwistedRod:
         return tangent(self.frame.system, self.frame.load)
 
     def critical(self, near: float) -> tuple[float, float]:
-        """T L/EI in the sections where the least eigenvalue vanishes, sought up to 4 % beside `near`."""
+        """T L/EI in the sections where the lowest eigenvalue vanishes, sought within 4 % of `near`."""
         found = brentq(lambda torque: lowest_eigenvalue(self.twist(torque)), 0.96 * near, 1.04 * near, xtol=1e-7)
         self.twist(found)
         return found, self.frame.resultants[0, 0, 3] * LENGTH / self.EI
 
 
 def run(study: Study) -> None:
-    """Critical torques, and the signs of pivots beside them."""
+    """Critical torques, and the signs of the pivots on either side of them."""
     rows: list[list[object]] = []
     found: dict[int, list[float]] = {n: [] for n in MESHES}
     for tension in TENSIONS:
@@ -73,7 +73,14 @@ def run(study: Study) -> None:
         study.check(f"T L/EI, {at}, {n} rods", torque, exact, "Greenhill", 0.05 * (exact / n) ** 2)
         for factor, count in ((0.99, 0), (1.01, 2)):
             pivots = negative_pivots(rod.twist(factor * driven))
-            study.check(f"negative pivots at {factor:g} of it, {at}", pivots, count, "stability", 0.0, "absolute")
+            study.check(
+                f"negative pivots at {factor:g} of the critical torque, {at}",
+                pivots,
+                count,
+                "stability",
+                0.0,
+                "absolute",
+            )
         rows.append([tension, exact, *(f"{found[m][-1] / exact - 1:+.1e}" for m in MESHES)])
     columns = ["P over 4π² EI/L²", "T L/EI, Greenhill", *(f"error, {n} rods" for n in MESHES)]
     study.table("critical torque", columns, rows)

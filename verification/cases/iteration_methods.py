@@ -1,18 +1,19 @@
 """The example spring with every iteration method: all pass the reversal and end in the same state
 
-`examples/ck15_presetting.yaml` (Ck 15, 2.5 turns, pressed to block and released), between clamped heads and between
-seats, in 10 steps down and 12 up and in 60 each. Counted are iterations, factorisations, evaluations of the residual
-(one brings all section points up to date, their tangents too) and time, failed solves included.
+`examples/ck15_presetting.yaml` (Ck 15, 2.5 turns, compressed to block and released), between clamped heads and between
+seats, in 10 steps down and 12 up and in 60 each. Iterations, factorisations, evaluations of the residual (each updates
+all section points and their tangents) and time are counted, failed solves included.
 
-A method that must cut a step takes other steps than the rest, and the law's error over them then ends elsewhere. So
-each method's final state is compared with Newton's along the very same steps: positions up to 1e-6 of the travel and
-stresses up to 1e-6 of the greatest. To see that and not the tolerance of (6.3.1), ε is 1e-9 here.
+A method that must cut a step takes different steps from the others, and the error of the law over them leads to a
+different final state. Each method's final state is therefore compared with Newton's along exactly the same steps:
+positions to 1e-6 of the travel and stresses to 1e-6 of the maximum. To see this rather than the tolerance of (6.3.1), ε
+is 1e-9 here.
 
-Recommendation: Newton. It takes the fewest iterations and the least time and cuts no step. A rod gains nothing from
-keeping a matrix: its section points give their tangents with their stresses, and factorising is some 3 % of the time
-(`coilset bench`), with 40 elements as with thousands. The methods that keep it save up to half of the factorisations
-and pay with three to fifteen times the evaluations; BFGS is the best of them. Arc-length comes next to Newton and is
-the one for limit points.
+Recommendation: Newton. It takes the fewest iterations and the shortest time and cuts no step. A rod gains nothing from
+keeping a matrix: its section points return their tangents together with their stresses, and factorisation takes about 3
+% of the time (`coilset bench`), with 40 elements as with thousands. The methods that keep it save up to half of the
+factorisations at the price of three to fifteen times the evaluations; BFGS is the best of them. Arc-length comes second
+to Newton and is the method for limit points.
 """
 
 import itertools
@@ -32,8 +33,8 @@ from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.methods import METHODS, rod_method
 from coilset.model.equilibrium.newton import Newton, Start
 from coilset.model.examples import EXAMPLES
-from coilset.model.results.figures import STYLE
 from coilset.model.results.record import Snapshot, Step
+from coilset.model.style import STYLE
 from coilset.verification.listen import listen
 from coilset.verification.study import Study
 
@@ -116,7 +117,7 @@ def newton_along(ends: str, steps: Iterable[Step]) -> Snapshot | None:
 
 
 def apart(run: Run, reference: Snapshot | None) -> float:
-    """Greatest difference of a final state from a Snapshot: of positions over the travel, of stresses over the largest.
+    """Maximum difference of a final state from a Snapshot: of positions over the travel, of stresses over the largest.
 
     Infinite if the run did not end, or there is no reference.
     """

@@ -1,10 +1,10 @@
 """Both integrators of the law against Heun's method with a tolerance of 1e-8: error of stress over the strain increment
 
-Ck 15 along tension, reversed torsion and tension with an abrupt change to torsion, one step an increment (Heun without
-its error control). The greatest error of stress along the path, over the flow stress, must fall with the square of the
-increment for both; Heun with its error control must keep to its tolerance whatever the increment is.
-That the reference itself is right is shown elsewhere: `tests/material/test_accuracy.py` integrates the rate equations
-as they stand, in 3 × 3 tensors with scipy's DOP853.
+Ck 15 along tension, reversed torsion and tension with an abrupt change to torsion, one step per increment (Heun without
+its error control). The maximum error of stress along the path, over the flow stress, must fall with the square of the
+increment for both; Heun with its error control must keep its tolerance whatever the increment. That the reference
+itself is right is shown elsewhere: `tests/material/test_accuracy.py` integrates the rate equations as they stand, in 3
+× 3 tensors with scipy's DOP853.
 """
 
 import matplotlib as mpl
@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.model.material import library, points
-from coilset.model.results.figures import STYLE
+from coilset.model.style import STYLE
 from coilset.verification.study import Study
 
 FAST = True
@@ -59,7 +59,7 @@ def run(study: Study) -> None:
         study.check(f"Heun with error control, {name}", controlled, 1e-4, "its tolerance", 0.0, "at_most")
     rows = [[name, method, *(f"{error:.1e}" for error in line)] for (name, method), line in errors.items()]
     study.table(
-        "greatest error of stress over the flow stress", ["path", "method", *map("{:g}".format, INCREMENTS)], rows
+        "maximum error of stress over the flow stress", ["path", "method", *map("{:g}".format, INCREMENTS)], rows
     )
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.6, 3.8), layout="constrained")

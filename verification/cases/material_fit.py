@@ -1,10 +1,11 @@
 """Identification of Ck 15's constants from synthetic tests with 1 % noise: each within its stated uncertainty
 
 Four tests of the law itself (tension to 50 %, reversed torsion, tension then torsion, torsion then tension), driven
-through one point by Heun's method with a tolerance of 1e-6. Every reading of stress gets normal noise of 1 % of the
-test's greatest stress. The stated uncertainty is to hold for all constants together with 95 % confidence, which is 2.81
-standard deviations for ten free constants: a constant outside is to be expected in one series of twenty. b1*, where the
-two branches of k² meet, is what such tests tell least. The data in examples/material/fit/ are those of seed 1.
+through one point by Heun's method with a tolerance of 1e-6. Normally distributed noise of 1 % of the maximum stress of
+the test is added to every stress reading. The stated uncertainty should hold for all constants together with 95 %
+confidence, which is 2.81 standard deviations for ten free constants: a constant outside is to be expected in one series
+out of twenty. Such tests determine b1*, where the two branches of k² meet, least well. The data in
+examples/material/fit/ are those of seed 1.
 """
 
 from collections.abc import Iterable, Iterator
@@ -16,10 +17,10 @@ from matplotlib.figure import Figure
 from coilset.model.material import library, programs
 from coilset.model.material.identification import fit
 from coilset.model.material.identification.experiments import Test
-from coilset.model.results.figures import STYLE
+from coilset.model.style import STYLE
 from coilset.verification.study import Study
 
-NOISE = 0.01  # of the greatest stress of each test
+NOISE = 0.01  # of the maximum stress of each test
 SERIES = 10
 PROGRAMS = {  # targets and increments
     "tension": (({"eps11": 0.02}, 200), ({"eps11": 0.5}, 480)),
@@ -65,9 +66,9 @@ def run(study: Study) -> None:
     )
     known = np.array([true[name] for name in names])
     off = np.abs(value - known) / stated
-    study.check("series with a constant outside its uncertainty", (off > 1).any(axis=1).sum(), 2, "0.5 expected of 10",
+    study.check("series with a constant outside its uncertainty", (off > 1).any(axis=1).sum(), 2, "0.5 of 10 expected",
                 kind="at_most")  # fmt: skip
-    study.check("greatest distance over the stated uncertainty", off.max(), 1.5, "3 to 4 standard deviations", 0.0,
+    study.check("maximum deviation over the stated uncertainty", off.max(), 1.5, "3 to 4 standard deviations", 0.0,
                 "at_most")  # fmt: skip
     for k, name in enumerate(names):
         if name in ("k0_squared", "a1", "a3", "a5", "a7", "a"):

@@ -1,17 +1,17 @@
-"""Torque that virgin and preset bars lose at constant twist, and how steady creep spreads stress, in closed form
+"""Torque that virgin and preset bars lose at constant twist, and how steady creep redistributes stress, in closed form
 
 A bar at constant twist creeps in pure shear, γ = A τ^N t^p by time hardening (N = 6, p = 0.3, A = 1e-20, G = 80,000
-N/mm²). Each radius relaxes by itself, τ = τ₀ (1 + (N − 1) G A t^p τ₀^(N−1))^(−1/(N−1)). Where τ₀ grows with r, to
-700 N/mm² at the surface, the torque over that at the start is
+N/mm²). Each radius relaxes independently, τ = τ₀ (1 + (N − 1) G A t^p τ₀^(N−1))^(−1/(N−1)). Where τ₀ grows with r, to
+700 N/mm² at the surface, the ratio of the torque to its initial value is
 
     M/M₀ = ₂F₁(1/(N−1), 4/(N−1); 1 + 4/(N−1); −z),   z = (N − 1) G A t^p τR^(N−1).
 
-A bar preset before, twisted beyond yield to three times its working twist and let go, has another τ₀(r): without
-hardening min(G ϑ₁ r, τy) − G (ϑ₁ − ϑ) r, over which the relation is integrated (scipy.quad). Under
-a constant torque M steady creep, p = 1, ends at τ = τR (r/R)^(1/N) with τR = (3 + 1/N) M/(2π R³).
+A bar that was preset, that is, twisted beyond yield to three times its working twist and released, has a different
+τ₀(r): without hardening min(G ϑ₁ r, τy) − G (ϑ₁ − ϑ) r, over which the relation is integrated (scipy.quad). Under a
+constant torque M steady creep, p = 1, ends at τ = τR (r/R)^(1/N) with τR = (3 + 1/N) M/(2π R³).
 
-Tolerance: 0.2 %, the error of 31 steps, equal in log t, and of the section's 16 rings. Found are 0.05 % of the virgin
-bar, 0.02 % of the preset one, 0.002 % of steady creep.
+Tolerance: 0.2 %, the error of 31 steps, equal in log t, and of the section's 16 rings. The deviations found are 0.05 %
+for the virgin bar, 0.02 % for the preset one and 0.002 % for steady creep.
 """
 
 import matplotlib as mpl
@@ -24,9 +24,9 @@ from coilset.meshes.placement import straight
 from coilset.model.material.creep_law import CreepLaw
 from coilset.model.material.file import MaterialFile
 from coilset.model.material.law import Law
-from coilset.model.results.figures import STYLE
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import polar
+from coilset.model.style import STYLE
 from coilset.verification.study import Study
 
 FAST = True
@@ -126,7 +126,7 @@ def steady() -> tuple[np.ndarray, np.ndarray]:
     """Radii over R and τ over τR once creep is steady at a constant torque."""
     bar, twist = Bar(law(exponent=EXPONENT, power=1.0)), 0.0
     rim = TORQUE * (3.0 + 1.0 / EXPONENT) / (2.0 * np.pi * R**3)
-    elastic = rim / (G * A * rim**EXPONENT)  # hours in which creep is as great as the elastic strain
+    elastic = rim / (G * A * rim**EXPONENT)  # hours after which creep is as large as the elastic strain
     for hours in (0.0, *elastic * 10.0 ** np.linspace(-3, 2, 60)):
         for _iteration in range(30):
             torque, slope = bar.torque(twist, hours)

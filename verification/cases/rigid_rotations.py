@@ -1,8 +1,8 @@
 """Curved rod rotated rigidly four times about a skew axis: no stress, and back where it was
 
-One end of a stress-free helix is rotated by 8π about the axis (1, 2, 3), which is no axis of anything; the other nodes
-are free. Every state is a rigid motion. Tolerance: 1e-9 MPa, some 1e-14 of the elastic modulus times the number of
-steps; positions to 1e-9 mm.
+One end of a stress-free helix is rotated by 8π about the axis (1, 2, 3), which is not an axis of symmetry; the other
+nodes are free. Every state is a rigid motion. Tolerance: 1e-9 MPa, about 1e-14 of the elastic modulus times the number
+of steps; positions to 1e-9 mm.
 """
 
 import matplotlib as mpl
@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.model.material import library
-from coilset.model.results.figures import STYLE
+from coilset.model.style import STYLE
 from coilset.verification.chain import ROTATION_X, X, chain, drive
 from coilset.verification.study import Study
 
@@ -21,7 +21,7 @@ STEPS = (32, 64)
 
 
 def rotate(steps: int) -> tuple[np.ndarray, float, list[int]]:
-    """Greatest stress after each step, MPa, distance of the nodes from their start, mm, and iterations of the steps."""
+    """Maximum stress after each step, MPa, distance of the nodes from their start, mm, and iterations of the steps."""
     angle = np.linspace(0.0, 3.0 * np.pi, ELEMENTS + 1)
     nodes = np.stack([20.0 * np.cos(angle), 20.0 * np.sin(angle), 2.0 * angle], axis=1)
     frame, stress = chain(nodes, RADIUS, library.load("elastic"), held=()), []
@@ -34,15 +34,15 @@ def rotate(steps: int) -> tuple[np.ndarray, float, list[int]]:
 
 
 def run(study: Study) -> None:
-    """Stress and place after four whole rotations."""
+    """Stress and position after four full rotations."""
     rows, found = [], {}
     for steps in STEPS:
         found[steps], back, counts = rotate(steps)
         at = f"after {ANGLE / np.pi:g}π in {steps} steps"
-        study.check(f"greatest stress on the way, MPa, {at}", found[steps].max(), 0.0, "rigid", 1e-9, "absolute")
-        study.check(f"greatest distance from the start, mm, {at}", back, 0.0, "rigid", 1e-9, "absolute")
+        study.check(f"maximum stress on the way, MPa, {at}", found[steps].max(), 0.0, "rigid", 1e-9, "absolute")
+        study.check(f"maximum distance from the start, mm, {at}", back, 0.0, "rigid", 1e-9, "absolute")
         rows.append([steps, max(counts), sum(counts)])
-    study.table("iterations", ["steps", "most of a step", "all"], rows)
+    study.table("iterations", ["steps", "maximum per step", "all"], rows)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(5.2, 3.4), layout="constrained")
         axes = figure.add_subplot()
@@ -51,7 +51,7 @@ def run(study: Study) -> None:
                 ANGLE / np.pi * np.arange(1, steps + 1) / steps, stress, "o-", ms=3, lw=0.8, label=f"{steps} steps"
             )
         axes.axhline(1e-9, color="0.5", lw=0.8, ls="--", label="tolerance")
-        axes.set(xlabel="angle over π", ylabel="greatest stress in MPa", title="Helix rotated rigidly")
+        axes.set(xlabel="angle over π", ylabel="maximum stress in MPa", title="Helix rotated rigidly")
         axes.grid(lw=0.3)
         axes.legend(fontsize=8)
     study.figure("rigid_rotations", figure)

@@ -1,20 +1,20 @@
 """An elastic ring pressed between two plates, far beyond flattening, against the elastica
 
 A thin ring of radius R between frictionless plates 2 h apart. A quarter of it, from the plate (slope φ = 0) to the side
-(φ = π/2), carries the vertical force V = F/2. Inextensible and without shear it obeys EI φ″ = V cos φ, hence
-φ′² = κ0² + 2 V/EI sin φ with the curvature κ0 at the plate, and
+(φ = π/2), carries the vertical force V = F/2. If inextensible and without shear, it obeys EI φ″ = V cos φ, hence φ′² =
+κ0² + 2 V/EI sin φ with the curvature κ0 at the plate, and
 
     πR/2 = ∫ dφ/φ′,    h = ∫ sin φ dφ/φ′    from 0 to π/2.
 
-For small loads this is F = (2R − 2h) EI/(R³ (π/4 − 2/π)). κ0 falls to zero at F = 2.786 EI/R², h = 0.718 R; from there
+For small loads this is F = (2R − 2h) EI/(R³ (π/4 − 2/π)). κ0 falls to zero at F = 2.786 EI/R², h = 0.718 R; from then
 on the ring lies flat on the plate between two forces F/2, with κ0 = 0 beside them. Then both integrals are Beta
 functions, and
 
-    F = EI (B(3/4, 1/2)/2)²/h² = 1.4355 EI/h²,    half of the flat length a = πR/2 − h B(1/4, 1/2)/B(3/4, 1/2).
+    F = EI (B(3/4, 1/2)/2)²/h² = 1.4355 EI/h²,    half the flat length a = πR/2 − h B(1/4, 1/2)/B(3/4, 1/2).
 
-Half of a ring of 192 straight rods is computed, held at its sides as symmetry demands. Tolerances: for the force 0.1 %,
-a polygon of N rods errs by some (π/N)² = 3e-4, the strain along the axis counts with (r/R)² = 1e-4; for the flat length
-half of the distance of the bedding's points, 0.016 R.
+Half of a ring of 192 straight rods is computed, held at its sides as symmetry requires. Tolerances: for the force 0.1
+%, since the error of a polygon of N rods is about (π/N)² = 3e-4 and axial strain contributes (r/R)² = 1e-4; for the
+flat length half the spacing of the contact points, 0.016 R.
 """
 
 from collections.abc import Callable
@@ -29,8 +29,8 @@ from scipy.special import beta
 from coilset.model.contact.base import LEVEL, SEAT_DOFS
 from coilset.model.contact.seat import Seat
 from coilset.model.material import library
-from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
+from coilset.model.style import STYLE
 from coilset.verification.frame import Frame
 from coilset.verification.study import Study
 from coilset.verification.wires import wire_points
@@ -44,7 +44,7 @@ SPLIT = np.pi / 2.0 * HEIGHT_INTEGRAL / LENGTH_INTEGRAL  # h/R at which the ring
 
 
 def elastica(height: float) -> tuple[float, float]:
-    """F R²/EI and half of the flat length over R at a height over R."""
+    """F R²/EI and half the flat length over R at a height over R."""
     if height <= SPLIT:
         return (HEIGHT_INTEGRAL / height) ** 2, np.pi / 2.0 - height * LENGTH_INTEGRAL / HEIGHT_INTEGRAL
 
@@ -59,7 +59,7 @@ def elastica(height: float) -> tuple[float, float]:
 
 
 def press() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """F R²/EI, and half of the distance of the outermost forces over R, at HEIGHTS; positions of the last state."""
+    """F R²/EI, and half the distance between the outermost forces over R, at HEIGHTS; positions of the last state."""
     law = library.load("elastic")
     angle = np.pi * np.linspace(0.0, 1.0, ELEMENTS + 1)
     nodes = np.stack([RING * np.cos(angle), 0 * angle, RING * (np.sin(angle) - 1.0) - RADIUS], axis=1)
@@ -85,19 +85,19 @@ def press() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def run(study: Study) -> None:
-    """Forces, and the length that lies flat."""
+    """Forces, and the flat length."""
     force, flat, x = press()
     reference = np.array([elastica(height) for height in HEIGHTS])
     for height, ours, half, (F, a) in zip(HEIGHTS, force, flat, reference, strict=True):
         study.check(f"F R²/EI at h = {height:.2f} R", ours, F, "elastica", 0.001)
         if a > 0.0:
-            study.check(f"half of the flat length at h = {height:.2f} R, R", half, a, "elastica", 0.008, "absolute")
+            study.check(f"half the flat length at h = {height:.2f} R, R", half, a, "elastica", 0.008, "absolute")
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(10.6, 3.6), layout="constrained")
         left, middle, right = figure.subplots(1, 3)
         fine = np.linspace(HEIGHTS[-1], 0.995, 80)
         curve = np.array([elastica(height) for height in fine])
-        for axes, ours, k, what in ((left, force, 0, "F R²/EI"), (middle, flat, 1, "half of the flat length over R")):
+        for axes, ours, k, what in ((left, force, 0, "F R²/EI"), (middle, flat, 1, "half the flat length over R")):
             axes.plot(fine, curve[:, k], "-", lw=0.9, label="elastica")
             axes.plot(HEIGHTS, ours, "o", ms=4, mfc="none", label="coilset")
             axes.axvline(SPLIT, color="0.6", lw=0.8, ls="--", label="flattening, h = 0.718 R")

@@ -5,16 +5,16 @@ A moment m of fixed direction at the end of a clamped round rod is constant alon
 
     R(s) = exp(a s) exp(c s e1),    t(s) = exp(a s) e1,
 
-the axis is a helix about m, ten turns for |m| L/EI = 20π (Kirchhoff; A. E. H. Love, § 270). With the tip's rotation
-held its equilibrium is unstable from one turn on, as the rod can unwind through space: the tangent has two negative
-pivots a turn, 20 at the end. And a moment on rotations belongs to the chart of the last equilibrium. So all nodes are
-led along the closed form in 40 steps, on a helix as much wider as keeps the chords' length; then all are let go but
-the tip's rotation, and the moment is the reaction to it. The law is without spin: γ is 5 % at the surface here and
-bending strains are 12 %, and the spin's second-order axial stress is no elastic answer (case elastic-strain-loop):
-with it the last step finds no equilibrium.
+the axis is a helix about m, ten turns for |m| L/EI = 20π (Kirchhoff; A. E. H. Love, § 270). With the rotation of the
+tip held, its equilibrium is unstable from one turn on, because the rod can unwind through space: the tangent has two
+negative pivots per turn, 20 at the end. Moreover, a moment on rotations refers to the chart of the last equilibrium.
+All nodes are therefore driven along the closed form in 40 steps, on a helix widened so that the chords keep their
+length; then everything but the rotation of the tip is released, and the moment is the reaction to it. The law is
+without spin: γ is 5 % at the surface here and bending strains are 12 %, and the second-order axial stress of the spin
+is not an elastic response (case elastic-strain-loop); with it the last step finds no equilibrium.
 
-Tolerance: the rods are straight, φ = 20π/n. The tip was found off by 0.014 φ² L, the moment by 0.022 φ²: 0.02 and 0.03
-φ²; the order is judged over 200 to 400 rods.
+Tolerance: the rods are straight, φ = 20π/n. The errors found are 0.014 φ² L in the tip and 0.022 φ² in the moment; the
+tolerances are 0.02 and 0.03 φ². The order is judged over 200 to 400 rods.
 """
 
 import matplotlib as mpl
@@ -25,14 +25,14 @@ from scipy.spatial.transform import Rotation
 from coilset.meshes.errors import SolveError
 from coilset.model.material import library
 from coilset.model.material.law import Law
-from coilset.model.results.figures import STYLE
+from coilset.model.style import STYLE
 from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, chain, straight
 from coilset.verification.frame import Frame
 from coilset.verification.study import Study
 
 FAST = True
 LENGTH, RADIUS, TURNS, STEPS = 1000.0, 2.0, 10, 40  # mm
-OUT_OF_PLANE = 0.3  # rad; the moment's share that twists is its sine
+OUT_OF_PLANE = 0.3  # rad; the part of the moment that twists is its sine
 MESHES = (200, 283, 400)
 
 
@@ -64,7 +64,7 @@ def wind(elements: int) -> tuple[np.ndarray, np.ndarray]:
         let(frame, moves)
         x, turn = led, turned
     hold = {frame.dof(elements, component): 0.0 for component in (ROTATION_X, ROTATION_Y, ROTATION_Z)}
-    let(frame, hold)  # the tip does not turn in this step: its moments are those of the fixed frame
+    let(frame, hold)  # the tip does not rotate in this step: its moments are those of the fixed frame
     moment = np.array([frame.force(dof) for dof in hold])
     return nodes + np.array([frame.moved(node) for node in range(elements + 1)]), moment
 
@@ -95,12 +95,10 @@ def run(study: Study) -> None:
         off = np.linalg.norm(moment - theirs) / np.linalg.norm(theirs)
         rows.append([n, far[-1], off])
     φ2 = (2.0 * np.pi * TURNS / MESHES[-1]) ** 2
-    study.check(f"distance of the tip over L, {MESHES[-1]} rods", far[-1], 0.0, "closed form", 0.02 * φ2, "absolute")
-    study.check(
-        f"distance of the end's moment over m, {MESHES[-1]} rods", off, 0.0, "closed form", 0.03 * φ2, "absolute"
-    )
+    study.check(f"error of the tip over L, {MESHES[-1]} rods", far[-1], 0.0, "closed form", 0.02 * φ2, "absolute")
+    study.check(f"error of the end moment over m, {MESHES[-1]} rods", off, 0.0, "closed form", 0.03 * φ2, "absolute")
     slope = -np.polyfit(np.log(MESHES), np.log(far), 1)[0]
-    study.check("order of the tip's distance", slope, 2.0, "straight rods", 0.1, "absolute")
+    study.check("order of the tip's error", slope, 2.0, "straight rods", 0.1, "absolute")
     study.table("errors", ["rods", "tip, over L", "moment, over m"], rows)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.0, 3.0), layout="constrained")

@@ -1,11 +1,11 @@
 """The elastic section of a curved wire against Göhner's equation, and how fast warping, quadrature and slice converge
 
-One section of an endless helix bears an axial force. Its shear stress on the wire's surface, at the inside and at the
+One section of an endless helix carries an axial force. Its shear stress on the wire's surface, at the inside and at the
 outside of the coil, is compared with Göhner's boundary value problem (solved to rounding), its axial stiffness with the
-torsion of a ring's sector, solved by displacements. A wire with a pitch of 1° has both factors smaller by
-1 − cos 1° = 1.5e-4. A straight wire must be exact in tension, torsion and bending. The figure shows the error over the
-degree of the warping; for a section of Ck 15 that is twisted far beyond yield, over the degree and the number of
-section points; and over the slice's mesh, elastic and for a turn of Ck 15 that is pressed nearly to block.
+torsion of a ring's sector, solved by displacements. With a pitch of 1° both factors are smaller by 1 − cos 1° = 1.5e-4.
+A straight wire must be exact in tension, torsion and bending. The figure shows the error over the degree of the
+warping; for a section of Ck 15 that is twisted far beyond yield, over the degree and the number of section points; and
+over the slice's mesh, elastic and for a turn of Ck 15 that is compressed nearly to block.
 """
 
 import matplotlib as mpl
@@ -16,10 +16,10 @@ from matplotlib.figure import Figure
 from coilset.meshes.section_shapes import round_wire
 from coilset.model.material import library
 from coilset.model.material.law import Law
-from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
 from coilset.model.section.surface import nominal_shear
 from coilset.model.slice.analysis import ACROSS
+from coilset.model.style import STYLE
 from coilset.verification.sections.helix import WIRE, HelixSection
 from coilset.verification.slice.references import ring_sector
 from coilset.verification.slice.runs import elastic, pressed

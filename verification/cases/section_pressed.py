@@ -1,14 +1,15 @@
-"""Plane, curved and warping sections and the slice against the 3D solid, over D/d and pitch: pressed and released
+"""Plane, curved and warping sections and the slice against the 3D solid, over D/d and pitch: compressed and released
 
-One turn between clamped heads is pressed in 12 steps to nine tenths of the way to block, far beyond yield, and
-released: force at full travel, set, and the shear stress that stays at the inside of the coil, at 0.9 of the wire's
-radius. D/d is 4 to 12 with the pitch that makes the nominal shear strain the same; D/d = 8 has twice that gap between
-the coils, too. Ck 15, and a material with linear hardening, which bears most of its load elastically.
+One turn between clamped heads is compressed in 12 steps to nine tenths of the way to block, far beyond yield, and
+released. Compared are force at full travel, set, and the residual shear stress at the inside of the coil, at 0.9 of the
+wire radius. D/d is 4 to 12 with the pitch that makes the nominal shear strain the same; D/d = 8 is also run with twice
+that gap between the coils. The materials are Ck 15 and one with linear hardening, which carries most of its load
+elastically.
 
-The solid's numbers are recorded (its runs take minutes each), with what its last refinement changed. The rods' are
-computed here, with 8 × 24 section points. The slice is a coil without ends; what clamped ends do is told by two rods of
-the same curved section, a clamped turn and a uniform coil, and its numbers are multiplied by that. The plane section is
-shown and not judged: docs/solid.md says what it misses.
+The numbers of the solid are recorded (its runs take minutes each), with the change due to its last refinement. Those of
+the rods are computed here, with 8 × 24 section points. The slice is a coil without ends; the effect of clamped ends is
+given by two rods of the same curved section, a clamped turn and a uniform coil, and the numbers of the slice are
+multiplied by it. The plane section is shown but not judged: docs/solid.md says what it misses.
 
 The last table measures stress on the wire's surface with the default 4 × 12 section points against 16 × 48.
 """
@@ -17,7 +18,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.results.figures import STYLE
+from coilset.model.style import STYLE
 from coilset.verification.sections.ends import ends, of_turn
 from coilset.verification.sections.solid import RECORDED, Solid
 from coilset.verification.slice.runs import pressed as press_slice
@@ -111,7 +112,9 @@ def surface(study: Study) -> None:
             )
             rows.append([solid.index, kind, few[0], many[0], few[1], many[1]])
             for moment, ours, reference in zip(("loaded", "released"), few, many, strict=True):
-                name = f"D/d = {solid.index:g}, {kind}: shear on the surface inside, {moment}, 4 × 12 points, MPa"
+                name = (
+                    f"D/d = {solid.index:g}, {kind}: shear on the surface at the inside, {moment}, 4 × 12 points, MPa"
+                )
                 study.check(name, ours, reference, "16 × 48 points", SURFACE_TOLERANCE)
     columns = ["D/d", "section", "loaded, 4 × 12", "16 × 48", "released, 4 × 12", "16 × 48"]
     study.table("Shear stress on the surface at the inside of the coil, MPa", columns, rows)

@@ -1,11 +1,11 @@
-"""Shipped springs over the section's points: force at block and set against a rule of 12 × 36 points
+"""Shipped springs over the number of section points: force at block and set against a rule of 12 × 36 points
 
-In torsion the elastic core's edge lies between two rings, in the bending of coils that touch between two angles; both
-kinks make the error of a rule. Rings that are turned against each other by half a step have twice as many angles
-together. Every shipped spring is pressed to block and released with the default rule, with 4 × 12 points and with the
-finest one, some with the thesis's section (`plane`), too. Beside them stands the section alone: a bar of Ck 15 and of
-an ideally plastic law, bent about all axes to 2, 5 and 20 times its curvature at yield (see bending-directions for the
-same in rods).
+In torsion the edge of the elastic core lies between two rings; in the bending of coils that touch, between two angles.
+These kinks cause the error of a rule. Rings rotated relative to each other by half a step have twice as many angles
+together. Every shipped spring is compressed to block and released with the default rule, with 4 × 12 points and with
+the finest rule, some also with the thesis's section (`plane`). The section is also examined alone: a bar of Ck 15 and
+of an ideally plastic law, bent about all axes to 2, 5 and 20 times its curvature at yield (see bending-directions for
+the same in rods).
 
 Tolerance: 0.2 % in force and set for the default rule, and in the moment.
 """
@@ -23,9 +23,9 @@ from coilset.model.case.case import SectionSpec
 from coilset.model.examples import EXAMPLES
 from coilset.model.material import library, points
 from coilset.model.material.law import Law
-from coilset.model.results.figures import STYLE
 from coilset.model.results.summary import summarise
 from coilset.model.section.rules import DiskRule, polar
+from coilset.model.style import STYLE
 from coilset.verification.study import Study
 
 FAST = False
@@ -33,17 +33,17 @@ Rule = tuple[int, int, bool]  # rings, angles, staggered
 SPEC = SectionSpec()
 DEFAULT: Rule = (SPEC.radial, SPEC.angular, SPEC.staggered)
 RULES: tuple[Rule, ...] = ((4, 12, False), DEFAULT)
-PLANE = ("closed_and_ground", "cone", "cylinder")  # springs that are pressed with the thesis's section, too
+PLANE = ("closed_and_ground", "cone", "cylinder")  # springs that are also compressed with the thesis's section
 LIMIT: Rule = (12, 36, True)
 TOLERANCE = 2e-3
-STEPS = 12  # each way, equal ones, lest the rules go other ways
+STEPS = 12  # each way, equal ones, so that all rules take the same path
 FACTORS = (2.0, 5.0, 20.0)  # curvature over that at yield
 AXES = np.radians(np.arange(0.0, 180.0, 3.0))
 BENDING_STEPS = 40  # from one curvature to the next
 
 
 def press(file: str, kind: str, rule: Rule) -> tuple[float, float, int, float]:
-    """Greatest force, N, set, mm, states evaluated, and seconds of the processor."""
+    """Maximum force, N, set, mm, states evaluated, and seconds of the processor."""
     names = ("radial", "angular", "staggered")
     settings = [f"mesh.section.{name}={value}".lower() for name, value in zip(names, rule, strict=True)]
     settings += [f"mesh.section.kind={kind}", *(f"loading.{k}.steps={STEPS}" for k in (0, 1))]
@@ -100,7 +100,7 @@ def run(study: Study) -> None:
 
 
 def bend(study: Study) -> dict[tuple[str, Rule], np.ndarray]:
-    """Greatest error of the moment over all axes, by law and rule, shape (factors,)."""
+    """Maximum error of the moment over all axes, by law and rule, shape (factors,)."""
     found = {}
     for name in ("ck15", "ideal_plastic"):
         law = library.load(name)
@@ -108,11 +108,11 @@ def bend(study: Study) -> dict[tuple[str, Rule], np.ndarray]:
         for rule in RULES:
             found[name, rule] = np.abs(moments(law, polar(*rule), AXES) / exact - 1.0).max(axis=1)
         for factor, worst in zip(FACTORS, found[name, DEFAULT], strict=True):
-            study.check(f"greatest error of the moment, {name}, {factor:g} κy", worst, 0.0, "48 × 192 points",
+            study.check(f"maximum error of the moment, {name}, {factor:g} κy", worst, 0.0, "48 × 192 points",
                         TOLERANCE, "absolute")  # fmt: skip
     rows = [[name, label(rule), *(100.0 * worst)] for (name, rule), worst in found.items()]
     columns = ["law", "rule", *(f"{factor:g} κy" for factor in FACTORS)]
-    study.table("greatest error of the bending moment over all axes, %", columns, rows)
+    study.table("maximum error of the bending moment over all axes, %", columns, rows)
     return found
 
 
@@ -133,7 +133,7 @@ def draw(
             style = "-" if law == "ck15" else ":"
             axes[2].plot(FACTORS, 100.0 * worst, style, color=f"C{RULES.index(rule)}", marker="o", ms=3, lw=1)
         axes[2].axhline(100.0 * TOLERANCE, color="0.6", lw=0.8)
-        axes[2].set(xscale="log", yscale="log", xlabel="κ over κ at yield", ylabel="greatest error in %")
+        axes[2].set(xscale="log", yscale="log", xlabel="κ over κ at yield", ylabel="maximum error in %")
         axes[2].set_xticks(FACTORS, [f"{factor:g}" for factor in FACTORS])
         axes[2].set_yticks([0.1, 0.2, 0.5, 1.0, 2.0], ["0.1", "0.2", "0.5", "1", "2"])
         axes[2].minorticks_off()

@@ -1,11 +1,11 @@
-"""Slender rods, r/L = 1e-2, 1e-3 and 1e-4, 8 to 128 elements: elastica and two circles in ten steps, iterations a step
+"""Slender rods, r/L = 1e-2, 1e-3 and 1e-4, 8 to 128 elements: elastica and two circles, iterations per step
 
 The same problems as in the cases elastica and two-circles, where the wire's radius is 1e-2 L and values are judged.
-After a correction with finite rotations the axial and shear forces are wrong by EA ½ w′², which grows with (L/r)²: the
-tangent is built with these forces, and Newton's method creeps or fails. Other elements take these steps in about as
-many iterations at any slenderness (D. Magisano, L. Leonetti, G. Garcea, Int. J. Num. Meth. Eng. 112 (2017) 1685, mixed
-integration point); wanted are at most 8 a step. The values, where they are reached, are judged as in the other two
-cases; at r/L = 1e-3 shear counts with 6.5e-6.
+After a correction with finite rotations the axial and shear forces are wrong by EA ½ w′², which grows with (L/r)²; if
+the tangent is built with these forces, Newton's method creeps or fails. Other elements take these steps in about the
+same number of iterations at any slenderness (D. Magisano, L. Leonetti, G. Garcea, Int. J. Num. Meth. Eng. 112 (2017)
+1685, mixed integration point); at most 8 per step are required here. The values, where they are reached, are judged as
+in the other two cases; at r/L = 1e-3 shear contributes 6.5e-6.
 """
 
 import matplotlib as mpl
@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.model.material import library
-from coilset.model.results.figures import STYLE
+from coilset.model.style import STYLE
 from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, Y, Z, chain, straight
 from coilset.verification.frame import Frame
 from coilset.verification.references.elastica import cantilever
@@ -22,7 +22,9 @@ from coilset.verification.study import Study
 FAST = False
 LENGTH, STEPS, WANTED = 100.0, 10, 8
 SLENDERNESS, MESHES = (1e-2, 1e-3, 1e-4), (8, 32, 128)
-THICK = 1e-2  # r/L whose shear the elliptic integrals would see; its values are judged in the other two cases
+THICK = (
+    1e-2  # r/L at which shear would show against the elliptic integrals; its values are judged in the other two cases
+)
 LOAD = 10.0  # PL²/EI of the elastica
 
 
@@ -51,7 +53,7 @@ def elastica(slenderness: float, elements: int) -> tuple[list[int], bool, float]
 
 
 def circles(slenderness: float, elements: int) -> tuple[list[int], bool, float]:
-    """Iterations, whether all steps converged, and the distance of the tip from the clamp over L."""
+    """Iterations, whether all steps converged, and the distance of the distance of the tip from the clamp over L."""
     plane = [(node, (Z, ROTATION_X, ROTATION_Y)) for node in range(1, elements + 1)]
     frame = chain(straight(LENGTH, elements), slenderness * LENGTH, library.load("elastic"), held=[(0, ALL), *plane])
     counts, done = take_steps(frame, moves={frame.dof(elements, ROTATION_Z): 4.0 * np.pi})
@@ -68,19 +70,19 @@ def run(study: Study) -> None:
                 at = f"{name}, r/L = {slenderness:g}, {n} rods"
                 most[name, slenderness, n] = max(counts) if done else np.inf
                 study.check(
-                    f"greatest iterations of a step, {at}",
+                    f"maximum iterations per step, {at}",
                     max(counts) if done else np.inf,
                     WANTED,
-                    "wanted",
+                    "required",
                     kind="at_most",
                 )
                 if done and slenderness < THICK and name == "elastica":
                     exact = cantilever(LOAD)[1]
                     study.check(f"v/L, {at}", value, exact, "elliptic integrals", 0.02 * LOAD / n**2 + 1e-5, "absolute")
                 elif done and slenderness < THICK:
-                    study.check(f"tip from the clamp over L, {at}", value, 0.0, "closed circles", 1e-6, "absolute")
+                    study.check(f"tip to clamp over L, {at}", value, 0.0, "closed circles", 1e-6, "absolute")
                 rows.append([name, slenderness, n, " ".join(map(str, counts)) + ("" if done else " failed")])
-    study.table(f"iterations, {STEPS} steps", ["problem", "r/L", "rods", "iterations a step"], rows)
+    study.table(f"iterations, {STEPS} steps", ["problem", "r/L", "rods", "iterations per step"], rows)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(6.6, 3.4), layout="constrained")
         axes, names = (
@@ -94,8 +96,8 @@ def run(study: Study) -> None:
             axes.bar(np.arange(len(names)) + 0.25 * (k - 1), heights, 0.22, label=f"{n} rods")
         for place, k in np.argwhere(~np.isfinite(values)):
             axes.text(place + 0.25 * (k - 1), 1.12 * top, "failed", ha="center", va="bottom", rotation=90, fontsize=7)
-        axes.axhline(WANTED, color="0.4", lw=0.8, ls="--", label="wanted")
+        axes.axhline(WANTED, color="0.4", lw=0.8, ls="--", label="required")
         axes.set_xticks(range(len(names)), names)
-        axes.set(ylabel="most iterations of a step", ylim=(0, 1.6 * top))
+        axes.set(ylabel="maximum iterations per step", ylim=(0, 1.6 * top))
         axes.legend(fontsize=8, ncols=4, loc="upper center")
     study.figure("slender_rods", figure)

@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 from coilset.meshes.section_shapes import Oval, rectangle, round_wire
 from coilset.model.material import library
 from coilset.model.material.law import Law
-from coilset.model.results.figures import STYLE
 from coilset.model.slice.analysis import ACROSS
+from coilset.model.style import STYLE
 from coilset.verification.slice.references import ring_sector, torsion_constant_ellipse, torsion_constant_rectangle
 from coilset.verification.slice.runs import WIRE, elastic
 from coilset.verification.solid_vs_rod.references import goehner_exact
@@ -38,7 +38,7 @@ def run(study: Study) -> None:
         rate, inside, outside = ring_sector(index)
         for name, ours, theirs in zip(("inside", "outside"), map(abs, (inside, outside)), goehner_exact(index),
                                       strict=True):  # fmt: skip
-            study.check(f"D/d = {index:g}, factor {name}: displacements' reference", ours, theirs,
+            study.check(f"D/d = {index:g}, factor {name}: reference by displacements", ours, theirs,
                         "Göhner's equation, solved", 1e-8)  # fmt: skip
         for degree, across in MESHES:
             found[index, degree, across] = _round(law, index, degree, across, (rate, inside, outside))

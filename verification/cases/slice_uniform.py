@@ -1,10 +1,10 @@
 """The uniform rod of two unknowns against the helical slice, in plastic flow and after release
 
-A turn of Ck 15, wire 5 mm, is pressed to nine tenths of the way to block in 12 steps and released, for D/d = 4, 6, 8
-and 12 (the same nominal shear strain, as in solid-vs-rod). The rod's section knows that fibres at the inside are
-shorter and how the transverse force's shear is distributed; it does not contract. Found are 0.06 % in force and 0.03 %
-in set at D/d = 4 and less above; the tolerances are 0.1 and 0.05 %. The slice itself is judged by its refinement here,
-and against the solid in slice-vs-solid.
+A turn of Ck 15, wire 5 mm, is compressed nine tenths of the way to block in 12 steps and released, for D/d = 4, 6, 8
+and 12 (the same nominal shear strain, as in solid-vs-rod). The section of the rod accounts for the shorter fibres at
+the inside and for the shear distribution of the transverse force; it does not contract. The deviations found are 0.06 %
+in force and 0.03 % in set at D/d = 4 and less above; the tolerances are 0.1 and 0.05 %. The slice itself is judged by
+its refinement here, and against the solid in slice-vs-solid.
 """
 
 import time
@@ -16,8 +16,8 @@ from matplotlib.figure import Figure
 from coilset.model import uniform
 from coilset.model.material import library
 from coilset.model.material.law import Law
-from coilset.model.results.figures import STYLE
 from coilset.model.slice.analysis import ACROSS
+from coilset.model.style import STYLE
 from coilset.verification.slice.runs import WIRE, Pressed, pressed
 from coilset.verification.solid_vs_rod.pressing import PressedSection
 from coilset.verification.study import Study
@@ -34,7 +34,7 @@ def run(study: Study) -> None:
     for index in INDICES:
         case = PressedSection(index)
         slices[index] = ours = pressed(index, case.pitch, case.travel)
-        rods[index] = rod = _rod(case, law)
+        rods[index] = rod = rod_pressed(case, law)
         label = f"D/d = {index:g}, {{}}, rod against slice"
         study.check(label.format("force at full travel, N"), rod[0][-1], ours.force[-1], "slice", 1e-3)
         study.check(label.format("set, mm"), rod[1], ours.set_mm, "slice", 5e-4)
@@ -45,14 +45,15 @@ def run(study: Study) -> None:
     study.check(f"D/d = 8, set ({slices[8.0].unknowns} unknowns), mm", slices[8.0].set_mm, best.set_mm,
                 f"slice of {best.unknowns} unknowns", 1e-4)  # fmt: skip
     rows = [[one.unknowns, one.force[-1], one.set_mm, *one.full, *one.released, one.seconds] for one in finer]
-    study.table("Slice at D/d = 8: N, mm, τ13 at 0.9 of the radius in MPa, seconds of the processor", [
+    study.table("Slice at D/d = 8: N, mm, τ13 at 0.9 of the radius in MPa, seconds of processor time", [
         "unknowns", "force", "set", "inside, full", "outside, full", "inside, released", "outside, released", "time",
     ], rows)  # fmt: skip
-    study.note(f"uniform rod, 48 points, 12 steps and release: {_rate(law):.0f} a second of the processor")
+    study.note(f"uniform rod, 48 points, 12 steps and release: {_rate(law):.0f} per second of processor time")
     study.figure("slice_uniform", _figure(slices, rods))
 
 
-def _rod(case: PressedSection, law: Law) -> tuple[np.ndarray, float]:
+def rod_pressed(case: PressedSection, law: Law) -> tuple[np.ndarray, float]:
+    """Force at the steps, N, and set, mm, of the uniform rod."""
     coil = np.array([WIRE, case.mean_diameter, case.pitch, 1.0])
     forces, state = uniform.press(coil, law, travels=case.travel * np.arange(1, 13) / 12)
     back, state = uniform.press(state, law, forces=np.zeros(1))
@@ -60,7 +61,7 @@ def _rod(case: PressedSection, law: Law) -> tuple[np.ndarray, float]:
 
 
 def _rate(law: Law) -> float:
-    """Presses and releases a second of the processor's time."""
+    """Presses and releases per second of processor time's time."""
     coils = np.tile([WIRE, 40.0, 12.0, 1.0], (COILS, 1))
     began = time.process_time()
     state = uniform.press(coils, law, travels=6.3 * np.arange(1, 13) / 12)[1]

@@ -1,10 +1,10 @@
 """The solid against closed solutions: torsion of a straight wire, elastic and after Nadai, and its limit moment
 
-A straight wire of 5 mm between rigid heads. Elastic torsion: the field lies in the elements' space, only their
-parabolic outline errs, with the fourth power of the element's size or better. Ideal plastic torsion has Nadai's torque
-(2π/3) τ_y R³ (1 − ¼ (θ_y/θ)³). The bending moment tends to 4/3 σ_y R³ as beam theory says; elements that lock do not
-come to rest: the same ones with full integration bear 1.5 % too much at 16 times the curvature of first yield.
-The yield stress is a tenth of the library's there, so that strains stay small.
+A straight wire of 5 mm between rigid heads. Elastic torsion: the field lies in the space of the elements; only their
+parabolic outline causes an error, which falls with the fourth power of the element size or faster. Ideally plastic
+torsion has Nadai's torque (2π/3) τ_y R³ (1 − ¼ (θ_y/θ)³). The bending moment tends to 4/3 σ_y R³ as in beam theory;
+elements that lock do not reach a limit: the same elements with full integration carry 1.5 % too much at 16 times the
+curvature of first yield. The yield stress is a tenth of the library's there, so that strains stay small.
 """
 
 from collections.abc import Iterable
@@ -18,10 +18,10 @@ from coilset.meshes.solid import SectionGrid, straight_wire
 from coilset.model.material import library
 from coilset.model.material.file import MaterialFile
 from coilset.model.material.law import Law
-from coilset.model.results.figures import STYLE
 from coilset.model.solid.heads import Motion
 from coilset.model.solid.points import MaterialPoints
 from coilset.model.solid.problem import SolidProblem
+from coilset.model.style import STYLE
 from coilset.verification.solid_vs_rod.references import nadai_torque, plastic_bending_moment
 from coilset.verification.study import Study
 
@@ -60,9 +60,9 @@ def run(study: Study) -> None:
     exact = elastic.G * np.pi * R**4 / 2 * 1e-6 / 5.0
     errors = [torques(straight(elastic, SectionGrid(n, n)), [1e-6])[0] / exact - 1 for n in (1, 2, 4)]
     for n, coarse, fine in ((2, errors[0], errors[1]), (4, errors[1], errors[2])):
-        study.check(f"elastic torsion, order of the error at {n} elements a side", -np.log2(abs(coarse / fine)), -4.0,
+        study.check(f"elastic torsion, order of the error at {n} elements per side", -np.log2(abs(coarse / fine)), -4.0,
                     "theory, at least 4", 0.0, "at_most")  # fmt: skip
-    study.check("elastic torque, 4 elements a side, N mm", exact * (1 + errors[2]), exact, "G I_p θ/L", 1e-4)
+    study.check("elastic torque, 4 elements per side, N mm", exact * (1 + errors[2]), exact, "G I_p θ/L", 1e-4)
 
     yield_shear, ratios = ideal.yield_stress / np.sqrt(3), np.array([1.0, 1.25, 1.5, 2.0, 3.0, 5.0])
     found = torques(straight(ideal, SectionGrid(4, 4)), ratios * yield_shear * 5.0 / (ideal.G * R))

@@ -1,19 +1,19 @@
-"""Shipped springs to block and back in more and more equal steps and in automatic ones: force at block and set
+"""Shipped springs to block and back in increasing numbers of equal steps and in automatic ones: force at block and set
 
-Each spring is pressed to block in so many equal steps and let go in as many, 48 at most, and once in automatic steps,
-which is the default, with 0.2 % asked for. The law and the straight path of strains in a step have errors of second
-order, so that Richardson's limit of the last two values is v + (v − v')/3, where the differences of the sequence fall;
-the observed order is log2 of their ratio. Contacts that close within a step disturb the order: those of cone, barrel
-and funnel close point by point over half of the way, and only steps shorter than the way from one point to the next
-close in. So the cone is pressed in up to 768 steps.
+Each spring is compressed to block in a number of equal steps and released in the same number, 48 at most, and once in
+automatic steps, the default, with an accuracy of 0.2 %. The law and the straight strain path in a step have errors of
+second order, so Richardson's limit of the last two values is v + (v − v')/3 where the differences of the sequence
+decrease; the observed order is log2 of their ratio. Contacts that close within a step disturb the order: those of cone,
+barrel and funnel close point by point over half of the travel, and the sequence converges only with steps shorter than
+the travel from one point to the next. The cone is therefore compressed in up to 768 steps.
 
 The example as it is shipped must be within 0.2 % of its limit in force and 0.1 % in set with automatic steps, the
-others within 0.5 and 0.2 %. Where a sequence does not close in (its last difference is more than 0.6 of the one before
-it) its limit is not taken; the last value stands for it if the two last ones are within a third of the tolerance, else
-the deviation is shown and not judged. Nor is a force that falls while the spring is pressed on: coils slide past each
-other there, without friction, and where the slide began is an accident. How steep the wall is that a spring stands on
-at block, and by how much height the tolerance is, says the first table; what steps say of their own error the second,
-and what it costs the third.
+others within 0.5 and 0.2 %. Where a sequence does not converge (its last difference is more than 0.6 of the one before
+it), no limit is taken; the last value serves instead if the last two are within a third of the tolerance, otherwise the
+deviation is shown but not judged. Nor is a force judged that falls while the spring is compressed further: coils slide
+past each other there, without friction, and where the slide began is accidental. The first table shows how steep the
+wall is on which a spring stands at block, and how much height the tolerance corresponds to; the second, the error as
+estimated by the steps themselves; the third, the cost.
 """
 
 import time
@@ -29,8 +29,8 @@ from coilset.meshes.errors import SolveError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.examples import EXAMPLES
-from coilset.model.results.figures import STYLE
 from coilset.model.results.summary import summarise
+from coilset.model.style import STYLE
 from coilset.verification.study import Study
 
 FAST = False
@@ -44,14 +44,14 @@ SPRINGS = {
 BACK = 48  # steps of the release, at most
 QUANTITIES = ("force at block, N", "set, mm")
 FEWER_POINTS = ("mesh.section.radial=4", "mesh.section.angular=12")  # of the larger springs, for time
-CLOSING = 0.6  # ratio of the last differences up to which a sequence closes in
+CLOSING = 0.6  # ratio of the last differences up to which a sequence counts as convergent
 
 
 @dataclass(frozen=True)
 class Press:
     """To block and back: force at block, N, and set, mm, rate there, their estimated errors, evaluations, seconds.
 
-    The rate is that over the last step, N/mm; seconds are those of the processor.
+    The rate is that over the last step, N/mm; seconds are of processor time.
     """
 
     found: tuple[float, float]
@@ -125,20 +125,22 @@ def report(study: Study, presses: Mapping[str, Sequence[Press]]) -> None:
             elif last <= tolerance * end / 3.0:
                 study.check(what, automatic, end, f"{steps[-1]} steps", tolerance)
             else:
-                study.shown(what, automatic, end, f"{steps[-1]} steps", "its steps do not close in")
+                study.shown(what, automatic, end, f"{steps[-1]} steps", "its sequence does not converge")
         costs.append([name, *(one.evaluations for one in runs), *(one.seconds for one in runs)])
     names = [*(f"steps {number}" for number in range(1, 5)), "automatic"]
-    columns = ["spring", "quantity", "steps", *names, "limit", "order", "automatic off, %", "rate at block, N/mm",
+    columns = ["spring", "quantity", "steps", *names, "limit", "order", "automatic, error %", "rate at block, N/mm",
                "tolerance, mm"]  # fmt: skip
     study.table("to block and back", columns, rows)
-    study.table("error that steps tell, and true one", ["spring", "quantity", *(f"told, {name}" for name in names),
+    study.table("error as estimated, and true error", ["spring", "quantity", *(f"estimated, {name}" for name in names),
                                                         *(f"true, {name}" for name in names)], told)  # fmt: skip
-    study.table("states evaluated, seconds of processor", ["spring", *names, *(f"{name}, s" for name in names)], costs)
+    study.table(
+        "states evaluated, seconds of processor time", ["spring", *names, *(f"{name}, s" for name in names)], costs
+    )
     study.figure("step_convergence", draw(presses, off))
 
 
 def draw(presses: Mapping[str, Sequence[Press]], off: Mapping[tuple[str, int], Sequence[float]]) -> Figure:
-    """Deviations from the limits over what they cost."""
+    """Deviations from the limits over their cost."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.0, 3.6), layout="constrained")
         for k, (axes, quantity) in enumerate(zip(figure.subplots(1, 2), QUANTITIES, strict=True)):

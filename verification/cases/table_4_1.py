@@ -4,8 +4,8 @@
 `coilset.model.equilibrium.methods`, without line search (β = 1) and with the first matrix kept. K⁻¹ of an iteration is
 its step over the residual at its start. Tolerance: half of the last printed digit.
 
-Two printed numbers are wrong in their last digits, as Newton's closed formula u ← 6 √u − u shows: 8.4146 for 8.4164
-(= 6 √5 − 5), and 2.2360 for 2.2361 (√5 = 2.23607, cut off instead of rounded).
+Two printed numbers are wrong in their last digits, as Newton's closed formula u ← 6 √u − u shows: 8.4146 for 8.4164 (=
+6 √5 − 5), and 2.2360 for 2.2361 (√5 = 2.23607, truncated instead of rounded).
 """
 
 from typing import Any
@@ -16,11 +16,11 @@ from matplotlib.figure import Figure
 from petsc4py import PETSc
 
 from coilset.model.equilibrium.methods import rod_method
-from coilset.model.results.figures import STYLE
+from coilset.model.style import STYLE
 from coilset.verification.study import Study
 
 FAST = True
-KEEP = 1_000_000  # iterations before a matrix is set up anew
+KEEP = 1_000_000  # iterations before a matrix is set up again
 PLAIN = {"snes_linesearch_type": "basic", "snes_rtol": 1e-13, "snes_atol": 0.0, "snes_stol": 0.0}
 # method, more options, column name, {iteration: (K⁻¹, u)} as printed, with the two corrections
 COLUMNS: list[tuple[str, dict[str, Any], str, dict[int, tuple[float, float]]]] = [
@@ -34,7 +34,7 @@ COLUMNS: list[tuple[str, dict[str, Any], str, dict[int, tuple[float, float]]]] =
 ]  # fmt: skip
 SOURCE = {
     ("NR", 2, "u"): "6 √5 − 5; Table 4.1 misprints 8.4146",
-    ("NR", 2, "K⁻¹"): "√5; Table 4.1 cuts off: 2.2360",
+    ("NR", 2, "K⁻¹"): "√5; Table 4.1 truncates: 2.2360",
 }
 
 
@@ -86,7 +86,7 @@ def run(study: Study) -> None:
         for (_, _, name, printed), marker in zip(COLUMNS, "os^", strict=True):
             error = 9.0 - found[name][:30]
             axes.semilogy(np.where(error > 1e-12, error, np.nan), "-", label=f"{name}, SNES")
-            # a printed 9.0000 says no more than an error below 5e-5
+            # a printed 9.0000 only says that the error is below 5e-5
             points = [(i, 9.0 - u) for i, (_, u) in printed.items() if u < 9.0]
             axes.semilogy(*zip(*points, strict=True), marker, mfc="none", color=axes.lines[-1].get_color(),
                           label=f"{name}, Table 4.1")  # fmt: skip

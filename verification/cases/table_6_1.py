@@ -1,22 +1,23 @@
 """Table 6.1: cantilever bent far beyond yield, by displacement and by load: force and iterations
 
-The thesis's drawing is lost. What stands in for it was found by a search over slenderness, number of elements, scale
-and direction of the load: a straight cantilever of length l, round wire of radius R = 0.59 l, two equal elements,
+The thesis's drawing is lost. Its substitute was found by a search over slenderness, number of elements, scale and
+direction of the load: a straight cantilever of length l, round wire of radius R = 0.59 l, two equal elements,
 transverse end load of fixed direction, Ck 15, F in units of σF πR² with σF = 181.5 N/mm², ε = 1e-7 of (6.3.1).
 
-Values: 20 equal steps a row; tolerance 3.1 % of F up to w/l = 0.35, what the reconstruction can carry: the row 0.35 is
-3.04 % off, without spin 3.35 %, all others below 3 %. Under load control F is compared at the
-table's w, where its three decimals say more than 3 %, that is from w/l = 0.018 on.
+Values: 20 equal steps per row; tolerance 3.1 % of F up to w/l = 0.35, as far as the reconstruction holds: the row 0.35
+is 3.04 % off (3.35 % without spin), all others less than 3 %. Under load control F is compared at the w of the table
+where its three decimals resolve 3 %, that is, from w/l = 0.018 on.
 
-Iterations: one step a row; a step starts from the last one's increments in proportion. MNR and BFGS search for the zero
-of the out-of-balance work along their direction (`cp`), MNR keeps its matrix over the step. NR has the consistent
-tangent and is the program's own by displacement, where only its damping keeps the large steps beyond w/l = 0.2 on their
-way (`cp` needs up to 12 there), and searches with `cp` by load, where going too far saves an iteration: at most 6 in
-every row but one, where the thesis needed up to 16. By displacement the row 0.45 needs 7, without spin 6.
+Iterations: one step per row; a step starts from the scaled increments of the previous one. MNR and BFGS search for the
+zero of the out-of-balance work along their direction (`cp`); MNR keeps its matrix over the step. NR has the consistent
+tangent. By displacement it is the program's own, whose damping alone keeps the large steps beyond w/l = 0.2 on course
+(`cp` needs up to 12 there); by load it searches with `cp`, where overshooting saves an iteration. It takes at most 6 in
+every row but one, where the thesis needed up to 16. By displacement the row 0.45 needs 7, or 6 without spin.
 
-The last three rows, in which the thesis's force falls, are not met and not explained. Ours rises on, by 8, 15 and 29 %
-above the thesis's, with 1 to 16 elements (0.90 to 1.01 at w/l = 0.5), both section rules, with and without spin, one to
-60 steps a row; linear strain increments in the frame of the last equilibrium, as (4.2.8) has them, give 0.91 to 0.95.
+The last three rows, in which the thesis's force falls, are not met and not explained. Our force continues to rise, to
+8, 15 and 29 % above the thesis's, with 1 to 16 elements (0.90 to 1.01 at w/l = 0.5), both section rules, with and
+without spin, and one to 60 steps per row; linear strain increments in the frame of the last equilibrium, as (4.2.8) has
+them, give 0.91 to 0.95.
 """
 
 from typing import Any, NamedTuple
@@ -27,8 +28,8 @@ from matplotlib.figure import Figure
 from scipy.interpolate import PchipInterpolator
 
 from coilset.model.material import library
-from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import abramowitz9
+from coilset.model.style import STYLE
 from coilset.verification import figures
 from coilset.verification.frame import KEEP, Frame
 from coilset.verification.study import Study
@@ -36,10 +37,10 @@ from coilset.verification.study import Study
 FAST = True
 LENGTH, SLENDERNESS, ELEMENTS = 100.0, 0.59, 2  # mm, R/l
 UNIT = 181.5 * np.pi * (SLENDERNESS * LENGTH) ** 2  # σF A0, N
-STEPS = 20  # a row, for the values
+STEPS = 20  # per row, for the values
 REACH = 0.35  # w/l up to which the reconstruction holds
 BOUND = "set bound; Table 6.1 has up to 16"
-FIRST = 0.018  # first w/l whose printed digits say enough
+FIRST = 0.018  # first w/l whose printed digits suffice
 Row = tuple[float, float, int, int, int]  # w/l, F/(σF A0), iterations of NR, MNR, BFGS
 Counts = list[int | None]  # iterations of each row, None where it diverged
 
@@ -58,7 +59,7 @@ CP: dict[str, Any] = {"snes_linesearch_type": "cp"}
 
 
 class Way(NamedTuple):
-    """How the equilibria are sought: a method, and more options of PETSc's."""
+    """How the equilibria are found: a method, and further PETSc options."""
 
     method: str
     options: dict[str, Any]
@@ -73,10 +74,10 @@ METHODS_OF = {"displacement": METHODS, "load": METHODS | {"NR": Way("newton", CP
 
 
 def drive(table: list[Row], by_load: bool, way: Way, steps: int) -> tuple[np.ndarray, Counts]:
-    """Go through a table's rows in `steps` steps a row.
+    """Go through the rows of a table in `steps` steps per row.
 
     Returns:
-        w/l and F/(σF A0) after each step, shape (n, 2), the start included; greatest number of iterations of a step of
+        w/l and F/(σF A0) after each step, shape (n, 2), the start included; maximum number of iterations of a step of
         each row, None where it diverged.
     """
     nodes = np.linspace([0, 0, 0], [LENGTH, 0, 0], ELEMENTS + 1)

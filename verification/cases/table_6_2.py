@@ -1,21 +1,20 @@
 """Table 6.2: tripod of three rods, pulled far beyond yield and released: force, stresses, iterations
 
 Three bars in a plane meet at a joint: the middle one (2, length l) along the load, the outer ones (1, 3) at 45°. The
-joint is moved by u, then the load is taken off in three steps. Ck 15, σF = 181.5 N/mm², ε = 1e-7 of (6.3.1). The bars
-are joined stiffly at the joint and hinged at the supports; their radius is 1e-4 l, so that bending (0.03 N/mm²) counts
-for nothing.
+joint is moved by u, then the load is removed in three steps. Ck 15, σF = 181.5 N/mm², ε = 1e-7 of (6.3.1). The bars are
+joined rigidly at the joint and hinged at the supports; their radius is 1e-4 l, so bending (0.03 N/mm²) is negligible.
 
-Values: every row is reached in 20 equal steps; with 100 of them they change by up to 0.1 %. Iterations: one step a row,
-as in the thesis; 1 means that the first linear solve is in equilibrium. As in coilset's load program a step starts from
-the last one's increments in proportion,
-the first of the release from rest; 0 means that this start is in equilibrium already. NR and BFGS are coilset's
-`newton` and `bfgs`, MNR keeps its matrix over the step and has no line search. The thesis's MNR diverged on release;
-here the release starts with the elastic tangent, since from rest no point yields, and MNR converges.
+Values: every row is reached in 20 equal steps; with 100 of them they change by up to 0.1 %. Iterations: one step per
+row, as in the thesis; 1 means that the first linear solve is in equilibrium. As in coilset's load program, a step
+starts from the scaled increments of the previous one, the first step of the release from rest; 0 means that this start
+is already in equilibrium. NR and BFGS are coilset's `newton` and `bfgs`, MNR keeps its matrix over the step and has no
+line search. The thesis's MNR diverged on release; here the release starts with the elastic tangent, since from rest no
+point yields, and MNR converges.
 
-Two printed numbers contradict the others of their rows and are read as follows. Row 0.05: F = 1.090, but the row's own
+Two printed numbers contradict the others in their rows and are read as follows. Row 0.05: F = 1.090, but the row's own
 stresses give σ2 + √2 σ13 = 1.018, and elasticity 1.019: digits interchanged. Row 0.10: σ13 = 0.570, but the outer bars
-are elastic there, E u/(2 l) = 0.597, and the row's own F = 1.863 needs 0.597. The release is judged by 1 % of σF, for
-σ2 passes through zero there; u on release by one unit of the last digit printed.
+are elastic there, E u/(2 l) = 0.597, and the row's own F = 1.863 needs 0.597. The release is judged by 1 % of σF,
+because σ2 passes through zero there; u on release by one unit of the last printed digit.
 """
 
 from collections.abc import Mapping
@@ -26,8 +25,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.model.material import library
-from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import abramowitz9
+from coilset.model.style import STYLE
 from coilset.verification import figures
 from coilset.verification.frame import KEEP, Frame
 from coilset.verification.study import Study
@@ -64,10 +63,10 @@ def tripod(method: str, options: Mapping[str, Any]) -> Frame:
 
 
 def drive(method: str, options: Mapping[str, Any], steps: int) -> tuple[np.ndarray, list[int | None]]:
-    """Load and release in `steps` steps a row.
+    """Load and release in `steps` steps per row.
 
     Returns:
-        Rows of 10² u/l, F/(σF A0), σ13/σF, σ2/σF, shape (17, 4), NaN after a divergence, and the greatest number of
+        Rows of 10² u/l, F/(σF A0), σ13/σF, σ2/σF, shape (17, 4), NaN after a divergence, and the maximum number of
         iterations of a step of each row, None where it diverged.
     """
     frame = tripod(method, options)

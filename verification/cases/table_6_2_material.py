@@ -2,10 +2,10 @@
 
 The joint of Table 6.2's tripod is moved by u along the middle bar (length l, no. 2); the outer ones (1, 3) have length
 sqrt(2) l and stand at 45°. Without elements: each bar is one point of the law under ε = ln(length / first length), so
-ε2 = ln(1 + u/l) and ε13 = ½ ln(½ (1 + (1 + u/l)²)). Increments of 1e-4, return mapping. On release u follows from
-F = σ2 + 2 cos φ σ13 with the areas of the start, tan φ = l/(l + u), which is the relation of the printed columns; u
-itself is printed with two digits, which on release is 6 % of σF. Release is judged by 1 % of σF, as in `table_6_2`,
-where the misprint is explained, too.
+ε2 = ln(1 + u/l) and ε13 = ½ ln(½ (1 + (1 + u/l)²)). Increments of 1e-4, return mapping. On release u follows from F =
+σ2 + 2 cos φ σ13 with the areas of the start, tan φ = l/(l + u), which is the relation of the printed columns; u itself
+is printed with two digits, which on release is 6 % of σF. Release is judged by 1 % of σF, as in `table_6_2`, where the
+misprint is also explained.
 """
 
 import matplotlib as mpl
@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 
 from coilset.model.material import library, points
 from coilset.model.material.law import Law
-from coilset.model.results.figures import STYLE
+from coilset.model.style import STYLE
 from coilset.verification.cases.table_6_2 import PULL, READ, RELEASE, YIELD
 from coilset.verification.study import Study
 

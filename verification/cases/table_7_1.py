@@ -6,13 +6,13 @@ the fifth, and node 2 opens in the ninth, as in Table 7.1. The thesis's drawing 
 gives all of its rows: clamping and gaps (0.055 l and 0.30 l, times the scale below) are ours, so only the order of
 events and the iterations are compared with the thesis.
 
-The thesis's single iterations between the events show that its beam answers linearly to ε = 1e-7. A beam that turns by
-a rad and more, as its moments say, cannot; ours carries 1e-6 of them, and so are its gaps: then the forces along the
-rods that come with the squares of the turns are below ε.
+The single iterations of the thesis between the events show that its beam responds linearly to ε = 1e-7. A beam that
+rotates by a rad and more, as its moments imply, cannot do so; ours carries 1e-6 of them, with gaps scaled alike, so
+that the axial forces, which grow with the squares of the rotations, are below ε.
 
-NR is held against the thesis's BFGS too, for it gives no counts of its own. BFGS searches the zero of the
-out-of-balance work along each correction with up to ten trials; with one trial, which coilset takes unless told
-otherwise, it needs 6, 11 and 3 iterations at the events. MNR has no line search and keeps its matrix over the step.
+NR, too, is compared with the thesis's BFGS, because the thesis gives no counts for NR. BFGS searches for the zero of
+the out-of-balance work along each correction with up to ten trials; with one trial, coilset's default, it needs 6, 11
+and 3 iterations at the events. MNR has no line search and keeps its matrix over the step.
 
 Forces: the linear beam with shear on two one-sided springs. With f_ij = x_i² (3x_j − x_i)/(6EI) + x_i/(GA), x_i ≤ x_j,
 S_j = c max(0, w_j − g_j) and w_i = M x_i²/(2EI) − Σ f_ij S_j; each of the four sets of closed gaps is tried. The
@@ -30,8 +30,8 @@ from matplotlib.figure import Figure
 from coilset.model.contact.gap import Stops
 from coilset.model.material import library
 from coilset.model.material.law import Law
-from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
+from coilset.model.style import STYLE
 from coilset.verification import figures
 from coilset.verification.frame import KEEP, Frame
 from coilset.verification.study import Study

@@ -1,14 +1,13 @@
 """Bar stretched by 1 % and then twisted to 2 %, and a thin tube likewise, against integrals of the law's rates
 
-At constant length the twist takes the axial force away: on the yield surface σ = σ0 cos θ, τ = σ0/√3 sin θ, and for an
-ideally plastic point θ(γ) has a closed form (`references/section_integrals.py`, after R. Hill). A thin tube is one
-such point; in a bar γ grows with r, and force and torque are integrals over the radius. For Ck 15 the rates are
-integrated with DOP853 at 40 radii. Without spin, whose second-order stress is another question (case
-elastic-strain-loop).
+At constant length the twist removes the axial force: on the yield surface σ = σ0 cos θ, τ = σ0/√3 sin θ, and for an
+ideally plastic point θ(γ) has a closed form (`references/section_integrals.py`, after R. Hill). A thin tube is one such
+point; in a bar γ grows with r, and force and torque are integrals over the radius. For Ck 15 the rates are integrated
+with DOP853 at 40 radii. Without spin, whose second-order stress is a separate question (case elastic-strain-loop).
 
 Tolerance, of stresses over σ0 and of N and T over their fully plastic values, absolute: the law's second order,
-1/steps² for σ and N and 0.1/steps² for τ and T (found at 200 steps: 0.7 and 0.05). With n rings 0.3/n² is added
-for N, which stands in the core alone: from 8 × 16 to 24 × 32 points it changes by 2e-3 for Ck 15, T by 3e-4.
+1/steps² for σ and N and 0.1/steps² for τ and T (found at 200 steps: 0.7 and 0.05). With n rings 0.3/n² is added for N,
+which is carried by the core alone: from 8 × 16 to 24 × 32 points it changes by 2e-3 for Ck 15, T by 3e-4.
 """
 
 import matplotlib as mpl
@@ -18,8 +17,8 @@ from scipy.optimize import brentq
 
 from coilset.model.material import library
 from coilset.model.material.law import Law
-from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import DiskRule, polar
+from coilset.model.style import STYLE
 from coilset.verification.chain import ALL, ROTATION_X, X, chain, drive, straight
 from coilset.verification.references.section_integrals import plastic_path, tube_shear
 from coilset.verification.study import Study
@@ -41,7 +40,7 @@ def pull_and_twist(law: Law, rule: DiskRule) -> np.ndarray:
     length = LENGTH * np.expm1(STRETCH)  # ε is logarithmic
     drive(frame, 40, {frame.dof(1, X): length})
     keep()
-    twist = SHEAR / RADIUS * LENGTH * np.exp(STRETCH)  # φ′ counts per current length
+    twist = SHEAR / RADIUS * LENGTH * np.exp(STRETCH)  # φ′ refers to the current length
     drive(frame, STEPS, {frame.dof(1, X): 0.0, frame.dof(1, ROTATION_X): twist}, after=keep)
     return np.array(rows)
 

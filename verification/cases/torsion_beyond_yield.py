@@ -1,13 +1,14 @@
-"""Round bar twisted far beyond yield and let go: torque and springback against the integral over the radius
+"""Round bar twisted far beyond yield and released: torque and springback against the integral over the radius
 
 A bar of radius 2.5 is twisted to γ = 2 % at its surface. Ideally plastic, A. Nadai's torque 2π/3 τy (R³ − c³/4) with
-the elastic core's radius c is closed; for linear isotropic hardening and for Ck 15 it is 2π ∫ τ(ϑr) r² dr, with τ(γ)
-by a high-order integration of the law's rates (`references/section_integrals.py`). Let go, a bar that does not yield
-anew turns back by T/GJ; none of the three does. Without spin, which would add axial stress to pure shear.
+the elastic core's radius c is closed; for linear isotropic hardening and for Ck 15 it is 2π ∫ τ(ϑr) r² dr, with τ(γ) by
+a high-order integration of the law's rates (`references/section_integrals.py`). When released, a bar that does not
+yield again turns back by T/GJ; none of the three yields again. Without spin, which would add axial stress to pure
+shear.
 
-Tolerance: n rings are Gauss's points in r², and τ has a kink at the core's edge: 0.06/n², of which up to 0.053 was
-found from 4 to 32 rings. What the law's integration adds in 80 steps is a small part of it. The springback's error is
-that of the torque times T/GJ over the angle that stays.
+Tolerance: n rings are Gauss's points in r², and τ has a kink at the core's edge: 0.06/n²; up to 0.053/n² was found from
+4 to 32 rings. The integration of the law in 80 steps adds a small part of it. The error of the springback is that of
+the torque times T/GJ over the residual angle.
 """
 
 import matplotlib as mpl
@@ -16,8 +17,8 @@ from matplotlib.figure import Figure
 
 from coilset.model.material import library
 from coilset.model.material.law import Law
-from coilset.model.results.figures import STYLE
 from coilset.model.section.rules import polar
+from coilset.model.style import STYLE
 from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, Y, Z, chain, drive, straight
 from coilset.verification.references.section_integrals import nadai_torque, shear_curve, torque
 from coilset.verification.study import Study
@@ -31,7 +32,7 @@ Twisted = tuple[np.ndarray, float, np.ndarray]  # of `twist`
 
 
 def twist(law: Law, rings: int) -> Twisted:
-    """Torques at the steps, N mm, the twist per length that stays once it is let go, 1/mm, and τ over r at the end."""
+    """Torques at the steps, N mm, the residual twist per length after release, 1/mm, and τ over r at the end."""
     held = [(0, ALL), (1, (Y, Z, ROTATION_Y, ROTATION_Z))]
     frame, torques = chain(straight(LENGTH, 1), RADIUS, law, polar(rings, 12), held), [0.0]
     end = frame.dof(1, ROTATION_X)
@@ -60,7 +61,7 @@ def run(study: Study) -> None:
         source = "Nadai" if name == "ideal_plastic" else "integral over r"
         study.check(f"torque, {name}, N mm", runs[FINE][0][-1], exact, source, tolerance)
         back = exact / (0.5 * np.pi * law.G * RADIUS**4)
-        study.check(f"twist that stays, {name}, 1/mm", runs[FINE][1], ϑ - back, "T/GJ", tolerance * back / (ϑ - back))
+        study.check(f"residual twist, {name}, 1/mm", runs[FINE][1], ϑ - back, "T/GJ", tolerance * back / (ϑ - back))
         rows.append([name, *(f"{runs[rings][0][-1] / exact - 1:+.1e}" for rings in RINGS)])
     study.table(f"error of the torque, {STEPS} steps", ["material", *(f"{rings} rings" for rings in RINGS)], rows)
     draw(study, found)

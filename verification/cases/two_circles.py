@@ -1,12 +1,12 @@
 """Cantilever rolled up to two circles by an end moment, against the circle
 
-An end moment bends a straight rod to a circle of curvature M/EI; at M = 4π EI/L it closes twice. The tip is turned by
-4π about the axis across the plane and free in it; the moment is what it takes. (Out of the plane all nodes are held: a
-rod whose end was turned by 4π can unwind through space, and with the other nodes free the tangent has a negative pivot
-from 0.8 circles on.) Straight rods of length l = L/n form a polygon of equal angles φ = 4π/n with M = EI φ/l: tip and
-moment are those of the circle whatever n is, up to the axial strain, which is none. Tolerance: the iteration's, 1e-7.
-The polygon's corners lie on a circle of radius l/(2 sin(φ/2)) in the place of l/φ: the rod's greatest height 2R is too
-large by φ²/24, and the tolerance is φ²/20.
+An end moment bends a straight rod to a circle of curvature M/EI; at M = 4π EI/L it closes twice. The tip is rotated by
+4π about the axis perpendicular to the plane and is free within it; the moment is the reaction. (Out of the plane all
+nodes are held: a rod whose end was turned by 4π can unwind through space, and with the other nodes free the tangent has
+a negative pivot from 0.8 circles on.) Straight rods of length l = L/n form a polygon of equal angles φ = 4π/n with M =
+EI φ/l: tip and moment are those of the circle for any n, up to the axial strain, which is zero. Tolerance: that of the
+iteration, 1e-7. The polygon's corners lie on a circle of radius l/(2 sin(φ/2)) instead of l/φ: the rod's maximum height
+2R is too large by φ²/24, and the tolerance is φ²/20.
 """
 
 import matplotlib as mpl
@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from coilset.model.material import library
-from coilset.model.results.figures import STYLE
+from coilset.model.style import STYLE
 from coilset.verification.chain import ALL, ROTATION_X, ROTATION_Y, ROTATION_Z, Z, chain, drive, straight
 from coilset.verification.frame import Frame
 from coilset.verification.study import Study
@@ -55,7 +55,7 @@ def run(study: Study) -> None:
         )
         study.check(f"height over L, {n} rods", height / LENGTH, 0.5 / np.pi, "2R = L/2π", angle**2 / 20.0)
         rows.append([n, max(counts), sum(counts)])
-    study.table(f"iterations, {STEPS} steps, r/L = 1e-2", ["rods", "most of a step", "all"], rows)
+    study.table(f"iterations, {STEPS} steps, r/L = 1e-2", ["rods", "maximum per step", "all"], rows)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(6.0, 3.6), layout="constrained")
         axes = figure.add_subplot()

@@ -6,13 +6,14 @@ down at 2,600, 2,740 and 3,000 pounds, then 5.93 to 6.12 in high. The scan was r
 and fifteen final heights are legible in it. The steel is not stated, so this proves nothing: it says which yield
 stress, with how much hardening, explains the set, and whether the force at closing fits as well.
 
-The active turns follow from heights and gaps, (6.30 − 4.16)/0.40. The uniform rod is pressed until its coils touch and
-released, with G = 79,300 N/mm² (an estimate for steel), stress σ₀ + H εᵖ and no Bauschinger effect; then the rod with
-closed and ground ends between seats, whose turns follow from the weight and whose ground tips from the closed height.
+The active turns follow from heights and gaps, (6.30 − 4.16)/0.40. The uniform rod is compressed until its coils touch
+and released, with G = 79,300 N/mm² (an estimate for steel), stress σ₀ + H εᵖ and no Bauschinger effect; then the rod
+with closed and ground ends between seats, whose turns follow from the weight and whose ground tips from the closed
+height.
 
-Judged is what the yield stress was not adjusted to: the force when closed lies between the loads read (the middle of
-2,600 and 3,000 pounds, ± half of their distance), and the gap that weight and heights make is the one stated, within
-5 %. The height after is what the yield stress was sought for, to 0.1 mm.
+What is judged is what the yield stress was not fitted to: the force when closed must lie between the loads read (the
+mean of 2,600 and 3,000 pounds, ± half their difference), and the gap that follows from weight and heights must be the
+one stated, within 5 %. The height afterwards is what the yield stress was fitted to, to 0.1 mm.
 """
 
 import tempfile
@@ -30,8 +31,8 @@ from coilset.model.analysis import Analysis
 from coilset.model.case import Case, check
 from coilset.model.material.file import MaterialFile
 from coilset.model.material.law import Law
-from coilset.model.results.figures import STYLE
 from coilset.model.results.summary import summarise
+from coilset.model.style import STYLE
 from coilset.model.uniform import press
 from coilset.verification.study import Study
 
@@ -102,17 +103,17 @@ def run(study: Study) -> None:
         force = closed_once(stresses[1], hardening)[0]
         rows.append([f"uniform rod, H = {hardening:g}", *map(round, stresses), round(force)])
         study.shown(f"force at closing, uniform rod, H = {hardening:g} N/mm², N", force, middle,
-                    "Watertown Arsenal 1900, loads", "its ends bear nothing")  # fmt: skip
+                    "Watertown Arsenal 1900, loads", "its ends carry no load")  # fmt: skip
     stress, after, force, gap = rod_explaining(mean)
     rows.append([f"rod, H = {HARDENING[1]:g}", None, round(stress), None, round(force)])
-    study.check("gap between the coils that weight and heights make, mm", gap, GAP,
+    study.check("gap between the coils from weight and heights, mm", gap, GAP,
                 "Watertown Arsenal 1900, distance between coils", 0.05)  # fmt: skip
-    study.check("height after, rod with the yield stress that explains it, mm", after, mean,
+    study.check("height afterwards, rod with the yield stress that explains it, mm", after, mean,
                 "Watertown Arsenal 1900, heights", 0.1, "absolute")  # fmt: skip
     study.check("force when closed, rod with this yield stress, N", force, middle, "Watertown Arsenal 1900, loads",
                 half, "absolute")  # fmt: skip
-    study.table("Yield stress, N/mm², for least, mean and greatest height after; force when closed for the mean, N",
-                ["H in N/mm²", "least", "mean", "greatest", "force"], rows)  # fmt: skip
+    study.table("Yield stress, N/mm², for minimum, mean and maximum height after; force when closed for the mean, N",
+                ["H in N/mm²", "minimum", "mean", "maximum", "force"], rows)  # fmt: skip
     study.figure("watertown", draw(after, force, stress))
 
 

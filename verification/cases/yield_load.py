@@ -1,10 +1,10 @@
 """Yield load of a spring of 7.5 turns against that of 2.5 turns (thesis, 7.2.2)
 
-"Völlige Übereinstimmung der Fließlast": springs of the same wire yield under the same load, whatever the number of
-their turns, since the torque F D/2 is the same in all of them; only their ends differ. The thesis reads its yield load
-off a characteristic that goes on at almost constant load. Ours is, as Rp0.2 of a tension test, the force at which the
-characteristic lies 0.2 % of shear strain of the wire's surface beside its initial line: with the strain
-γ = d f/(π D² n) of an elastic spring this is f − F/c = 0.002 π D² n/d, 2 mm a turn. Tolerance: that of the issue.
+"Völlige Übereinstimmung der Fließlast": springs of the same wire yield under the same load, whatever their number of
+turns, because the torque F D/2 is the same in all of them; only their ends differ. The thesis reads its yield load off
+a characteristic that continues at almost constant load. Ours is defined like Rp0.2 of a tension test, as the force at
+which the characteristic is offset from its initial line by 0.2 % shear strain at the wire surface: with the strain γ =
+d f/(π D² n) of an elastic spring this is f − F/c = 0.002 π D² n/d, 2 mm per turn. Tolerance: 2 %.
 """
 
 import matplotlib as mpl
@@ -13,18 +13,18 @@ from matplotlib.figure import Figure
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import check
-from coilset.model.results.figures import STYLE
+from coilset.model.style import STYLE
 from coilset.verification.study import Study
 
 FAST = True
 WIRE, DIAMETER, PITCH = 5.0, 40.0, 12.0  # mm
 TURNS = (2.5, 7.5)
 OFFSETS = (0.001, 0.002)  # of shear strain
-TRAVEL, STEPS = 6.0, 30  # mm a turn: 1 mm before the coils touch
+TRAVEL, STEPS = 6.0, 30  # mm per turn: 1 mm before the coils touch
 
 
 def press(turns: float) -> tuple[np.ndarray, np.ndarray, float]:
-    """Travel a turn (mm), force (N) and initial rate (N/mm) of a spring pressed until shortly before block."""
+    """Travel per turn (mm), force (N) and initial rate (N/mm) of a spring compressed until shortly before block."""
     spring = {"wire_diameter": WIRE, "mean_diameter": DIAMETER, "turns": turns, "pitch": PITCH}
     mesh = {"section": {"kind": "plane"}}  # the thesis's
     loading = [{"to": {"travel": TRAVEL * turns}, "steps": STEPS}]
@@ -35,7 +35,7 @@ def press(turns: float) -> tuple[np.ndarray, np.ndarray, float]:
 
 
 def yield_load(travel: np.ndarray, force: np.ndarray, rate: float, turns: float, offset: float) -> tuple[float, float]:
-    """Force at `offset` beside the initial line, N, and its travel a turn, mm."""
+    """Force at `offset` beside the initial line, N, and its travel per turn, mm."""
     beside = travel - force / (rate * turns) - offset * np.pi * DIAMETER**2 / WIRE
     return np.interp(0.0, beside, force), np.interp(0.0, beside, travel)
 
@@ -57,7 +57,7 @@ def run(study: Study) -> None:
         beside = OFFSETS[-1] * np.pi * DIAMETER**2 / WIRE
         reach = force.max() / (rate * turns)
         axes.plot([beside, beside + reach], [0.0, force.max()], "k:", lw=0.9, label="initial line and 0.2 % of shear")
-        axes.set(xlabel="travel a turn in mm", ylabel="axial force in N", title="Yield load and number of turns, Ck 15")
+        axes.set(xlabel="travel per turn in mm", ylabel="axial force in N", title="Yield load and turns, Ck 15")
         axes.legend(fontsize=8)
         axes.grid(lw=0.3)
         study.figure("yield_load", figure)

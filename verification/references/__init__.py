@@ -1,1 +1,1 @@
-"""References of the cases, computed from the equations by other means than the program's: none imports the rod."""
+"""References of the cases, computed from the equations by means other than the program's: none imports the rod."""

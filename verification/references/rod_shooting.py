@@ -7,7 +7,7 @@ moment m in the fixed frame,
     r′ = R (e1 + Γ),   R′ = R [K0 + K]×,   n′ = 0,   m′ = −r′ × n,
     Γ = (n·d1/EA, n·d2/GA, n·d3/GA),   K = (m·d1/GJ, m·d2/EI, m·d3/EI).
 
-The moment at the clamp is sought so that it ends in the given one. Integrated with DOP853.
+The moment at the clamp is varied until the moment at the free end is the given one. Integrated with DOP853.
 """
 
 from dataclasses import dataclass
@@ -52,7 +52,7 @@ def clamped_rod(
         force: dead force at the free end, N.
         moment: at the free end, in the fixed frame, N mm.
         curvature: K0 of the stress-free rod in its triad (torsion, curvatures about d2 and d3), 1/mm.
-        loads: the loads are raised in so many equal parts, so that the root is the one that grows from rest.
+        loads: number of equal parts in which the loads are raised, so that the root is the one that develops from rest.
 
     Raises:
         RuntimeError: if shooting finds no root.

@@ -1,7 +1,7 @@
 """Sections of plastic wire by integrals over the radius or the height, and points by a high-order integration in time.
 
 Nothing here knows of section rules, return maps or rods. Of the program only the material's functions k²(b*), ζ(b*),
-κ(b*) are used (`Law.functions`, tested by themselves).
+κ(b*) are used (`Law.functions`, tested separately).
 """
 
 import numpy as np
@@ -84,7 +84,7 @@ def nadai_torque(yield_shear: float, G: float, radius: float, twist: float) -> f
 
 
 def bending_moment(yield_stress: float, E: float, radius: float, curvature: float) -> float:
-    """Moment of an ideally plastic round bar: ∫ σ z dA with σ = min(E κ z, σy), N mm; no direction is special."""
+    """Moment of an ideally plastic round bar: ∫ σ z dA with σ = min(E κ z, σy), N mm; the same about any axis."""
 
     def height(z: float) -> float:
         return min(E * curvature * z, yield_stress) * z * 4.0 * np.sqrt(radius**2 - z**2)
@@ -101,5 +101,5 @@ def tube_shear(yield_stress: float, E: float, G: float, angle: float) -> float:
 
         γ = σ0/(√3 G) [sin θ + 3G/E (ln(sec θ + tan θ) − sin θ)].
     """
-    sine = min(np.sin(angle), 1.0 - np.finfo(float).epsneg)  # finite at the end of the way, too
+    sine = min(np.sin(angle), 1.0 - np.finfo(float).epsneg)  # finite at the end of the path, too
     return yield_stress / (np.sqrt(3.0) * G) * (sine + 3.0 * G / E * (np.arctanh(sine) - sine))

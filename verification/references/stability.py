@@ -34,7 +34,7 @@ def twisted_rod(tension: float) -> float:
         x, y = m + d, m - d
         return np.sin(2.0 * d) * x * y - 2.0 * d * np.sin(x) * np.sin(y)
 
-    # d = 0 is a root that means nothing; the first other one is sought from there on
+    # d = 0 is a spurious root; the next one is sought from there
     grid = np.linspace(1e-2, 4.0, 4000)
     values = np.array([determinant(d) for d in grid])
     k = int(np.flatnonzero(values[:-1] * values[1:] < 0.0)[0])
@@ -56,7 +56,7 @@ def clamped_spring(
 
         s = L0/(2 (1 − G/E)) [1 − √(1 − (1 − G/E)/(½ + G/E) (2π D/L0)²)].
 
-    It leaves out the pitch's angle. All lengths in mm, moduli in MPa.
+    It neglects the pitch angle. All lengths in mm, moduli in MPa.
 
     Raises:
         ValueError: for a spring that does not buckle.

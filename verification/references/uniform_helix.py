@@ -1,7 +1,7 @@
 """The elastic rod that is a uniform helix before and after: two nonlinear equations (Kirchhoff and Cosserat).
 
-A helix of radius R and rise h per radian (j² = R² + h²) goes over into one of radius R̄, rise h̄ and λ radians for
-one; its section has the inclination ϑ (A. E. H. Love, Mathematical theory of elasticity, § 271, with shear and
+A helix of radius R and rise h per radian (j² = R² + h²) becomes one of radius R̄ and rise h̄, with λ radians for each
+radian; its section has the inclination ϑ (A. E. H. Love, Mathematical theory of elasticity, § 271, with shear and
 extension after S. S. Antman). In the section's triad d1 = cos ϑ eθ + sin ϑ ez, d3 = −sin ϑ eθ + cos ϑ ez,
 
     x′ = (λ R̄ eθ + h̄ ez)/j,   Γ1 = x′·d1 − 1,  Γ3 = x′·d3,   K1 = λ sin ϑ/j − h/j²,  K3 = λ cos ϑ/j − R/j²,

@@ -1,4 +1,4 @@
-"""What clamped ends do to a turn: the rod between heads over the uniform coil, both of the same curved section."""
+"""The effect of clamped ends: a turn of rod between heads against the uniform coil, with the same section."""
 
 import numpy as np
 

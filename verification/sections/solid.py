@@ -1,4 +1,4 @@
-"""What the 3D solid of `coilset.verification.solid_vs_rod.pressing` found, recorded: its runs take minutes each."""
+"""What the 3D solid of `coilset.verification.solid_vs_rod.pressing` found, recorded: its runs take minutes."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from coilset.verification.solid_vs_rod.pressing import PressedSection
 
 @dataclass(frozen=True)
 class Solid:
-    """One turn between clamped heads, pressed in 12 steps to nine tenths of the way to block, and released.
+    """One turn between clamped heads, compressed in 12 steps to nine tenths of the way to block, and released.
 
     Attributes:
         material: of the library.
@@ -20,11 +20,11 @@ class Solid:
         shear: τ at the inside of the coil after release, at 0.9 of the wire's radius, MPa.
         elastic: force after the first step, which is elastic, N; None where it is not, or was not kept.
         gap: of `PressedSection`.
-        carried: factors of force, set and shear from the law's integration by backward Euler, by which these solids
-            were pressed, to the present one of second order: those by which force and set of a clamped turn of rods and
-            the slice's shear have changed. A solid of 4,719 unknowns, D/d = 8, run both ways, has 1.001052 and 0.99964;
-            with 14,844 unknowns and the present law it has 185.8083 N, 4.474470 mm and −39.94 MPa. Ones: pressed by the
-            present law.
+        carried: factors of force, set and shear from the law's integration by backward Euler, with which these solids
+            were computed, to the present one of second order: those by which force and set of a clamped turn of rods
+            and the slice's shear have changed. A solid of 4,719 unknowns, D/d = 8, run both ways, has 1.001052 and
+            0.99964; with 14,844 unknowns and the present law it has 185.8083 N, 4.474470 mm and −39.94 MPa. Ones:
+            computed with the present law.
     """
 
     material: str

@@ -12,14 +12,14 @@ def ring_sector(index: float, degree: int = 16) -> tuple[float, float, float]:
         ∫ ½ G [ (r ψ,r)² + (r ψ,z + a/r)² ] r dr dz
 
     over ψ, here polynomials on the disk. It is the counterpart of Göhner's equation for the stress function, which has
-    this as its condition of compatibility: from here the rate is approached from above, from there from below.
+    this as its condition of compatibility: this one approaches the rate from above, the other from below.
 
     Args:
         index: spring index D/d.
         degree: of the polynomials.
 
     Returns:
-        Rate over G d⁴/(8 D³) a turn; shear stress at the inside and at the outside over 8 F D/(π d³).
+        Rate over G d⁴/(8 D³) per turn; shear stress at the inside and at the outside over 8 F D/(π d³).
     """
     nodes, w = np.polynomial.legendre.leggauss(40)
     ρ, w = 0.5 * (nodes + 1), 0.25 * w * (nodes + 1)

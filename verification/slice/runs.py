@@ -1,4 +1,4 @@
-"""Runs of the slice that the cases share."""
+"""Runs of the slice shared by the cases."""
 
 import time
 from dataclasses import dataclass
@@ -39,9 +39,9 @@ class Pressed:
     """A turn of a round wire pressed to nine tenths of the way to block and released.
 
     Attributes:
-        unknowns, seconds: of the processor for the steps, the pressing's and the release's.
+        unknowns, seconds: processor time of the steps of compression and release.
         travel, force: of all steps, mm and N; set_mm: travel at no force.
-        full, released: τ13 at ξ = −0.9, 0.9 of the wire's radius, MPa, under the greatest force and after release.
+        full, released: τ13 at ξ = −0.9, 0.9 of the wire's radius, MPa, under the maximum force and after release.
     """
 
     unknowns: int

@@ -22,8 +22,8 @@ WIRE = 5.0  # mm
 class ElasticCase:
     """One full turn without pitch between rigid heads that are pulled apart along the axis.
 
-    A whole turn, because then heads that do not turn leave the force on the axis: the moment that could hold them,
-    M₀ cos θ in the torque and M₀ sin θ in the bending, does no work with F R over a turn.
+    A full turn, because then the force stays on the axis with heads that do not rotate: the moment that could hold
+    them, M₀ cos θ in the torque and M₀ sin θ in the bending, does no work with F R over a turn.
 
     Attributes:
         index: D/d.

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.tri import TriContourSet
 
-from coilset.model.results.figures import STYLE
+from coilset.model.style import STYLE
 from coilset.verification.solid_vs_rod import pressing, references, study
 from coilset.verification.solid_vs_rod.pressing import PressedSection
 

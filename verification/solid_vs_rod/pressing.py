@@ -1,4 +1,4 @@
-"""The same coil section as solid and as rod: pressed nearly to block, released, and looked at in its mid-section."""
+"""The same coil section as solid and as rod: compressed nearly to block, released, and examined at mid-section."""
 
 import time
 from collections.abc import Callable, Mapping

@@ -1,10 +1,11 @@
 """How the solid's solver scales: multigrid iterations over the number of unknowns, and time over the number of ranks.
 
-Iterations, on any number of ranks; it goes on where it was:
+Iterations, on any number of ranks; it resumes where it stopped:
 
     scripts/coilset python -m coilset.verification.solid_vs_rod.scaling FOLDER
 
-Time of one linearised step of 200,000 unknowns, five times; first on one rank, then on two, which prints the ratio too:
+Time of one linearised step of 200,000 unknowns, five times; first on one rank, then on two, which also prints the
+ratio:
 
     scripts/coilset [-n 2] python -m coilset.verification.solid_vs_rod.scaling FOLDER time
 """
@@ -66,7 +67,7 @@ def timed(size: str, comm: MPI.Comm) -> dict[str, Any]:
 
     Returns:
         Dict: unknowns, ranks, and a list of repetitions: seconds of the three stages (the slowest rank's), and `share`,
-        the processor's time over the wall's (the least of the ranks); what is below 1 went to other programs.
+        processor time over wall time (the minimum over the ranks); what is missing from 1 went to other programs.
     """
     problem = pressed(size, comm)
     repetitions = [_repetition(problem, comm) for _ in range(REPETITIONS)]
@@ -89,7 +90,7 @@ def _repetition(problem: SolidProblem, comm: MPI.Comm) -> dict[str, float]:
 
 
 def best(result: dict[str, Any]) -> dict[str, float]:
-    """Each stage's least time of the repetitions, and that of all together."""
+    """Minimum time of each stage over the repetitions, and of all stages together."""
     out = {stage: min(r[stage] for r in result["repetitions"]) for stage in STAGES}
     return {**out, "all": min(sum(r[stage] for stage in STAGES) for r in result["repetitions"])}
 
@@ -99,7 +100,7 @@ def _report_iterations(store: Store, sizes: Sequence[str]) -> None:
         result = store.get(f"iterations-{size}", partial(iterations, size, store.comm))
         for name in ("elastic", "plastic"):
             step = result[name]
-            store.report(f"{result['unknowns']:8d} unknowns, {name}: {step['iterations']:.1f} iterations a solve, "
+            store.report(f"{result['unknowns']:8d} unknowns, {name}: {step['iterations']:.1f} iterations per solve, "
                          f"{step['solves']} solves, {step['seconds']:.0f} s on {result['ranks']} rank(s)")  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""Results of a study's cases on disk, so that an interrupted study goes on where it was."""
+"""Results of a study's cases on disk, so that an interrupted study resumes where it stopped."""
 
 import json
 from collections.abc import Callable
@@ -11,10 +11,10 @@ from coilset.model.results.folder import whole
 
 
 class Store:
-    """A folder with one JSON file a case.
+    """A folder with one JSON file per case.
 
     Args:
-        folder: path, made if it is not there.
+        folder: path, created if missing.
         comm: MPI communicator; the first rank reads and writes.
         report: called with a line of progress, on the first rank.
     """
@@ -26,7 +26,7 @@ class Store:
             self.folder.mkdir(parents=True, exist_ok=True)
 
     def get(self, name: str, compute: Callable[[], dict[str, Any]]) -> dict[str, Any]:
-        """The case's result: read if it is there, else computed and written.
+        """The case's result: read if it exists, otherwise computed and written.
 
         Args:
             name: of the case; a file name without its ending.
@@ -40,14 +40,14 @@ class Store:
         return self.put(name, compute())
 
     def read(self, name: str) -> dict[str, Any] | None:
-        """The case's result on all ranks, None if it is not there."""
+        """The case's result on all ranks, None if it does not exist."""
         path, known = self.folder / f"{name}.json", None
         if self.comm.rank == 0 and path.exists():
             known = json.loads(path.read_text(encoding="utf-8"))
         return self.comm.bcast(known)
 
     def put(self, name: str, result: dict[str, Any]) -> dict[str, Any]:
-        """Write the case's result, plain data, in place of what is there, and return it."""
+        """Write the case's result, plain data, replacing what is there, and return it."""
         if self.comm.rank == 0:
             with whole(self.folder / f"{name}.json") as part:
                 part.write_text(json.dumps(result, indent=1), encoding="utf-8")

@@ -46,7 +46,7 @@ WHOLE: Cases = {
 
 
 def run(store: Store, cases: Cases = STANDARD, solver: str = "auto") -> Found:
-    """Run what is not known yet.
+    """Run what is missing.
 
     Args:
         store: Store.

@@ -1,4 +1,4 @@
-"""Elastic springs as curved rods, solved by hand: what the elements are measured by."""
+"""Elastic springs as curved rods, solved independently: the yardstick for the elements."""
 
 import numpy as np
 
@@ -11,14 +11,14 @@ def clamped_rate(spring: Spring, E: float, G: float, curved: bool = False) -> fl
 
     The complementary energy ∫ ½ s·D⁻¹ s ds of the true centre line, with the resultants s = (N, Q2, Q3, Mt, M2, M3)
     along the tangent, the normal and the binormal, gives the displacement of the top head by its six reactions; it is
-    (0, 0, −1), and its turns are 0.
+    (0, 0, −1), and its rotations are 0.
 
     Args:
         spring: `Spring`.
         E: Young's modulus, MPa.
         G: shear modulus, MPa.
-        curved: with sections of a curved wire, as `section_stiffness` has them; else with those of a straight one that
-            stay plane, EA, GA, GIp, EI.
+        curved: with sections of a curved wire, as `section_stiffness` has them; otherwise with those of a straight one
+            that stay plane, EA, GA, GIp, EI.
     """
     t, weight = _points(spring)
     r, tangent, ds = spring.centre_line(t), spring.tangent(t), spring.speed(t) * weight
@@ -85,7 +85,7 @@ def section_stiffness(radius: np.ndarray, curvature: np.ndarray, E: float, G: fl
 def shear_warping() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Warping of the unit disk at unit shear strains γ2, γ3, with its slopes: each of shape (2, points of `_disk`).
 
-    It makes ∫ |γ + ∇w|² dA least among all polynomials of degree 3 (the exact answer is one) that turn nothing,
+    It minimises ∫ |γ + ∇w|² dA among all polynomials of degree 3 (the exact answer is one) that turn nothing,
     ∫ w y dA = ∫ w z dA = 0.
     """
     y, z, weight = _disk()

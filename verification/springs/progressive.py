@@ -18,7 +18,8 @@ from mpi4py import MPI
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import check
-from coilset.model.results.figures import STYLE, save
+from coilset.model.results.figures import save
+from coilset.model.style import STYLE
 from coilset.verification.springs.curved_rod import torsion_characteristic
 
 STEPS = 26
@@ -60,7 +61,7 @@ CASES = {  # ends, travel in mm, spring
 class Characteristic:
     """Of a solve: travel and force of every step, shape (STEPS,); the formula's travel at these forces; mm and N.
 
-    `work` is the greatest plastic work at any point, MPa.
+    `work` is the maximum plastic work at any point, MPa.
     """
 
     travel: np.ndarray

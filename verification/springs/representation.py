@@ -25,10 +25,11 @@ from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.system import System
 from coilset.model.material import library
 from coilset.model.material.law import Law
-from coilset.model.results.figures import STYLE, save
+from coilset.model.results.figures import save
 from coilset.model.rod.kinematics import GAUSS, chord_triads
 from coilset.model.rod.rod import Rod
 from coilset.model.section.rules import polar
+from coilset.model.style import STYLE
 from coilset.verification.springs.curved_rod import clamped_rate
 
 TRAVEL = 1e-4  # of the free length, in both directions
@@ -77,7 +78,7 @@ def rate(spring: Spring, turns: np.ndarray, representation: str, law: Law) -> fl
 
 
 def study() -> dict[str, dict[str, np.ndarray]]:
-    """Relative errors of the rate: spring → representation → errors at `ELEMENTS` a turn, shape (4,)."""
+    """Relative errors of the rate: spring → representation → errors at `ELEMENTS` per turn, shape (4,)."""
     law = library.load("ck15")
     errors = {}
     for name, spec in SPRINGS.items():
@@ -91,7 +92,7 @@ def study() -> dict[str, dict[str, np.ndarray]]:
 
 
 def figure(errors: Mapping[str, Mapping[str, np.ndarray]], path: str | Path) -> None:
-    """Draw the errors over the elements in a turn."""
+    """Draw the errors over the elements per turn."""
     with mpl.rc_context(STYLE):
         drawn = Figure(figsize=(9.2, 4.6), layout="constrained")
         for place, (name, by_representation) in enumerate(errors.items()):
@@ -99,7 +100,7 @@ def figure(errors: Mapping[str, Mapping[str, np.ndarray]], path: str | Path) -> 
             for key, label in REPRESENTATIONS.items():
                 axes.loglog(ELEMENTS, 100 * np.abs(by_representation[key]), "o-", ms=4, lw=1.3, label=label)
             axes.axhline(0.3, color="0.5", lw=0.8, ls="--", label="0.3 %")
-            axes.set(title=name, xlabel="elements in a turn", ylabel="error of the rate in %", xticks=ELEMENTS)
+            axes.set(title=name, xlabel="elements per turn", ylabel="error of the rate in %", xticks=ELEMENTS)
             axes.set_xticklabels(ELEMENTS)
             axes.minorticks_off()
             axes.grid(lw=0.3)

@@ -25,7 +25,7 @@ def shear_curve(law: Law) -> tuple[np.ndarray, np.ndarray]:
 class CoilByCoil:
     """A spring whose turns twist one by one.
 
-    A rise that is lower by δ mm a turn twists the wire by κ = δ/(2π r²) a length, so that its surface is sheared by
+    A rise that is lower by δ mm per turn twists the wire by κ = δ/(2π r²) per length, so that its surface is sheared by
     γ = κ d/2; it bears the torque T = (d/2)³ m(γ), m(γ) = 2π ∫₀¹ τ(γ x) x² dx, of the axial force F = T/r.
 
     Args:
@@ -50,7 +50,7 @@ class CoilByCoil:
         return np.minimum(2 * np.pi * self.r**2 / self.a * shear, self.way) @ self.weight
 
     def force(self, travels: np.ndarray) -> np.ndarray:
-        """The reverse of `travel`, by interpolation between 2000 forces, N; the greatest from block on."""
+        """The reverse of `travel`, by interpolation between 2000 forces, N; the maximum from block on."""
         at_block = self.a**3 * self._moment_at_block() / self.r
         forces = np.linspace(0.0, at_block.max(), 2000)
         return np.interp(travels, self.travel(forces), forces)

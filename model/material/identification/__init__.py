@@ -1,1 +1,1 @@
-"""Identification of a material's constants from tests: `fit` is the way in, `experiments` reads the tests."""
+"""Identification of a material's constants from tests: `fit` is the entry point, `experiments` reads the tests."""

@@ -2,11 +2,11 @@
 
 1. Tension gives the hardening k²(b*): plastic work is integrated from the test itself, and without back stress the
    yield condition (3.1.4) makes k² = ⅔σ².
-2. Torsion with reversal parts it into isotropic and kinematic hardening, ζ(b*).
+2. Torsion with reversal separates it into isotropic and kinematic hardening, ζ(b*).
 3. Tension-torsion with an abrupt change gives the deviation from normality, κ(b*).
 
-Last, all constants are adjusted together to all tests, from several bends b1* of k²; the uncertainties are those of
-this step. From tension alone only k² is identified: the law then hardens isotropically.
+Finally all constants are fitted to all tests together, from several transition points b1* of k²; the uncertainties are
+those of this step. From tension alone only k² is identified: hardening is then isotropic.
 """
 
 import itertools
@@ -37,7 +37,7 @@ def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool | None = Non
         tests: `Test` objects: tension alone, or at least one each of tension, torsion with reversal, and
             tension-torsion.
         G, nu: elastic constants, measured before; N/mm².
-        saturates: whether k² has its second branch, which the tests must reach; if None, all but tension alone do.
+        saturates: whether k² has its second branch, which the tests must reach; None: unless there is only tension.
         temperature: of the tests, K.
 
     Returns:
@@ -45,7 +45,7 @@ def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool | None = Non
 
     Raises:
         InputError: if a kind of test is missing.
-        SolveError: if the constants cannot be told from these tests.
+        SolveError: if the constants cannot be determined from these tests.
     """
     tests = tuple(tests)
     kinds = {kind: [test for test in tests if test.kind == kind] for kind in ("tension", "torsion", "combined")}
@@ -103,5 +103,5 @@ def _minima(
 def _closest(
     model: FittedLaw, starts: Iterable[dict[str, float]], tests: Sequence[Test], number: int
 ) -> list[dict[str, float]]:
-    """The starts that fit best."""
+    """The starting points that fit best."""
     return sorted(starts, key=lambda start: np.sum(model.residual(start, tests) ** 2))[:number]

@@ -14,7 +14,7 @@ from coilset.model.material import functions as fn
 from coilset.model.material.heun import ROD_METRIC, integrate
 from coilset.model.material.identification.experiments import Test
 
-SUBSTEP = 1e-3  # greatest strain increment of the simulation
+SUBSTEP = 1e-3  # maximum strain increment of the simulation
 LARGE = 1e3  # residual of a law that cannot follow a test
 # The variables. gain: k∞² − k1²; start, rest: a5 a7 and a5 a6, ζ over sqrt(6 k²) at b* = 0 and for large b*.
 HARDENING, KINEMATIC, NORMALITY = ("k0", "a1", "a2", "a3", "b1", "gain"), ("start", "rest", "a7"), ("a",)
@@ -50,7 +50,7 @@ class FittedLaw:
     Args:
         G, nu: elastic constants, N/mm².
         saturates: whether k² has its second branch.
-        isotropic: whether k² is all there is, without back stress and with normality.
+        isotropic: whether there is only k², without back stress and with normality.
 
     Attributes:
         hardening, names: names of the variables of k², and of all.
@@ -91,9 +91,9 @@ class FittedLaw:
         return stress, work
 
     def residual(self, values: Variables, tests: Iterable[Test]) -> np.ndarray:
-        """Difference of stress to the tests over the greatest stress of each, all in one vector."""
+        """Difference of stress to the tests over the maximum stress of each, all in one vector."""
         parts = [(self.follow(values, test)[0] - test.stress) / np.abs(test.stress).max() for test in tests]
-        # A tension test says nothing by its vanishing shear stress; a torsion test's axial one depends on κ, of step 3.
+        # A tension test's zero shear stress carries no information; a torsion test's axial one depends on κ, of step 3.
         used = [part[:, COLUMNS_USED[test.kind]] for part, test in zip(parts, tests, strict=True)]
         return np.nan_to_num(np.concatenate([part.ravel() for part in used]), nan=LARGE, posinf=LARGE, neginf=-LARGE)
 

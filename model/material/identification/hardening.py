@@ -1,4 +1,4 @@
-"""Hardening from the tests themselves, and the shapes of it from which the fit starts."""
+"""Hardening directly from the tests, and starting points for the fit."""
 
 import itertools
 import math
@@ -14,7 +14,7 @@ from coilset.model.material.identification.experiments import Test
 from coilset.model.material.identification.fitted_law import KINEMATIC, NORMALITY, FittedLaw, Variables, moved_by
 
 NO_BACK_STRESS = {"start": 0.0, "rest": 0.0, "a7": 1.0}
-Starts = Callable[[float, float], Iterable[dict[str, float]]]  # variables from reach, N/mm², and greatest k², N²/mm⁴
+Starts = Callable[[float, float], Iterable[dict[str, float]]]  # variables from reach, N/mm², and maximum k², N²/mm⁴
 
 
 @njit(**fn.KERNEL)
@@ -72,7 +72,7 @@ def hardening(
 
 
 def first_starts(model: FittedLaw) -> Starts:
-    """Shapes of k² from which step 1 starts."""
+    """Starting points of k² for step 1."""
 
     def starts(reach: float, top: float) -> Iterator[dict[str, float]]:
         for a3, fraction in itertools.product((3, 10, 30), (0.3, 0.5, 0.7) if "b1" in model.hardening else (1.0,)):
@@ -85,7 +85,7 @@ def first_starts(model: FittedLaw) -> Starts:
 def kinematic_starts(
     model: FittedLaw, values: Variables, tests: Sequence[Test], reach: float
 ) -> Iterator[dict[str, float]]:
-    """Step 2 starts from back stresses of several sizes, with the k² that the tests have with each of them."""
+    """Starting points for step 2: back stresses of several sizes, with the k² that the tests give for each."""
     base = {name: values[name] for name in model.hardening}
     for size, a7, rest in itertools.product((0.05, 0.2, 0.6), (5 / reach, 25 / reach, 125 / reach), (0.02, 0.2)):
         k = math.sqrt(values["k0"])
@@ -96,7 +96,7 @@ def kinematic_starts(
 def bend_starts(
     model: FittedLaw, values: dict[str, float], tests: Sequence[Test], reach: float
 ) -> Iterator[dict[str, float]]:
-    """The bend b1* of k² elsewhere: least squares does not find it from afar."""
+    """Other transition points b1* of k²: least squares does not find a distant one."""
     yield values
     others = {name: values[name] for name in (*KINEMATIC, *NORMALITY)}
     for fraction in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8) if "b1" in values else ():

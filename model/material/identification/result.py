@@ -1,4 +1,4 @@
-"""What a fit has found: the constants as a material file has them, and how sure they are."""
+"""Result of a fit: the constants in the form of a material file, and their uncertainties."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from coilset.model.material.identification.experiments import Test
 from coilset.model.material.identification.fitted_law import LARGE, FittedLaw, Variables, moved_by
 
 CONFIDENCE = 0.95
-Minimum = tuple[dict[str, float], OptimizeResult]  # variables, and what least squares says of them
+Minimum = tuple[dict[str, float], OptimizeResult]  # variables, and the result of least squares
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Fit:
         tests: as given.
         stress: of the law along each test, shape (rows, 2), N/mm².
         scatter: rms residual of each test, N/mm².
-        work: greatest b* of the tests, N/mm².
+        work: maximum b* of the tests, N/mm².
     """
 
     G: float
@@ -68,7 +68,7 @@ class Fit:
 
 
 def result(model: FittedLaw, minima: Sequence[Minimum], tests: tuple[Test, ...], temperature: float) -> Fit:
-    """The lowest minimum; others that the scatter of the tests does not exclude widen the uncertainties."""
+    """The lowest minimum; other minima compatible with the scatter of the tests increase the uncertainties."""
     best, found = minima[0]
     if not found.cost < LARGE:
         raise SolveError("no constants were found with which the law can follow these tests; are their units right?")

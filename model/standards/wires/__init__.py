@@ -1,4 +1,4 @@
-"""Spring wires by name: a YAML file a standard beside this module, each number with its source and how sure it is."""
+"""Spring wires by name: one YAML file per standard beside this module, each number with its source and certainty."""
 
 from coilset.model.standards.wires.library import names, wire
 from coilset.model.standards.wires.wire import Wire

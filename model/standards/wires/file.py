@@ -1,4 +1,4 @@
-"""Schema of the files of wires: numbers over the wire's diameter, each with its sources and how sure it is."""
+"""Schema of the wire files: numbers as functions of the wire diameter, each with its sources and certainty."""
 
 import math
 from bisect import bisect_left
@@ -18,7 +18,7 @@ Pair = Annotated[tuple[Positive, Positive], Field(strict=False)]
 
 
 class Sourced(Strict):
-    """What every number says of itself: keys of the file's sources, and how sure it is."""
+    """What every number states about itself: keys of the file's sources, and how certain it is."""
 
     sources: Annotated[tuple[Text, ...], Field(strict=False)]
     sure: Sure
@@ -33,7 +33,7 @@ class Sourced(Strict):
 
 
 class Number(Sourced):
-    """A number that is the same for all diameters (`value`), or one for each range of diameters, mm."""
+    """A number for all diameters (`value`), or one for each range of diameters, mm."""
 
     value: Positive | None = None
     up_to: Numbers | None = None
@@ -48,9 +48,9 @@ class Number(Sourced):
         return self
 
     def at(self, diameter: float) -> float:
-        """The number at a diameter, mm; the last range goes on without end."""
+        """The number at a diameter, mm; the last range extends without limit."""
         if self.up_to is None or self.values is None:
-            return float(self.value or 0.0)  # never 0: one of both is given
+            return float(self.value or 0.0)  # never 0: one of the two is given
         return self.values[min(bisect_left(self.up_to, diameter), len(self.values) - 1)]
 
 
@@ -75,7 +75,7 @@ class _Piece(Strict):
     diameters: Pair
 
     def covers(self, diameter: float) -> bool:
-        """Whether the diameter is in the range of this piece, both ends included."""
+        """Whether the diameter is in the range of this piece, including both ends."""
         return self.diameters[0] <= diameter <= self.diameters[1]
 
 
@@ -104,7 +104,7 @@ class Power(_Piece):
 
 
 class Table(_Piece):
-    """Values at diameters, in between linear over lg d."""
+    """Values at given diameters, linear over lg d in between."""
 
     form: Literal["table"]
     at_: Annotated[Numbers, Field(alias="at")]
@@ -121,7 +121,7 @@ class Table(_Piece):
 
 
 class Steps(_Piece):
-    """One value for each range of diameters, its upper end included."""
+    """One value for each range of diameters, including its upper end."""
 
     form: Literal["steps"]
     up_to: Numbers
@@ -140,7 +140,7 @@ class Steps(_Piece):
 
 
 class Strength(Sourced):
-    """Least tensile strength Rm over the diameter, in pieces."""
+    """Minimum tensile strength Rm over the diameter, in pieces."""
 
     pieces: Annotated[
         tuple[Annotated[Logarithm | Power | Table | Steps, Field(discriminator="form")], ...],
@@ -149,7 +149,7 @@ class Strength(Sourced):
     greatest: Positive | None = None  # N/mm²
 
     def at(self, diameter: float) -> float | None:
-        """Rm at a diameter in mm, N/mm²; None where no piece covers it."""
+        """Rm at a diameter in mm, N/mm²; None if no piece covers it."""
         for piece in self.pieces:
             if piece.covers(diameter):
                 return min(piece.at(diameter), self.greatest or math.inf)
@@ -159,7 +159,7 @@ class Strength(Sourced):
 class Endurance(Sourced):
     """Line of the Goodman diagram of corrected stresses: values a, b of a − b lg(d / 1 mm), N/mm².
 
-    From the upper stress `at_zero` over lower stress 0 straight to `limit` over `knee`, from there on `limit`.
+    A straight line from the upper stress `at_zero` at lower stress 0 to `limit` at `knee`, `limit` from there on.
     """
 
     surface: Literal["as coiled", "shot peened"]
@@ -191,7 +191,7 @@ class WireEntry(Strict):
 
 
 class WireFile(Strict):
-    """A whole file: the sources, the wires with what all of them have in common, and what could not be found."""
+    """A whole file: the sources, the wires with their common entries, and what could not be found."""
 
     standard: Text
     title: Text
@@ -210,7 +210,7 @@ class WireFile(Strict):
 
 
 def with_common(data: dict[str, Any]) -> dict[str, Any]:
-    """Raw data of a file whose `common` entries are put into each wire that does not give its own."""
+    """Raw data of a file, with the `common` entries inserted into each wire that does not give its own."""
     common = data.get("common") or {}
     wires = [common | wire if isinstance(wire, dict) else wire for wire in data.get("wires") or []]
     return {name: value for name, value in data.items() if name != "common"} | {"wires": wires}

@@ -8,8 +8,8 @@ In tension db* = σ dεp, hence dσ/dεp = ½ a4 (σ∞² − σ²), and in clos
 
     σ(εp) = σ∞ tanh(artanh(σ0/σ∞) + ½ a4 σ∞ εp).
 
-σ is the true stress and εp the logarithmic plastic strain. The stress of the test, force over the section before it, is
-s = σ exp(−εp − 2ν σ/E): plastic strain keeps the volume, elastic strain contracts the section by ν.
+σ is the true stress and εp the logarithmic plastic strain. The engineering stress, force over initial section, is
+s = σ exp(−εp − 2ν σ/E): plastic strain preserves the volume, elastic strain contracts the section by ν.
 """
 
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ class Curve:
         return self.saturation * tanh(atanh(self.start / self.saturation) + half * plastic_strain)
 
     def test_stress(self, plastic_strain: float) -> float:
-        """Force over the section before the test, N/mm²."""
+        """Engineering stress, force over the initial section, N/mm²."""
         σ = self.true_stress(plastic_strain)
         return σ * exp(-plastic_strain - self.contraction * σ)
 
@@ -68,12 +68,12 @@ class Curve:
 
     @property
     def uniform_strain(self) -> float:
-        """Logarithmic plastic strain at the greatest force."""
+        """Logarithmic plastic strain at the maximum force."""
         return self.plastic_strain(self.stress_at_greatest_force)
 
     @property
     def strength(self) -> float:
-        """Greatest stress of the test, N/mm²."""
+        """Maximum engineering stress, N/mm²."""
         return self.test_stress(self.uniform_strain)
 
 
@@ -81,7 +81,7 @@ def curve(elastic_limit: float, proof_stress: float, strength: float, young_modu
     """The curve through an elastic limit, a 0.2 % proof stress and a strength Rm of the tensile test, all in N/mm².
 
     Raises:
-        ValueError: if they do not ascend.
+        ValueError: if they are not in ascending order.
     """
     if not 0 < elastic_limit < proof_stress < strength:
         raise ValueError(f"elastic limit {elastic_limit:g}, proof stress {proof_stress:g} and strength {strength:g} "
@@ -94,7 +94,7 @@ def curve(elastic_limit: float, proof_stress: float, strength: float, young_modu
         reach = atanh(proof / saturation) - atanh(start / saturation)
         return Curve(start, saturation, 2 * reach / (saturation * PROOF_STRAIN), contraction)
 
-    # with σ∞ just above the proof stress the strength is little above it, too, and it grows with σ∞
+    # with σ∞ just above the proof stress, so is the strength, and it grows with σ∞
     from scipy.optimize import brentq
 
     saturation = brentq(lambda σ: through_both(σ).strength - strength, proof * (1 + 1e-9), 5 * strength, xtol=1e-9)
@@ -102,7 +102,7 @@ def curve(elastic_limit: float, proof_stress: float, strength: float, young_modu
 
 
 def _true(stress: float, plastic_strain: float, contraction: float) -> float:
-    """True stress of a stress s of the test: σ = s exp(εp + 2ν σ/E), iterated; 2ν σ/E is some thousandths."""
+    """True stress of an engineering stress s: σ = s exp(εp + 2ν σ/E), iterated; 2ν σ/E is a few thousandths."""
     σ = stress
     for _ in range(20):
         σ = stress * exp(plastic_strain + contraction * σ)

@@ -1,4 +1,4 @@
-"""The law of a wire by its name: elasticity of the standard, hardening estimated from its least strength."""
+"""The law of a wire by its name: elasticity from the standard, hardening estimated from its minimum strength."""
 
 from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
@@ -11,7 +11,7 @@ from coilset.model.standards.wires.hardening import Curve, curve
 from coilset.model.standards.wires.library import wire
 from coilset.model.standards.wires.wire import ROOM_TEMPERATURE, Wire
 
-SAME = 0.02  # relative change of the diameter along one wire
+SAME = 0.02  # maximum relative change of the diameter along one wire
 ASSUMPTIONS = (
     "estimate, until a test of the wire is given: saturating isotropic hardening (Voce, in the plastic work) through "
     "the elastic limit {elastic:.4g} and the 0.2 % proof stress {proof:.4g} to the least strength {strength:.4g} "
@@ -31,7 +31,7 @@ def hardening_curve(wire: Wire, diameter: float) -> Curve:
 
 
 def poisson_ratio(elastic: Elastic) -> float:
-    """ν = E/(2G) − 1 of the two moduli that a standard gives; for some wires it is no property of theirs."""
+    """ν = E/(2G) − 1 from the two moduli that a standard gives; for some wires it is not a physical property."""
     return elastic.young_modulus / (2 * elastic.shear_modulus) - 1
 
 
@@ -44,10 +44,10 @@ def wire_law(name: str, diameter: float, spin: bool = False) -> Law:
         spin: see `Law`.
 
     Returns:
-        Law at 20 °C; its validity ends at the plastic work of the uniform strain.
+        Law at 20 °C, valid up to the plastic work at uniform strain.
 
     Raises:
-        InputError: no such wire, or a diameter for which its strength is not known.
+        InputError: an unknown wire, or a diameter for which its strength is not known.
     """
     known = wire(name)
     elastic, found = known.elastic(diameter), hardening_curve(known, diameter)
@@ -77,10 +77,10 @@ def wire_law(name: str, diameter: float, spin: bool = False) -> Law:
 
 
 def case_law(case: Case, spring: Spring) -> Law:
-    """The law of a case's material: of the library, of a file, or of a wire by its name and the spring's diameter.
+    """The law of a case's material: from the library, from a file, or of a wire by its name and the spring's wire.
 
     Raises:
-        InputError: no such material or wire, a file that is wrong, or a wire whose diameter is not one number.
+        InputError: an unknown material or wire, a wrong file, or a wire whose diameter is not constant.
     """
     spin = case.mesh.section.spin
     if isinstance(case.material, str):
@@ -89,12 +89,12 @@ def case_law(case: Case, spring: Spring) -> Law:
 
 
 def case_strength(case: Case, spring: Spring) -> float | None:
-    """Least tensile strength Rm of a case's wire, MPa; None if its material is no wire of a standard."""
+    """Minimum tensile strength Rm of a case's wire, MPa; None if its material is not a standard wire."""
     return None if isinstance(case.material, str) else wire(case.material.wire).strength(wire_diameter(spring))
 
 
 def wire_diameter(spring: Spring) -> float:
-    """The one wire diameter of a spring, mm; that of a measured spring may vary by the tolerance of wires, 2 %.
+    """The single wire diameter of a spring, mm; that of a measured spring may vary by the tolerance of wires, 2 %.
 
     Raises:
         InputError: if it changes along the wire.

@@ -35,7 +35,7 @@ def names() -> list[str]:
 
 
 def wire(name: str) -> Wire:
-    """A wire by its name; letters' case and the number of spaces do not matter.
+    """A wire by its name; case and the number of spaces do not matter.
 
     Raises:
         InputError: if there is no such wire.

@@ -1,4 +1,4 @@
-"""A spring wire of a standard: its properties at a diameter, and where each number comes from."""
+"""A standard spring wire: its properties at a diameter, and where each number comes from."""
 
 from dataclasses import dataclass
 
@@ -11,12 +11,12 @@ ROOM_TEMPERATURE = 293.15  # K
 
 @dataclass(frozen=True)
 class Wire:
-    """A wire of a standard.
+    """A standard wire.
 
     Attributes:
         name: standard and grade, such as `EN 10270-1 SH`.
         entry: its numbers with their sources.
-        sources: what the keys of the sources stand for.
+        sources: the meaning of the keys of the sources.
     """
 
     name: str
@@ -24,10 +24,10 @@ class Wire:
     sources: dict[str, str]
 
     def strength(self, diameter: float) -> float:
-        """Least tensile strength Rm at a diameter in mm, N/mm².
+        """Minimum tensile strength Rm at a diameter in mm, N/mm².
 
         Raises:
-            InputError: if the diameter is outside of what is known.
+            InputError: if the diameter is outside the known ranges.
         """
         value = self.entry.strength.at(diameter)
         if value is None:
@@ -53,24 +53,24 @@ class Wire:
         return Elastic(*(number.at(diameter) for number in (entry.shear_modulus, entry.young_modulus, entry.density)))
 
     def shear_modulus_factor(self, temperature: float) -> float | None:
-        """G at a temperature in K over G at 20 °C, G = G20 (1 − r (θ − 20 °C)); None if r is not known."""
+        """G at a temperature in K over G at 20 °C, G = G20 (1 − r (θ − 20 °C)); None if r is unknown."""
         decrease = self.entry.shear_modulus_decrease
         return None if decrease is None else 1 - decrease.at(1.0) * (temperature - ROOM_TEMPERATURE)
 
     def block_stress(self, diameter: float) -> float:
-        """Uncorrected shear stress that is allowed at block, N/mm²."""
+        """Uncorrected shear stress allowed at block, N/mm²."""
         return self.entry.block_stress.at(diameter) * self.strength(diameter)
 
     def diameter_tolerance(self, diameter: float) -> float | None:
-        """Tolerance of the wire's diameter, mm; None if it is not known."""
+        """Tolerance of the wire diameter, mm; None if unknown."""
         tolerance = self.entry.diameter_tolerance
         return None if tolerance is None else tolerance.at(diameter)
 
     def endurance(self, surface: str = "as coiled") -> Endurance | None:
-        """Line of the Goodman diagram of a surface, `as coiled` or `shot peened`; None if it is not known."""
+        """Line of the Goodman diagram for a surface, `as coiled` or `shot peened`; None if unknown."""
         return next((line for line in self.entry.endurance if line.surface == surface), None)
 
     def citation(self, entry: Sourced) -> str:
-        """How sure a number is, its sources and its remark, in one line."""
+        """The certainty of a number, its sources and its remark, in one line."""
         parts = [entry.sure, "; ".join(self.sources[key] for key in entry.sources), entry.remark]
         return ": ".join(part for part in parts if part)

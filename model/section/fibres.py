@@ -1,4 +1,4 @@
-"""The thesis's sections: they stay plane, in a straight wire, with three stresses at their points (5.2.4), (5.2.42)."""
+"""Sections of fibres with three stresses: plane ones of a straight wire, and those that include its curvature."""
 
 import math
 from collections.abc import Mapping
@@ -10,12 +10,13 @@ from coilset.meshes.placement import Placement
 from coilset.model.material.kernel import KERNEL
 from coilset.model.material.law import Law
 from coilset.model.section.chord import to_chord, to_section
-from coilset.model.section.integration import SHAPE, section, update_points
+from coilset.model.section.integration import section, update_points
 from coilset.model.section.law_over_time import LawOverTime
 from coilset.model.section.rules import DiskRule, rim
+from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
 
 
-class PlaneSections:
+class FibreSections:
     """All sections of a rod on this rank.
 
     Args:
@@ -24,6 +25,8 @@ class PlaneSections:
         rule: quadrature of the disk.
         radius: wire radius of each element, shape (cells,), mm.
         placement: Placement of the cells' sections.
+        curved: whether they include the wire's curvature, see `shape`; else they are the thesis's, plane, of a straight
+            wire.
         temperature: K, of the points at the start; None: the material's first.
 
     Attributes:
@@ -39,11 +42,12 @@ class PlaneSections:
         rule: DiskRule,
         radius: np.ndarray,
         placement: Placement,
+        curved: bool,
         temperature: float | None = None,
     ) -> None:
-        self.radius, self.placement, self.weights = radius, placement, rule.weights
+        self.radius, self.placement, self.weights, self.curved = radius, placement, rule.weights, curved
         self.law_over_time = LawOverTime(law, parameters, temperature)
-        self.components += self.law_over_time.columns
+        self.components += self.law_over_time.columns(self.components[3:6])
         self.y, self.z = np.ascontiguousarray(rule.points.T)
         self.rim_y, self.rim_z = np.ascontiguousarray(rim().T)
 
@@ -65,7 +69,7 @@ class PlaneSections:
         D: np.ndarray,
         with_tangent: bool = True,
     ) -> bool:
-        """Bring all sections to the end of the increment.
+        """Advance all sections to the end of the increment.
 
         Args:
             strain: ε, γ12, γ13, φ′, κ2, κ3 of the chords, shape (cells, 2, 6).
@@ -75,32 +79,24 @@ class PlaneSections:
             D: written, ds/de, shape (cells, 2, 6, 6), if `with_tangent`.
 
         Returns:
-            False if the law found no solution at some point or the strains are no numbers.
+            False if the law found no solution at some point or the strains are not finite.
         """
         place, law = self.placement, self.law_over_time.over(start, trial)
         return bool(update_sections(
-            law, self.y, self.z, self.weights, self.radius, strain - start["strain"], place.matrices,
-            place.stretch, start["point_state"], trial["point_state"], s, D, with_tangent,
+            law, self.y, self.z, self.weights, self.radius, place.curvature, self.curved, strain - start["strain"],
+            place.matrices, place.stretch, start["point_state"], trial["point_state"], s, D, with_tangent,
         ))  # fmt: skip
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
-        """Bring the points on the wire's surface to the end of the increment; they bear no weight in the section.
+        """Advance the points on the wire's surface to the end of the increment; they have no weight in the section.
 
-        Where the law finds no solution the state becomes NaN.
+        If the law finds no solution the state becomes NaN.
         """
         place, law = self.placement, self.law_over_time.over(start, trial)
         update_surface(
-            law, self.rim_y, self.rim_z, self.radius, strain - start["strain"], place.matrices,
-            start["surface_state"], trial["surface_state"],
+            law, self.rim_y, self.rim_z, self.radius, place.curvature, self.curved, strain - start["strain"],
+            place.matrices, start["surface_state"], trial["surface_state"],
         )  # fmt: skip
-
-
-@njit(**KERNEL)
-def straight_shape(points: int) -> np.ndarray:
-    """g, a22, a23, a32, a33 of a section that stays plane in a straight wire, shape (5, points); see `integration`."""
-    shape = np.zeros((SHAPE, points))
-    shape[0, :] = shape[1, :] = shape[4, :] = 1.0
-    return shape
 
 
 @njit(**KERNEL)
@@ -110,6 +106,8 @@ def update_sections(
     z: np.ndarray,
     w: np.ndarray,
     radius: np.ndarray,
+    curvature: np.ndarray,
+    curved: bool,
     de: np.ndarray,
     placement: np.ndarray,
     stretch: np.ndarray,
@@ -128,6 +126,7 @@ def update_sections(
         p: parameters of the material law.
         y, z, w: points of the unit disk and weights, shape (points,).
         radius: wire radius of each element, shape (cells,), mm.
+        curvature: κ of the wire, towards y, shape (cells, 2), 1/mm; curved: is it known to the sections?
         de: increments of the section strains ε, γ12, γ13, φ′, κ2 = −w″, κ3 = v″, shape (cells, 2, 6).
         placement: shape (cells, 2, 6, 6), stretch: ds/dx, shape (cells, 2).
         old: state at the last equilibrium, shape (cells, 2, points, n_state); not changed.
@@ -141,13 +140,19 @@ def update_sections(
     points = len(w)
     d, resultant, tangent, work = np.empty(6), np.empty(6), np.empty((6, 6)), np.empty((6, 6))
     strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
-    shape = straight_shape(points)
+    shape = np.empty((SHAPE, points))
+    straight_shape(shape)
+    last, Y, Z, area = 0.0, y, z, w
     for c in range(len(radius)):
         R = radius[c]
+        if last != R:
+            last, Y, Z, area = R, R * y, R * z, math.pi * R * R * w
         for g in range(2):
             to_section(placement[c, g], de[c, g], d)
-            if not section(p, R * y, R * z, math.pi * R * R * w, shape, d, old[c, g], new[c, g], strain, C,
-                           with_tangent, count, resultant, tangent):  # fmt: skip
+            if curved:
+                curved_shape(y, z, curvature[c, g] * R, shape)
+            if not section(p, Y, Z, area, shape, d, old[c, g], new[c, g], strain, C, with_tangent, count, resultant,
+                           tangent):  # fmt: skip
                 return False
             to_chord(placement[c, g], stretch[c, g], resultant, tangent, work, s[c, g], D[c, g], with_tangent)
     return True
@@ -159,6 +164,8 @@ def update_surface(
     y: np.ndarray,
     z: np.ndarray,
     radius: np.ndarray,
+    curvature: np.ndarray,
+    curved: bool,
     de: np.ndarray,
     placement: np.ndarray,
     old: np.ndarray,
@@ -167,11 +174,15 @@ def update_surface(
     """Bring the points y, z of the unit circle to the end of the increment; arguments as in `update_sections`."""
     points, d = len(y), np.empty(6)
     strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
-    shape = straight_shape(points)
+    shape = np.empty((SHAPE, points))
+    straight_shape(shape)
     for c in range(len(radius)):
+        R = radius[c]
         for g in range(2):
             to_section(placement[c, g], de[c, g], d)
-            update_points(p, radius[c] * y, radius[c] * z, shape, d, old[c, g], new[c, g], strain, C, False, count)
+            if curved:
+                curved_shape(y, z, curvature[c, g] * R, shape)
+            update_points(p, R * y, R * z, shape, d, old[c, g], new[c, g], strain, C, False, count)
             spoil_failed(count, new[c, g])
 
 

@@ -1,0 +1,182 @@
+"""Contact elements in compiled loops: what each of them does to the stations that it hangs on, and its stiffness."""
+
+import numpy as np
+from numba import njit
+
+from coilset.model.contact.curve import STENCIL, point_on_curve, station_weight
+
+COMPILED = {"cache": True, "error_model": "numpy"}
+PAIR = 6 * STENCIL  # displacements of the eight stations of a pair
+FLAT = STENCIL + 1  # levels of a point's stations and of the seat
+
+
+@njit(**COMPILED)
+def one_sided_at(g: float, c: float, onset: float) -> tuple[float, float]:
+    """As `base.one_sided`, of one element."""
+    within = min(max(-g, 0.0), 2.0 * onset)
+    return c * (within**2 / (4.0 * onset) + max(-g - 2.0 * onset, 0.0)), c * within / (2.0 * onset)
+
+
+@njit(**COMPILED)
+def at_points(weights: np.ndarray, stations: np.ndarray, values: np.ndarray, out: np.ndarray) -> None:
+    """Write the stations' vectors at the points: weights and stations of shape (m, 4), values (n, 3), out (m, 3)."""
+    for i in range(len(weights)):
+        for k in range(3):
+            out[i, k] = 0.0
+            for a in range(STENCIL):
+                out[i, k] += weights[i, a] * values[stations[i, a], k]
+
+
+@njit(**COMPILED)
+def gap_derivatives(
+    p: np.ndarray,
+    weights: np.ndarray,
+    y: np.ndarray,
+    first: np.ndarray,
+    cubic: np.ndarray,
+    pair: np.ndarray,
+    xi: np.ndarray,
+    grad: np.ndarray,
+    hessian: np.ndarray,
+) -> None:
+    """Gradient and second derivative of the gaps by the eight stations of each pair.
+
+    With q = Σ a_m x_m from the other coil to the point, d = |q|, n = q/d, P = (1 − n nᵀ)/d and a′ = ∂a/∂ξ the gap
+    g(u, ξ) = d − r_p − r(ξ) has
+
+        g_u = a n,   g_uξ = a′ n − a P c′,   g_ξξ = c′ P c′ − n c″ − r″,   g_uu = a aᵀ P − g_uξ g_uξᵀ / g_ξξ,
+
+    the last with ξ eliminated by g_ξ = 0; at the wire's end ξ stays and the last term falls away.
+
+    Args:
+        p, weights: points and the weights of their four stations, shapes (m, 3) and (m, 4).
+        y, first, cubic, pair, xi: as in `near_locations`.
+        grad, hessian: written, shapes (pairs, 24) and (pairs, 24, 24).
+    """
+    c, dc, ddc = np.empty(4), np.empty(4), np.empty(4)
+    n, a, da, P, Pc, mixed = np.empty(3), np.zeros(8), np.zeros(8), np.empty((3, 3)), np.empty(3), np.empty(24)
+    for m in range(len(pair)):
+        i, e, t = pair[m, 0], pair[m, 1], xi[m]
+        point_on_curve(y, first, cubic, e, t, c, 0)
+        point_on_curve(y, first, cubic, e, t, dc, 1)
+        point_on_curve(y, first, cubic, e, t, ddc, 2)
+        d = np.sqrt((p[i, 0] - c[0]) ** 2 + (p[i, 1] - c[1]) ** 2 + (p[i, 2] - c[2]) ** 2)
+        for k in range(3):
+            n[k] = (p[i, k] - c[k]) / d
+        for k in range(4):
+            a[k] = weights[i, k]
+            a[4 + k] = -station_weight(cubic[e, k], t, 0)
+            da[4 + k] = -station_weight(cubic[e, k], t, 1)
+        second = -ddc[3]
+        for k in range(3):
+            Pc[k] = 0.0
+            for l in range(3):
+                P[k, l] = ((1.0 if k == l else 0.0) - n[k] * n[l]) / d
+                Pc[k] += P[k, l] * dc[l]
+            second += dc[k] * Pc[k] - n[k] * ddc[k]
+        eliminated = 1.0 / second if pair[m, 2] and second > 0.0 else 0.0
+        for s in range(8):
+            for k in range(3):
+                grad[m, 3 * s + k] = a[s] * n[k]
+                mixed[3 * s + k] = da[s] * n[k] - a[s] * Pc[k]
+        for s in range(8):
+            for k in range(3):
+                for v in range(8):
+                    for l in range(3):
+                        hessian[m, 3 * s + k, 3 * v + l] = (
+                            a[s] * a[v] * P[k, l] - eliminated * mixed[3 * s + k] * mixed[3 * v + l]
+                        )
+
+
+@njit(**COMPILED)
+def coil_elements(
+    p: np.ndarray,
+    weights: np.ndarray,
+    y: np.ndarray,
+    first: np.ndarray,
+    cubic: np.ndarray,
+    pair: np.ndarray,
+    where: np.ndarray,
+    offset: np.ndarray,
+    stiffness: np.ndarray,
+    onset: float,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Forces, stiffness and pressure of the pairs, shapes (m, 24), (m, 24, 24) and (m,).
+
+    Args:
+        p, weights, y, first, cubic, pair: as in `gap_derivatives`.
+        where: ξ and gap of the pairs, offset: by which they are pressed beyond their penetration, shape (m,), mm.
+        stiffness: of the points, N/mm.
+        onset: distance over which contact sets in, mm.
+    """
+    m = len(pair)
+    forces, k, pressure = np.empty((m, PAIR)), np.empty((m, PAIR, PAIR)), np.empty(m)
+    gap_derivatives(p, weights, y, first, cubic, pair, where[:, 0], forces, k)
+    for e in range(m):
+        pressure[e], c = one_sided_at(where[e, 1] - offset[e], stiffness[pair[e, 0]], onset)
+        for i in range(PAIR):
+            for j in range(PAIR):
+                k[e, i, j] = c * forces[e, i] * forces[e, j] - pressure[e] * k[e, i, j]
+        for i in range(PAIR):
+            forces[e, i] *= -pressure[e]
+    return forces, k, pressure
+
+
+@njit(**COMPILED)
+def flat_seat_elements(
+    z: np.ndarray,
+    stations: np.ndarray,
+    weights: np.ndarray,
+    level: float,
+    side: float,
+    reach: np.ndarray,
+    offset: np.ndarray,
+    stiffness: np.ndarray,
+    onset: float,
+    tip: int,
+    tip_spring: float,
+    slack: float,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """The points that bear on a flat seat which moves along the axis only, and the tip.
+
+    Args:
+        z: levels of the stations, mm.
+        stations, weights: of the points, shape (m, 4).
+        level: of the seat, mm; side: 1 where the wire lies above it, else −1.
+        reach, offset, stiffness, onset, tip, tip_spring, slack: of the Seat.
+
+    Returns:
+        Numbers of the b points, shape (b,), their forces, shape (b, 5), stiffness, (b, 5, 5), pressure and
+        penetration, (b,).
+    """
+    gap, count = np.empty(len(weights)), 0
+    for i in range(len(weights)):
+        height = -level
+        for a in range(STENCIL):
+            height += weights[i, a] * z[stations[i, a]]
+        gap[i] = side * height - reach[i]
+        count += gap[i] < offset[i] or i == tip
+    point, pressure, penetration = np.empty(count, np.int64), np.empty(count), np.empty(count)
+    forces, k, grad = np.empty((count, FLAT)), np.empty((count, FLAT, FLAT)), np.empty(FLAT)
+    e = 0
+    for i in range(len(weights)):
+        g = gap[i] - offset[i]
+        if g >= 0.0 and i != tip:
+            continue
+        if i != tip:
+            force, c = one_sided_at(g, stiffness[i], onset)
+        elif g > 0.0:
+            c = tip_spring if g >= slack else 0.0
+            force = -c * max(g - slack, 0.0)
+        else:
+            c = stiffness[i]
+            force = -c * g
+        point[e], pressure[e], penetration[e] = i, max(force, 0.0), -gap[i]
+        for a in range(FLAT):
+            grad[a] = side * (weights[i, a] if a < STENCIL else -1.0)
+            forces[e, a] = -force * grad[a]
+        for a in range(FLAT):
+            for b in range(FLAT):
+                k[e, a, b] = c * grad[a] * grad[b]
+        e += 1
+    return point, forces, k, pressure, penetration

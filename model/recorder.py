@@ -1,0 +1,163 @@
+"""What a run records: an entry for each step, and the spring at the ends of its phases."""
+
+import logging
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from mpi4py import MPI
+
+from coilset.model.case.phases import AnyPhase, TimePhase
+from coilset.model.equilibrium.axial_control import AxialControl
+from coilset.model.equilibrium.convergence import Outcome
+from coilset.model.equilibrium.newton import Newton
+from coilset.model.equilibrium.program import StepTaken
+from coilset.model.equilibrium.stability import Stability, Weakest
+from coilset.model.equilibrium.system import System
+from coilset.model.results.buckling import axis_offset, buckling
+from coilset.model.results.record import BucklingMode, Frame, Result, SeatReactions, Setup, Snapshot, Step
+from coilset.model.results.seat_reactions import faint_force, mean_torque, seat_reactions
+from coilset.model.results.shape import clearance, least_rise
+from coilset.model.results.warnings import step_warnings
+from coilset.model.rod.rod import Rod
+from coilset.model.section import surface
+from coilset.model.state import Where
+from coilset.model.warning import Warning
+
+log = logging.getLogger("coilset.steps")
+
+
+class Recorder:
+    """Reads the last equilibrium and adds it to the result.
+
+    Args:
+        setup: what the records refer to.
+        rod, system, control, newton, stability: of the analysis.
+
+    Attributes:
+        result: the Result so far.
+    """
+
+    def __init__(
+        self, setup: Setup, rod: Rod, system: System, control: AxialControl, newton: Newton, stability: Stability
+    ) -> None:
+        self.setup, self.rod, self.system, self.control = setup, rod, system, control
+        self.layout, self._newton, self._stability = system.line, newton, stability
+        self.torque = system.state.add("torque", mean_torque(rod), Where.ELEMENT)
+        self.torque_force = system.state.add("torque_force", np.zeros(1), Where.SHARED)
+        self.result = Result()
+        self._warned: set[str] | None = None  # names of the steps' warnings so far; None until they are requested
+
+    def begin(self, rate: float) -> None:
+        """Record the unloaded spring and its initial rate, N/mm, NaN if unknown; collective."""
+        warnings = self.result.warnings
+        if math.isnan(rate):
+            problem = "the initial rate is not known: no equilibrium was found at the first touch"
+            warnings = (*warnings, Warning("initial rate", "start", problem))
+        self.result = replace(self.result, rate=rate, snapshots=(self.snapshot("start"),), warnings=warnings)
+
+    def resume(self, result: Result) -> None:
+        """Continue with the result of a checkpoint."""
+        self.result, self._warned = result, None
+
+    def end(self) -> None:
+        """The load program is complete."""
+        self.result = replace(self.result, complete=True)
+
+    def record(self, phase: int, taken: StepTaken, loading: Sequence[AnyPhase]) -> Step:
+        """Add the last equilibrium to the result; collective.
+
+        Args:
+            phase: number of the phase; taken: the step that led there; loading: all phases.
+        """
+        height, force, last = self.control.height, self.control.force, self.system.last
+        contacts = sum(part.closed for part in last.contributions)
+        greatest = max(self.result.greatest_force, abs(force))
+        x, turns = self.layout.gather(self.rod.x), self.setup.turns
+        pulls = self.setup.ends == "seats" and force < -faint_force(self.rod, greatest)
+        lift_off = max(clearance(self.system, x), 0.0) if pulls else 0.0
+        bears = 0.0 if lift_off else force  # the pull of the tip springs is ignored
+        hours, temperature, _ = self.rod.clock
+        weakest = self._weakest()
+        step = Step(taken.number, phase, taken.progress, height, self.setup.spring.free_length - height, bears,
+                    taken.outcome.iterations, taken.outcome.evaluations, taken.outcome.failed_solves, taken.cuts,
+                    contacts, self.system.max_penetration,
+                    taken.outcome.negative_pivots, int(taken.outcome.left_branch), taken.outcome.released,
+                    axis_offset(x, self.rod.line.stations, turns), weakest.value if weakest else None,
+                    self._greatest_plastic_work(), lift_off,
+                    least_rise(x, turns, self.setup.spring), *self._errors(taken.outcome),
+                    hours=float(hours), temperature_K=float(temperature),
+                    load_loss_percent=self._load_loss(phase, force, loading))  # fmt: skip
+        seats = self._seat_reactions(step.number, greatest)
+        if weakest and (self.result.mode is None or weakest.value < self.result.mode.eigenvalue):
+            mode = BucklingMode(step.travel_mm, bears, weakest.value, x, self._stability.displacements(weakest.mode))
+            self.result = replace(self.result, mode=mode)
+        if self._warned is None:
+            self._warned = {warning.name for warning in step_warnings(self.setup, self.result)}
+        self.result = replace(self.result, steps=(*self.result.steps, step), seats=(*self.result.seats, seats),
+                              frames=(*self.result.frames, self._frame(x)))  # fmt: skip
+        for warning in step_warnings(self.setup, self.result):
+            if warning.name not in self._warned:
+                log.warning("warning: %s", warning.message)
+                self._warned.add(warning.name)
+        return step
+
+    def _frame(self, x: np.ndarray) -> Frame:
+        """The wire at the last equilibrium, stations at `x`; collective."""
+        around = self.setup.inside.shear_around(self.rod.surface_state, self.rod.sections.components)
+        return Frame(x, self.rod.line.in_order(around.mean(axis=1).astype(np.float32)))
+
+    def _seat_reactions(self, step: int, greatest_force: float) -> SeatReactions:
+        """The seats' reactions at the last equilibrium; keeps its torque and force for the next step's active turns."""
+        before = float(self.torque_force.equilibrium[0]), self.torque.equilibrium
+        reactions = seat_reactions(self.system, self.control, self.setup.turns, step, greatest_force, before)
+        for kept in (self.torque.trial, self.torque.equilibrium):
+            np.copyto(kept, mean_torque(self.rod))
+        for kept in (self.torque_force.trial, self.torque_force.equilibrium):
+            kept[0] = self.control.force
+        return reactions
+
+    def _greatest_plastic_work(self) -> float:
+        """Maximum b* on the wire's surface at the last equilibrium, N/mm²; collective."""
+        work = surface.component(self.rod.surface_state, self.rod.sections.components, "b")
+        return float(self.rod.line.mesh.comm.allreduce(work.max(initial=0.0), op=MPI.MAX))
+
+    def _load_loss(self, phase: int, force: float, loading: Sequence[AnyPhase]) -> float | None:
+        """Percentage of the force lost since time began to pass at constant height; None if it does not."""
+        first = phase
+        while first >= 0 and isinstance(one := loading[first], TimePhase) and one.duration.keep == "height":
+            first -= 1
+        before = next((step.force_N for step in reversed(self.result.steps) if step.phase <= first), 0.0)
+        if first == phase or abs(before) <= faint_force(self.rod, self.result.greatest_force):
+            return None
+        return 100.0 * (1.0 - force / before)
+
+    def _errors(self, outcome: Outcome) -> tuple[float | None, float | None]:
+        """Estimated errors of force and height due to the step size, N and mm; None if unknown."""
+        if outcome.estimate is None:
+            return None, None
+        force, height = (value if math.isfinite(value) else None
+                         for value in (outcome.estimate.force, outcome.estimate.height))  # fmt: skip
+        return force, height
+
+    def _weakest(self) -> Weakest | None:
+        """Weakest of the tangent, for a spring slender enough to buckle, until it buckles; else None; collective."""
+        slender, setup = np.isfinite(self.setup.buckling_travel), self.setup
+        if not slender or buckling(self.result.steps, setup.mean_diameter) is not None:
+            return None
+        return self._stability.weakest(self._newton.load)
+
+    def add_snapshot(self, name: str) -> None:
+        """Record the spring in its current state; collective."""
+        self.result = replace(self.result, snapshots=(*self.result.snapshots, self.snapshot(name)))
+
+    def snapshot(self, name: str) -> Snapshot:
+        """The current state of the spring, gathered on rank 0; its force is that of the last step; collective."""
+        force = self.result.steps[-1].force_N if self.result.steps else self.control.force
+        rod = self.rod
+        parts = (rod.triads.values, rod.s.values, rod.point_state, rod.surface_state)
+        cells = [rod.line.in_order(values) for values in parts]
+        x, components = self.layout.gather(rod.x), rod.sections.components
+        triads, resultants, state, surface = cells
+        return Snapshot(name, self.control.height, force, x, triads, resultants, state, surface, components)

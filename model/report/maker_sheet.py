@@ -1,0 +1,31 @@
+"""The maker's sheet of a run: the formulas of the standards beside what the run found."""
+
+from typing import Any
+
+from coilset.meshes.errors import InputError
+from coilset.model.case import Case, check
+from coilset.model.results.labels import plain
+from coilset.model.results.opened import Run
+from coilset.model.standards import found
+from coilset.model.standards.case_sheet import case_sheet
+from coilset.model.standards.rows import Row, sections
+
+
+def maker_sheet(run: Run) -> list[tuple[str, list[dict[str, Any]]]]:
+    """Headings with their rows as texts; none of a spring that the standards have no formulas for."""
+    try:
+        case: Case = check(run.case)
+        sheet = case_sheet(case, case.spring.build(), found.read(run.folder))
+    except InputError:  # no cylinder, or a file of the case that has gone
+        return []
+    return [(title, [_texts(row) for row in rows]) for title, rows in sections(sheet)]
+
+
+def _texts(row: Row) -> dict[str, Any]:
+    return {"label": row.label.strip(), "value": _number(row.value, row.unit), "found": _number(row.found, row.unit),
+            "formula": row.formula, "sure": row.sure,
+            "why": row.why if row.found is not None or row.value is None else ""}  # fmt: skip
+
+
+def _number(value: float | None, unit: str) -> str:
+    return "" if value is None else f"{plain(value, 5)} {unit}".strip().replace("-", "−")

@@ -1,0 +1,179 @@
+"""The page of a sweep: all its cases in a table to filter, sort and open, and what decides."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from coilset.meshes.errors import InputError
+from coilset.model.report.answer import Number
+from coilset.model.report.panel import COLOURS, Panel, axis
+from coilset.model.report.render import write_page
+from coilset.model.results.labels import plain
+from coilset.model.sweep.sensitivity import rank_correlation
+
+FILE = "sweep.nc"
+SHOWN = ("set_mm", "force_max_N", "rate_N_per_mm", "residual_shear_inside_MPa", "status", "warnings")  # at first
+ANSWERS = SHOWN[:4]
+CURVES = 4_000_000  # numbers of all characteristics together, at most; beyond, a page shows none
+ENOUGH = 8  # cases with which a rank correlation says something
+DIGITS = 6  # of a number in the table
+
+
+def write_sweep_report(folder: str | Path) -> Path:
+    """Write report.html into the folder of a sweep.
+
+    Returns:
+        The file.
+
+    Raises:
+        InputError: if the data cannot be read. CoilsetError: if the page cannot be written.
+    """
+    folder = Path(folder)
+    try:
+        with xr.open_dataset(folder / FILE, engine="h5netcdf") as file:
+            data = file.load()
+        of = next((name for name in ANSWERS if name in data), "seconds")
+        columns = _columns(data, of)
+    except (OSError, ValueError, KeyError) as error:
+        raise InputError(f"is not readable: {str(error).partition(chr(10))[0]}", "", folder / FILE) from None
+    panels = [panel for panel in (_deciding(data, of), _spread(data, of)) if panel is not None]
+    counts = {status: int((data["status"] == status).sum()) for status in ("done", "failed", "missing")}
+    names = [data[name].attrs["long_name"] for name in _list(data.attrs["inputs"])]
+    return write_page(
+        folder,
+        "sweep",
+        [("What decides", panels)],
+        {"columns": columns, "curves": _curves(data), "files": _files(data)},
+        title=f"{folder.resolve().name}: {data.sizes['case']} cases",
+        subtitle=f"{data.sizes['case']} cases; {', '.join(names)} varied ({data.attrs['design'].replace('_', ' ')})",
+        answer=[Number("cases", f"{counts['done']} done", f"{counts['failed']} failed, {counts['missing']} missing"),
+                *(_range(data, name) for name in ANSWERS if name in data)],
+        warnings=_warnings(data),
+        finding=_over(data, of),
+        made_with=data.attrs["title"],
+    )  # fmt: skip
+
+
+# ---- what the scripts take -------------------------------------------------------------------------------------------
+
+
+def _columns(data: xr.Dataset, of: str) -> list[dict[str, Any]]:
+    """The case's number, its inputs, what is shown first, and the rest."""
+    found = [_column("case", "case", "", np.arange(1, data.sizes["case"] + 1), True, "")]
+    inputs = _list(data.attrs["inputs"])
+    rest = [name for name in data.data_vars if data[name].dims == ("case",) and name not in SHOWN]
+    first = [name for name, _, _ in _ranked(data, of)]
+    roles = dict(zip(("x", "c"), dict.fromkeys([*first, *_inputs(data)]), strict=False)) | {"y": of}
+    for name in (*inputs, *(name for name in SHOWN if name in data), *rest):
+        attrs = data[name].attrs
+        role = next((role for role, one in roles.items() if one == name), "")
+        found.append(_column(str(name), attrs.get("long_name", str(name)), attrs.get("units", ""), data[name].values,
+                             name in inputs or name in SHOWN, role))  # fmt: skip
+    return found
+
+
+def _column(name: str, words: str, unit: str, values: np.ndarray, shown: bool, role: str) -> dict[str, Any]:
+    numeric = values.dtype.kind in "fiu"
+    listed = [None if value != value else value for value in values.tolist()] if numeric else list(map(str, values))
+    return {"name": name, "words": words, "unit": unit, "numeric": numeric, "digits": DIGITS, "values": listed,
+            "shown": shown, "role": role}  # fmt: skip
+
+
+def _curves(data: xr.Dataset) -> dict[str, np.ndarray] | None:
+    travel, force = data["curve_travel_mm"].values, data["curve_force_N"].values
+    return {"travel": travel, "force": force} if 0 < travel.size + force.size <= CURVES else None
+
+
+def _files(data: xr.Dataset) -> dict[str, Any] | None:
+    """What makes a case's file; None of a sweep that does not hold it."""
+    if "base" not in data.attrs:
+        return None
+    return {name: json.loads(data.attrs[name]) for name in ("base", "entries", "choices")}
+
+
+def _list(value: Any) -> list[str]:
+    """An attribute that is a list; a file gives a list of one as a word."""
+    return [value] if isinstance(value, str) else list(map(str, value))
+
+
+# ---- what is said ----------------------------------------------------------------------------------------------------
+
+
+def _inputs(data: xr.Dataset) -> list[str]:
+    return [name for name in _list(data.attrs["inputs"]) if data[name].dtype.kind == "f"]
+
+
+def _plain(value: Any) -> str:
+    return plain(float(value)).replace("-", "−")
+
+
+def _range(data: xr.Dataset, name: str) -> Number:
+    values, unit = data[name], data[name].attrs["units"]
+    if not bool(values.notnull().any()):
+        return Number(values.attrs["long_name"], "not reached")
+    low, mean, high = (_plain(value) for value in (values.min(), values.mean(), values.max()))
+    return Number(values.attrs["long_name"], f"{low} to {high} {unit}", f"mean {mean} {unit}")
+
+
+def _warnings(data: xr.Dataset) -> list[str]:
+    names: dict[str, int] = {}
+    for text in data["warnings"].values:
+        for name in filter(None, str(text).split(", ")):
+            names[name] = names.get(name, 0) + 1
+    return [f"{name}: in {count} of {data.sizes['case']} cases" for name, count in names.items()]
+
+
+def _over(data: xr.Dataset, of: str) -> str:
+    low, high = _plain(data[of].min()), _plain(data[of].max())
+    return f"The {data[of].attrs.get('long_name', of)} runs from {low} to {high} {data[of].attrs['units']}"
+
+
+def _ranked(data: xr.Dataset, of: str) -> list[tuple[str, float, np.ndarray]]:
+    """Inputs with their rank correlation with a response and its interval, the strongest first.
+
+    None of too few cases, and of a response that never changes.
+    """
+    values = data[of].values
+    good = np.isfinite(values)
+    if good.sum() < ENOUGH or np.ptp(values[good]) == 0.0:
+        return []
+    varied = [name for name in _inputs(data) if np.ptp(data[name].values[good]) > 0.0]
+    if not varied:
+        return []
+    correlation, interval = rank_correlation(np.stack([data[name].values for name in varied], axis=1), values)
+    return sorted(zip(varied, correlation, interval, strict=True), key=lambda one: -abs(one[1]))
+
+
+def _deciding(data: xr.Dataset, of: str) -> Panel | None:
+    """Rank correlation of a response with each input."""
+    ranked = _ranked(data, of)
+    if not ranked:
+        return None
+    names = [data[name].attrs["long_name"] for name, _, _ in ranked]
+    correlation, interval = np.array([one for _, one, _ in ranked]), np.stack([one for _, _, one in ranked])
+    way = "larger" if correlation[0] > 0.0 else "smaller"
+    finding = f"A greater {names[0]} goes with a {way} {data[of].attrs['long_name']} most clearly"
+    trace = {"type": "bar", "orientation": "h", "x": correlation, "y": names, "marker": {"color": COLOURS[0]},
+             "error_x": {"type": "data", "symmetric": False, "array": interval[:, 1] - correlation,
+                         "arrayminus": correlation - interval[:, 0]}, "showlegend": False}  # fmt: skip
+    told = ", ".join(f"{name} {value:.2f}" for name, value in zip(names, correlation, strict=True))
+    return Panel("deciding", finding, f"{finding}. Rank correlations: {told}.", [trace],
+                 {"xaxis": axis("rank correlation, with 95 % interval", range=[-1.05, 1.05]),
+                  "yaxis": {"automargin": True, "autorange": "reversed"}},
+                 note="Spearman's; it is 1 where the response only ever grows with the input.")  # fmt: skip
+
+
+def _spread(data: xr.Dataset, of: str) -> Panel | None:
+    """How often which value comes."""
+    values = data[of].values[np.isfinite(data[of].values)]
+    if len(values) < ENOUGH:
+        return None
+    words, unit = data[of].attrs.get("long_name", of), data[of].attrs["units"]
+    low, high = map(_plain, np.quantile(values, [0.05, 0.95]))
+    finding = f"Nine in ten cases have a {words} of {low} to {high} {unit}"
+    trace = {"type": "histogram", "x": values, "marker": {"color": COLOURS[0]}, "showlegend": False}
+    return Panel("spread", finding, f"{finding}. Number of cases over the {words}.", [trace],
+                 {"xaxis": axis(f"{words}, {unit}"), "yaxis": axis("cases"), "bargap": 0.04})  # fmt: skip

@@ -1,0 +1,6 @@
+"use strict";
+(async () => {
+  page.offer(page.byId("case").textContent);
+  page.showNamed((await page.begin()).figures);
+  page.ready();
+})();

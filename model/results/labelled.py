@@ -1,0 +1,41 @@
+"""All results in a folder as one labelled data set with units."""
+
+import json
+from pathlib import Path
+
+import xarray as xr
+
+from coilset.meshes.errors import InputError
+from coilset.model.results.opened import open_run, unit_of
+
+
+def labelled(folder: str | Path) -> xr.Dataset:
+    """Read the results of `coilset solve` or `coilset sweep`.
+
+    Args:
+        folder: the results folder.
+
+    Returns:
+        Of a run: the columns of history.csv and seats.csv over `step`, all of points.nc, and each number of
+        summary.json as `summary_…`, with `units`; its words and the case (JSON) are attributes. Of a sweep: sweep.nc.
+
+    Raises:
+        InputError: if there are no such results in it, or a file of them cannot be read.
+    """
+    folder = Path(folder)
+    if (folder / "sweep.nc").is_file():
+        try:
+            with xr.open_dataset(folder / "sweep.nc", engine="h5netcdf") as file:
+                return file.load()
+        except (OSError, ValueError) as error:
+            raise InputError(f"is not readable: {str(error).partition(chr(10))[0]}", "", folder / "sweep.nc") from None
+    run = open_run(folder)
+    data = run.data.copy()
+    for name, value in run.summary.items():
+        if isinstance(value, int | float) or value is None:
+            number = float("nan") if value is None else float(value)
+            data[f"summary_{name}"] = ((), number, {"units": unit_of(name)})
+        elif isinstance(value, str):
+            data.attrs[name] = value
+    data.attrs["case"] = json.dumps(run.case)
+    return data

@@ -1,0 +1,114 @@
+"""Warm wire: what plastic work heats at the section points is conducted along the wire between the steps of a rod.
+
+Within a step the law is adiabatic: each point warms as it flows. Then the heat equation goes on by the seconds that the
+step took, with what the sections got as its source, and all points of a section follow its mean. Differences across the
+section even out as their slowest mode does, with the rate 3.39 a/r² (1.84², the first zero of J₁′), a = k/(ρ c). The
+section's thermal strain reaches the rod in its next step. Stress follows G(T), E(T) in increments, as within the law.
+"""
+
+import numpy as np
+from mpi4py import MPI
+
+from coilset.meshes.compat import geometry_dofs
+from coilset.model.material.law import Law
+from coilset.model.rod.heat_equation import HeatConstants, HeatEquation
+from coilset.model.rod.kinematics import GAUSS
+from coilset.model.rod.rod import Rod
+from coilset.model.state import Where
+
+SLOWEST = 1.8411837813406593**2
+FIELDS = "point_state", "surface_state"  # those of a finer path end like this, too
+
+
+def heat_constants(law: Law, conductivity: float, convection: float, tips: float, surroundings: float) -> HeatConstants:
+    """Constants of a material with heating; W/(m K), W/(m² K), W/K of each tip, K."""
+    heating = law.data.heating
+    assert heating is not None
+    capacity = heating.density * heating.specific_heat
+    return HeatConstants(capacity, conductivity, 1e-3 * convection, 1e3 * tips, surroundings)
+
+
+class WireHeat:
+    """Carries heat along a rod whose material warms by plastic work.
+
+    Args:
+        rod: Rod, with sections of fibres.
+        constants: HeatConstants.
+
+    Attributes:
+        equation: HeatEquation.
+        start_content: heat in the wire at the start, ∫ ρ c (T − T∞) dV, N mm; the same on every rank.
+    """
+
+    def __init__(self, rod: Rod, constants: HeatConstants) -> None:
+        self.rod, mesh = rod, rod.mesh
+        cells = mesh.topology.index_map(1)
+        radius = np.empty(cells.size_local + cells.num_ghosts)
+        radius[:] = rod.largest_radius
+        radius[: len(rod.radius)] = rod.radius
+        stretch = np.ones((len(radius), 2))
+        stretch[: len(rod.radius)] = rod.placement.stretch
+        self.equation = HeatEquation(rod.line, radius, constants, rod.temperature, stretch)
+        y, _ = rod.rule.points.T
+        g = 1.0 - rod.placement.curvature[..., None] * rod.radius[:, None, None] * y
+        self._weights = rod.rule.weights * g  # sum to 1: the centre of a section lies on its axis
+        self._dofs = np.empty(len(rod.x), dtype=np.int64)  # of the local nodes
+        self._dofs[geometry_dofs(mesh)] = self.equation.temperature.function_space.dofmap.list
+        self._nodes = rod.state.add("temperature", np.full(len(rod.x), rod.temperature), Where.STATION)
+        self.start_content = self.equation.content
+        self._totals = rod.state.add("heat", np.zeros(2), Where.SHARED)  # generated, given off
+        self._clock = rod.state.add("heat_clock", rod.clock, Where.SHARED)
+
+    @property
+    def generated(self) -> float:
+        """Heat of plastic work up to now, N mm."""
+        return float(self._totals.equilibrium[0])
+
+    @property
+    def given_off(self) -> float:
+        """Heat that air and seats got up to now, N mm."""
+        return float(self._totals.equilibrium[1])
+
+    def advance(self, seconds: float) -> None:
+        """Let a step have taken some seconds; changes the last equilibrium; collective."""
+        rod, equation, cells = self.rod, self.equation, len(self.rod.radius)
+        equation.temperature.x.array[self._dofs] = self._nodes.equilibrium
+        mean = np.sum(self._weights * rod.state["point_state"].equilibrium[..., -1], axis=-1)
+        got = np.pi * rod.radius[:, None] ** 2 * equation.constants.capacity
+        equation.source[:] = 0.0
+        equation.source[:cells] = got * (mean - equation.at_sections(GAUSS)[:cells])
+        before = equation.content
+        equation.advance(0.0)
+        still = equation.at_sections(GAUSS)[:cells]
+        generated = equation.content - before
+        equation.source[:] = 0.0
+        given_off = equation.advance(seconds)
+        self._warm(mean, still, equation.at_sections(GAUSS)[:cells], seconds)
+        totals = self._totals.equilibrium
+        totals += generated, given_off
+        self._nodes.equilibrium[:] = equation.temperature.x.array[self._dofs]
+        hottest = rod.mesh.comm.allreduce(self._nodes.equilibrium.max(initial=0.0), op=MPI.MAX)
+        self._clock.equilibrium[:2] = self._clock.equilibrium[0] + seconds / 3600.0, hottest
+        rod.state.restore()
+
+    def _warm(self, mean: np.ndarray, still: np.ndarray, now: np.ndarray, seconds: float) -> None:
+        """Bring the sections' points to the temperatures after conduction.
+
+        Args:
+            mean: of the sections, before; still, now: what the equation says before and after, shape (cells, 2), K.
+            seconds: in which differences fade that the equation does not see, in a section and within an element.
+        """
+        rod, constants = self.rod, self.equation.constants
+        rate = constants.conductivity / constants.capacity
+        across = np.exp(-SLOWEST * rate * seconds / rod.radius**2)[:, None]
+        along = np.exp(-(np.pi**2) * rate * seconds / rod.l0**2)[:, None]
+        after = now + (mean - still) * along
+        low = rod.law.temperature_range[0]  # below it only by rounding
+        for name, field in rod.state.items():
+            if name.endswith(FIELDS):
+                temperature = field.equilibrium[..., -1]
+                left = (temperature - mean[..., None]) * across[..., None]
+                temperature[:] = np.maximum(low, after[..., None] + left)
+        if mean.size:
+            change = np.vectorize(rod.law.thermal_strain)(np.maximum(mean, low), np.maximum(after, low))
+            rod.state["strain"].equilibrium[..., 0] += change  # of the chord; a wire that grows evenly turns nowhere

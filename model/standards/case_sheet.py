@@ -1,0 +1,56 @@
+"""The sheet of a case: the spring, its wire and its working lengths, as given by the case file."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from coilset.meshes.errors import InputError
+from coilset.meshes.spring import Spring
+from coilset.model.case import Case
+from coilset.model.standards.cylinder import Cylinder
+from coilset.model.standards.en15800 import Grade
+from coilset.model.standards.found import Found
+from coilset.model.standards.sheet import Sheet, working_lengths
+from coilset.model.standards.steel import STEEL, Elastic
+from coilset.model.standards.wires import wire
+from coilset.model.standards.wires.law import case_law
+
+
+def case_sheet(
+    case: Case,
+    spring: Spring,
+    run: Found | None,
+    wire_name: str | None = None,
+    lengths: Sequence[float] = (),
+    grade: Grade = 2,
+    surface: str = "as coiled",
+    dynamic: bool = False,
+) -> Sheet:
+    """The sheet of a case.
+
+    Args:
+        case: Case.
+        spring: its geometry.
+        run: results of a run of it, if there is one.
+        wire_name: standard wire; None takes the case's, if it names one.
+        lengths: working lengths, mm; if empty, those that the load program goes to.
+        grade, surface, dynamic: see Sheet.
+
+    Raises:
+        InputError: a spring that is not cylindrical, an unknown wire, a length that the spring cannot have.
+    """
+    law, cylinder = case_law(case, spring), Cylinder.of(spring)
+    named = wire_name or getattr(case.material, "wire", None)
+    known = wire(named) if named else None
+    elastic = known.elastic(cylinder.d) if known else Elastic(law.G, law.E, getattr(law, "density", STEEL.density))
+    for length in lengths:
+        if not cylinder.solid < length < cylinder.length:
+            raise InputError(
+                f"{length:g} mm is no working length; must be between the block length {cylinder.solid:.4g} and the "
+                f"free length {cylinder.length:.4g} mm", "--length",
+            )  # fmt: skip
+    made = Sheet(cylinder, elastic, spring.wire_length, known, tuple(lengths), grade, surface, dynamic, run,
+                 case.ends == "clamped", law.yield_stress)  # fmt: skip
+    if lengths:
+        return made
+    planned = working_lengths(case.targets, cylinder.length, made.rate, cylinder.solid)
+    return replace(made, lengths=tuple(planned))

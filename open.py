@@ -1,0 +1,27 @@
+"""Results with labels and units.
+
+import coilset.open
+
+run = coilset.open("results/ck15_presetting")
+run["force_N"]                                        # a column of history.csv, over the steps
+run["surface"].sel(component="t13", snapshot="block")
+"""
+
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import xarray as xr
+
+from coilset.model.results.labelled import labelled
+
+
+class _Open(ModuleType):
+    """This module, which can be called."""
+
+    def __call__(self, folder: str | Path) -> xr.Dataset:
+        """Results of a run or a sweep; see coilset.model.results.labelled."""
+        return labelled(folder)
+
+
+sys.modules[__name__].__class__ = _Open

@@ -1,0 +1,31 @@
+"""`coilset fields` and `coilset animate`: a run for ParaView, and as a film."""
+
+from pathlib import Path
+
+from rich.console import Console
+
+from coilset.model.results.opened import open_run
+
+
+def fields(folder: str | Path) -> None:
+    """Write the time series of a run; see `coilset fields --help`.
+
+    Raises:
+        InputError: if there is no run in the folder. CoilsetError: if a file cannot be written.
+    """
+    from coilset.model.results.series import write_series
+
+    for path in write_series(open_run(folder)):
+        Console(highlight=False).print(f"{path}")
+
+
+def animate(folder: str | Path) -> None:
+    """Write animation.gif of a run; see `coilset animate --help`.
+
+    Raises:
+        InputError: if there is no run in the folder. CoilsetError: if it cannot be drawn or written.
+    """
+    from coilset.model.results.animation import animate as draw
+
+    path = draw(open_run(folder))
+    Console(highlight=False).print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")

@@ -1,0 +1,34 @@
+"""CSV files as laboratories and spreadsheets write them: what is read, and what is said of the others."""
+
+import numpy as np
+import pytest
+
+from coilset.meshes.errors import InputError
+from coilset.model.material.columns import read_columns
+
+
+def test_comments_a_byte_order_mark_and_line_endings_of_spreadsheets(tmp_path):
+    path = tmp_path / "test.csv"
+    path.write_bytes("\ufeff# wire 7\r\n# 20 °C\r\nstrain,stress\r\n0.001,205.5\r\n0.002,411\r\n".encode())
+    table = read_columns(path)
+    assert table.names == ("strain", "stress")
+    np.testing.assert_array_equal(table.numbers("stress"), [205.5, 411.0])
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("# wire 7\nstrain;stress\n0,001;205,5\n", "line 2: the columns are separated by ';'; separate them by commas"),
+        ("strain\tstress\n0.001\t205.5\n", "line 1: the columns are separated by tabs"),
+        ("strain,stress\n0.001,205.5\n0,002,411\n", "line 3: has more cells than the header, which names 2; numbers"),
+        ("# wire 7\nstrain,stress\n0.001,\n", "line 3, column stress: '' is not a number"),
+        ("strain,stress\n0.001\n", "line 2, column stress: '' is not a number"),
+        (b"Dehnung,Spannung \xfcber alles\n", "it is not a text file in UTF-8"),
+    ],
+)
+def test_other_files_are_refused(text, message, tmp_path):
+    path = tmp_path / "test.csv"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(InputError) as error:
+        read_columns(path).numbers("stress")
+    assert str(error.value).startswith(f"{path}: {message}")

@@ -1,0 +1,143 @@
+"""The pages in a real browser: no serious finding of axe-core, all by keyboard, and a thousand cases at hand.
+
+A machine without Chromium skips these. COILSET_WEBDRIVER names the address of a driver that runs elsewhere. The rules
+of axe-core are asked for where COILSET_AXE names its file axe.min.js (npm install axe-core).
+"""
+
+import json
+import os
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+import yaml
+from browser import ENTER, TAB, chromium, missing
+
+from coilset.model.report.page import write_report
+from coilset.model.report.sweep_page import write_sweep_report
+from coilset.model.results.opened import open_run
+from coilset.model.sweep import dataset
+from coilset.model.sweep.journal import Journal
+from coilset.model.sweep.plan import Plan
+
+DRIVER, AXE = os.environ.get("COILSET_WEBDRIVER", ""), os.environ.get("COILSET_AXE", "")
+pytestmark = pytest.mark.skipif(not DRIVER and bool(missing()), reason=missing())
+CASES = 1000
+FILTERS = "[...document.querySelectorAll('#cases input')]"
+COUNT = "return document.getElementById('count').textContent"
+CASE = {"spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 1.5, "pitch": 12.0},
+        "loading": [{"to": {"travel": 6}}]}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium(DRIVER) as one:
+        yield one
+
+
+@pytest.fixture(scope="module")
+def run_page(folder):
+    return write_report(open_run(folder))
+
+
+@pytest.fixture(scope="module")
+def sweep_page(tmp_path_factory):
+    """A thousand cases whose records are known: the set of case k is k mm, and every tenth failed."""
+    out = tmp_path_factory.mktemp("thousand")
+    (out / "case.yaml").write_text(yaml.safe_dump(CASE))
+    vary = {"spring.pitch": {"from": 11.0, "to": 13.0, "count": CASES}}
+    (out / "sweep.yaml").write_text(yaml.safe_dump({"case": "case.yaml", "vary": vary}))
+    plan = Plan(out / "sweep.yaml")
+    with closing(Journal(out / "journal.jsonl")) as journal:
+        for number, key in enumerate(plan.keys, 1):
+            failed = number % 10 == 0
+            steps = {"travel_mm": [2.0, 6.0], "force_N": [80.0, 0.2 * number]}
+            journal.append({"key": key, "status": "failed" if failed else "done",
+                            "reason": "too long" if failed else "",
+                            "summary": {} if failed else {"set_mm": float(number), "force_max_N": 0.2 * number},
+                            "steps": steps, "seconds": 1.0})  # fmt: skip
+    dataset.write(out / "sweep.nc", dataset.collect(plan, out / "journal.jsonl"))
+    return write_sweep_report(out)
+
+
+def until(browser, script):
+    """A script's answer, asked for until it is true."""
+    for _ in range(200):
+        if found := browser.run(script):
+            return found
+    raise AssertionError(script)
+
+
+def drawn(browser):
+    """Draw each figure, as for printing."""
+    until(browser, "window.dispatchEvent(new Event('beforeprint')); return [...document.querySelectorAll('.plot')]"
+                   ".filter((one) => one.offsetParent).every((one) => one.querySelector('svg'))")  # fmt: skip
+
+
+@pytest.mark.skipif(not Path(AXE).is_file(), reason="COILSET_AXE names no axe.min.js")
+@pytest.mark.parametrize(("width", "dark"), [(390, True), (1280, False)], ids=["phone, dark", "desk, light"])
+@pytest.mark.parametrize("page", ["run_page", "sweep_page"])
+def test_no_serious_finding_of_axe(request, browser, page, width, dark):
+    browser.look(width, dark=dark)
+    browser.open(request.getfixturevalue(page))
+    drawn(browser)
+    assert browser.run("return document.documentElement.scrollWidth") <= width  # nothing sticks out to the side
+    browser.run(Path(AXE).read_text(encoding="utf-8"))
+    found = browser.wait("axe.run()")
+    assert len(found["passes"]) > 20
+    assert [(one["id"], one["nodes"][0]["html"]) for one in found["violations"]
+            if one["impact"] in ("serious", "critical")] == []  # fmt: skip
+
+
+def test_a_run_by_keyboard(browser, run_page):
+    """Each control is reached by Tab, in the order of the page; the glossary opens on focus, the theme on Enter."""
+    browser.look(1280)
+    browser.open(run_page)
+    wanted = browser.run(
+        "return document.querySelectorAll('a[href], button, select, summary, [tabindex=\"0\"]').length"
+    )
+    seen = []
+    for _ in range(wanted + 5):
+        browser.press(TAB)
+        seen.append(browser.run("const e = document.activeElement; return (e.className || e.tagName) + (e.id || '') + "
+                                "[...document.querySelectorAll(e.tagName)].indexOf(e)"))  # fmt: skip
+        if seen[-1].startswith("term") and not any(one.startswith("term") for one in seen[:-1]):
+            about = "getComputedStyle(document.activeElement.querySelector('.about'))"
+            assert browser.run(f"return {about}.display") == "block"
+        if "theme" in seen[-1] and browser.run("return document.documentElement.dataset.theme") is None:
+            browser.press(ENTER)
+            assert browser.run("return document.documentElement.dataset.theme") == "dark"
+    closed = browser.run("return document.querySelectorAll('details:not([open]) [tabindex=\"0\"]').length")
+    assert len(set(seen) - {"BODY0"}) >= wanted - closed
+    assert seen[0].startswith("skip")
+
+
+def test_one_of_a_thousand_is_found_and_opened_by_keyboard(browser, sweep_page):
+    browser.look(1280)
+    assert browser.open(sweep_page) < 20.0  # hangs nowhere; the page on reports says how long it takes
+    browser.run(f"{FILTERS}.find((one) => one.ariaLabel === 'filter set, mm').focus()")
+    browser.press(*"730..740")
+    assert browser.run(COUNT) == "9 of 1000 cases"  # 730 and 740 failed
+    browser.run("[...document.querySelectorAll('.sort')].find((one) => one.textContent === 'set, mm').focus()")
+    browser.press(ENTER, ENTER)
+    opens = "[...document.querySelectorAll('#cases .open')].map((one) => one.textContent)"
+    assert browser.run(f"return {opens}") == [str(number) for number in range(739, 730, -1)]
+    browser.run("document.querySelectorAll('#cases .open')[3].focus()")
+    browser.press(ENTER)
+    assert browser.run("return document.activeElement.textContent") == "Case 736"
+    case = json.loads(browser.run("return document.getElementById('case').textContent"))
+    pitch = 11.0 + 2.0 * 735 / (CASES - 1)
+    assert case["spring"] == CASE["spring"] | {"pitch": pytest.approx(pitch, rel=1e-14)}
+    numbers = browser.run("return document.getElementById('numbers').textContent")
+    assert "set, mm736" in numbers
+    assert "147.2" in numbers  # its force
+
+
+def test_a_failed_case_says_why(browser, sweep_page):
+    browser.look(390)
+    browser.open(sweep_page)
+    browser.run(f"const f = {FILTERS}.find((one) => one.ariaLabel === 'filter status');"
+                "f.value = 'fail'; f.dispatchEvent(new Event('input'))")  # fmt: skip
+    assert browser.run(COUNT) == "100 of 1000 cases"
+    browser.run("document.querySelector('#cases .open').click()")
+    assert browser.run("return document.getElementById('reason').textContent") == "too long"

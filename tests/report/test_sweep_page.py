@@ -1,0 +1,80 @@
+"""The page of a sweep: every case is in it, with the numbers of its record and the file that makes it."""
+
+import base64
+import gzip
+import json
+import re
+from contextlib import closing
+
+import pytest
+import yaml
+from mpi4py import MPI
+
+from coilset.model.case.settings import put
+from coilset.model.report.sweep_page import write_sweep_report
+from coilset.model.sweep import dataset
+from coilset.model.sweep.evaluate import evaluate
+from coilset.model.sweep.journal import Journal, read_records
+from coilset.model.sweep.plan import Plan
+
+CASE = {
+    "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 1.5, "pitch": 12.0},
+    "ends": "clamped",
+    "mesh": {"elements_per_turn": 6, "section": {"radial": 2, "angular": 4}},
+    "loading": [{"to": {"travel": 6}, "steps": 3}, {"to": {"force": 0}, "steps": 2}],
+}
+VARY = {"spring.wire_diameter": [4.0, 4.5, 5.0], "material": ["ck15", "voce"]}
+
+
+@pytest.fixture(scope="module")
+def plan(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sweep")
+    (folder / "case.yaml").write_text(yaml.safe_dump(CASE))
+    (folder / "sweep.yaml").write_text(yaml.safe_dump({"case": "case.yaml", "vary": VARY}, sort_keys=False))
+    return Plan(folder / "sweep.yaml")
+
+
+@pytest.fixture(scope="module")
+def folder(plan):
+    """Three cases solved, two failed, one missing."""
+    out = plan.path.parent / "out"
+    out.mkdir()
+    with closing(Journal(out / "journal.jsonl")) as journal:
+        for number, (row, key) in enumerate(zip(plan.rows[:5], plan.keys, strict=False)):
+            record = evaluate(**plan.task(row), comm=MPI.COMM_SELF) if number < 3 else {
+                "status": "failed", "reason": "stopped at the time limit", "summary": {}, "steps": {}, "seconds": 9.0
+            }  # fmt: skip
+            journal.append({"key": key, **record})
+    dataset.write(out / "sweep.nc", dataset.collect(plan, out / "journal.jsonl"))
+    return out
+
+
+@pytest.fixture(scope="module")
+def data(folder):
+    page = write_sweep_report(folder).read_text(encoding="utf-8")
+    kept = re.search(r'<script type="text/plain" id="data">(.*?)</script>', page).group(1)
+    return json.loads(gzip.decompress(base64.b64decode(kept)))
+
+
+def test_every_case_has_the_numbers_of_its_record(folder, data):
+    columns = {column["name"]: column for column in data["columns"]}
+    assert columns["status"]["values"] == ["done"] * 3 + ["failed"] * 2 + ["missing"]
+    assert columns["reason"]["values"][3] == "stopped at the time limit"
+    for row, record in enumerate(read_records(folder / "journal.jsonl")):
+        for name, value in record["summary"].items():
+            if isinstance(value, float):
+                assert columns[name]["values"][row] == value
+    assert columns["spring.wire_diameter"]["unit"] == "mm"
+    assert [column["name"] for column in data["columns"][:3]] == ["case", *VARY]
+
+
+def test_the_file_of_a_case_is_that_of_the_plan(plan, data):
+    """As the page puts it together: the base case, with the case's inputs at their entries."""
+    columns, files = {column["name"]: column["values"] for column in data["columns"]}, data["files"]
+    for row in range(len(plan)):
+        case = json.loads(json.dumps(files["base"]))
+        for name, entries in files["entries"].items():
+            value = columns[name][row]
+            for entry in entries:
+                put(case, entry, files["choices"].get(name, {}).get(value, value), "")
+        assert case == plan.data(plan.rows[row])

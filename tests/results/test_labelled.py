@@ -1,0 +1,32 @@
+"""Results with labels and units, as `coilset.open` gives them."""
+
+import json
+
+import pytest
+from mpi4py import MPI
+
+import coilset.open
+from coilset.meshes.errors import InputError
+from coilset.scripts.solve import solve
+
+CASE = """
+spring: {wire_diameter: 5, mean_diameter: 40, turns: 1.5, pitch: 12}
+ends: clamped
+loading: [{to: {travel: 4}, steps: 2}, {to: {force: 0}, steps: 1}]
+mesh: {elements_per_turn: 6, section: {radial: 2, angular: 4}}
+"""
+
+
+def test_a_run_comes_with_its_numbers_and_units(tmp_path):
+    (tmp_path / "spring.yaml").write_text(CASE)
+    solve(tmp_path / "spring.yaml", tmp_path / "out", False, [], pictures=False, comm=MPI.COMM_SELF)
+    data = coilset.open(tmp_path / "out")
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text(encoding="utf-8"))
+    assert float(data["summary_set_mm"]) == summary["set_mm"]
+    assert data["travel_mm"].sel(step=2).item() == pytest.approx(4.0, rel=1e-12)
+    assert data["step_position"].dims == ("step", "station", "axis")
+    units = {name: data[name].attrs["units"] for name in ("travel_mm", "force_N", "summary_rate_N_per_mm", "surface")}
+    assert units == {"travel_mm": "mm", "force_N": "N", "summary_rate_N_per_mm": "N/mm", "surface": "MPa"}
+    assert json.loads(data.attrs["case"])["spring"]["wire_diameter"] == 5.0
+    with pytest.raises(InputError, match="no results of a run"):
+        coilset.open(tmp_path)

@@ -1,0 +1,97 @@
+"""Heat along the wire: fins, energy, a spring with heat that stops and goes on, and wrong input."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+from mpi4py import MPI
+
+from coilset.meshes.errors import InputError
+from coilset.model.analysis import Analysis
+from coilset.model.case.case import check
+from coilset.model.results.checkpoint import Checkpoint
+from coilset.verification.cases.heat_along_wire import exact, fin, material
+from coilset.verification.study import Study
+
+CASE = {
+    "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 1.0, "pitch": 60.0}, "ends": "clamped",
+    "temperature": 293.15, "mesh": {"elements_per_turn": 8, "section": {"radial": 3, "angular": 8}},
+    "heat": {"conductivity": 50.0, "convection": 200.0, "tips": 1.0},
+    "loading": [{"to": {"travel": 45.0}, "steps": 4, "seconds": 2.0},
+                {"to": {"force": 0.0}, "steps": 2, "seconds": 60.0}],
+}  # fmt: skip
+
+
+@pytest.fixture
+def warming(tmp_path):
+    return material(Study(tmp_path), True)
+
+
+def test_order_of_the_fin():
+    errors = [np.abs(values - exact(x)).max() for x, values in (fin(10), fin(20))]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.05)
+
+
+def test_heat_that_is_generated_is_in_the_wire_or_given_off_and_a_run_goes_on(warming, tmp_path):
+    """Stopped in between and resumed, with temperatures and heat, to the same bits."""
+    case = check(CASE | {"material": warming})
+    whole = Analysis(case, MPI.COMM_SELF)
+    steps = whole.run().steps
+    assert steps[3].temperature_K > 295.0
+    assert steps[-1].temperature_K < steps[3].temperature_K - 0.5
+    assert steps[-1].hours == pytest.approx(62.0 / 3600.0)
+    heat = whole.heat
+    assert heat.given_off > 0.1 * heat.generated
+    rise = heat.equation.content - heat.start_content
+    assert rise + heat.given_off == pytest.approx(heat.generated, rel=5e-3)
+
+    stopped, checkpoint = Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case)
+
+    def stop(step):
+        if step.number == 4:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stopped.run(stop, checkpoint.save)
+    resumed = Analysis(case, MPI.COMM_SELF)
+    resumed.resume(checkpoint.load(MPI.COMM_SELF))
+    assert resumed.run().steps == steps
+    for name, field in whole.system.state.items():
+        assert (field.equilibrium == resumed.system.state[name].equilibrium).all(), name
+
+
+def test_expansion_of_a_free_wire_bears_no_stress(warming, tmp_path):
+    """Heated evenly by 100 K and grown by α ΔT in all directions a spring has no stress; held, its wire has E α ΔT."""
+    data = yaml.safe_load(Path(warming).read_text(encoding="utf-8"))
+    for at in data["temperatures"]:
+        at["elasticity"]["alpha"] = 1.2e-5
+        at["isotropic"] = "none"
+    (tmp_path / "expands.yaml").write_text(yaml.safe_dump(data), encoding="utf-8")
+    heat = {"conductivity": 50.0, "convection": 200.0, "surroundings": 393.15}
+    analysis = Analysis(check(CASE | {"material": str(tmp_path / "expands.yaml"), "heat": heat}), MPI.COMM_SELF)
+    rod, growth = analysis.rod, 1.2e-3
+    analysis.heat.advance(1e9)
+    assert rod.update()
+    held = analysis.law.E * growth
+    assert rod.s.values[..., 0] == pytest.approx(-held * np.pi * 2.5**2, rel=0.05)  # chords are 2.6 % shorter
+    rod.increment.x.array[rod.u_dofs] = growth * rod.state["x"].equilibrium
+    assert rod.update()
+    assert np.abs(rod.point_state[..., :3]).max() < 1e-3 * held  # strains of second order
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"material": "ck15"}, "heat: plastic work does not warm 'ck15'"),
+        ({"heat": None}, "loading.0.seconds: no heat flows; give the entry heat, or leave seconds out"),
+        ({"loading": [{"to": {"travel": 5.0}}]}, "loading.0 takes no time, but heat flows"),
+        ({"mesh": {"section": {"kind": "warping"}}}, "heat is known for sections of fibres"),
+        ({"heat": {"conductivity": 0.0}}, "heat.conductivity: 0.0: must be greater than 0"),
+        ({"heat": {"conductivity": 50.0, "surroundings": 200.0}}, "heat.surroundings: 200 K is outside the table"),
+    ],
+)  # fmt: skip
+def test_what_heat_cannot_be(changes, message, warming):
+    with pytest.raises(InputError) as caught:
+        Analysis(check(CASE | {"material": warming} | changes), MPI.COMM_SELF)
+    assert message in str(caught.value)
