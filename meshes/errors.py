@@ -29,6 +29,11 @@ class InputError(CoilsetError):
         super().__init__(printable(text))
 
 
+def unreadable(file: object, error: Exception) -> InputError:
+    """The error for a file that cannot be read, with the first line of the reason."""
+    return InputError(f"is not readable: {str(error).partition(chr(10))[0] or type(error).__name__}", "", file)
+
+
 class SolveError(CoilsetError):
     """A solve that did not converge or cannot continue; the results up to that point are kept."""
 

@@ -89,7 +89,7 @@ class Analysis:
         self.rod = Rod(line, radius, self.law, section.build(), placement, case.temperature, section.kind,
                        section.degree)  # fmt: skip
         self.heat = None if case.heat is None else self._wire_heat(case.heat)
-        coiling_diameter = coil_wire(self.rod) if getattr(case.spring, "made_by", None) else None
+        coiling_diameter = coil_wire(self.rod) if case.coiled else None
         seats = case.seats if case.ends == "seats" else None
         contacts = build_contacts(case.contact, seats, spring, turns, line.stations, self.law.E)
         self.layout = LineLayout(self.rod)

@@ -18,7 +18,7 @@ from pathlib import Path
 from coilset.model.caches import SOURCES, load_without_compiler
 from coilset.model.processes import end_with_parent, first_rank
 
-NOTICE = "coilset: compiling forms and kernels, once, about 30 s ..."
+NOTICE = "coilset: compiling forms and kernels, once, about a minute ..."
 COMPILE = [sys.executable, "-m", "coilset.scripts", "compile"]
 OF_A_RANK = ("OMPI_", "PMI", "PRTE_")  # variables by which mpirun tells a process that it is a rank
 

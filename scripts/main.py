@@ -275,7 +275,7 @@ def bench(
 
 @app.command(name="compile")
 def compile_() -> None:
-    """Compile forms and kernels now, about 30 s, so that the first run need not wait; skip what is compiled already."""
+    """Compile forms and kernels now, about a minute, so that the first run need not wait."""
     announce_compiling()
     from coilset.scripts.warm import warm
 

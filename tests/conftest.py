@@ -7,7 +7,9 @@ import pytest
 from mpi4py import MPI
 
 from coilset.meshes.line import line_mesh
+from coilset.model.analysis import Analysis
 from coilset.model.material import library
+from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.rod.rod import Rod
 from coilset.model.section.rules import polar
 
@@ -28,6 +30,26 @@ def make_rod(ck15):
         return Rod(line, np.full(len(stations) - 1, float(radius)), law or ck15, rule or polar())
 
     return make
+
+
+@pytest.fixture
+def resumed_after(tmp_path):
+    """A new analysis of a case, with the state that another one left when it was stopped after some step."""
+
+    def resume(case, number):
+        checkpoint = Checkpoint(tmp_path, case)
+
+        def stop(step):
+            if step.number == number:
+                raise KeyboardInterrupt
+
+        with pytest.raises(KeyboardInterrupt):
+            Analysis(case, MPI.COMM_SELF).run(stop, checkpoint.save)
+        resumed = Analysis(case, MPI.COMM_SELF)
+        resumed.resume(checkpoint.load(MPI.COMM_SELF))
+        return resumed
+
+    return resume
 
 
 @pytest.fixture(scope="session")

@@ -253,7 +253,7 @@ class Case(Strict):
 
     @model_validator(mode="after")
     def _coiling_knows_the_curvature(self) -> Self:
-        if isinstance(self.spring, SpringSpec) and self.spring.made_by and self.mesh.section.kind != "curved":
+        if self.coiled and self.mesh.section.kind != "curved":
             raise ValueError("spring.made_by: coiling is known for sections of fibres in a curved wire; give "
                              "mesh.section.kind: curved")  # fmt: skip
         return self
@@ -274,6 +274,11 @@ class Case(Strict):
     def targets(self) -> list[Phase]:
         """The phases of `loading` that go to a target."""
         return [phase for phase in self.loading if isinstance(phase, Phase)]
+
+    @property
+    def coiled(self) -> bool:
+        """Does the run begin with the stresses that coiling leaves in the wire?"""
+        return isinstance(self.spring, SpringSpec) and self.spring.made_by is not None
 
 
 Group = TypeVar("Group", bound=Strict)

@@ -39,7 +39,7 @@ Stage = namedtuple("Stage", "off slope multiplier d_multiplier length d_length k
 GAMMA = 1.0 - math.sqrt(0.5)
 PRECISION = 1e-13  # of |n| − k, over k
 TWO_THIRDS = math.sqrt(2.0 / 3.0)
-ROD, SOLID = 3, 6  # components
+ROD = 3  # components
 
 
 def columns(components: int, terms: int) -> int:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from coilset.meshes.errors import InputError
+from coilset.meshes.errors import unreadable
 from coilset.model.case import Case
 from coilset.model.case.reference import entry_unit
 from coilset.model.report.answer import Number, answer
@@ -37,7 +37,7 @@ def write_design_report(folder: str | Path) -> Path:
         case = (folder / "found.yaml").read_text(encoding="utf-8")
         design["summary"]["set_mm"], design["origin"]["case"], design["trade_offs"]
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise InputError(f"is not readable: {str(error).partition(chr(10))[0]}", "", folder / FILE) from None
+        raise unreadable(folder / FILE, error) from None
     records = list(read_records(folder / "evaluations.jsonl"))
     names = list(design["found"])
     found = [

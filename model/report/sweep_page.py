@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from coilset.meshes.errors import InputError
+from coilset.meshes.errors import unreadable
 from coilset.model.report.answer import Number
 from coilset.model.report.panel import COLOURS, Panel, axis
 from coilset.model.report.render import write_page
@@ -38,7 +38,7 @@ def write_sweep_report(folder: str | Path) -> Path:
         of = next((name for name in ANSWERS if name in data), "seconds")
         columns = _columns(data, of)
     except (OSError, ValueError, KeyError) as error:
-        raise InputError(f"is not readable: {str(error).partition(chr(10))[0]}", "", folder / FILE) from None
+        raise unreadable(folder / FILE, error) from None
     panels = [panel for panel in (_deciding(data, of), _spread(data, of)) if panel is not None]
     counts = {status: int((data["status"] == status).sum()) for status in ("done", "failed", "missing")}
     names = [data[name].attrs["long_name"] for name in _list(data.attrs["inputs"])]

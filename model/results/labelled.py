@@ -5,7 +5,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from coilset.meshes.errors import InputError
+from coilset.meshes.errors import unreadable
 from coilset.model.results.opened import open_run, unit_of
 
 
@@ -28,7 +28,7 @@ def labelled(folder: str | Path) -> xr.Dataset:
             with xr.open_dataset(folder / "sweep.nc", engine="h5netcdf") as file:
                 return file.load()
         except (OSError, ValueError) as error:
-            raise InputError(f"is not readable: {str(error).partition(chr(10))[0]}", "", folder / "sweep.nc") from None
+            raise unreadable(folder / "sweep.nc", error) from None
     run = open_run(folder)
     data = run.data.copy()
     for name, value in run.summary.items():

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from coilset.meshes.errors import InputError
+from coilset.meshes.errors import InputError, unreadable
 
 UNITS = {
     "_N_per_mm2": "N/mm²",
@@ -72,7 +72,7 @@ def open_run(folder: str | Path) -> Run:
             path = folder / f"{name}.csv"
             data = data.merge(_table(path), compat="override", join="outer")
     except (OSError, ValueError, KeyError) as error:
-        raise InputError(f"is not readable: {str(error).partition(chr(10))[0]}", "", path) from None
+        raise unreadable(path, error) from None
     if "origin" not in summary:
         raise InputError("is of a version without the case in it; solve it again", "", folder / "summary.json")
     return Run(folder, summary, data)

@@ -98,11 +98,6 @@ class Snapshot:
         """Magnitude of the shear stress at the section points, shape (n, 2, points), MPa."""
         return surface.shear(self.point_state, self.components)
 
-    @property
-    def surface_shear(self) -> np.ndarray:
-        """The same at the points on the wire's surface, shape (n, 2, surface points), MPa."""
-        return surface.shear(self.surface_state, self.components)
-
 
 @dataclass(frozen=True)
 class SeatReaction:

@@ -99,7 +99,7 @@ class SliceAnalysis:
 
     def __init__(self, case: Case, outline: Outline | None = None, across: float = ACROSS, degree: int = 2):
         self.case, self.spring = case, case.spring.build()
-        if getattr(case.spring, "made_by", None):
+        if case.coiled:
             problem = "a slice begins free of stress; leave 'made_by' out, or use 'coilset solve'"
             raise InputError(problem, "spring.made_by")
         self.law = case_law(case, self.spring)

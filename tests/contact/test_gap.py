@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from coilset.model.contact.base import TrialPositions
+from coilset.model.contact.base import TrialPositions, one_sided
+from coilset.model.contact.elements import one_sided_at
 from coilset.model.contact.gap import Gaps, Stops
 
 SEATS = np.zeros(12)
@@ -53,3 +54,10 @@ def test_gaps_push_their_stations_apart(dense):
     along = (X[4] - X[3]) / np.linalg.norm(X[4] - X[3])
     np.testing.assert_allclose(force[4], part.pressure[2] * along, rtol=1e-12)
     np.testing.assert_allclose(force.sum(axis=0), 0.0, atol=1e-10)
+
+
+def test_the_compiled_onset_is_that_of_the_arrays():
+    """The latter takes complex gaps, for derivatives; the former stands in the compiled loops."""
+    gaps = np.linspace(-5.0, 2.0, 29) * ONSET
+    compiled = [one_sided_at(gap, C, ONSET) for gap in gaps]
+    assert np.transpose(compiled) == pytest.approx(np.array(one_sided(gaps, C, ONSET)), rel=1e-14)

@@ -10,7 +10,6 @@ from mpi4py import MPI
 from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case.case import check
-from coilset.model.results.checkpoint import Checkpoint
 from coilset.verification.cases.heat_along_wire import exact, fin, material
 from coilset.verification.study import Study
 
@@ -33,7 +32,7 @@ def test_order_of_the_fin():
     assert np.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.05)
 
 
-def test_heat_that_is_generated_is_in_the_wire_or_given_off_and_a_run_goes_on(warming, tmp_path):
+def test_heat_that_is_generated_is_in_the_wire_or_given_off_and_a_run_goes_on(warming, resumed_after):
     """Stopped in between and resumed, with temperatures and heat, to the same bits."""
     case = check(CASE | {"material": warming})
     whole = Analysis(case, MPI.COMM_SELF)
@@ -46,16 +45,7 @@ def test_heat_that_is_generated_is_in_the_wire_or_given_off_and_a_run_goes_on(wa
     rise = heat.equation.content - heat.start_content
     assert rise + heat.given_off == pytest.approx(heat.generated, rel=5e-3)
 
-    stopped, checkpoint = Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case)
-
-    def stop(step):
-        if step.number == 4:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        stopped.run(stop, checkpoint.save)
-    resumed = Analysis(case, MPI.COMM_SELF)
-    resumed.resume(checkpoint.load(MPI.COMM_SELF))
+    resumed = resumed_after(case, 4)
     assert resumed.run().steps == steps
     for name, field in whole.system.state.items():
         assert (field.equilibrium == resumed.system.state[name].equilibrium).all(), name

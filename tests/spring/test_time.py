@@ -12,7 +12,6 @@ from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.case.case import check
 from coilset.model.material import library
-from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.summary import summarise
 
 HOLD = [{"to": {"travel": 10}, "steps": 1}, {"hold": {"hours": 1000}, "steps": 8}]
@@ -85,22 +84,13 @@ def test_constant_force():
     assert all(step.load_loss_percent is None for step in steps)
 
 
-def test_a_run_goes_on_in_the_middle_of_a_hold(tmp_path):
+def test_a_run_goes_on_in_the_middle_of_a_hold(resumed_after):
     """To the same bits, with the clock where it was."""
     program = [*HOLD, {"heat": {"to": 303.15, "minutes": 5}, "steps": 2}, {"to": {"force": 0}, "steps": 2}]
     case = check(SPRING | {"loading": program})
     whole = Analysis(case, MPI.COMM_SELF)
     whole.run()
-    stopped, checkpoint = Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case)
-
-    def stop(step):
-        if step.number == 5:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        stopped.run(stop, checkpoint.save)
-    resumed = Analysis(case, MPI.COMM_SELF)
-    resumed.resume(checkpoint.load(MPI.COMM_SELF))
+    resumed = resumed_after(case, 5)
     assert 0.0 < resumed.rod.clock[0] < 1000.0
     assert resumed.run().steps == whole.result.steps
     for name, field in whole.system.state.items():
