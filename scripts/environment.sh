@@ -25,7 +25,7 @@ packages() { tr '\n' ' ' < "$scripts/packages.txt"; }
 find_environment() {
     made=''
     local first=${COILSET_PYTHON:-} kind='' fact facts=()
-    [ -n "$first" ] || first=$(type -P python3 || true)
+    [ -n "$first" ] || first_of_path python3
     found=$namespace/found-${COILSET_RELEASE:-any}-${first//\//%}
     if recall; then
         "enter_$kind"
@@ -38,6 +38,14 @@ find_environment() {
     fi
     "enter_$kind"
     remember
+}
+
+first_of_path() { # sets `first`; as `type -P`, without a command substitution
+    local folders folder
+    IFS=: read -ra folders <<< "$PATH"
+    for folder in "${folders[@]}"; do
+        [ ! -x "$folder/$1" ] || [ -d "$folder/$1" ] || { first=$folder/$1; return; }
+    done
 }
 
 recall() { # the record, if its facts still hold
@@ -70,8 +78,10 @@ ready() { # is there an environment? Sets kind, python and the facts that this r
 }
 
 complete() { # has this Python every module, and DOLFINx >= 0.9? Where it looks for them is added to the facts
-    local looked status=0
-    looked=$(PYTHONPATH='' "$1" - $modules 2> /dev/null << 'PYTHON'
+    local line enough=''
+    while read -r line; do
+        if [ "$line" = enough ]; then enough=yes; else facts+=("$line"); fi
+    done < <(PYTHONPATH='' exec "$1" - $modules 2> /dev/null << 'PYTHON'
 import importlib.metadata, importlib.util, os, sys
 print(os.path.realpath(sys.executable), *(path for path in sys.path if os.path.isdir(path)), sep="\n")
 missing = [name for name in sys.argv[1:] if importlib.util.find_spec(name) is None]
@@ -79,11 +89,11 @@ try:
     version = importlib.metadata.version("fenics-dolfinx")
 except importlib.metadata.PackageNotFoundError:
     version = importlib.metadata.version("dolfinx-solver-real")  # its wheel on PyPI
-sys.exit(bool(missing) or tuple(map(int, version.split(".")[:2])) < (0, 9))
+if not missing and tuple(map(int, version.split(".")[:2])) >= (0, 9):
+    print("enough")
 PYTHON
-    ) || status=1
-    while read -r fact; do [ -z "$fact" ] || facts+=("$fact"); done <<< "$looked"
-    return "$status"
+    )
+    [ -n "$enough" ]
 }
 
 distribution() { # prints "debian 12" or "ubuntu 2504"

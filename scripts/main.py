@@ -369,7 +369,10 @@ def run() -> None:
 
 
 def _listen() -> None:
-    """Ctrl-C raises KeyboardInterrupt; on ranks started by `-n` it comes as SIGUSR1, and they end with mpirun."""
+    """Ctrl-C raises KeyboardInterrupt; on ranks started by `-n` it comes as SIGUSR1, and they end with mpirun.
+
+    Where Python cannot pass an exception on, as in a destructor or a library's callback, it is raised again soon.
+    """
     last = -ONE_SIGNAL
 
     def interrupt(number: int, frame: FrameType | None) -> None:
@@ -381,6 +384,15 @@ def _listen() -> None:
         if last - before > ONE_SIGNAL:
             raise KeyboardInterrupt
 
+    def unraisable(lost: "sys.UnraisableHookArgs") -> None:
+        nonlocal last
+        if lost.exc_type is KeyboardInterrupt:
+            last = -ONE_SIGNAL
+            signal.setitimer(signal.ITIMER_REAL, SOON)
+        else:
+            sys.__unraisablehook__(lost)
+
+    sys.unraisablehook = unraisable
     signal.signal(signal.SIGALRM, interrupt)
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, interrupt)

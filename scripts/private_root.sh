@@ -70,7 +70,7 @@ enter_private_root() {
                 *) [ -d "$folder" ] && [ ! -L "$folder" ] && binds+=(--bind "$folder" "$folder") ;;
             esac
         done
-        case $(trap) in *"'' SIGINT"*) ;; *) reset+=,INT ;; esac # ignored from above, as in a script's background: stays so
+        ignores_interrupts || reset+=,INT # ignored from above, as in a script's background: stays so
         # In a shell's background, SIGINT is ignored and the input is empty: both are given back.
         (
             trap '' INT TERM
@@ -91,6 +91,12 @@ pass_on() { # a signal to the command in bubblewrap; while there is none yet, no
     local command=''
     { read -r command < "/proc/$child/task/$child/children"; } 2> /dev/null || true
     kill -s "$1" "$command" 2> /dev/null || kill -s KILL "$child" 2> /dev/null || true
+}
+
+ignores_interrupts() {
+    local name mask
+    while read -r name mask; do [ "$name" != SigIgn: ] || break; done < "/proc/$$/status"
+    (((16#$mask >> 1) & 1)) # SIGINT is number 2
 }
 
 in_foreground() { # are we where the terminal sends Ctrl-C? Then it reaches the command by itself

@@ -163,6 +163,37 @@ def test_ctrl_c_while_it_starts(start, example, ranks, seconds):
     running.until(lambda: not running.alive())
 
 
+def test_the_launcher_forgets_no_signal(start, tmp_path):
+    """It reaches the shell alone, or the Python that has taken its place; this one only waits for it."""
+    (tmp_path / "sitecustomize.py").write_text(
+        "import os, signal, sys, time\n"
+        "if '-m' in sys.orig_argv:\n"
+        "    signal.signal(signal.SIGINT, lambda *_: os._exit(130))\n"
+        "    signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])\n"
+        "    time.sleep(1000)\n"
+    )
+    for milliseconds in range(4, 52, 2):
+        running = start(coilset("solve"), PYTHONPATH=str(tmp_path), COILSET_PYTHON=sys.executable)
+        time.sleep(1e-3 * milliseconds)
+        os.kill(running.process.pid, signal.SIGINT)
+        assert running.process.wait(PATIENCE) in (130, -signal.SIGINT), milliseconds
+
+
+@pytest.mark.parametrize("swallow", [
+    "class Lost:\n    def __del__(self): wait()\nLost()",
+    "import ctypes\nctypes.CFUNCTYPE(None)(wait)()",
+])  # fmt: skip
+def test_an_interrupt_that_python_cannot_pass_on_is_raised_again(swallow):
+    """In a destructor and in a callback from C."""
+    program = (
+        "import os, signal, time\nfrom coilset.scripts.main import _listen\n_listen()\n"
+        "def wait():\n    os.kill(os.getpid(), signal.SIGINT)\n    time.sleep(0.01)\n"
+        f"try:\n    exec({swallow!r})\n    time.sleep(100)\nexcept KeyboardInterrupt:\n    print('heard')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=PATIENCE)
+    assert (done.stdout, done.stderr) == ("heard\n", "")
+
+
 def test_ctrl_c_while_the_environment_is_looked_for(start, example, tmp_path):
     """An empty cache folder: the shell waits for Python there, and hears of the signal afterwards."""
     running = start(coilset("solve", example, "--out", "out", *LONG), COILSET_CACHE=str(tmp_path / "cache"),
