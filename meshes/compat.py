@@ -17,6 +17,8 @@ _gmsh = dolfinx.io.gmsh if hasattr(dolfinx.io, "gmsh") else dolfinx.io.gmshio
 _LINKS = (2,) if "max_facet_to_cell_links" in inspect.signature(dolfinx.mesh.create_cell_partitioner).parameters else ()
 _Reason = PETSc.SNES.ConvergedReason
 
+# Maximum length of a step of a line search: 3.24 renamed the option, and lowered its default from 1e8 to 1.
+LONGEST_STEP = "snes_linesearch_maxlambda" if PETSc.Sys.getVersion() >= (3, 24) else "snes_linesearch_maxstep"
 # PETSc 3.25 renamed the reason for a residual that is not a number.
 NOT_A_NUMBER: int = getattr(_Reason, "DIVERGED_FNORM_NAN", None) or _Reason.DIVERGED_FUNCTION_NANORINF
 

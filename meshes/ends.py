@@ -29,7 +29,7 @@ class EndCoils(Strict):
     turns: Annotated[_Turns | None, Field(description=f"end turns, {CLOSED_TURNS:g} if not given")] = None
     transition: Annotated[
         _Turns | None,
-        Field(description=f"turns from the pitch of the end coil to the body's, {CLOSED_TRANSITION:g} if not given"),
+        Field(description=f"turns over which the pitch changes to the body's, {CLOSED_TRANSITION:g} if not given"),
     ] = None
     tip: Annotated[
         float | None,
@@ -78,8 +78,8 @@ OPEN = EndCoils()
 class BothEnds(Strict):
     """Two different ends."""
 
-    bottom: EndCoils = OPEN
-    top: EndCoils = OPEN
+    bottom: Annotated[EndCoils, Field(description="the bottom end")] = OPEN
+    top: Annotated[EndCoils, Field(description="the top end")] = OPEN
 
 
 def _number_of_forms(value: Any) -> str:

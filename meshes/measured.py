@@ -24,18 +24,18 @@ WIRE_DIAMETER = "wire_diameter"
 
 
 class MeasuredSpec(Strict):
-    """A spring whose centre line was measured. The file's z axis is the axis of the spring, lengths in mm.
+    """A spring whose centre line was measured. The file's z axis is the axis of the spring; lengths are in mm.
 
     The points become mean radius and height over the polar angle, interpolated by a cubic spline: a helix remains
     exactly a helix. The wire diameter is interpolated without overshoot.
     """
 
     file: Annotated[str, Field(description="CSV with the columns x, y, z, wire_diameter, or a mesh that meshio reads")]
-    wire_diameter: Annotated[Length | None, Field(description="mm, for a file that has none")] = None
+    wire_diameter: Annotated[Length | None, Field(description="wire diameter, mm, if the file has none")] = None
     noise: Annotated[
         float,
         Unit("mm"),
-        Field(ge=0, allow_inf_nan=False, strict=True, description="standard deviation of the points, mm"),
+        Field(ge=0, allow_inf_nan=False, strict=True, description="standard deviation of the measured points, mm"),
     ] = 0.0
     end_coils: Ends = OPEN
 

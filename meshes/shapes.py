@@ -33,7 +33,7 @@ class Table(Strict):
     ]
     values: Annotated[
         tuple[Length, ...],
-        Field(strict=False, min_length=2, description="values at these turns, mm; of elements_per_turn: rods"),
+        Field(strict=False, min_length=2, description="values at these turns, mm; rods per turn for elements_per_turn"),
     ]
     interpolation: Annotated[
         Literal["linear", "monotone", "spline"],

@@ -23,7 +23,7 @@ __all__ = ["MeasuredSpec", "Spring", "SpringEntry", "SpringSpec"]
 
 
 class SpringSpec(Strict):
-    """A spring as on a drawing: three lengths over the turns, hand and ends. Lengths in mm."""
+    """A spring as on a drawing: wire, coil diameter and pitch over the turns, hand and ends; lengths in mm."""
 
     wire_diameter: Annotated[Profile, Field(description="wire diameter, mm; a number or a table over the turns")]
     mean_diameter: Annotated[
@@ -36,12 +36,14 @@ class SpringSpec(Strict):
         DiameterProfile | None, Field(description="inner coil diameter Di = D − d, mm, in place of the mean one")
     ] = None
     turns: Annotated[
-        float, Unit("turns"), Field(ge=0.1, le=1000, strict=True, description="all turns, end turns included")
+        float,
+        Unit("turns"),
+        Field(ge=0.1, le=1000, strict=True, description="total number of turns, end turns included"),
     ]
     pitch: Annotated[
         Profile | None,
         Unit("mm"),
-        Field(description="rise in a turn of the body, mm; a number or a table; or give free_length"),
+        Field(description="rise of the body per turn, mm; a number or a table; or give free_length"),
     ] = None
     free_length: Annotated[
         Length | None, Field(description="outer length of the unloaded spring, mm; or give pitch")
@@ -50,7 +52,7 @@ class SpringSpec(Strict):
     end_coils: Ends = OPEN
     made_by: Annotated[
         Literal["coiling"] | None,
-        Field(description="coiling: straight wire is bent and twisted, and springs back to this drawing, which leaves "
+        Field(description="coiling: straight wire was bent and twisted and sprang back to this shape, which leaves "
                           "residual stress; left out: the wire is free of stress"),
     ] = None  # fmt: skip
 

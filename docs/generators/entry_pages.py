@@ -23,6 +23,10 @@ FILES = {  # name of the page: its title, what the file is for, its model
              "[Find dimensions](../../how-to/design.md) shows one.", WishSpec),
     "sweep": ("The sweep file", "A base case, and entries that vary: the file of `coilset sweep`.", SweepSpec),
 }  # fmt: skip
+NAMES = {  # of groups, where the name of the class alone would not do
+    "Chaboche": "Chaboche", "HeatSpec": "heat flow", "NonNormality": "non-normality", "RambergOsgood": "Ramberg-Osgood",
+    "Swift": "Swift", "Voce": "Voce",
+}  # fmt: skip
 COLUMNS = ("entry", "takes", "unit", "default", "range", "meaning")
 
 
@@ -38,7 +42,8 @@ def section(page: str, group: Group) -> str:
     """One group: where it stands, what it is, and its table."""
     places = ", ".join(f"`{place}`" for place in group.places if place)
     label = f"({label_of(page, group.model)})=\n" if places else ""
-    heading = f"## {name_of(group.model).capitalize()}\n\nAt {places}." if places else "## The whole file"
+    name = name_of(group.model)
+    heading = f"## {name[0].upper()}{name[1:]}\n\nAt {places}." if places else "## The whole file"
     lines = [f"| {' | '.join(COLUMNS)} |", "|---" * len(COLUMNS) + "|", *(line(page, row) for row in group.rows)]
     return f"{label}{heading}\n\n{reference.summary(group.model)}\n\n" + "\n".join(lines) + "\n"
 
@@ -58,6 +63,8 @@ def kind_of(page: str, form: Form) -> str:
 
 def name_of(model: type) -> str:
     """A group's name in words: `EndCoils` is `end coils`."""
+    if model.__name__ in NAMES:
+        return NAMES[model.__name__]
     words = "".join(f" {letter.lower()}" if letter.isupper() else letter for letter in model.__name__).strip()
     return words.removesuffix(" spec").removesuffix(" file")
 

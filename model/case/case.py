@@ -23,12 +23,12 @@ from coilset.model.section import rules
 
 
 class SectionSpec(Strict):
-    """The wire's cross-section: what it may do, and its quadrature."""
+    """The wire's cross-section: its kinematics and its quadrature."""
 
     kind: Annotated[
         Literal["plane", "curved", "warping"],
-        Field(description="plane: as in the thesis; curved: fibre lengths of a curved wire, and warping under the "
-                          "transverse shear; warping: free warping, all six stresses"),
+        Field(description="plane: as in the thesis; curved: fibres of a curved wire, warping due to the transverse "
+                          "force; warping: free warping, all six stresses"),
     ] = "curved"  # fmt: skip
     spin: Annotated[
         bool,
@@ -43,7 +43,8 @@ class SectionSpec(Strict):
     radial: Annotated[Whole, Field(ge=1, le=64, description="rings of the polar rule")] = 8
     angular: Annotated[Whole, Field(ge=3, le=256, description="angles of the polar rule")] = 20
     staggered: Annotated[
-        bool, Field(description="every second ring of the polar rule is turned by half the angle between its points")
+        bool,
+        Field(description="whether every second ring of the polar rule is offset by half the angle between its points"),
     ] = True
 
     @model_validator(mode="after")
@@ -82,7 +83,7 @@ class MeshSpec(Strict):
     sagitta: Annotated[
         float | None,
         Unit("mm"),
-        Field(gt=0, description="maximum distance of a rod from the wire's axis, mm; adds rods"),
+        Field(gt=0, description="maximum distance between a rod and the wire's axis, mm; adds rods where needed"),
     ] = None
     axis: Annotated[
         Literal["curved", "chords"],
@@ -111,7 +112,7 @@ class ContactSpec(Strict):
 
     coils: Annotated[
         Literal["closest", "gaps"],
-        Field(description="closest points of the wires, or the thesis's gap elements between nodes one turn apart"),
+        Field(description="closest: closest points of the wires; gaps: the thesis's gap elements between coils"),
     ] = "closest"
     bedding: Annotated[
         float | None,
@@ -121,12 +122,12 @@ class ContactSpec(Strict):
     penetration_limit: Annotated[
         float,
         Unit("wire diameters"),
-        Field(gt=0, description="penetration in wire diameters beyond which a step is rejected"),
+        Field(gt=0, description="penetration, in wire diameters, beyond which a step is rejected"),
     ] = 0.02
     augmentation_tolerance: Annotated[
         float | None,
         Unit("mm"),
-        Field(gt=0, description="maximum penetration, mm, enforced by augmented Lagrange; default: not enforced"),
+        Field(gt=0, description="maximum penetration, mm, enforced by augmented Lagrangians; default: not enforced"),
     ] = None
     friction: FrictionSpec = FrictionSpec()
 
@@ -138,7 +139,7 @@ class ContactSpec(Strict):
 
 
 class ControlSpec(Strict):
-    """Every number that steers the iteration and the steps."""
+    """All numbers that control the iteration and the steps."""
 
     newton: Annotated[NewtonControl, Field(description="how one step is solved")] = NewtonControl()
     steps: Annotated[StepControl, Field(description="how steps follow each other")] = StepControl()
@@ -158,7 +159,7 @@ class SolverSpec(Strict):
     """How equilibrium is found."""
 
     method: Annotated[MethodName, Field(description="iteration method")] = "newton"
-    tolerance: Annotated[float, Unit("1"), Field(gt=0, lt=1, description="ε of (6.3.1)")] = 1e-9
+    tolerance: Annotated[float, Unit("1"), Field(gt=0, lt=1, description="ε of the convergence test (6.3.1)")] = 1e-9
     options: Annotated[
         dict[Annotated[str, Field(pattern="^[a-z]\\w*$")], Option],
         Unit("of the option"),
@@ -168,7 +169,7 @@ class SolverSpec(Strict):
 
 
 class NamedWire(Strict):
-    """A wire of a standard instead of a material; it takes the wire's diameter from the spring."""
+    """A wire of a standard in place of a material; its diameter is that of the spring."""
 
     wire: Annotated[str, Field(description="name of a wire, such as EN 10270-1 SH; `coilset sheet --wires` lists them")]
 
@@ -191,37 +192,44 @@ Part = Annotated[float, BeforeValidator(_fraction)]
 
 
 class Case(Strict):
-    """A whole case; units mm, N, MPa, K."""
+    """A case; units mm, N, MPa, K."""
 
     spring: Annotated[SpringEntry, Field(description="the spring's drawing, or the file of a measured one")]
     material: Annotated[
-        Material, Field(description="name in the library, path of a material file, or {wire: name of a wire}")
+        Material, Field(description="name of a library material, path of a material file, or {wire: name of a wire}")
     ] = "ck15"
     temperature: Annotated[
         float | None,
         Unit("K"),
         Field(gt=0, description="temperature of the whole spring, K; default: the first in the material file"),
     ] = None
-    ends: Annotated[Literal["seats", "clamped"], Field(description="seats or clamped")] = "seats"
+    ends: Annotated[
+        Literal["seats", "clamped"],
+        Field(description="seats: the spring stands between seats; clamped: both tips of the wire are clamped"),
+    ] = "seats"
     seats: SeatsSpec = SeatsSpec()
     mesh: MeshSpec = MeshSpec()
     contact: ContactSpec = ContactSpec()
     solver: SolverSpec = SolverSpec()
     heat: Annotated[
-        HeatSpec | None, Field(description="where the heat of plastic work goes; left out: it stays where it arises")
+        HeatSpec | None,
+        Field(description="where the heat of plastic work flows; left out: it stays where it is produced"),
     ] = None
     accuracy: Annotated[
         Part,
         Unit("1"),
-        Field(gt=0, lt=1, description="error of the force that automatic steps may cause, relative to the maximum "
+        Field(gt=0, lt=1, description="error in force that automatic steps may cause, relative to the maximum "
                                       "force, such as 0.2 %"),
     ] = 0.002  # fmt: skip
     loading: Annotated[
-        list[AnyPhase], Field(strict=False, min_length=1, description="targets and times, one after the other")
+        list[AnyPhase],
+        Field(strict=False, min_length=1, description="the load program: targets and waiting times, in order"),
     ]
     rates_at: Annotated[
         list[Annotated[float, Unit("mm"), Field(gt=0)]],
-        Field(default_factory=list, description="travels, mm, at which the rate of the first compression is given"),
+        Field(
+            default_factory=list, description="travels, mm, at which the rate during the first compression is reported"
+        ),
     ]
 
     @model_validator(mode="before")

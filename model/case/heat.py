@@ -9,7 +9,7 @@ from coilset.model.entries.entry import Strict
 
 
 class HeatSpec(Strict):
-    """Conduction along the wire, to the air and into the seats; the material must have the entry `heating`."""
+    """Conduction along the wire, to the air and into the seats. The material must have the entry `heating`."""
 
     conductivity: Annotated[float, Unit("W/(m K)"), Field(gt=0, description="thermal conductivity, W/(m K)")]
     convection: Annotated[

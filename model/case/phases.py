@@ -14,7 +14,7 @@ class Target(Strict):
     travel: Annotated[float | None, Unit("mm"), Field(description="shortening of the spring since the start, mm")] = (
         None
     )
-    height: Annotated[float | None, Unit("mm"), Field(gt=0, description="distance of the seats, mm")] = None
+    height: Annotated[float | None, Unit("mm"), Field(gt=0, description="distance between the seats, mm")] = None
     force: Annotated[float | None, Unit("N"), Field(description="axial force, compression positive, N")] = None
 
     @model_validator(mode="after")
@@ -55,8 +55,8 @@ class Stepped(Strict):
         | Annotated[Literal["auto"], Tag("(word)")]
         | Annotated[Marks, Tag("(list)")],
         Discriminator(_form),
-        Field(description="auto: as long as the accuracy and the iteration allow; or a number of equal load steps; or "
-                          "the parts of the phase at which they end"),
+        Field(description="auto: as long as accuracy and convergence allow; or a number of equal steps; or the "
+                          "fractions of the phase at which the steps end"),
     ] = "auto"  # fmt: skip
 
     def count(self, automatic: int) -> int:
@@ -78,7 +78,11 @@ class Phase(Stepped):
     seconds: Annotated[
         float | None,
         Unit("s"),
-        Field(gt=0, le=1e9, description="how long it takes, in a case with the entry `heat`: heat flows meanwhile"),
+        Field(
+            gt=0,
+            le=1e9,
+            description="duration of the phase, during which heat flows; only in a case with the entry `heat`",
+        ),
     ] = None
 
     @property
@@ -93,9 +97,9 @@ class Phase(Stepped):
 class Duration(Strict):
     """How long, and what stays as it was meanwhile."""
 
-    hours: Annotated[float | None, Unit("h"), Field(gt=0, le=1e7, description="its length in hours")] = None
-    minutes: Annotated[float | None, Unit("min"), Field(gt=0, le=1e9, description="its length in minutes")] = None
-    keep: Annotated[Literal["height", "force"], Field(description="what stays as it was: the height or the force")] = (
+    hours: Annotated[float | None, Unit("h"), Field(gt=0, le=1e7, description="duration in hours")] = None
+    minutes: Annotated[float | None, Unit("min"), Field(gt=0, le=1e9, description="duration in minutes")] = None
+    keep: Annotated[Literal["height", "force"], Field(description="what is kept constant: the height or the force")] = (
         "height"
     )
 
@@ -117,11 +121,11 @@ class Duration(Strict):
 
 
 class Hold(Duration):
-    """Let time pass at the present temperature; equal steps are equal ones of the time's logarithm."""
+    """Let time pass at the present temperature. Equal steps are equal in the logarithm of time."""
 
 
 class Heat(Duration):
-    """Heat or cool the whole spring, its temperature going linearly in time."""
+    """Heat or cool the whole spring; its temperature changes linearly in time."""
 
     to: Annotated[float, Unit("K"), Field(gt=0, description="temperature at the end, K")]
 
@@ -129,8 +133,8 @@ class Heat(Duration):
 class TimePhase(Stepped):
     """Let time pass; the material must creep."""
 
-    hold: Annotated[Hold | None, Field(description="time at the present temperature, as in {hours: 48}")] = None
-    heat: Annotated[Heat | None, Field(description="another temperature, as in {to: 393, minutes: 20}")] = None
+    hold: Annotated[Hold | None, Field(description="a time at the present temperature, as in {hours: 48}")] = None
+    heat: Annotated[Heat | None, Field(description="a change of temperature, as in {to: 393, minutes: 20}")] = None
 
     @model_validator(mode="after")
     def _one(self) -> Self:

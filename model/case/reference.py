@@ -17,7 +17,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 KINDS = {float: "number", int: "whole number", str: "text", bool: "`true`, `false`", Any: "any value"}
-PLURALS = {"number": "numbers", "text": "texts", "any value": "any values"}
+PLURALS = {"number": "numbers", "whole number": "whole numbers", "text": "texts", "any value": "any values"}
 UNITLESS = {"1": "", "of the option": "", "turns": ""}  # words of the reference that no axis needs
 SIGNS = {Gt: ("gt", ">"), Ge: ("ge", "≥"), Lt: ("lt", "<"), Le: ("le", "≤")}
 
@@ -143,7 +143,7 @@ def _row(name: str, annotation: Any, metadata: Sequence[Any], default: str, mean
     forms = tuple(_forms(annotation, tuple(metadata)))
     inner = [group for form in forms for group in form.groups]
     if not meaning and len(forms) == 1 and re.fullmatch("`[^`]+`", forms[0].kind):
-        meaning = "the word that chooses this group"
+        meaning = "the word that selects this group"
     meaning = meaning or next(_descriptions(annotation), "") or (summary(inner[0]).rstrip(".") if inner else "")
     return Row(name, default, meaning, forms)
 
@@ -210,12 +210,13 @@ def _range(metadata: tuple[Any, ...]) -> str:
 
 
 def _number(value: float) -> str:
-    return f"{value:,}" if isinstance(value, int) else f"{value:g}"
+    size = f"{abs(value):,}" if isinstance(value, int) else f"{abs(value):g}"
+    return f"−{size}" if value < 0 else size
 
 
 def _default(item: FieldInfo) -> str:
     if item.default is PydanticUndefined and item.default_factory is not None:
-        return "`{}`"
+        return _shown(item.get_default(call_default_factory=True), False)
     return _shown(item.default, item.is_required())
 
 

@@ -17,27 +17,29 @@ GROOVE = 0.75  # turns of the groove that are usual: what grinding makes flat
 
 
 class SeatSpec(Strict):
-    """One seat; it moves along the spring's axis in any case."""
+    """One seat, and how it is held; along the spring's axis it moves as the load program says."""
 
-    shape: Annotated[Literal["flat", "conical", "stepped"], Field(description="form of its surface")] = "flat"
+    shape: Annotated[Literal["flat", "conical", "stepped"], Field(description="shape of its surface")] = "flat"
     angle: Annotated[
         float | None,
         Unit("degrees"),
-        Field(gt=-60, lt=60, description="of a conical seat, degrees by which it rises outwards"),
+        Field(gt=-60, lt=60, description="slope of a conical seat, degrees; positive if it rises outwards"),
     ] = None
     turns: Annotated[
         float | None,
         Unit("turns"),
-        Field(gt=0, description="of a stepped seat, turns from the tip over which it follows the wire"),
+        Field(gt=0, description="turns from the tip over which a stepped seat follows the wire"),
     ] = None
-    sideways: Annotated[Freedom, Unit("N/mm"), Field(description="held, free, or stiffness in N/mm")] = "held"
+    sideways: Annotated[
+        Freedom, Unit("N/mm"), Field(description="sideways motion: held, free, or a stiffness in N/mm")
+    ] = "held"
     tilt: Annotated[
-        Freedom, Unit("N mm/rad"), Field(description="held, free (ball joint), or stiffness in N mm/rad")
+        Freedom, Unit("N mm/rad"), Field(description="tilting: held, free (ball joint), or a stiffness in N mm/rad")
     ] = "held"
     turn: Annotated[
         Freedom,
         Unit("N mm/rad"),
-        Field(description="turning about the spring's axis: held, free, or stiffness in N mm/rad"),
+        Field(description="rotation about the spring's axis: held, free, or a stiffness in N mm/rad"),
     ] = "held"
 
     @model_validator(mode="after")
@@ -75,13 +77,15 @@ class SeatsSpec(Strict):
 
     hold: Annotated[
         Literal["tips", "groove"],
-        Field(description="tips: held sideways and against turning, as in pockets; groove: end coils in a smooth one"),
+        Field(
+            description="tips: held sideways and against rotation, as in pockets; groove: end coils in a smooth groove"
+        ),
     ] = "tips"
     groove: Annotated[
-        float | None, Unit("turns"), Field(gt=0, description=f"turns of the groove, {GROOVE:g} if not given")
+        float | None, Unit("turns"), Field(gt=0, description=f"length of the groove, {GROOVE:g} turns if not given")
     ] = None
-    bottom: SeatSpec = SeatSpec()
-    top: SeatSpec = SeatSpec()
+    bottom: Annotated[SeatSpec, Field(description="the bottom seat")] = SeatSpec()
+    top: Annotated[SeatSpec, Field(description="the top seat")] = SeatSpec()
 
     @model_validator(mode="after")
     def _no_rigid_motion(self) -> Self:

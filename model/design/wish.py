@@ -20,7 +20,7 @@ KIND = "a wish holds the entries find: and such_that:, and those of a case or ca
 class Bounds(Strict):
     """Bounds of an entry; `[9, 15]` in short."""
 
-    low: Annotated[float, Unit("of the entry"), Field(alias="from", description="least value")]
+    low: Annotated[float, Unit("of the entry"), Field(alias="from", description="minimum value")]
     high: Annotated[float, Unit("of the entry"), Field(alias="to", description="maximum value")]
 
     @model_validator(mode="after")
@@ -57,8 +57,8 @@ class ForceAt(Strict):
     It is read where the program last passes this height; if it never does, the spring goes to this height afterwards.
     """
 
-    height: Annotated[Millimetres, Field(description="distance of the seats, mm")]
-    N: Annotated[Newtons, Field(description="axial force there, N")]
+    height: Annotated[Millimetres, Field(description="distance between the seats, mm")]
+    N: Annotated[Newtons, Field(description="axial force at this height, N")]
 
 
 class Conditions(Strict):
@@ -67,7 +67,7 @@ class Conditions(Strict):
     free_length_after_mm: Annotated[Millimetres | None, Field(description="free length after the program, mm")] = None
     free_length_before_mm: Annotated[Millimetres | None, Field(description="free length as wound, mm")] = None
     set_mm: Annotated[Millimetres | None, Field(description="loss of free length, mm")] = None
-    block_height_mm: Annotated[Millimetres | None, Field(description="height with every coil on the next, mm")] = None
+    block_height_mm: Annotated[Millimetres | None, Field(description="height at which all coils touch, mm")] = None
     rate_N_per_mm: Annotated[
         float | None, Unit("N/mm"), Field(gt=0, description="initial rate of the spring as wound, N/mm")
     ] = None
@@ -99,18 +99,18 @@ Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_.]*$")]
 
 
 class WishSpec(Strict):
-    """A wish; beside these entries it holds those of a case, or `case` names its file."""
+    """A wish. Besides these entries it holds those of a case, or `case` names the file of one."""
 
-    case: Annotated[str | None, Field(description="file of the case, from the folder of the wish's file")] = None
+    case: Annotated[str | None, Field(description="file of the case, relative to the folder of the wish")] = None
     find: Annotated[
         dict[Name, Annotated[Bounds, BeforeValidator(_pair)]],
-        Field(min_length=1, description="entry of the case → least and greatest value"),
+        Field(min_length=1, description="entry of the case → minimum and maximum value"),
     ]
-    such_that: Annotated[Conditions, Field(description="what the run shall come to")]
+    such_that: Annotated[Conditions, Field(description="the results that the run is to have")]
     trade_offs: Annotated[
         dict[Name, Annotated[list[Any], Field(min_length=1)]],
         Field(
-            default_factory=dict, description="entry of the case → other values for which the wish is estimated, too"
+            default_factory=dict, description="entry of the case → other values for which the wish is also estimated"
         ),
     ]
 

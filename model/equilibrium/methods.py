@@ -12,16 +12,19 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import Any, Literal
 
+from coilset.meshes.compat import LONGEST_STEP
 from coilset.meshes.errors import InputError
 
 DIRECT = {"ksp_type": "preonly", "pc_type": "lu"}
 ON_RANKS = "coilset.model.equilibrium.chain_lu.ChainPC"
 RENEWAL = 10
+# The zero of the out-of-balance work may lie beyond a whole correction: PETSc's searches may lengthen it at will.
+UNLIMITED = {LONGEST_STEP: 1e8}
 # one Newton step: PETSc's Broyden and Anderson methods use no matrix, but such a step as a preconditioner
 ONE_STEP = {
     "snes_type": "newtonls", "snes_max_it": 1, "snes_convergence_test": "skip", "snes_norm_schedule": "none", **DIRECT,
 }  # fmt: skip
-KEPT = {"snes_linesearch_type": "cp", "snes_lag_jacobian": RENEWAL, "snes_lag_jacobian_persists": True}
+KEPT = {"snes_linesearch_type": "cp", **UNLIMITED, "snes_lag_jacobian": RENEWAL, "snes_lag_jacobian_persists": True}
 PRECONDITIONED = {f"npc_{key}": value for key, value in (ONE_STEP | KEPT).items()}
 
 FIRST = {**ONE_STEP, "snes_linesearch_type": "basic"}  # only meets the prescribed increments
@@ -155,7 +158,7 @@ def rod_method(name: str, ranks: int, extra: Mapping[str, Any] | None = None, ar
     """
     check_method(name)
     # a failed line search must not count as a small step: stol = 0
-    chosen = {"snes_stol": 0.0} | METHODS[name]
+    chosen = {"snes_stol": 0.0} | UNLIMITED | METHODS[name]
     prefix = "npc_" if "npc_pc_type" in chosen else ""
     if ranks > 1:
         chosen |= {f"{prefix}pc_type": "python", f"{prefix}pc_python_type": ON_RANKS}

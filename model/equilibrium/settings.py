@@ -1,4 +1,4 @@
-"""Every number that steers the iteration and the steps, with its unit and its reason; `solver.control` of a case file.
+"""All numbers that control the iteration and the steps, with their units; `solver.control` of a case file.
 
 How much each of them matters is measured in docs/methods.md: each halved and doubled over the shipped springs.
 """
@@ -23,24 +23,24 @@ class NewtonControl:
     """How one step is solved.
 
     Attributes:
-        stagnation: iterations without a new least residual that count as stagnation.
-        part_tolerance: ε of (6.3.1) for a part of a step, which is only a place to go on from.
-        smallest_part: of a step, balanced on the way to the whole; smaller ones are left to the step control.
-        augmentations: of the contacts in a step, at most.
-        accepted_work: |s(λ)/s(0)| of the out-of-balance work up to which a full correction is taken, though the norm
-            grows.
+        stagnation: number of iterations without a new minimum of the residual that counts as stagnation.
+        part_tolerance: ε of (6.3.1) for a part of a step, whose state is only the start of the next part.
+        smallest_part: smallest part of a step that is solved on the way to the whole; below it, the step is cut.
+        augmentations: maximum number of augmentations of the contacts in a step.
+        accepted_work: |s(λ)/s(0)| of the out-of-balance work up to which a full correction is accepted although the
+            norm grows.
         sought_work: |s(λ)/s(0)| at which the search for a zero of the work ends.
-        search_trials: of that search, at most.
-        bracket_margin: share of the bracket by which a trial keeps away from its ends.
-        backtrack: factor of the step length where the work has no zero.
-        smallest_step_length: where going back ends.
-        stress_backtrack: factor of the step length where the law finds no stress.
-        free_penetration: wire diameters up to which a correction may press coils and seats; None: the contacts' limit.
-        penetration_growth: factor by which a deeper penetration may grow in one correction.
-        smallest_contact_step: share of a correction that is gone whatever the contacts say.
-        contact_bisections: to find how far a correction may go.
-        foreseen_forces: is the stiffness of turning rods built with the forces that the last correction foresees? None:
-            where nothing touches, and after a correction that has only feigned greater forces.
+        search_trials: maximum number of trials of that search.
+        bracket_margin: distance that a trial keeps from both ends of the bracket, as a share of its width.
+        backtrack: factor on the step length where the work has no zero.
+        smallest_step_length: step length at which backtracking ends.
+        stress_backtrack: factor on the step length where the law finds no stress.
+        free_penetration: penetration that any correction may cause; left out: `contact.penetration_limit`.
+        penetration_growth: factor by which one correction may increase a penetration that is deeper than that.
+        smallest_contact_step: share of a correction that is made whatever it does to the contacts.
+        contact_bisections: number of bisections to find the share of a correction that the contacts allow.
+        foreseen_forces: whether the stiffness of rotating rods is built with the forces that the last correction
+            predicts; left out: where nothing touches, and after corrections that increase only spurious forces.
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = STRICT
@@ -55,7 +55,7 @@ class NewtonControl:
     backtrack: Fraction = 0.4
     smallest_step_length: Fraction = 1e-3
     stress_backtrack: Fraction = 0.25
-    free_penetration: Positive | None = None
+    free_penetration: Annotated[Positive, Unit("wire diameters")] | None = None
     penetration_growth: Growth = 1.5
     smallest_contact_step: Fraction = 0.02
     contact_bisections: Count = 6
@@ -64,31 +64,31 @@ class NewtonControl:
 
 @dataclass(frozen=True)
 class StepControl:
-    """How steps follow each other; sizes are in regular steps, of which a phase has its `steps`.
+    """How steps follow each other. Sizes are relative to a regular step; a phase has `steps` of these.
 
     Attributes:
-        smallest: size below which the path is given up.
-        attempts: solves for each regular step, and `spare_attempts` more, before the program is said to stall.
-        spare_attempts: see `attempts`.
-        automatic: regular steps of an automatic phase; its first step is one of them.
-        easy: iterations up to which an automatic step lets the next one grow.
-        hard: iterations from which it makes the next one shrink.
-        growth: factor of an automatic step after an easy one.
-        shrinkage: factor of an automatic step after a hard one.
-        largest: size of an automatic step.
-        cut: factor of a step that found no equilibrium.
-        step_share: of the accuracy that is asked for, which the error of one automatic step may take.
-        tolerated_share: of that, up to which a step is kept all the same; the next one is shorter.
-        finest: size below which an automatic step is not made shorter for its error.
-        caution: factor of the size that the estimate allows.
-        least_factor: of a step after one with a great error, and of one that is cut for its error.
-        regrowth: factor by which an equal step that was cut grows again, up to 1.
-        probe: travel by which the initial rate is measured, in free lengths.
-        unstable_cuts: how often a step is cut where it ends in an unstable state, before its path is left.
-        branch_amplitude: maximum displacement of the weakest mode by which a path is left at first, in wire radii.
-        snap_advance: way of a spring that snaps in one step of it, in wire radii.
-        snap_steps: of these at most, until it rests.
-        snap_failures: of these that may fail, or go more than four times as far, one after the other.
+        smallest: size below which the path is abandoned.
+        attempts: solves per regular step, plus `spare_attempts` for the phase, after which the program has stalled.
+        spare_attempts: further solves that a phase is allowed, see `attempts`.
+        automatic: number of regular steps in an automatic phase; it starts with one of these.
+        easy: number of iterations up to which the next automatic step becomes longer.
+        hard: number of iterations from which the next automatic step becomes shorter.
+        growth: factor on the length of an automatic step after an easy one; it never grows by more.
+        shrinkage: factor on the length of an automatic step after a hard one.
+        largest: maximum size of an automatic step.
+        cut: factor on the length of a step that found no equilibrium.
+        step_share: share of the requested accuracy that the error of one automatic step may use up.
+        tolerated_share: multiple of that share up to which a step is still kept; the next one is shorter.
+        finest: size below which an automatic step is no longer shortened because of its error.
+        caution: factor on the size that the estimated error allows.
+        least_factor: smallest factor on the length of a step after a large error, or when it is cut because of one.
+        regrowth: factor by which an equal step that was cut grows again, up to size 1.
+        probe: travel over which the initial rate is measured.
+        unstable_cuts: number of times that a step ending in an unstable state is cut before its path is left.
+        branch_amplitude: maximum displacement in the weakest mode with which a path is left.
+        snap_advance: distance that a snapping spring moves in its first step against the drag.
+        snap_steps: maximum number of these steps until the spring comes to rest.
+        snap_failures: number of these steps in a row that may fail or go more than four times as far.
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = STRICT
@@ -108,9 +108,9 @@ class StepControl:
     caution: Fraction = 0.9
     least_factor: Fraction = 0.25
     regrowth: Growth = 2.0
-    probe: Fraction = 1e-3
+    probe: Annotated[Fraction, Unit("free lengths")] = 1e-3
     unstable_cuts: Count = 8
-    branch_amplitude: Positive = 0.2
-    snap_advance: Positive = 1.0
+    branch_amplitude: Annotated[Positive, Unit("wire radii")] = 0.2
+    snap_advance: Annotated[Positive, Unit("wire radii")] = 1.0
     snap_steps: Count = 200
     snap_failures: Count = 8

@@ -55,7 +55,7 @@ class Curve(Strict):
 class Swift(Curve):
     """Swift's law, σ = C (ε₀ + εᵖ)ⁿ."""
 
-    law: Annotated[Literal["swift"], Field(description="the word that chooses this law")]
+    law: Annotated[Literal["swift"], Field(description="the word that selects this law")]
     C: Annotated[Pressure, Field(description="the stress at ε₀ + εᵖ = 1, N/mm²")]
     strain_0: Annotated[Strain, Field(description="ε₀")]
     n: Annotated[float, Unit("1"), Field(gt=0, lt=1, description="the exponent")]
@@ -72,7 +72,7 @@ class Swift(Curve):
 class Voce(Curve):
     """Voce's law, σ = σ₀ + Q (1 − exp(−m εᵖ))."""
 
-    law: Annotated[Literal["voce"], Field(description="the word that chooses this law")]
+    law: Annotated[Literal["voce"], Field(description="the word that selects this law")]
     yield_stress: Annotated[Pressure, Field(description="σ₀, N/mm²")]
     rise: Annotated[Pressure, Field(description="Q, N/mm²")]
     rate: Annotated[float, Unit("1"), Field(gt=0, description="m")]
@@ -93,7 +93,7 @@ class RambergOsgood(Curve):
     there, usually some hundredths of 0.2 %, is subtracted.
     """
 
-    law: Annotated[Literal["ramberg-osgood"], Field(description="the word that chooses this law")]
+    law: Annotated[Literal["ramberg-osgood"], Field(description="the word that selects this law")]
     proof_stress: Annotated[Pressure, Field(description="Rp0.2, N/mm²")]
     n: Annotated[float, Unit("1"), Field(gt=1, description="the exponent")]
     elastic_limit: Annotated[Pressure, Field(description="stress at which plastic strain begins, N/mm²")]
@@ -124,14 +124,15 @@ class RambergOsgood(Curve):
 
 
 class Table(Strict):
-    """Points of a test in tension or torsion, with monotone cubic interpolation between them (Fritsch and Carlson).
+    """Points from a test in tension or torsion, joined by monotone cubic interpolation (Fritsch and Carlson).
 
     Torsion is that of a thin tube, or of a bar with the shear stress evaluated at the surface.
     """
 
-    law: Annotated[Literal["table"], Field(description="the word that chooses this form")]
+    law: Annotated[Literal["table"], Field(description="the word that selects this form")]
     file: Annotated[
-        str | None, Field(description="CSV with the columns strain and stress, from this file's folder; or give them")
+        str | None,
+        Field(description="CSV with the columns strain and stress, relative to this file's folder; or give both here"),
     ] = None
     strain: Annotated[
         list[Annotated[float, Unit("1")]] | None, Field(min_length=2, description="strains, γ in torsion; or give file")

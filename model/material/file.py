@@ -16,7 +16,7 @@ from coilset.model.entries.yaml import read_data
 from coilset.model.material.curve import RambergOsgood, Swift, Table, Voce
 
 Text = Annotated[str, Field(min_length=1)]
-NONE = "its constants, or 'none' if the material has no such function"
+NONE = "its constants, or 'none' if the material lacks this function"
 
 
 class Elasticity(Strict):
@@ -28,12 +28,12 @@ class Elasticity(Strict):
 
 
 class Saturation(Strict):
-    """Second branch of k², b* ≥ b1."""
+    """Second branch of k², for b* ≥ b1: k∞² is approached exponentially."""
 
-    b1: Annotated[float, Unit("N/mm²"), Field(ge=0, description="the plastic work where it begins, N/mm²")]
-    k1_squared: Annotated[float, Unit("N²/mm⁴"), Field(gt=0, description="k² where it begins, N²/mm⁴")]
+    b1: Annotated[float, Unit("N/mm²"), Field(ge=0, description="the plastic work at which it begins, N/mm²")]
+    k1_squared: Annotated[float, Unit("N²/mm⁴"), Field(gt=0, description="k² at b1, N²/mm⁴")]
     k_inf_squared: Annotated[float, Unit("N²/mm⁴"), Field(gt=0, description="k² at large plastic work, N²/mm⁴")]
-    a4: Annotated[float, Unit("mm²/N"), Field(ge=0, description="the decay of its distance from k∞², mm²/N")]
+    a4: Annotated[float, Unit("mm²/N"), Field(ge=0, description="the rate at which it approaches k∞², mm²/N")]
 
 
 class IsotropicHardening(Strict):
@@ -41,8 +41,10 @@ class IsotropicHardening(Strict):
 
     k0_squared: Annotated[float, Unit("N²/mm⁴"), Field(gt=0, description="k² at first yield, N²/mm⁴")]
     a1: Annotated[float, Unit("N²/mm⁴"), Field(ge=0, description="the rise of the exponential part, N²/mm⁴")] = 0.0
-    a2: Annotated[float, Unit("mm²/N"), Field(description="the slope of the linear part over a1, mm²/N")] = 0.0
-    a3: Annotated[float, Unit("mm²/N"), Field(ge=0, description="the decay of the exponential part, mm²/N")] = 0.0
+    a2: Annotated[float, Unit("mm²/N"), Field(description="the slope of the linear part, divided by a1, mm²/N")] = 0.0
+    a3: Annotated[float, Unit("mm²/N"), Field(ge=0, description="the rate of decay of the exponential part, mm²/N")] = (
+        0.0
+    )
     saturation: Saturation | None = None
 
     def first_branch(self, b: float) -> float:
@@ -54,23 +56,21 @@ class KinematicHardening(Strict):
     """ζ(b*) = a5 (a6 + a7 exp(−a7 b*)) sqrt(6 k²)."""
 
     a5: Annotated[float, Unit("N/mm²"), Field(ge=0, description="the factor of ζ, N/mm²")]
-    a6: Annotated[float, Unit("mm²/N"), Field(ge=0, description="the level to which ζ falls, mm²/N")]
-    a7: Annotated[
-        float, Unit("mm²/N"), Field(ge=0, description="the height and the decay of its part that vanishes, mm²/N")
-    ]
+    a6: Annotated[float, Unit("mm²/N"), Field(ge=0, description="the level to which ζ decays, mm²/N")]
+    a7: Annotated[float, Unit("mm²/N"), Field(ge=0, description="the height and the rate of the decaying part, mm²/N")]
 
 
 class BackStress(Strict):
-    """One back stress: in tension it follows C εᵖ at first, and tends to C/γ."""
+    """One back stress: in tension it starts as C εᵖ and tends to C/γ."""
 
-    C: Annotated[float, Unit("N/mm²"), Field(gt=0, description="its slope over the plastic strain at first, N/mm²")]
+    C: Annotated[float, Unit("N/mm²"), Field(gt=0, description="its initial slope over the plastic strain, N/mm²")]
     gamma: Annotated[
         float, Unit("1"), Field(ge=0, description="how fast it saturates over the plastic strain; 0: it never does")
     ]
 
 
 class Chaboche(Strict):
-    """Several back stresses, Ḃ = ⅔ C D_pl − γ B ṗ each (Chaboche)."""
+    """Several back stresses, each with Ḃ = ⅔ C D_pl − γ B ṗ (Chaboche)."""
 
     law: Literal["chaboche"]
     terms: Annotated[
@@ -154,7 +154,7 @@ class Creep(Strict):
     strain: Annotated[
         float,
         Unit("1"),
-        Field(gt=0, le=1, description="equivalent creep strain after 1 h if the stress factor is 1"),
+        Field(gt=0, le=1, description="equivalent creep strain after 1 h when the stress factor is 1"),
     ]
     stress: Annotated[float, Unit("N/mm²"), Field(gt=0, description="the reference equivalent stress, N/mm²")]
     exponent: Annotated[float, Unit("1"), Field(ge=1, le=50, description="the exponent of stress, N")]
@@ -163,7 +163,7 @@ class Creep(Strict):
     ] = 1.0
     hardening: Annotated[
         Literal["strain", "time"],
-        Field(description="what the rate depends on if the stress changes: creep strain, or time since the start"),
+        Field(description="what the rate depends on when the stress changes: creep strain, or time since the start"),
     ] = "strain"
     activation_energy: Annotated[
         float, Unit("J/mol"), Field(ge=0, description="activation energy, which scales time with temperature, J/mol")
@@ -172,30 +172,30 @@ class Creep(Strict):
 
 
 class Validity(Strict):
-    """Where the constants may be trusted; the checks of the functions go up to the maximum plastic work."""
+    """Range in which the constants are valid; the functions are checked up to its maximum plastic work."""
 
     plastic_work: Annotated[
-        float, Unit("N/mm²"), Field(gt=0, description="the largest b* up to which the constants are valid, N/mm²")
+        float, Unit("N/mm²"), Field(gt=0, description="the largest b* for which the constants are valid, N/mm²")
     ]
-    remark: Annotated[Text, Field(description="where else the constants may be trusted")]
+    remark: Annotated[Text, Field(description="what else limits the validity of the constants")]
 
 
 class MaterialFile(Strict):
-    """A whole material file."""
+    """A material file."""
 
     name: Annotated[Text, Field(description="a name for the material")]
     description: Annotated[Text, Field(description="a sentence that says what it is")]
     source: Annotated[Text, Field(description="where the constants come from")]
-    units: Annotated[
-        Literal["N, mm, K"], Field(description="'N, mm, K', in which all numbers of the file are understood")
-    ]
+    units: Annotated[Literal["N, mm, K"], Field(description="'N, mm, K', the units of all numbers in the file")]
     validity: Annotated[Validity, Field(description="plastic_work, the largest b* in N/mm², and a remark")]
     temperatures: Annotated[
         tuple[Constants, ...],
         Field(strict=False, min_length=1, description="a list with the constants at one or more temperatures"),
     ]
     heating: Heating | None = None
-    creep: Annotated[Creep | None, Field(description="creep; left out: none")] = None
+    creep: Annotated[Creep | None, Field(description="constants of creep; left out: the material does not creep")] = (
+        None
+    )
 
 
 UNITS = {

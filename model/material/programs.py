@@ -34,26 +34,28 @@ Temperature = Annotated[float, Unit("K"), Field(gt=0)]
 
 
 class Step(Strict):
-    """One straight piece of a program."""
+    """One straight segment of a program."""
 
-    name: Annotated[str, Field(description="what it is, for readers")] = ""
+    name: Annotated[str, Field(description="a label for readers")] = ""
     to: Annotated[
         dict[str, float], Unit("1, N/mm²"), Field(description="strains (1) and stresses (N/mm²) at the end")
     ] = Field({})
-    temperature: Annotated[Temperature | None, Field(description="at the end, K")] = None
+    temperature: Annotated[Temperature | None, Field(description="temperature at the end, K")] = None
     increments: Annotated[Whole, Field(ge=1, le=1_000_000, description="the number of equal increments")]
 
 
 class Program(Strict):
-    """A whole program."""
+    """A program for one point of material."""
 
     name: Annotated[str, Field(description="a name for the program")]
-    description: Annotated[str, Field(description="what it is for, in a sentence")] = ""
+    description: Annotated[str, Field(description="its purpose, in a sentence")] = ""
     source: Annotated[str, Field(description="where it comes from")] = ""
     form: Annotated[Literal["rod", "solid"], Field(description="rod: three stresses; solid: all six components")] = (
         "rod"
     )
-    temperature: Annotated[Temperature | None, Field(description="at the start, K")] = None
+    temperature: Annotated[
+        Temperature | None, Field(description="temperature at the start, K; default: the first in the material file")
+    ] = None
     steps: Annotated[tuple[Step, ...], Field(strict=False, min_length=1, description="a list of steps")]
 
 

@@ -33,16 +33,17 @@ class Input(Strict):
     """Entries common to all varied inputs."""
 
     entries: Annotated[
-        list[str] | None, Field(min_length=1, description="entries of the case that get the value; default: the name")
+        list[str] | None,
+        Field(min_length=1, description="entries of the case that take the value; default: the name of the input"),
     ] = None
-    label: Annotated[str | None, Field(description="name in figures")] = None
+    label: Annotated[str | None, Field(description="label in figures")] = None
     unit: Annotated[str | None, Field(description="unit in figures; default: that of the entries")] = None
 
 
 class Values(Input):
     """A list of values; a sampling design picks each equally often."""
 
-    values: Annotated[list[Any], Field(min_length=1, description="numbers, words or any other YAML")]
+    values: Annotated[list[Any], Field(min_length=1, description="numbers, words or any other YAML values")]
 
     def grid(self) -> list[Any]:
         """The values."""
@@ -86,9 +87,11 @@ class Normal(Input):
     """Manufacturing scatter: normal about the mean; parts outside mean ± tolerance are rejected."""
 
     mean: Annotated[float, Unit("of the entry"), Field(description="middle of the tolerance")]
-    tolerance: Annotated[float, Unit("of the entry"), Field(gt=0, description="half of the tolerance's width")]
+    tolerance: Annotated[float, Unit("of the entry"), Field(gt=0, description="half the width of the tolerance")]
     sigmas: Annotated[
-        float, Unit("standard deviations"), Field(gt=0, le=10, description="standard deviations in the tolerance")
+        float,
+        Unit("standard deviations"),
+        Field(gt=0, le=10, description="number of standard deviations in the tolerance"),
     ] = 3.0
 
     def grid(self) -> list[Any]:
@@ -117,13 +120,13 @@ AnyInput = Annotated[
 
 
 class Lines(Strict):
-    """A response over one input, with a line for each value of a second and a panel for each value of a third."""
+    """A response over one input, with one line per value of a second input and one panel per value of a third."""
 
     kind: Literal["lines"]
     of: Annotated[str, Field(description="entry of the summary, such as set_mm")] = "set_mm"
     x: Annotated[str, Field(description="the input along the axis")]
-    colour: Annotated[str | None, Field(description="the input that has a line for each value")] = None
-    panels: Annotated[str | None, Field(description="the input that has a panel for each value")] = None
+    colour: Annotated[str | None, Field(description="the input with one line per value")] = None
+    panels: Annotated[str | None, Field(description="the input with one panel per value")] = None
 
 
 class Map(Strict):
@@ -136,7 +139,7 @@ class Map(Strict):
 
 
 class Family(Strict):
-    """The characteristics of all cases, coloured by an input or a response."""
+    """The force–travel curves of all cases, coloured by an input or a response."""
 
     kind: Literal["characteristics"]
     colour: Annotated[str, Field(description="an input, or an entry of the summary")] = "set_mm"
@@ -157,7 +160,7 @@ class Sensitivity(Strict):
 
 
 class Convergence(Strict):
-    """Distance of a response from its value at the finest of each input, over that input; for one_at_a_time."""
+    """Deviation of a response from its value at the largest value of each input; for the design one_at_a_time."""
 
     kind: Literal["convergence"]
     of: Annotated[list[str], Field(min_length=1, description="entries of the summary")] = Field(["set_mm"])
@@ -189,17 +192,19 @@ SAMPLES = ("latin_hypercube", "sobol", "random", "sobol_indices")
 
 
 class SweepSpec(Strict):
-    """A whole sweep."""
+    """A sweep."""
 
-    case: Annotated[str, Field(description="the base case's file, from the folder of the sweep's file")]
+    case: Annotated[str, Field(description="file of the base case, relative to the folder of the sweep file")]
     change: Annotated[dict[str, Any], Field(description="entries replaced in every case")] = Field({})
     vary: Annotated[dict[Name, AnyInput], Field(min_length=1, description="entry, or a name with `entries`, → values")]
     design: Annotated[
         Literal["grid", "together", "one_at_a_time", "latin_hypercube", "sobol", "random", "sobol_indices"],
         Field(description="how the inputs are combined"),
     ] = "grid"
-    samples: Annotated[Whole | None, Field(ge=2, le=100_000_000, description="cases of a sampling design")] = None
-    seed: Annotated[Whole, Field(ge=0, description="of a sampling design's random numbers")] = 0
+    samples: Annotated[
+        Whole | None, Field(ge=2, le=100_000_000, description="number of cases of a sampling design")
+    ] = None
+    seed: Annotated[Whole, Field(ge=0, description="seed of the random numbers of a sampling design")] = 0
     time_limit: Annotated[float | None, Unit("s"), Field(gt=0, description="seconds after which a case is stopped")] = (
         None
     )

@@ -71,7 +71,8 @@ def test_wrong_entries_are_told_in_words(entries, message):
 
 
 def test_a_required_entry_says_what_it_is():
-    assert problem({"spring": SPRING}) == "loading: this entry is required; give targets and times, one after the other"
+    words = "loading: this entry is required; give the load program: targets and waiting times, in order"
+    assert problem({"spring": SPRING}) == words
 
 
 def test_long_values_are_shortened():

@@ -1,12 +1,16 @@
 """No entry of an input file lacks its row in the reference, and no row lacks what the entry means, or its unit."""
 
+import importlib
 import importlib.util
+import pkgutil
 import re
 from dataclasses import fields
 from pathlib import Path
 
 import pytest
 
+from coilset import meshes, model
+from coilset.meshes.entry import Strict
 from coilset.model.case import reference
 from coilset.model.equilibrium.settings import NewtonControl, StepControl
 
@@ -50,6 +54,22 @@ def test_every_entry_has_its_row(tmp_path, name):
     assert on_the_page(tmp_path, name) == wanted
 
 
+def test_every_model_of_a_file_is_on_a_page():
+    """A model of entries that no page reaches belongs to a file without a page; those of wires are the program's."""
+    for room in (meshes, model):
+        for module in pkgutil.walk_packages(room.__path__, f"{room.__name__}."):
+            importlib.import_module(module.name)
+    pending, known = [Strict], set()
+    while pending:
+        inherited = pending.pop().__subclasses__()
+        pending += inherited
+        known |= {kind for kind in inherited if not kind.__subclasses__()}
+    inputs = {kind for kind in known if not kind.__module__.startswith("coilset.model.standards.wires")}
+    shown = {group.model for root in MODELS.values() for group in reference.groups(root)}
+    assert len(inputs) > 40
+    assert {kind.__qualname__ for kind in inputs - shown} == set()
+
+
 @pytest.mark.parametrize("name", MODELS)
 def test_every_entry_has_a_meaning_and_every_real_number_a_unit(name):
     for group in reference.groups(MODELS[name]):
@@ -83,6 +103,8 @@ def test_a_row_says_what_the_entry_takes():
     assert [form.kind for form in tilt.forms] == ["`held`, `free`", "number"]
     assert (tilt.unit, tilt.default) == ("N mm/rad", "`held`")
     assert rows["ContactSpec", "bedding"].default == "none"
+    assert rows["Case", "rates_at"].default == "`[]`"
+    assert rows["SeatSpec", "angle"].range == "> −60, < 60"
 
 
 @pytest.mark.parametrize("control", [NewtonControl, StepControl])

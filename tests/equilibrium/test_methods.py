@@ -5,6 +5,7 @@ from typing import get_args
 import numpy as np
 import pytest
 from mpi4py import MPI
+from petsc4py import PETSc
 from scipy.optimize import brentq
 
 from coilset.meshes.errors import InputError
@@ -12,6 +13,7 @@ from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.equilibrium.methods import METHODS, MethodName, rod_method
 from coilset.model.equilibrium.newton import Newton
+from coilset.model.equilibrium.snes import SnesFactory
 from coilset.model.material import library
 from coilset.model.section.rules import abramowitz9
 from coilset.verification.frame import Frame
@@ -60,6 +62,28 @@ def test_options_of_the_user_win(example):
     analysis.system.restore()
     patient = rod_method("newton", 1, own | {"snes_max_it": 30})
     assert Newton(analysis.system, patient, 1e-9).solve(load).converged
+
+
+@pytest.mark.parametrize("search", ["cp", "bfgs"])
+def test_a_line_search_may_lengthen_a_correction(search):
+    """x = 3 from a matrix three times too stiff: the zero of the work lies at three corrections, found at once.
+
+    PETSc from 3.24 on ends its searches at one correction unless told otherwise.
+    """
+
+    def residual(snes, x, f):
+        f.setValue(0, x.getValue(0) - 3.0)
+        f.assemble()
+
+    F = PETSc.Vec().createSeq(1)
+    matrix = PETSc.Mat().createDense((1, 1), array=np.array([[3.0]]), comm=PETSc.COMM_SELF)
+    method = rod_method("bfgs", 1) if search == "bfgs" else rod_method("newton", 1, {"snes_linesearch_type": search})
+    options = {**method.options, "snes_max_it": 1, "pc_factor_mat_ordering_type": "natural"}
+    snes = SnesFactory(MPI.COMM_SELF, residual, lambda *matrices: None, F, matrix).make("", options)
+    x = F.duplicate()
+    x.set(0.0)
+    snes.solve(None, x)
+    assert x.getValue(0) == pytest.approx(3.0, rel=1e-12)
 
 
 def test_a_residual_that_is_not_a_number_is_said(example, monkeypatch):

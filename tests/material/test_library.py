@@ -83,7 +83,7 @@ def at(content):
 WRONG = {
     "missing function": (
         lambda c: at(c).pop("kinematic"),
-        "temperatures.0.kinematic: this entry is required; give its constants, or 'none' if the material has no such"
+        "temperatures.0.kinematic: this entry is required; give its constants, or 'none' if the material lacks this"
         " function; or several back stresses",
     ),
     "negative k0²": (
@@ -115,7 +115,7 @@ WRONG = {
     ),
     "missing units": (
         lambda c: c.pop("units"),
-        "units: this entry is required; give 'N, mm, K', in which all numbers of the file are understood",
+        "units: this entry is required; give 'N, mm, K', the units of all numbers in the file",
     ),
     "other units": (
         lambda c: c.update(units="N, m, K"),
