@@ -42,6 +42,7 @@ def bench(out: str, full: bool, cold: bool, against: str | None = None) -> None:
         _stages(record),
         _elements(record["elements"]),
         _ranks(record["ranks"]),
+        _opensees(record["opensees"]),
         _targets(record["targets"]),
     ):
         console.print(table)
@@ -119,6 +120,25 @@ def _ranks(runs: list[dict[str, Any]]) -> Table:
                       f"{seconds(first['stages'], 0) / seconds(run['stages'], 0):.2f}", law, assemble,
                       f"{run['memory_GiB']:.2f}", f"{abs(run['force_N'] / first['force_N'] - 1):.1e}")  # fmt: skip
     return table
+
+
+def _opensees(runs: list[dict[str, Any]]) -> Table:
+    table = _new("the same clamped spring in OpenSees: 10 mm in 40 steps and release, processor time of the analysis",
+                 "elements", "coilset's axis", "coilset, N", "set, mm", "s", "OpenSees, N", "set, mm", "s",
+                 "times as fast")  # fmt: skip
+    for run in runs:
+        ours, theirs = run["coilset"], run["opensees"]
+        row = [f"{run['elements']:,}", run["axis"], *_answer(ours)]
+        if theirs:
+            row += [*_answer(theirs), f"{theirs['seconds'] / ours['seconds']:.1f}"]
+        table.add_row(*row)
+    if not all(run["opensees"] for run in runs):
+        table.caption = "OpenSees is not here: pip install --target FOLDER openseespy; PYTHONPATH=FOLDER"
+    return table
+
+
+def _answer(run: dict[str, Any]) -> list[str]:
+    return [f"{run['force_N']:.3f}", f"{run['set_mm']:.4f}", f"{run['seconds']:.3f}"]
 
 
 def _targets(rows: list[dict[str, Any]]) -> Table:

@@ -1,5 +1,6 @@
 """The benchmarks measure what they say: stages do not overlap, records are whole, tables and figure come of them."""
 
+import importlib.util
 import itertools
 import json
 import os
@@ -12,7 +13,7 @@ from mpi4py import MPI
 from coilset.meshes.errors import CoilsetError, InputError
 from coilset.model import analysis
 from coilset.scripts import bench as command
-from coilset.verification.benchmarks import everyday, measure, run, stopwatch
+from coilset.verification.benchmarks import everyday, measure, run, same_spring, stopwatch
 from coilset.verification.benchmarks.stopwatch import Stopwatch
 from coilset.verification.benchmarks.target import ITERATION, per_element, seconds, spread, targets
 
@@ -64,6 +65,12 @@ def test_a_stage_ends_where_it_is_left_by_an_error(clock):
     assert watch.wall == {"outer": 1.0, "next": 4.0}
 
 
+COMPARED = {
+    "elements": 40, "axis": "chords", "coilset": {"force_N": 345.0, "set_mm": 1.57, "iterations": 170, "seconds": 0.25},
+    "opensees": {"force_N": 345.2, "set_mm": 1.56, "iterations": 204, "seconds": 1.0},
+}  # fmt: skip
+
+
 @pytest.fixture(scope="module")
 def record():
     """A bench of the smallest size, its measurements made in this process."""
@@ -74,7 +81,8 @@ def record():
         runs = [measure.press(elements) for elements in (20, 40)]
     commands = [{"name": "solve", "first_line": [0.25, 0.75], "end": [1.5, 3.5]}]
     record = {"machine": run.machine(), "commands": commands, "example": example, "elements": runs,
-              "ranks": [runs[0], runs[0]], "cases": measure.cases(1), "load_after": 0.0}  # fmt: skip
+              "ranks": [runs[0], runs[0]], "cases": measure.cases(1), "opensees": [COMPARED],
+              "load_after": 0.0}  # fmt: skip
     return record | {"targets": targets(record)}
 
 
@@ -111,10 +119,26 @@ def test_command_prints_and_writes(record, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(command, "measure_all", lambda full, cold, environment, report, against: record)
     command.bench(tmp_path / "out", False, False)
     said = capsys.readouterr().out
-    for words in ("factorise", "µs", "ranks", "an hour and core", "aimed at", "first line, the other"):
+    for words in ("factorise", "µs", "ranks", "an hour and core", "aimed at", "first line, the other", "times as fast",
+                  "345.200", "4.0"):  # fmt: skip
         assert words in said
+    assert "OpenSees is not here" not in said
     assert json.loads((tmp_path / "out" / "bench.json").read_text()) == record
     assert (tmp_path / "out" / "bench.png").stat().st_size > 10_000
+
+
+def test_it_is_said_where_opensees_is_missing(capsys):
+    command.Console(width=140).print(command._opensees([COMPARED | {"opensees": None}]))
+    assert "OpenSees is not here" in capsys.readouterr().out
+
+
+@pytest.mark.skipif(not importlib.util.find_spec("openseespy"), reason="there is no OpenSees")
+def test_opensees_finds_the_same_force_with_the_same_chords(monkeypatch):
+    """Elements differ by terms of second order in their length: 7.5e-4 with 40 of them, 6e-6 with 320."""
+    monkeypatch.setattr(same_spring, "STEPS", 10)
+    found = same_spring.compare(40, repeats=1)
+    assert found["opensees"]["force_N"] == pytest.approx(found["coilset"]["force_N"], rel=1.5e-3)
+    assert found["opensees"]["set_mm"] == pytest.approx(found["coilset"]["set_mm"], rel=1e-2)
 
 
 def test_commands_are_timed_in_turns_and_the_first_run_does_not_count(monkeypatch, tmp_path):

@@ -3,6 +3,7 @@
     python -m coilset.verification.benchmarks.measure example [REPEATS]
     mpirun -n RANKS python -m coilset.verification.benchmarks.measure press ELEMENTS [REPEATS]
     python -m coilset.verification.benchmarks.measure cases COUNT
+    python -m coilset.verification.benchmarks.measure opensees ELEMENTS [CURVED]
 
 The stages: `law` updates all section points (strains of the sections, material law, resultants, tangents); `assemble`
 the forces and the matrix; `contact` finds and evaluates coils and seats; `factorise` and `solve` are PETSc's, from its
@@ -19,6 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from coilset.model.examples import EXAMPLES
+from coilset.verification.benchmarks.same_spring import compare
 from coilset.verification.benchmarks.stopwatch import Stopwatch
 
 if TYPE_CHECKING:  # at run time their import is measured
@@ -235,7 +237,8 @@ def peak_memory() -> float:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
 
 
-JOBS: dict[str, Callable[..., dict[str, Any]]] = {"example": example, "press": press, "cases": cases}
+Job = Callable[..., dict[str, Any]]
+JOBS: dict[str, Job] = {"example": example, "press": press, "cases": cases, "opensees": compare}
 
 
 def main(job: str, *arguments: str) -> None:

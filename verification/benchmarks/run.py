@@ -21,6 +21,7 @@ FULL = ((40, 5), (400, 5), (4_000, 3), (16_000, 2), (40_000, 1), (100_000, 1), (
 SHARED = {"quick": 8_000, "full": 40_000}  # elements that one and two ranks are compared on
 RANKS = (1, 2)
 CASES = {"quick": 20, "full": 100}
+OPENSEES = ((40, 0), (40, 1), (320, 0))  # elements, and whether coilset's axis is curved
 
 
 def measure(environment: dict[str, str], job: str, *arguments: int, ranks: int = 1) -> dict[str, Any]:
@@ -89,6 +90,10 @@ def bench(
         record["ranks"].append(measure(environment, "press", SHARED[size], ranks=ranks))
     report("cases")
     record["cases"] = measure(environment, "cases", CASES[size])
+    record["opensees"] = []
+    for elements, curved in OPENSEES:
+        report(f"OpenSees, {elements} elements")
+        record["opensees"].append(measure(environment, "opensees", elements, curved))
     record["load_after"] = os.getloadavg()[0]
     record["targets"] = targets(record)
     return record

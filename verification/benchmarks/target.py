@@ -36,4 +36,8 @@ def targets(record: dict[str, Any]) -> list[dict[str, Any]]:
     if differs is not None:
         rows.append((f"spread of an element's cost from {LARGE:,} elements on", 100.0 * differs, 100.0 * FLAT, "%"))
     rows.append(("1,000 cases on 2 cores", record["cases"]["seconds"][1] * 1000 / 2 / 60, 10.0, "minutes"))
+    for run in record["opensees"]:
+        if run["opensees"] and run["axis"] == "chords":
+            ratio = run["coilset"]["seconds"] / run["opensees"]["seconds"]
+            rows.append((f"time over that of OpenSees, {run['elements']} elements", ratio, 1.0 / 15.0, ""))
     return [{"name": name, "value": value, "limit": limit, "unit": unit} for name, value, limit, unit in rows]
