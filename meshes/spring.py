@@ -14,6 +14,7 @@ from coilset.meshes.entry import Strict
 from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
 from coilset.meshes.measured import MeasuredSpec
+from coilset.meshes.past import Peening, Relief
 from coilset.meshes.piecewise import PiecewisePolynomial
 from coilset.meshes.shapes import DiameterProfile, Length, Profile, profile_function
 
@@ -55,6 +56,12 @@ class SpringSpec(Strict):
         Field(description="coiling: straight wire was bent and twisted and sprang back to this shape, which leaves "
                           "residual stress; left out: the wire is free of stress"),
     ] = None  # fmt: skip
+    relieved: Annotated[
+        Relief | None, Field(description="stress relief of the coiled wire, before peening and before the first load")
+    ] = None
+    peening: Annotated[
+        Peening | None, Field(description="shot peening of the wire, before the first load; left out: none")
+    ] = None
 
     @model_validator(mode="after")
     def _has_one_diameter(self) -> Self:
@@ -62,6 +69,12 @@ class SpringSpec(Strict):
         if len(given) != 1:
             found = f"{', '.join(given)} are given" if given else "the coil diameter is missing"
             raise ValueError(f"{found}; give one of mean_diameter, outer_diameter (De) and inner_diameter (Di)")
+        return self
+
+    @model_validator(mode="after")
+    def _relief_belongs(self) -> Self:
+        if self.relieved and not self.made_by:
+            raise ValueError("there is no stress to relieve; give made_by: coiling, or leave relieved out")
         return self
 
     @property

@@ -35,7 +35,7 @@ from coilset.model.results.checkpoint import Saved
 from coilset.model.results.record import ContactRecord, Limits, Result, Setup, Snapshot, Step
 from coilset.model.rod.heat import WireHeat, heat_constants
 from coilset.model.rod.kinematics import GAUSS, chord_triads
-from coilset.model.rod.past import coil_wire
+from coilset.model.rod.past import give_past, has_past, past_warnings
 from coilset.model.rod.rod import Rod
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.case_warnings import case_warnings
@@ -84,12 +84,13 @@ class Analysis:
         section, placement = case.mesh.section, straight(len(turns) - 1)
         if case.mesh.axis == "curved":
             chords = chord_triads(np.diff(line.stations, axis=0))
-            placement = section_placement(spring, turns, chords, GAUSS, section.kind != "plane")
+            to_normal = section.kind != "plane" or has_past(case.spring)
+            placement = section_placement(spring, turns, chords, GAUSS, to_normal)
             refuse_sharp_bends(placement, radius, turns)
         self.rod = Rod(line, radius, self.law, section.build(), placement, case.temperature, section.kind,
                        section.degree)  # fmt: skip
         self.heat = None if case.heat is None else self._wire_heat(case.heat)
-        coiling_diameter = coil_wire(self.rod) if case.coiled else None
+        coiling_diameter = give_past(self.rod, case.spring)
         seats = case.seats if case.ends == "seats" else None
         contacts = build_contacts(case.contact, seats, spring, turns, line.stations, self.law.E)
         self.layout = LineLayout(self.rod)
@@ -110,7 +111,8 @@ class Analysis:
             ContactRecord(one.name, one.end, one.points.turns if isinstance(one, BearsOnWire) else np.empty(0))
             for one in contacts
         )
-        warnings = *case_warnings(case, spring, self.law), *coarse_mesh_warnings(spring, turns), *effort.warnings()
+        warnings = (*case_warnings(case, spring, self.law), *past_warnings(self.rod, case.spring),
+                    *coarse_mesh_warnings(spring, turns), *effort.warnings())  # fmt: skip
         self.setup = Setup(spring, self.law.name, case.ends, tuple(p.label for p in case.loading), turns, radius,
                            self.rod.rule, records, section.kind, placement,
                            buckling_travel(spring, self.law.G / self.law.E), self._limits(float(radius.min())),

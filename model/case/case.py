@@ -260,10 +260,15 @@ class Case(Strict):
         return self
 
     @model_validator(mode="after")
-    def _coiling_knows_the_curvature(self) -> Self:
-        if self.coiled and self.mesh.section.kind != "curved":
-            raise ValueError("spring.made_by: coiling is known for sections of fibres in a curved wire; give "
-                             "mesh.section.kind: curved")  # fmt: skip
+    def _past_of_fibres(self) -> Self:
+        if not isinstance(self.spring, SpringSpec):
+            return self
+        if (self.spring.made_by or self.spring.peening) and self.mesh.section.kind == "warping":
+            entry = "made_by: coiling" if self.spring.made_by else "peening"
+            raise ValueError(f"spring.{entry} is known for sections of fibres; give mesh.section.kind: curved or plane")
+        if self.spring.made_by and self.mesh.axis == "chords":
+            raise ValueError("spring.made_by: coiling bends the wire to its axis, but chords are straight; give "
+                             "mesh.axis: curved")  # fmt: skip
         return self
 
     @model_validator(mode="after")

@@ -68,6 +68,14 @@ def one_by_one(
     return good
 
 
+@njit(**KERNEL)
+def advance_points(
+    law: Any, old: np.ndarray, strain: np.ndarray, new: np.ndarray, C: np.ndarray, count: np.ndarray
+) -> bool:
+    """`rod_points` from Python, without the tangent; `strain` of shape (3, points), C as work space."""
+    return rod_points(law, old, strain, new, C, False, count)
+
+
 @overload(solid_point, strict=False, inline="always")
 def _solid_point(law: Any, old: Any, dD: Any, new: Any, C: Any) -> Callable[..., int]:
     if not isinstance(law, types.BaseNamedTuple):

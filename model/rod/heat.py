@@ -14,6 +14,7 @@ from coilset.model.material.law import Law
 from coilset.model.rod.heat_equation import HeatConstants, HeatEquation
 from coilset.model.rod.kinematics import GAUSS
 from coilset.model.rod.rod import Rod
+from coilset.model.section.fibres import FibreSections
 from coilset.model.state import Where
 
 SLOWEST = 1.8411837813406593**2
@@ -50,7 +51,9 @@ class WireHeat:
         stretch[: len(rod.radius)] = rod.placement.stretch
         self.equation = HeatEquation(rod.line, radius, constants, rod.temperature, stretch)
         y, _ = rod.rule.points.T
-        g = 1.0 - rod.placement.curvature[..., None] * rod.radius[:, None, None] * y
+        assert isinstance(rod.sections, FibreSections)
+        bend = rod.placement.curvature if rod.sections.curved else np.zeros_like(rod.placement.curvature)
+        g = 1.0 - bend[..., None] * rod.radius[:, None, None] * y
         self._weights = rod.rule.weights * g  # sum to 1: the centre of a section lies on its axis
         self._dofs = np.empty(len(rod.x), dtype=np.int64)  # of the local nodes
         self._dofs[geometry_dofs(mesh)] = self.equation.temperature.function_space.dofmap.list

@@ -1,61 +1,146 @@
-"""The past of a rod's wire: coiled from straight wire, it is not free of stress before its first load."""
+"""The past of a rod's wire: coiled, relieved or peened, it is not free of stress before its first load."""
+
+from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
+from mpi4py import MPI
 
 from coilset.meshes.errors import InputError, SolveError
+from coilset.meshes.past import Peening, Relief
 from coilset.meshes.placement import STRAIGHT
+from coilset.meshes.spring import SpringSpec
+from coilset.model.material.creep import Creeping
+from coilset.model.material.functions import elasticity
 from coilset.model.rod.rod import Rod
 from coilset.model.section.coiling import coil
+from coilset.model.section.fibres import FibreSections
+from coilset.model.section.peening import Layer, peen, peening_warnings
+from coilset.model.section.wire import SectionLaw
+from coilset.model.warning import Warning
 
-DIGITS = 9  # to which sections must agree to be coiled alike
+DIGITS = 9  # to which sections must agree to have the same past
+INTERVALS = 12  # of a stress relief, equal ones of log(1 + t/t₁), with t₁ = FIRST of it
+FIRST = 1e-6
+START = "point_state", "surface_state"
 
 
-def coil_wire(rod: Rod) -> float:
-    """Give all sections the stresses that coiling leaves; collective.
+@dataclass(frozen=True)
+class _Past:
+    """What all sections of a rod went through: the law without time, that of the relief's intervals, the layer."""
+
+    law: SectionLaw
+    coiled: bool
+    relief: tuple[Creeping, ...]
+    layer: Layer | None
+
+
+def has_past(spring: object) -> bool:
+    """Whether the wire of a case's spring is not free of stress at the start."""
+    return isinstance(spring, SpringSpec) and bool(spring.made_by or spring.peening)
+
+
+def give_past(rod: Rod, spring: object) -> float | None:
+    """Give all sections the stresses that the wire's past leaves, if it has one; collective.
 
     Args:
-        rod: whose sections know the wire's curvature; its equilibrium is replaced, without a force on any section.
+        rod: with sections of fibres whose placement knows the wire's curvature; its equilibrium is replaced, without a
+            force on any section.
+        spring: the entries of a case.
 
     Returns:
-        Mean diameter to which the wire was coiled at mid-wire, before it sprang back, mm.
+        Mean diameter to which the wire was coiled at mid-wire, before it sprang back, mm; None if it was not coiled.
 
     Raises:
-        InputError: if the wire cannot be coiled to the spring.
+        InputError: if the wire cannot be coiled to the spring, not be relieved or not be peened so.
     """
-    place, problem = rod.placement, None
-    tight = np.zeros((2, *place.curvature.shape))
+    if not isinstance(spring, SpringSpec) or not has_past(spring):
+        return None
+    sections = rod.sections
+    assert isinstance(sections, FibreSections)
+    state = {name: rod.state[name].equilibrium for name in START}
+    past = _Past(sections.law_over_time.over(state, state), bool(spring.made_by), _relief(rod, spring.relieved),
+                 None if spring.peening is None else _layer(rod, spring.peening))  # fmt: skip
+    tight, problem = np.zeros((2, *rod.placement.curvature.shape)), None
     try:
-        _coil_sections(rod, tight)
+        _through(rod, past, tight)
     except SolveError as error:
         problem = str(error)
     problem = next((one for one in rod.mesh.comm.allgather(problem) if one), None)
     if problem:
+        if not past.coiled:
+            raise InputError(f"the section finds no balance with the layer: {problem}", "spring.peening")
         wanted = "'coiling' needs a wire that yields and keeps its shape"
         raise InputError(f"{wanted}: {problem}", "spring.made_by")
     rod.state.restore()
     rod.update()
     ordered = rod.mesh.comm.bcast(rod.line.in_order(np.moveaxis(tight, 0, -1)))
     curvature, torsion = ordered[len(ordered) // 2, 0]
-    return float(2.0 * curvature / (curvature**2 + torsion**2))
+    return float(2.0 * curvature / (curvature**2 + torsion**2)) if past.coiled else None
 
 
-def _coil_sections(rod: Rod, tight: np.ndarray) -> None:
+def past_warnings(rod: Rod, spring: object) -> list[Warning]:
+    """Warnings about the wire's past; collective."""
+    if not isinstance(spring, SpringSpec) or spring.peening is None:
+        return []
+    return peening_warnings(_layer(rod, spring.peening), rod.rule, rod.largest_radius)
+
+
+def _layer(rod: Rod, peening: Peening) -> Layer:
+    """The layer's eigenstrain, ε* = −σ/E of a given stress.
+
+    Raises:
+        InputError: if it is thicker than the wire's radius.
+    """
+    radius = float(rod.mesh.comm.allreduce(rod.radius.min(initial=np.inf), op=MPI.MIN))
+    if peening.depth[-1] > radius:
+        raise InputError(f"goes down to {peening.depth[-1]:g} mm, below the wire's axis at {radius:g} mm",
+                         "spring.peening.depth")  # fmt: skip
+    if peening.strain is not None:
+        return Layer(np.array(peening.depth), np.array(peening.strain))
+    E, _, _ = elasticity(rod.parameters, rod.temperature)
+    return Layer(np.array(peening.depth), -np.array(peening.stress) / E)
+
+
+def _relief(rod: Rod, relief: Relief | None) -> tuple[Creeping, ...]:
+    """The law over the intervals of a stress relief; heating and cooling take no time."""
+    if relief is None:
+        return ()
+    if rod.creep is None:
+        raise InputError(f"'{rod.law.name}' does not creep, so that time relieves nothing; give a material with creep",
+                         "spring.relieved")  # fmt: skip
+    try:
+        warm = rod.law.known(relief.temperature)
+    except InputError as error:
+        raise InputError(error.problem, "spring.relieved.temperature") from None
+    hours = relief.minutes / 60.0 * FIRST * np.expm1(np.linspace(0.0, 1.0, INTERVALS + 1) * np.log1p(1.0 / FIRST))
+    clocks = [rod.creep.clock(0.0, rod.temperature)]
+    for time, temperature in (*((float(time), warm) for time in hours), (float(hours[-1]), rod.temperature)):
+        clocks.append(rod.creep.clock(time, temperature, clocks[-1]))
+    return tuple(rod.creep.over(before, after) for before, after in pairwise(clocks))
+
+
+def _through(rod: Rod, past: _Past, tight: np.ndarray) -> None:
     """Write the states of all sections, and their curvature and torsion before they sprang back."""
-    place = rod.placement
+    place, sections = rod.placement, rod.sections
+    assert isinstance(sections, FibreSections)
     radius = np.broadcast_to(rod.radius[:, None], place.curvature.shape)
     wires = np.stack([radius, place.curvature, place.torsion], axis=-1).reshape(-1, 3)
     size = np.abs(wires).max(axis=0, initial=0.0)
     alike = np.round(wires / np.where(size > 0.0, size, 1.0), DIGITS)
     _, first, which = np.unique(alike, axis=0, return_index=True, return_inverse=True)
-    virgin, guess = rod.sections.initial_state()["point_state"], None
-    points, surface = (rod.state[name].equilibrium for name in ("point_state", "surface_state"))
+    virgin, guess = sections.initial_state()["point_state"], None
+    points, surface = (rod.state[name].equilibrium for name in START)
     for k, (radius, curvature, torsion) in enumerate(wires[first]):
-        if curvature < STRAIGHT:
-            continue
-        if guess is not None:  # as the last one, turned by as much more as this one is
-            guess = guess[0] + curvature - wires[first][k - 1, 1], guess[1] + torsion - wires[first][k - 1, 2]
-        coiled = coil(rod.parameters, rod.rule, radius, curvature, torsion, virgin[0, 0, :1], guess=guess)
-        guess = coiled.turned
+        states = virgin[0, 0, :1]
         here = np.nonzero((which == k).reshape(place.curvature.shape))
-        points[here], surface[here] = coiled.points, coiled.surface
-        tight[0][here], tight[1][here] = coiled.curvature, coiled.torsion
+        if past.coiled and curvature >= STRAIGHT:
+            if guess is not None:  # as the last one, turned by as much more as this one is
+                guess = guess[0] + curvature - wires[first][k - 1, 1], guess[1] + torsion - wires[first][k - 1, 2]
+            coiled = coil(past.law, rod.rule, radius, curvature, torsion, states, sections.curved, guess, past.relief)
+            guess, states = coiled.turned, np.concatenate([coiled.points, coiled.surface])
+            tight[0][here], tight[1][here] = coiled.curvature, coiled.torsion
+        if past.layer is not None:
+            states = peen(past.law, rod.rule, radius, curvature, sections.curved, states, past.layer)
+        if len(states) > 1:
+            points[here], surface[here] = np.split(states, [len(rod.rule)])

@@ -6,25 +6,26 @@ its torsion φ/λ. θ and φ are sought for which both are those of the spring w
 fibres are logarithmic in the limit of many increments, since each increment divides by the length 1 − κ y of the fibre
 half way through it.
 
+Stress relief may follow: the wire creeps while all resultants stay zero, which unbends it a little. θ and φ are then
+those for which it has the spring's shape afterwards.
+
 What coiling machines do besides is left out: no temperature, no tension in the wire, no stress from drawing, and no
 second bend where a pitch tool or another pin touches.
 """
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from coilset.meshes.errors import SolveError
-from coilset.model.section.integration import section
-from coilset.model.section.rules import DiskRule, rim
-from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
+from coilset.model.section.rules import DiskRule
+from coilset.model.section.wire import BEND, TWIST, SectionLaw, Wire
 
 LOADING, RELEASE = 40, 4  # increments
 FREE = np.array([0, 1, 2, 4])  # ε, γ12, γ13, κ2 follow while the wire is bent and twisted
-TWIST, BEND = 3, 5  # φ′ and κ3
 CLOSE = 1e-10  # of the spring's curvature
-ATTEMPTS, LOCAL = 30, 25
+ATTEMPTS = 30
 
 
 @dataclass(frozen=True)
@@ -46,68 +47,8 @@ class Coiled:
     turned: tuple[float, float]
 
 
-class _Wire:
-    """One section, on its way.
-
-    Args:
-        law: parameters of the material law.
-        rule: quadrature of the disk.
-        radius: of the wire, mm.
-        curved: do the fibres get longer and shorter as the wire is bent, see `shape`?
-        row: state of a virgin point, shape (1, n_state).
-    """
-
-    def __init__(self, law: np.ndarray, rule: DiskRule, radius: float, curved: bool, row: np.ndarray) -> None:
-        self.law, self.curved, self.radius = law, curved, radius
-        self.disk = np.ascontiguousarray(np.concatenate([rule.points, rim()]).T)
-        self.y, self.z = radius * self.disk
-        self.area = math.pi * radius**2 * np.concatenate([rule.weights, np.zeros(len(rim()))])
-        self.states = np.tile(row, (len(self.area), 1))
-        self.stretch = 1.0
-        self.turned = np.zeros(2)  # θ and φ of a length of straight wire
-        self.s, self.scale = np.zeros(6), np.array([1.0, 1.0, 1.0, radius, radius, radius])
-        points = len(self.area)
-        self._room = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
-        self._shape, self._tangent = np.empty((SHAPE, points)), np.empty((6, 6))
-
-    @property
-    def curvature(self) -> np.ndarray:
-        """Curvature and torsion of the axis, 1/mm."""
-        return self.turned / self.stretch
-
-    def evaluate(self, d: np.ndarray, bend: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Resultants, their tangent and the points' states after the section strains d, fibres as at a curvature."""
-        straight_shape(self._shape)
-        if self.curved:
-            curved_shape(*self.disk, bend * self.radius, self._shape)
-        new, s, (strain, C, count) = np.empty_like(self.states), np.empty(6), self._room
-        if not section(self.law, self.y, self.z, self.area, self._shape, d, self.states, new, strain, C, True, count, s,
-                       self._tangent):  # fmt: skip
-            raise SolveError("the law found no solution")
-        return s, self._tangent, new
-
-    def step(self, d: np.ndarray, free: np.ndarray, wanted: np.ndarray, bend: float) -> None:
-        """Change the section strains by `d`; the `free` ones are sought that make their resultants `wanted`.
-
-        Raises:
-            SolveError: if there are none.
-        """
-        for _ in range(LOCAL):
-            s, D, new = self.evaluate(d, bend)
-            rest = (wanted - s)[free] / self.scale[free]
-            if np.abs(rest).max() <= 1e-11 * (np.abs(s / self.scale).max() + self.area.sum()):
-                break
-            d = d.copy()
-            d[free] += np.linalg.solve(D[np.ix_(free, free)], (wanted - s)[free])
-        else:
-            raise SolveError("the section finds no equilibrium")
-        self.turned += self.stretch * d[[BEND, TWIST]]
-        self.stretch *= math.exp(d[0]) if self.curved else 1.0
-        self.states, self.s = new, s
-
-
 def coil(
-    law: np.ndarray,
+    law: SectionLaw,
     rule: DiskRule,
     radius: float,
     curvature: float,
@@ -115,17 +56,19 @@ def coil(
     row: np.ndarray,
     curved: bool = True,
     guess: tuple[float, float] | None = None,
+    relief: Sequence[SectionLaw] = (),
 ) -> Coiled:
-    """The wire of a spring after coiling.
+    """The wire of a spring after coiling and stress relief.
 
     Args:
-        law: parameters of the material law, `Law.parameters()`.
+        law: without time, as `Wire` takes it.
         rule: quadrature of the disk.
         radius: of the wire, mm.
         curvature, torsion: of the spring's axis, 1/mm.
         row: state of a virgin point, shape (1, n_state).
         curved: logarithmic strains of fibres; else ε = −κ y.
         guess: θ and φ to begin with, 1/mm.
+        relief: the law over the intervals of time of the stress relief, one after the other.
 
     Raises:
         SolveError: if no coiling ends at this shape, as of a wire that does not yield.
@@ -135,7 +78,7 @@ def coil(
     before: tuple[np.ndarray, np.ndarray] | None = None
     slope = np.eye(2)
     for _ in range(ATTEMPTS):
-        wire, tight, moments = _coiled(law, rule, radius, turned, row, curved, wanted[0])
+        wire, tight, moments = _coiled(law, rule, radius, turned, row, curved, wanted[0], relief)
         off = wire.curvature - wanted
         if np.abs(off).max() <= CLOSE * curvature:
             inside = len(rule.weights)
@@ -151,10 +94,17 @@ def coil(
 
 
 def _coiled(
-    law: np.ndarray, rule: DiskRule, radius: float, turned: np.ndarray, row: np.ndarray, curved: bool, end: float
-) -> tuple[_Wire, tuple[float, float], tuple[float, float]]:
-    """The wire after it was turned by θ and φ a length and let go; curvature and torsion, M3 and Mt before that."""
-    wire, d = _Wire(law, rule, radius, curved, row), np.zeros(6)
+    law: SectionLaw,
+    rule: DiskRule,
+    radius: float,
+    turned: np.ndarray,
+    row: np.ndarray,
+    curved: bool,
+    end: float,
+    relief: Sequence[SectionLaw],
+) -> tuple[Wire, tuple[float, float], tuple[float, float]]:
+    """The wire after it was turned by θ and φ a length, let go and relieved; curvature and torsion, M3, Mt before."""
+    wire, d = Wire(law, rule, radius, curved, row), np.zeros(6)
     for _ in range(LOADING):
         d[[BEND, TWIST]] = turned / LOADING / wire.stretch
         wire.step(d, FREE, np.zeros(6), wire.curvature[0] + 0.5 * d[BEND])
@@ -163,4 +113,7 @@ def _coiled(
     for k in range(1, RELEASE + 1):
         bend = end if k == RELEASE else wire.curvature[0]  # it ends in balance as a section of the spring
         wire.step(np.zeros(6), np.arange(6), loaded * (1.0 - k / RELEASE), bend)
+    for interval in relief:
+        wire.law = interval
+        wire.step(np.zeros(6), np.arange(6), np.zeros(6), end)
     return wire, tight, moments

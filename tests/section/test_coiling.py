@@ -1,12 +1,16 @@
 """Coiling at a section: closed forms, the shape that is asked for, and wires that cannot keep one."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from coilset.meshes.errors import SolveError
 from coilset.model.material import library
+from coilset.model.material.creep_law import CreepLaw
 from coilset.model.material.points import initial_state
-from coilset.model.section.coiling import coil
+from coilset.model.section.coiling import _coiled, coil
 from coilset.model.section.rules import polar
 from coilset.verification.references.springback import Bar
 
@@ -49,3 +53,44 @@ def test_the_wire_is_at_rest_afterwards():
 def test_an_elastic_wire_keeps_no_shape():
     with pytest.raises(SolveError, match="springs back to another shape"):
         coiled(library.load("elastic"), 0.05)
+
+
+def relief(law, hours, temperature, intervals):
+    """The law over the intervals of a relief at constant temperature."""
+    creep = CreepLaw(law.creep, law.parameters())
+    clocks = [creep.clock(0.0, 293.15), creep.clock(0.0, temperature)]
+    clocks += [creep.clock(t, temperature) for t in hours * np.linspace(0.0, 1.0, intervals + 1)[1:] ** 4]
+    for clock in clocks[2:]:
+        clock[2] = creep.worth(clock[0], temperature, temperature)
+    return [creep.over(*pair) for pair in pairwise(clocks)]
+
+
+def test_relief_against_fibres_that_creep():
+    """A bent bar, relieved warm and free of moment: its fibres, integrated by scipy, end at the same stress."""
+    law, rule, warm, hours = library.load("creeping"), polar(8, 16), 523.15, 0.5
+    row = np.append(initial_state(law, 1), [[293.15, 0.0]], axis=1)
+    ours = coil(law.parameters(), rule, RADIUS, 0.05, 0.0, row, curved=False, relief=relief(law, hours, warm, 24))
+    tight = coiled_with(law, rule, row, ours.turned)
+    y, w, k = RADIUS * rule.points[:, 0], rule.weights, law.creep
+    part = (warm - 293.15) / 280.0
+    E = [2.0 * 1.29 * G for G in (79000.0, 79000.0 - part * 7900.0)]
+    worth = CreepLaw(law.creep, law.parameters()).worth(1.0, warm, warm)
+
+    def rates(_, state):
+        s, c = state.reshape(2, -1)
+        rate = k.time_exponent * (k.strain * (np.abs(s) / k.stress) ** k.exponent) ** (1 / k.time_exponent)
+        rate = rate * worth * c ** (1 - 1 / k.time_exponent)
+        flow = np.sign(s) * rate
+        stretched, bent = w @ flow, (w @ (flow * y)) / (w @ (y * y))
+        return np.concatenate([E[1] * (stretched + bent * y - flow), rate])
+
+    start = np.concatenate([tight * E[1] / E[0], np.full(len(y), 1e-9)])
+    end = solve_ivp(rates, (0.0, hours), start, "LSODA", rtol=1e-8, atol=1e-12).y[: len(y), -1]
+    greatest = np.abs(tight).max()
+    np.testing.assert_allclose(ours.points[:, 0], end, atol=5e-3 * greatest)
+    assert np.abs(end).max() < 0.8 * greatest
+
+
+def coiled_with(law, rule, row, turned):
+    """Stress of a bar that was turned so and let go, before its relief."""
+    return _coiled(law.parameters(), rule, RADIUS, np.array(turned), row, False, 0.05, ())[0].states[: len(rule), 0]

@@ -1,0 +1,91 @@
+"""One section of a wire on its way from straight to coiled: the equilibrium that its points find, step by step."""
+
+import math
+
+import numpy as np
+
+from coilset.meshes.errors import SolveError
+from coilset.model.material.back_stresses import BackStresses
+from coilset.model.material.creep import Creeping
+from coilset.model.material.point_law import advance_points
+from coilset.model.section.integration import section
+from coilset.model.section.rules import DiskRule, rim
+from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
+
+TWIST, BEND = 3, 5  # φ′ and κ3
+LOCAL = 25
+SectionLaw = np.ndarray | Creeping | BackStresses
+
+
+class Wire:
+    """One section, on its way.
+
+    Args:
+        law: as the compiled loops take it, `LawOverTime.over`.
+        rule: quadrature of the disk.
+        radius: of the wire, mm.
+        curved: do the fibres get longer and shorter as the wire is bent, see `shape`?
+        states: of the rule's points and then of those on the surface, shape (points, n_state), or a virgin one of
+            shape (1, n_state) for all.
+    """
+
+    def __init__(self, law: SectionLaw, rule: DiskRule, radius: float, curved: bool, states: np.ndarray) -> None:
+        self.law, self.curved, self.radius = law, curved, radius
+        self.disk = np.ascontiguousarray(np.concatenate([rule.points, rim()]).T)
+        self.y, self.z = radius * self.disk
+        self.area = math.pi * radius**2 * np.concatenate([rule.weights, np.zeros(len(rim()))])
+        self.states = np.tile(states, (len(self.area) // len(states), 1))
+        self.stretch = 1.0
+        self.turned = np.zeros(2)  # θ and φ of a length of straight wire
+        self.s, self.scale = np.zeros(6), np.array([1.0, 1.0, 1.0, radius, radius, radius])
+        points = len(self.area)
+        self._room = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
+        self._shape, self._tangent = np.empty((SHAPE, points)), np.empty((6, 6))
+
+    @property
+    def curvature(self) -> np.ndarray:
+        """Curvature and torsion of the axis, 1/mm."""
+        return self.turned / self.stretch
+
+    def evaluate(self, d: np.ndarray, bend: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Resultants, their tangent and the points' states after the section strains d, fibres as at a curvature."""
+        straight_shape(self._shape)
+        if self.curved:
+            curved_shape(*self.disk, bend * self.radius, self._shape)
+        new, s, (strain, C, count) = np.empty_like(self.states), np.empty(6), self._room
+        if not section(self.law, self.y, self.z, self.area, self._shape, d, self.states, new, strain, C, True, count, s,
+                       self._tangent):  # fmt: skip
+            raise SolveError("the law found no solution")
+        return s, self._tangent, new
+
+    def step(self, d: np.ndarray, free: np.ndarray, wanted: np.ndarray, bend: float) -> None:
+        """Change the section strains by `d`; the `free` ones are sought that make their resultants `wanted`.
+
+        Raises:
+            SolveError: if there are none.
+        """
+        for _ in range(LOCAL):
+            s, D, new = self.evaluate(d, bend)
+            rest = (wanted - s)[free] / self.scale[free]
+            if np.abs(rest).max() <= 1e-11 * (np.abs(s / self.scale).max() + self.area.sum()):
+                break
+            d = d.copy()
+            d[free] += np.linalg.solve(D[np.ix_(free, free)], (wanted - s)[free])
+        else:
+            raise SolveError("the section finds no equilibrium")
+        self.turned += self.stretch * d[[BEND, TWIST]]
+        self.stretch *= math.exp(d[0]) if self.curved else 1.0
+        self.states, self.s = new, s
+
+    def grow(self, strain: np.ndarray) -> None:
+        """Let the points' own length grow by axial strains, shape (points,), while the section's strains stay.
+
+        Raises:
+            SolveError: if the law finds no solution.
+        """
+        held, C, count = self._room
+        held[:], new = 0.0, np.empty_like(self.states)
+        held[0] = -strain
+        if not advance_points(self.law, self.states, held, new, C, count):
+            raise SolveError("the law found no solution")
+        self.states = new
