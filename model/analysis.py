@@ -35,7 +35,7 @@ from coilset.model.results.checkpoint import Saved
 from coilset.model.results.record import ContactRecord, Limits, Result, Setup, Snapshot, Step
 from coilset.model.rod.heat import WireHeat, heat_constants
 from coilset.model.rod.kinematics import GAUSS, chord_triads
-from coilset.model.rod.past import give_past, has_past, past_warnings
+from coilset.model.rod.past import give_past, past_warnings
 from coilset.model.rod.rod import Rod
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.case_warnings import case_warnings
@@ -84,7 +84,7 @@ class Analysis:
         section, placement = case.mesh.section, straight(len(turns) - 1)
         if case.mesh.axis == "curved":
             chords = chord_triads(np.diff(line.stations, axis=0))
-            to_normal = section.kind != "plane" or has_past(case.spring)
+            to_normal = section.kind != "plane" or bool(case.past)
             placement = section_placement(spring, turns, chords, GAUSS, to_normal)
             refuse_sharp_bends(placement, radius, turns)
         self.rod = Rod(line, radius, self.law, section.build(), placement, case.temperature, section.kind,

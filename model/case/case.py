@@ -261,12 +261,10 @@ class Case(Strict):
 
     @model_validator(mode="after")
     def _past_of_fibres(self) -> Self:
-        if not isinstance(self.spring, SpringSpec):
-            return self
-        if (self.spring.made_by or self.spring.peening) and self.mesh.section.kind == "warping":
-            entry = "made_by: coiling" if self.spring.made_by else "peening"
-            raise ValueError(f"spring.{entry} is known for sections of fibres; give mesh.section.kind: curved or plane")
-        if self.spring.made_by and self.mesh.axis == "chords":
+        if self.past and self.mesh.section.kind == "warping":
+            raise ValueError(f"spring.{self.past[0]} is known for sections of fibres; give mesh.section.kind: curved "
+                             "or plane")  # fmt: skip
+        if "made_by" in self.past and self.mesh.axis == "chords":
             raise ValueError("spring.made_by: coiling bends the wire to its axis, but chords are straight; give "
                              "mesh.axis: curved")  # fmt: skip
         return self
@@ -289,9 +287,11 @@ class Case(Strict):
         return [phase for phase in self.loading if isinstance(phase, Phase)]
 
     @property
-    def coiled(self) -> bool:
-        """Does the run begin with the stresses that coiling leaves in the wire?"""
-        return isinstance(self.spring, SpringSpec) and self.spring.made_by is not None
+    def past(self) -> list[str]:
+        """Entries of `spring` that say what its wire has been through; a wire without is free of stress."""
+        if not isinstance(self.spring, SpringSpec):
+            return []
+        return [name for name in ("made_by", "peening") if getattr(self.spring, name) is not None]
 
 
 Group = TypeVar("Group", bound=Strict)

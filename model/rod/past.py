@@ -35,11 +35,6 @@ class _Past:
     layer: Layer | None
 
 
-def has_past(spring: object) -> bool:
-    """Whether the wire of a case's spring is not free of stress at the start."""
-    return isinstance(spring, SpringSpec) and bool(spring.made_by or spring.peening)
-
-
 def give_past(rod: Rod, spring: object) -> float | None:
     """Give all sections the stresses that the wire's past leaves, if it has one; collective.
 
@@ -54,7 +49,7 @@ def give_past(rod: Rod, spring: object) -> float | None:
     Raises:
         InputError: if the wire cannot be coiled to the spring, not be relieved or not be peened so.
     """
-    if not isinstance(spring, SpringSpec) or not has_past(spring):
+    if not isinstance(spring, SpringSpec) or not (spring.made_by or spring.peening):
         return None
     sections = rod.sections
     assert isinstance(sections, FibreSections)

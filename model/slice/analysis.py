@@ -99,10 +99,9 @@ class SliceAnalysis:
 
     def __init__(self, case: Case, outline: Outline | None = None, across: float = ACROSS, degree: int = 2):
         self.case, self.spring = case, case.spring.build()
-        for entry in ("made_by", "peening"):
-            if getattr(case.spring, entry, None):
-                problem = f"a slice begins free of stress; leave '{entry}' out, or use 'coilset solve'"
-                raise InputError(problem, f"spring.{entry}")
+        for entry in case.past:
+            problem = f"a slice begins free of stress; leave '{entry}' out, or use 'coilset solve'"
+            raise InputError(problem, f"spring.{entry}")
         self.law = case_law(case, self.spring)
         d, D, pitch = (_same_in_all_turns(self.spring, name) for name in ("wire_diameter", "mean_diameter", "pitch"))
         self.wire_diameter, self.mean_diameter, self.is_round = d, D, outline is None
