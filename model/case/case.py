@@ -50,7 +50,7 @@ class SectionSpec(Strict):
     @model_validator(mode="after")
     def _spin_belongs(self) -> Self:
         if self.spin and self.kind == "warping":
-            raise ValueError("spin belongs to three stresses; give kind: plane or curved, or leave spin out")
+            raise ValueError("spin is defined for three stresses only; give kind: plane or curved, or leave spin out")
         return self
 
     @model_validator(mode="after")
@@ -256,20 +256,22 @@ class Case(Strict):
             raise ValueError("there are no seats between clamped ends; leave contact.friction.seats out")
         shapes = {self.seats.bottom.shape, self.seats.top.shape} - {"flat"}
         if shapes and any(phase.to == "block" for phase in self.targets):
-            raise ValueError(f"block is known for flat seats; with {shapes.pop()} ones give height, travel or force")
+            raise ValueError(
+                f"block is defined for flat seats only; with {shapes.pop()} ones give height, travel or force"
+            )
         return self
 
     @model_validator(mode="after")
     def _coiling_knows_the_curvature(self) -> Self:
         if self.coiled and self.mesh.section.kind != "curved":
-            raise ValueError("spring.made_by: coiling is known for sections of fibres in a curved wire; give "
+            raise ValueError("spring.made_by: coiling needs sections of fibres in a curved wire; give "
                              "mesh.section.kind: curved")  # fmt: skip
         return self
 
     @model_validator(mode="after")
     def _heat_takes_time(self) -> Self:
         if self.heat and self.mesh.section.kind == "warping":
-            raise ValueError("heat is known for sections of fibres; give mesh.section.kind: curved or plane")
+            raise ValueError("heat needs sections of fibres; give mesh.section.kind: curved or plane")
         for number, phase in enumerate(self.loading):
             timed = isinstance(phase, Phase) and phase.seconds is not None
             if self.heat and not timed:
