@@ -41,7 +41,7 @@ def test_a_coiled_spring_stands_as_drawn_and_is_as_stiff():
     ("changes", "message"),
     [
         ({"material": "elastic"}, "spring.made_by: 'coiling' needs a wire that yields and keeps its shape"),
-        ({"mesh": {"section": {"kind": "warping"}}}, "spring.made_by: coiling is known for sections of fibres"),
+        ({"mesh": {"section": {"kind": "warping"}}}, "spring.made_by: coiling needs sections of fibres"),
     ],
 )
 def test_what_cannot_be_coiled(changes, message):
