@@ -24,9 +24,9 @@ def check_format(path: str | Path) -> None:
     suffix = Path(path).suffix.lower()
     if suffix != ".msh" and suffix not in meshio.extension_to_filetypes:
         named = f"'{suffix}' is no format of a mesh" if suffix else "has no suffix to say its format"
-        raise InputError(f"{named}; take .vtu, .msh, .inp or .xdmf", "--write", path)
+        raise InputError(f"{named}; use .vtu, .msh, .inp or .xdmf", "--write", path)
     if suffix in SURFACES:
-        raise InputError(f"{suffix} files hold no line elements; take .vtu, .msh, .inp or .xdmf", "--write", path)
+        raise InputError(f"{suffix} files hold no line elements; use .vtu, .msh, .inp or .xdmf", "--write", path)
 
 
 def write_mesh(spring: Spring, turns: np.ndarray, path: str | Path) -> None:
@@ -78,10 +78,12 @@ def _write_meshio(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarr
     ) as error:
         path.unlink(missing_ok=True)
         reason = " ".join(str(error).split()) or type(error).__name__
-        raise InputError(f"meshio cannot write a wire so: {reason}; take .vtu, .msh, .inp or .xdmf", "", path) from None
+        raise InputError(
+            f"meshio cannot write the wire in this format: {reason}; use .vtu, .msh, .inp or .xdmf", "", path
+        ) from None
     if kept != len(lines):
         path.unlink()
-        raise InputError(f"{path.suffix} files hold no line elements; take .vtu, .msh, .inp or .xdmf", "", path)
+        raise InputError(f"{path.suffix} files hold no line elements; use .vtu, .msh, .inp or .xdmf", "", path)
 
 
 def _write_gmsh(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarray], path: Path) -> None:

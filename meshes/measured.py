@@ -185,7 +185,7 @@ def _turns(points: np.ndarray, path: str | Path) -> tuple[np.ndarray, int, float
     if back.any():
         i = int(np.argmax(back))
         raise InputError(
-            "the wire does not go on round the z axis here; the axis of the spring must be the z axis, "
+            "the wire does not continue around the z axis here; the axis of the spring must be the z axis, "
             "and no point may occur twice",
             f"point {i + 2}",
             path,

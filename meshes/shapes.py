@@ -17,7 +17,7 @@ CLOSEST = 1e-3  # turns
 def _of_a_spring(length: float) -> float:
     """0.001 to 100,000."""
     if not SHORTEST <= length <= LONGEST:
-        raise ValueError(f"{length:g} is no length of a spring; must be {SHORTEST:g} to {LONGEST:g}")
+        raise ValueError(f"{length:g} is not a possible length; must be {SHORTEST:g} to {LONGEST:g}")
     return length
 
 
@@ -95,7 +95,7 @@ class Funnel(Strict):
         if self.cone_turns >= turns:
             raise ValueError(
                 f"cone_turns is {self.cone_turns:g}, but the spring has only {turns:g} turns; "
-                "leave some for the neck, or take the shape cone"
+                "leave some for the neck, or use the shape cone"
             )
         return functions.tabulated(
             np.array([0, self.cone_turns, turns]), np.array([self.bottom, self.neck, self.neck]), "linear"

@@ -75,7 +75,7 @@ def stations(spring: CentreLine, elements_per_turn: ElementsPerTurn = 16, sagitt
     densities = density(breaks)
     if not LEAST <= densities.min() <= densities.max() <= MOST:
         raise InputError(
-            f"{densities.min():.4g} to {densities.max():.4g} elements in a turn; must be {LEAST} to {MOST}", "mesh"
+            f"{densities.min():.4g} to {densities.max():.4g} elements per turn; must be {LEAST} to {MOST}", "mesh"
         )
     count = np.concatenate([[0.0], np.cumsum(functions.integral(density, breaks, points=2))])
     if count[-1] > ALL:

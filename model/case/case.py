@@ -50,7 +50,7 @@ class SectionSpec(Strict):
     @model_validator(mode="after")
     def _spin_belongs(self) -> Self:
         if self.spin and self.kind == "warping":
-            raise ValueError("spin belongs to three stresses; give kind: plane or curved, or leave spin out")
+            raise ValueError("spin is defined for three stresses only; give kind: plane or curved, or leave spin out")
         return self
 
     @model_validator(mode="after")
@@ -256,13 +256,15 @@ class Case(Strict):
             raise ValueError("there are no seats between clamped ends; leave contact.friction.seats out")
         shapes = {self.seats.bottom.shape, self.seats.top.shape} - {"flat"}
         if shapes and any(phase.to == "block" for phase in self.targets):
-            raise ValueError(f"block is known for flat seats; with {shapes.pop()} ones give height, travel or force")
+            raise ValueError(
+                f"block is defined for flat seats only; with {shapes.pop()} ones give height, travel or force"
+            )
         return self
 
     @model_validator(mode="after")
     def _past_of_fibres(self) -> Self:
         if self.past and self.mesh.section.kind == "warping":
-            raise ValueError(f"spring.{self.past[0]} is known for sections of fibres; give mesh.section.kind: curved "
+            raise ValueError(f"spring.{self.past[0]} needs sections of fibres; give mesh.section.kind: curved "
                              "or plane")  # fmt: skip
         if "made_by" in self.past and self.mesh.axis == "chords":
             raise ValueError("spring.made_by: coiling bends the wire to its axis, but chords are straight; give "
@@ -272,7 +274,7 @@ class Case(Strict):
     @model_validator(mode="after")
     def _heat_takes_time(self) -> Self:
         if self.heat and self.mesh.section.kind == "warping":
-            raise ValueError("heat is known for sections of fibres; give mesh.section.kind: curved or plane")
+            raise ValueError("heat needs sections of fibres; give mesh.section.kind: curved or plane")
         for number, phase in enumerate(self.loading):
             timed = isinstance(phase, Phase) and phase.seconds is not None
             if self.heat and not timed:

@@ -90,7 +90,7 @@ class SeatsSpec(Strict):
     @model_validator(mode="after")
     def _no_rigid_motion(self) -> Self:
         if self.groove is not None and self.hold != "groove":
-            raise ValueError("groove gives the turns of a groove; say hold: groove with it")
+            raise ValueError("groove is the length of a groove; give hold: groove with it")
         for end in ("bottom", "top"):
             if self.hold == "tips" and getattr(self, end).moves:
                 raise ValueError(

@@ -69,7 +69,7 @@ def conditions(spec: WishSpec, base: Mapping[str, Any]) -> tuple[list[Condition]
     needing = [one.name for one in found if "after" in one.name or "set_mm" in one.name or "residual" in one.name]
     if not released and (needing or missing):
         name = needing[0] if needing else "such_that.force_at"
-        raise InputError("is of the spring that is free of load again; let the load program end with {to: {force: 0}}",
+        raise InputError("needs an unloaded spring at the end; let the load program end with {to: {force: 0}}",
                          name)  # fmt: skip
     for height in missing:
         program.append({"to": {"height": height}, "steps": MEASURING_STEPS})

@@ -159,7 +159,7 @@ class Search:
             if there.failed:
                 reach = 0.5 * size
                 if reach < SETTLED:
-                    raise SolveError(f"no way on from {self.words(u)}: {there.reason}")
+                    raise SolveError(f"the search cannot continue from {self.words(u)}: {there.reason}")
                 continue
             off_there, base_there = self.off(there.values), self.surrogate(to)
             y = (off_there - base_there) - (off - base)
@@ -231,7 +231,7 @@ class Search:
                 E[:, column] = np.where(blind, y, 0.0 if felt else y) / (to[column] - u[column])
                 if np.abs(slopes[:, column] + E[:, column]).max() < FLAT * 100.0:
                     raise InputError(
-                        "no condition feels it: what is wished does not change with it from "
+                        "no condition depends on it: the results do not change from "
                         f"{self.value(u)[column]:.6g} to {self.value(to)[column]:.6g}; leave it out, or give a "
                         "condition that depends on it", f"find.{self.evaluator.names[column]}")  # fmt: skip
         return E

@@ -26,7 +26,7 @@ class Bounds(Strict):
     @model_validator(mode="after")
     def _order(self) -> Self:
         if self.low >= self.high:
-            raise ValueError(f"from {self.low:g} to {self.high:g} is no range; 'from' must be the smaller one")
+            raise ValueError(f"from {self.low:g} to {self.high:g} is not a range; 'from' must be the smaller one")
         return self
 
 
@@ -122,7 +122,7 @@ class WishSpec(Strict):
                              "unknowns, or more, which are met as well as they can be (least squares)")  # fmt: skip
         for name in self.trade_offs:
             if name in self.find:
-                raise ValueError(f"trade_offs.{name}: is an unknown; give an entry that is none")
+                raise ValueError(f"trade_offs.{name}: is an unknown; give an entry that is not")
         return self
 
 
@@ -159,7 +159,7 @@ def read_wish(path: str | Path) -> Wish:
     spec, folder = check_entries(own, WishSpec, path), path.parent
     if spec.case is not None:
         if base:
-            raise InputError("is an entry of a case, which case: names already; give it there, or leave case: out",
+            raise InputError("is an entry of a case, and case: names one already; give it there, or leave case: out",
                              shortened(next(iter(base))), path)  # fmt: skip
         base, folder = read_case_data(folder / spec.case), (folder / spec.case).parent
     base = copy.deepcopy({name: located(name, value, folder.absolute()) for name, value in base.items()})

@@ -163,9 +163,11 @@ class Table(Strict):
         if (self.file is not None) == given or (self.strain is None) != (self.stress is None):
             raise ValueError("give either file, or strain and stress")
         if given and len(self.strain or ()) != len(self.stress or ()):
-            raise ValueError(f"{len(self.strain or ())} strains and {len(self.stress or ())} stresses: give as many")
+            raise ValueError(
+                f"{len(self.strain or ())} strains and {len(self.stress or ())} stresses; give equally many"
+            )
         if self.test == "torsion" and self.measure == "engineering":
-            raise ValueError("measure is of a tension test; leave it out")
+            raise ValueError("measure applies to tension tests only; leave it out")
         return self
 
     def points(self) -> tuple[np.ndarray, np.ndarray]:

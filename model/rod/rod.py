@@ -165,7 +165,7 @@ class Rod:
     def pass_time(self, middle: Moment, end: Moment) -> None:
         """Set the clocks of the state on trial; see PassesTime."""
         if self.creep is None:
-            raise ValueError(f"'{self.law.name}' knows no time; it has no creep")
+            raise ValueError(f"'{self.law.name}' has no creep, so time has no effect on it")
         start, halfway, on_trial = self.clock, *(self.state[name].trial for name in reversed(CLOCKS))
         halfway[:] = self.creep.clock(*middle, start)
         on_trial[:] = self.creep.clock(*end, halfway)

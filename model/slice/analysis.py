@@ -194,7 +194,9 @@ class SliceAnalysis:
         block = self.spring.block_height
         for index, phase in enumerate(self.case.loading):
             if not isinstance(phase, Phase):
-                raise InputError("a slice knows no time; leave it out, or use coilset solve", f"loading.{index}")
+                raise InputError(
+                    "the slice does not model time; leave it out, or use coilset solve", f"loading.{index}"
+                )
             kind, value = self._target(phase)
             if kind == "height" and value < block * (1.0 - SAME):
                 raise InputError(f"a height of {value:.6g} mm is below block, {block:.6g} mm; give to: block",
@@ -236,7 +238,7 @@ def _same_in_all_turns(spring: Spring, name: str) -> float:
     if np.ptp(values) > SAME * np.abs(values).max():
         closed = name == "pitch" and not spring.bottom.form == spring.top.form == "open"
         hint = "; leave end_coils out" if closed else ""
-        raise InputError(f"{values.min():.6g} to {values.max():.6g} mm; the slice wants the same in all turns, a "
+        raise InputError(f"{values.min():.6g} to {values.max():.6g} mm; the slice needs the same value in all turns, a "
                          f"cylindrical spring{hint}", f"spring.{name}")  # fmt: skip
     return float(values.mean())
 

@@ -49,7 +49,7 @@ class Watch:
         C, stress, moduli = np.empty((n, 6, 6)), np.empty((n, 6)), np.empty((n, 6, 6))
         good = stretches(gradient, strain, axes, rotation, log) == 0
         if not good or update_points(self.body.parameters, self.state, strain, self._trial, C) != 0:
-            raise SolveError("the law finds no stress at a watched place of the section; take smaller steps")
+            raise SolveError("the law finds no stress at an output point of the section; use smaller steps")
         push_forward(self._trial, C, axes, rotation, log, stress, moduli, False)
         return self._trial
 

@@ -47,7 +47,9 @@ def _combine(spec: SweepSpec, columns: Any, base: Any) -> list[Row]:
         lengths = {name: len(column) for name, column in zip(names, columns, strict=True)}
         if len(set(lengths.values())) > 1:
             found = ", ".join(f"{name} {length}" for name, length in lengths.items())
-            raise InputError(f"'together' takes first with first, so all need as many values, not {found}", "vary")
+            raise InputError(
+                f"'together' pairs values in their order, so all inputs need equally many, not {found}", "vary"
+            )
         return list(zip(*columns, strict=True))
     middle = [base[name] for name in names]
     varied = [(k, value) for k, column in enumerate(columns) for value in column if value != middle[k]]

@@ -65,7 +65,7 @@ class Range(Input):
     @model_validator(mode="after")
     def _order(self) -> Self:
         if self.start >= self.stop:
-            raise ValueError(f"from {self.start:g} to {self.stop:g} is no range; 'from' must be the smaller one")
+            raise ValueError(f"from {self.start:g} to {self.stop:g} is not a range; 'from' must be the smaller one")
         if self.spacing == "log" and self.start <= 0:
             raise ValueError(f"equal ratios need a positive start, not {self.start:g}")
         return self
@@ -96,7 +96,7 @@ class Normal(Input):
 
     def grid(self) -> list[Any]:
         """A scatter has no grid."""
-        raise ValueError("a scatter has no grid; take the design latin_hypercube, sobol or sobol_indices")
+        raise ValueError("a scatter has no grid; use the design latin_hypercube, sobol or sobol_indices")
 
     def at(self, q: Sequence[float] | np.ndarray) -> list[Any]:
         """Values at the probabilities `q`, the quantiles of the truncated normal distribution."""

@@ -27,7 +27,7 @@ def case(seats, loading=LIGHT, spring=SPRING, **more):
     ({"top": {"tilt": "free"}}, "the top seat moves, but tips are held in space; give hold: groove"),
     ({"top": {"tilt": -3.0}}, "seats.top.tilt"),
     ({"hold": "groove", "bottom": {"turn": "free"}, "top": {"turn": "free"}}, "turn: both seats are free"),
-    ({"groove": 0.5}, "say hold: groove with it"),
+    ({"groove": 0.5}, "give hold: groove with it"),
     ({"hold": "groove", "groove": 0}, "seats.groove: 0"),
 ])  # fmt: skip
 def test_wrong_seats_get_one_line(seats, words):
@@ -40,7 +40,7 @@ def test_wrong_seats_get_one_line(seats, words):
 def test_seats_must_fit_ends_program_and_spring():
     with pytest.raises(InputError, match="between clamped ends"):
         case({"hold": "groove"}, ends="clamped")
-    with pytest.raises(InputError, match="block is known for flat seats"):
+    with pytest.raises(InputError, match="block is defined for flat seats only"):
         case({"top": {"shape": "conical", "angle": 5}}, [{"to": "block"}])
     with pytest.raises(InputError, match=r"seats.bottom.turns: 9: the spring has 7.5 turns"):
         Analysis(case({"bottom": {"shape": "stepped", "turns": 9}}), MPI.COMM_SELF)

@@ -62,6 +62,6 @@ def unpacked(page, name):
 def test_nothing_is_left_of_a_wish_that_is_refused(wish, tmp_path):
     path = str(wish({"rates_at.0": [1, 2]}, SUCH, rates_at=[1.0]))
     out = tmp_path / "out"
-    with pytest.raises(InputError, match="no condition feels it"):
+    with pytest.raises(InputError, match="no condition depends on it"):
         design(path, str(out), False, False)
     assert not out.exists()

@@ -97,7 +97,7 @@ def test_past_the_fully_plastic_torque_winding_makes_no_longer_spring(search):
 
 def test_an_unknown_that_nothing_feels_is_named(search):
     one = search({"rates_at.0": [1, 2]}, {"free_length_after_mm": 25.0}, rates_at=[1.0])
-    with pytest.raises(InputError, match=r"find\.rates_at\.0: no condition feels it"):
+    with pytest.raises(InputError, match=r"find\.rates_at\.0: no condition depends on it"):
         find(one)
 
 

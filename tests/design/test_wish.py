@@ -20,7 +20,7 @@ def build(path):
 @pytest.mark.parametrize(
     ("find", "such_that", "problem"),
     [
-        ({"spring.pitch": [15, 9]}, SUCH, "find.spring.pitch: from 15 to 9 is no range"),
+        ({"spring.pitch": [15, 9]}, SUCH, "find.spring.pitch: from 15 to 9 is not a range"),
         ({"spring.pitch": 9}, SUCH, "find.spring.pitch: must be the minimum and the maximum value"),
         (FIND, {}, "such_that: there is no condition"),
         (FIND, {"free_length_after": 25.0}, "is free_length_after_mm meant?"),
@@ -42,7 +42,7 @@ def test_a_case_stands_in_the_wish_or_beside_it(tmp_path, wish, example):
     beside = tmp_path / "beside.yaml"
     beside.write_text(yaml.safe_dump({"case": str(example), "find": FIND, "such_that": SUCH}), encoding="utf-8")
     assert read_wish(beside).base["spring"]["turns"] == 2.5
-    with pytest.raises(InputError, match="loading: is an entry of a case, which case: names already"):
+    with pytest.raises(InputError, match="loading: is an entry of a case, and case: names one already"):
         read_wish(wish(FIND, SUCH, case=str(example)))
 
 

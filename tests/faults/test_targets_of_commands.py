@@ -36,7 +36,7 @@ def test_a_target_that_cannot_be_gets_one_line(example, tmp_path, monkeypatch, c
 def test_a_mesh_of_no_format_makes_nothing(example, tmp_path, monkeypatch, target):
     """Not even the meshes before it, and its folder."""
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(InputError, match=r"--write: .*take \.vtu, \.msh, \.inp or \.xdmf") as caught:
+    with pytest.raises(InputError, match=r"--write: .*use \.vtu, \.msh, \.inp or \.xdmf") as caught:
         app(["mesh", str(example), "--no-pictures", "--write", "one/a.vtu", "--write", target], standalone_mode=False)
     assert "partial" not in str(caught.value)
     assert list(tmp_path.iterdir()) == []

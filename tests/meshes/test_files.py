@@ -120,7 +120,7 @@ def test_abaqus_sets(barrel, tmp_path):
 @pytest.mark.parametrize("suffix", [".stl", ".unknown"])
 def test_formats_without_wires_are_refused(barrel, tmp_path, suffix):
     path = tmp_path / f"spring{suffix}"
-    with pytest.raises(InputError, match=r"take \.vtu, \.msh, \.inp or \.xdmf"):
+    with pytest.raises(InputError, match=r"use \.vtu, \.msh, \.inp or \.xdmf"):
         write_mesh(barrel, barrel.stations(16), path)
     assert not path.exists()
 
@@ -134,7 +134,7 @@ def test_formats_whose_writers_fail_get_one_line(barrel, tmp_path, monkeypatch, 
 
     monkeypatch.setattr(meshio.Mesh, "write", fail)
     reason = str(failure) or "AssertionError"
-    with pytest.raises(InputError, match=f"meshio cannot write a wire so: {reason}; take"):
+    with pytest.raises(InputError, match=f"meshio cannot write the wire in this format: {reason}; use"):
         write_mesh(barrel, barrel.stations(16), tmp_path / "spring.e")
 
 
@@ -157,8 +157,8 @@ WRONG_TABLES = [
     ),
     (
         HEAD + "".join(POINTS[:9] + POINTS[5:]),
-        "point 10: the wire does not go on round the z axis here; the axis of the spring must be the z axis, and no "
-        "point may occur twice",
+        "point 10: the wire does not continue around the z axis here; the axis of the spring must be the z axis, and "
+        "no point may occur twice",
     ),
     (HEAD + "".join(POINTS[::5]), "point 2: is 143° away from the point before; must be at most 120°"),
     (

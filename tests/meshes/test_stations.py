@@ -50,8 +50,8 @@ def test_sagitta_is_kept():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ((2,), "2 to 2 elements in a turn; must be 3 to 1000000"),
-        ((16, 1e-12), "elements in a turn; must be 3 to 1000000"),
+        ((2,), "2 to 2 elements per turn; must be 3 to 1000000"),
+        ((16, 1e-12), "elements per turn; must be 3 to 1000000"),
         (
             (Table(turns=(0, 3), values=(16, 16), interpolation="linear"),),
             "ends at turn 3, but the spring has 2.5 turns",

@@ -25,7 +25,7 @@ WRONG = [
         "spring.wire_diameter: '5 mm': must be a number without its unit; units are N, mm, MPa and K everywhere",
     ),
     ({"wire_diameter": float("nan")}, "spring.wire_diameter: nan: must be a finite number"),
-    ({"wire_diameter": 1e9}, "spring.wire_diameter: 1e+09 is no length of a spring; must be 0.001 to 100000"),
+    ({"wire_diameter": 1e9}, "spring.wire_diameter: 1e+09 is not a possible length; must be 0.001 to 100000"),
     ({"wire_diameter": True}, "spring.wire_diameter: True: must be a number"),
     (
         {"wire_diameter": None},
@@ -61,7 +61,7 @@ WRONG = [
     ),
     (
         {"mean_diameter": {"shape": "funnel", "bottom": 60.0, "neck": 30.0, "cone_turns": 6.0}},
-        "spring.mean_diameter: cone_turns is 6, but the spring has only 6 turns; leave some for the neck, or take the "
+        "spring.mean_diameter: cone_turns is 6, but the spring has only 6 turns; leave some for the neck, or use the "
         "shape cone",
     ),
     (

@@ -51,9 +51,9 @@ def test_a_coiled_spring_stands_as_drawn_and_is_as_stiff():
     ("changes", "message"),
     [
         ({"material": "elastic"}, "spring.made_by: 'coiling' needs a wire that yields and keeps its shape"),
-        ({"mesh": {"section": {"kind": "warping"}}}, "spring.made_by: coiling is known for sections of fibres"),
+        ({"mesh": {"section": {"kind": "warping"}}}, "spring.made_by needs sections of fibres"),
         ({"mesh": {"axis": "chords", "section": {"kind": "plane"}}}, "coiling bends the wire to its axis"),
-        ({"spring": PEENED, "mesh": {"section": {"kind": "warping"}}}, "peening is known for sections of fibres"),
+        ({"spring": PEENED, "mesh": {"section": {"kind": "warping"}}}, "spring.peening needs sections of fibres"),
         ({"spring": peened([0, 3], [-1, 0])}, "spring.peening.depth: goes down to 3 mm, below the wire's axis at 2.5"),
         ({"spring": peened([0, 1], [-1, 2])}, "spring.peening: the last value must be 0: the layer ends there"),
         ({"spring": peened([0, 1], [-1, 1, 0])}, "spring.peening: there are 2 depths, but 3 values"),

@@ -104,7 +104,7 @@ def test_rank_correlation_sees_monotone_and_constant_inputs():
         ({"vary": {"a": {"mean": 1, "tolerance": 0.1}}}, "a scatter has no grid"),
         ({"vary": {"a": {"mean": 1, "tolerence": 0.1}}}, "vary.a.tolerence: unknown entry; is tolerance meant?"),
         ({"vary": {"a": {"from": 0, "to": 1, "count": 3, "spacing": "log"}}}, "equal ratios need a positive start"),
-        ({"vary": {"a": [1, 2], "b": [1]}, "design": "together"}, "as many values, not a 2, b 1"),
+        ({"vary": {"a": [1, 2], "b": [1]}, "design": "together"}, "equally many, not a 2, b 1"),
         ({"vary": {"a": [1, 2]}, "design": "latin_hypercube"}, "latin_hypercube needs 'samples'"),
         ({"vary": {"a": [1, 2]}, "samples": 3}, "grid has no 'samples'"),
         ({"vary": {"a": [1, 2]}, "design": "sobol", "samples": 100}, "power of 2 as 'samples', not 100"),
