@@ -36,6 +36,9 @@ def mpi_settings() -> dict[str, str]:
     renamed = version is not None and int(version[1]) >= 6  # which warns of the earlier name
     return {
         "OMPI_MCA_btl": "self,sm",  # ranks of one machine communicate through memory
+        # A rank that waits gives its core away: where other programs run, the one that it waits for would else not be
+        # served meanwhile.
+        "OMPI_MCA_mpi_yield_when_idle": "1",
         f"PRTE_MCA_{'mapby' if renamed else 'rmaps_default_mapping_policy'}": ":oversubscribe",
     }
 
