@@ -101,7 +101,7 @@ class Lines:
         table.add_row("block height", _number(summary["block_height_mm"], "mm"))
         table.add_row("maximum residual shear stress", _number(summary["residual_shear_max_MPa"], "MPa", 2))
         inside = _number(summary["residual_shear_inside_MPa"], "MPa", 2)
-        table.add_row("residual shear stress, coil's inside", inside)
+        table.add_row("residual shear stress, inside of coil", inside)
         table.add_row("results in", f"{out}{os.sep}")
         self.console.print(table)
         for warning in summary["warnings"]:

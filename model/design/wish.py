@@ -79,10 +79,10 @@ class Conditions(Strict):
     ]
     residual_shear_inside_MPa: Annotated[
         Stress | None,
-        Field(description="residual shear stress at the coil's inside, MPa; presetting makes it negative"),
+        Field(description="residual shear stress at the inside of the coil, MPa; presetting makes it negative"),
     ] = None
     shear_inside_max_MPa: Annotated[
-        Stress | None, Field(description="maximum shear stress at the coil's inside, MPa")
+        Stress | None, Field(description="maximum shear stress at the inside of the coil, MPa")
     ] = None
     plastic_work_max_N_per_mm2: Annotated[
         float | None, Unit("N/mm²"), Field(gt=0, description="maximum plastic work b* on the surface, N/mm²")

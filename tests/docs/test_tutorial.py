@@ -19,7 +19,7 @@ PAGES = {path.stem: path.read_text(encoding="utf-8")
 LINES = {"free length before": "free_length_before_mm", "free length after": "free_length_after_mm", "set": "set_mm",
          "initial rate": "rate_N_per_mm", "maximum force": "force_max_N", "block height": "block_height_mm",
          "maximum residual shear stress": "residual_shear_max_MPa",
-         "residual shear stress, coil's inside": "residual_shear_inside_MPa"}  # fmt: skip
+         "residual shear stress, inside of coil": "residual_shear_inside_MPa"}  # fmt: skip
 
 
 @pytest.fixture(scope="module")
