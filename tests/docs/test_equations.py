@@ -8,7 +8,7 @@ import pytest
 REPOSITORY = Path(__file__).resolve().parents[2]
 ROOMS = ("model", "meshes", "verification", "scripts", "tests")
 THEORY = "\n".join(path.read_text(encoding="utf-8") for path in sorted((REPOSITORY / "docs/theory").glob("*.md")))
-NUMBER = r"(?<![\d.])([3-7]\.\d\.\d{1,2})(?![\d.])"  # of the thesis: chapters 3 to 7
+NUMBER = r"(?<![\d.])([3-7]\.\d\.\d{1,2})(?!\d|\.\d)"  # of the thesis: chapters 3 to 7
 
 
 def sources(rooms=ROOMS):
@@ -58,6 +58,10 @@ def test_a_range_is_all_of_its_numbers():
     assert numbers("(4.4.6–4.4.8), (3.1.6, 3.1.8), 10.3.2, 1.2.2") == {"4.4.6", "4.4.7", "4.4.8", "3.1.6", "3.1.8"}
 
 
+def test_a_number_at_the_end_of_a_sentence_is_one():
+    assert numbers("By 3.1.4. And 5.2.33.") == {"3.1.4", "5.2.33"}
+
+
 @pytest.mark.parametrize("kind", ["Table", "figure"])
 def test_every_table_and_figure_of_the_thesis_is_placed(kind):
     """Of the thesis: two numbers, as in Table 5.2; a standard's have one."""
@@ -67,7 +71,7 @@ def test_every_table_and_figure_of_the_thesis_is_placed(kind):
         for first, last in re.findall(r"(\d\.\d+) to (\d\.\d+)", text):
             named |= spread(first, last)
     found = {}
-    for words, path in cited(rf"{kind}s? (\d\.\d+(?:(?: to |, | and )\d\.\d+)*)(?![\d.])").items():
+    for words, path in cited(rf"{kind}s? (\d\.\d+(?:(?: to |, | and )\d\.\d+)*)(?!\d|\.\d)").items():
         found |= {number: path for number in re.findall(r"\d\.\d+", words)}
     assert found
     assert {number: path for number, path in found.items() if number not in named} == {}
