@@ -12,7 +12,7 @@ from rich.table import Table
 from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.section_shapes import parse
 from coilset.model.case import read_case
-from coilset.model.results.folder import prepare, write_summary
+from coilset.model.results.folder import clear, prepare, write_summary
 from coilset.model.results.provenance import origin
 from coilset.model.slice.analysis import ACROSS, SliceAnalysis, SliceStep
 from coilset.model.slice.summary import summarise, write_history
@@ -81,6 +81,7 @@ def _row(step: SliceStep) -> str:
 def _write(out: Path, analysis: SliceAnalysis, summary: dict[str, Any], pictures: bool) -> None:
     from coilset.model.slice import output
 
+    clear(out)
     write_history(out, analysis.result.steps)
     output.write_fields(out, analysis)
     if pictures:

@@ -59,8 +59,20 @@ def reserve(path: Path, size: int) -> None:
 
 HEADER = 1 << 20  # maximum number of bytes in a NetCDF file besides its numbers
 RECORDS = ("summary.json", "history.csv", "seats.csv", "points.nc", "checkpoint/*.npz", "checkpoint/*.jsonl")
-DERIVED = ("fields/*.vtu", "fields/*.pvd", "characteristic.png", "springs.png", "cross_section.png", "force_centre.png",
-           "seat_pressure.png", "buckling_mode.png", "animation.gif", "report.html")  # fmt: skip
+DERIVED = (
+    "fields/*.vtu",
+    "fields/*.pvd",
+    "characteristic.png",
+    "springs.png",
+    "cross_section.png",
+    "force_centre.png",
+    "seat_pressure.png",
+    "buckling_mode.png",
+    "section.png",
+    "goodman.png",
+    "animation.gif",
+    "report.html",
+)
 RESULTS = RECORDS + DERIVED
 
 

@@ -23,8 +23,6 @@ def write_fields(folder: Path, analysis: SliceAnalysis) -> None:
     """
     folder = Path(folder) / "fields"
     make(folder)
-    for old in folder.glob("*.vtu"):
-        old.unlink()
     lattice = analysis.lattice
     start = lattice.positions(analysis.body.start)
     for number, shot in enumerate(analysis.result.snapshots):

@@ -233,7 +233,7 @@ def test_an_interrupted_run_is_not_thrown_away(example, folder):
 
 
 def test_a_forced_run_leaves_nothing_of_the_old_one(example, folder, monkeypatch):
-    for name in ("summary.json", "springs.png", "history.csv", "report.html"):
+    for name in ("summary.json", "springs.png", "goodman.png", "history.csv", "report.html"):
         (folder / name).write_text("old")
     (folder / "log.txt").write_text("old\n")
 

@@ -29,6 +29,8 @@ def test_files_and_summary(example, tmp_path):
     assert len(list((tmp_path / "here" / "fields").glob("*.vtu"))) == 3
     with pytest.raises(InputError, match="--force"):
         slice_case(example, tmp_path / "here", settings=SHORT, across=3.0)
+    slice_case(example, tmp_path / "here", force=True, settings=SHORT, across=3.0, pictures=False)
+    assert not (tmp_path / "here" / "section.png").exists()
 
 
 def test_summary_has_the_entries_of_a_springs_run(example):
