@@ -39,7 +39,7 @@ def accuracy_warning(error: float, asked: float, place: str) -> Warning | None:
         return None
     message = (
         f"the error due to the step size is about {100 * error:.2g} %, more than the {100 * asked:.2g} % requested; "
-        "take smaller steps"
+        "use smaller steps"
     )
     return Warning("step error", place, message, error, asked)
 
@@ -99,7 +99,7 @@ def _wall(setup: Setup, result: Result) -> Iterator[Warning]:
             height = accuracy * step.force_N / abs(rate)
             message = (
                 f"at {_place(step)} the force changes by {rate:.3g} N/mm: the spring stands on a wall, as its coils "
-                f"lie on each other or slip, and {100 * accuracy:.2g} % of the force are {height:.2g} mm of height"
+                f"are closed or slip, and {100 * accuracy:.2g} % of the force correspond to {height:.2g} mm of height"
             )
             yield Warning("wall", _place(step), message, percent, WALL)
 
@@ -147,7 +147,7 @@ def _snapped(setup: Setup, result: Result) -> Iterator[Warning]:
         times = "" if len(snaps) == 1 else f", {len(snaps)} times in all"
         message = (
             f"the spring snapped through at a travel of {step.travel_mm:.5g} mm, from {force:.5g} N to "
-            f"{step.force_N:.5g} N, and set {step.released_energy_Nmm:.2g} N mm free{times}: several branches exist, "
+            f"{step.force_N:.5g} N, and released {step.released_energy_Nmm:.2g} N mm{times}: several branches exist, "
             "and it came to rest on the one that a slow snap leads to"
         )
         yield Warning("snapped", _place(step), message, step.released_energy_Nmm, 0.0, "N mm")
