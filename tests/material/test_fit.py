@@ -125,6 +125,16 @@ def test_a_missing_kind_of_test_is_named(shipped, gone, kind):
         fit.fit([test for test in shipped if test.name != gone], 84000, 0.28989)
 
 
+@pytest.mark.parametrize("name", ["tension", "reversed_torsion", "tension_torsion"])
+def test_strain_in_per_cent_and_stress_in_other_units_are_refused(shipped, name):
+    """Which fitted, with constants without meaning and exit code 0; the tests as they are pass, see `fitted`."""
+    (test,) = (test for test in shipped if test.name == name)
+    for strain, stress in ((100.0, 1.0), (1.0, 1e-3)):
+        wrong = experiments.Test(name, strain * test.strain, stress * test.stress)
+        with pytest.raises(InputError, match=f"test {name}: .*give strain as a number"):
+            fit.fit([wrong], 84000, 0.28989)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

@@ -69,6 +69,24 @@ def small_plan(write_sweep, text):
     return Plan(write_sweep(text)) if COMM.rank == 0 else None
 
 
+def same(found, expected):
+    """Assert that two summaries of one case agree, but for the last bits of numbers.
+
+    Where one process has compiled a kernel and the other has loaded it, sums over several points differ there: 1e-15
+    was seen. Any other step, entry or element changes far more.
+    """
+    if isinstance(expected, dict):
+        assert found.keys() == expected.keys()
+        for name, value in expected.items():
+            same(found[name], value)
+    elif isinstance(expected, list):
+        assert len(found) == len(expected)
+        for pair in zip(found, expected, strict=True):
+            same(*pair)
+    else:
+        assert found == (pytest.approx(expected, rel=1e-12) if isinstance(expected, float) else expected)
+
+
 @pytest.mark.skipif(COMM.size == 1, reason="needs a rank that leads and one that solves")
 def test_sweep_over_ranks_is_the_sweep_of_one_process(write_sweep, tmp_path):
     """One rank a case, and a wrong spring among them."""
@@ -82,7 +100,7 @@ def test_sweep_over_ranks_is_the_sweep_of_one_process(write_sweep, tmp_path):
         records = {record["key"]: record for record in read_records(tmp_path / "journal.jsonl")}
         assert [records[key]["status"] for key in plan.keys] == ["done", "done", "failed"]
         alone = evaluate(**plan.task(plan.rows[1]), comm=MPI.COMM_SELF)
-        assert records[plan.keys[1]]["summary"] == alone["summary"]
+        same(records[plan.keys[1]]["summary"], alone["summary"])
 
 
 @pytest.mark.skipif(COMM.size < 3, reason="needs a rank that leads and two that share a case")

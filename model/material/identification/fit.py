@@ -28,6 +28,9 @@ from coilset.model.material.identification.hardening import (
 from coilset.model.material.identification.result import Fit, Minimum, result
 
 STEP = 1e-4  # of the logarithms of the variables, for derivatives
+COMPONENTS = {"tension": (0,), "torsion": (1,), "combined": (0, 1)}  # of strain and stress that a kind of test loads
+LOADED = 0.1  # of the maximum stress: readings below it may be of a machine that settles
+SOFTEST = 0.03  # of the elastic modulus, at the first reading above that; strain in per cent gives 0.01
 
 
 def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool | None = None, temperature: float = 293.15) -> Fit:
@@ -44,10 +47,12 @@ def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool | None = Non
         A `Fit`.
 
     Raises:
-        InputError: if a kind of test is missing.
+        InputError: if a kind of test is missing, or strain is not a number, or stress not in N/mm².
         SolveError: if the constants cannot be determined from these tests.
     """
     tests = tuple(tests)
+    for test in tests:
+        _check_units(test, (2.0 * float(G) * (1.0 + float(nu)), float(G)))
     kinds = {kind: [test for test in tests if test.kind == kind] for kind in ("tension", "torsion", "combined")}
     isotropic = bool(tests) and len(kinds["tension"]) == len(tests)
     saturates = not isotropic if saturates is None else saturates
@@ -65,6 +70,19 @@ def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool | None = Non
     values, _ = _minima(model, _closest(model, starts, kinds["combined"], 1), NORMALITY, kinds["combined"])[0]
     minima = _minima(model, bend_starts(model, values, proportional, reach), model.names, tests)
     return result(model, minima, tests, float(temperature))
+
+
+def _check_units(test: Test, moduli: tuple[float, float]) -> None:
+    """Refuse a test whose first loaded reading is far softer than the elastic moduli E and G allow, N/mm²."""
+    for component in COMPONENTS[test.kind]:
+        strain, stress = np.abs(test.strain[:, component]), np.abs(test.stress[:, component])
+        first = int(np.argmax(stress >= LOADED * stress.max()))
+        if stress[first] < SOFTEST * moduli[component] * strain[first]:
+            raise InputError(
+                f"at a stress of {stress[first]:.4g} its strain is {strain[first]:.4g}, far more than the elastic "
+                f"{stress[first] / moduli[component]:.2g}; give strain as a number, 0.02 for 2 %, and stress in N/mm²",
+                f"test {test.name}",
+            )
 
 
 def _fit_hardening(model: FittedLaw, tests: tuple[Test, ...], temperature: float) -> Fit:
