@@ -135,6 +135,19 @@ def test_strain_in_per_cent_and_stress_in_other_units_are_refused(shipped, name)
             fit.fit([wrong], 84000, 0.28989)
 
 
+def test_too_few_readings_of_flow_are_counted():
+    """A tensile curve of some thirty rows may hold no more than a few of them."""
+    young, top = 2 * 84000 * 1.28989, 600.0
+    strain = np.concatenate([np.linspace(0.0, top / young, 20), top / young + 2e-3 * np.arange(1, 6)])
+    rows = np.column_stack([strain, np.zeros(25)])
+    flowing = experiments.Test("flowing", rows, np.column_stack([np.minimum(young * strain, top), np.zeros(25)]))
+    with pytest.raises(InputError, match=r"flowing: 5 readings beyond a plastic strain of 0\.05 %, and 10 are needed"):
+        fit.fit([flowing], 84000, 0.28989)
+    elastic = experiments.Test("elastic", rows, young * rows)
+    with pytest.raises(InputError, match="elastic: no yielding is seen; is G right"):
+        fit.fit([elastic], 84000, 0.28989)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

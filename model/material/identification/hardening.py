@@ -13,6 +13,8 @@ from coilset.model.material import functions as fn
 from coilset.model.material.identification.experiments import Test
 from coilset.model.material.identification.fitted_law import KINEMATIC, NORMALITY, FittedLaw, Variables, moved_by
 
+FLOWING = 5e-4  # length of the plastic path from which a reading tells k²: before it, the elastic moduli decide
+READINGS = 10  # that a fit needs at least
 NO_BACK_STRESS = {"start": 0.0, "rest": 0.0, "a7": 1.0}
 Starts = Callable[[float, float], Iterable[dict[str, float]]]  # variables from reach, N/mm², and maximum k², N²/mm⁴
 
@@ -49,11 +51,13 @@ def hardening(
         work, k2 = np.empty(len(plastic)), np.empty(len(plastic))
         _follow(*(kinematic[name] for name in KINEMATIC), plastic, test.stress, work, k2)
         length = np.linalg.norm(np.diff(plastic, axis=0, prepend=0), axis=1).cumsum()
-        flows = (length > 5e-4) & (work > 0) & (k2 > 0.85 * np.maximum.accumulate(k2))
+        flows = (length > FLOWING) & (work > 0) & (k2 > 0.85 * np.maximum.accumulate(k2))
         points.append((work[flows], k2[flows]))
     work, k2 = np.hstack(points)
-    if work.size < 10:
-        raise InputError(f"the tests {', '.join(test.name for test in tests)} show no yielding; is G right?")
+    if work.size < READINGS:
+        names = ", ".join(test.name for test in tests)
+        few = f"{work.size} readings beyond a plastic strain of {100 * FLOWING:g} %, and {READINGS} are needed"
+        raise InputError(f"{names}: {few}; give more, or the curve as a table" if work.size else f"{names}: no yielding is seen; is G right?")
     values = np.empty((6, work.size))
 
     def moved(start: dict[str, float], x: np.ndarray) -> dict[str, float]:
