@@ -57,7 +57,8 @@ def hardening(
     if work.size < READINGS:
         names = ", ".join(test.name for test in tests)
         few = f"{work.size} readings beyond a plastic strain of {100 * FLOWING:g} %, and {READINGS} are needed"
-        raise InputError(f"{names}: {few}; give more, or the curve as a table" if work.size else f"{names}: no yielding is seen; is G right?")
+        problem = f"{few}; give more, or the curve as a table" if work.size else "no yielding is seen; is G right?"
+        raise InputError(f"{names}: {problem}")
     values = np.empty((6, work.size))
 
     def moved(start: dict[str, float], x: np.ndarray) -> dict[str, float]:
