@@ -15,7 +15,7 @@ from coilset.model.results.figures import save
 from coilset.model.results.folder import make, whole
 
 KINDS = ("relative", "absolute", "at_most")
-LETTERS = 13  # of a title, on an inch of a figure
+LETTERS = 14  # of a title, on an inch of a figure
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class Check:
     def told(self) -> str:
         """The deviation in words."""
         size, limit = (_plainly(value, self.kind) for value in (self.deviation, self.tolerance))
-        return f"{self.quantity}: {size} from {self.source}, {limit} allowed"
+        return f"{self.quantity}, off by {size} ({limit} allowed; reference: {self.source})"
 
     @property
     def verdict(self) -> str:
@@ -160,7 +160,7 @@ class Study:
 
 
 def _plainly(value: float, kind: str) -> str:
-    return f"{100.0 * value:.2g} %" if kind == "relative" else f"{value:.2g}"
+    return (f"{100.0 * value:.2g} %" if kind == "relative" else f"{value:.2g}").replace("-", "−")
 
 
 def plain(value: object) -> object:

@@ -67,7 +67,7 @@ def _row(sheet: Figure, row: list[Axes], analysis: SliceAnalysis, shot: SliceSna
     limit, mises = max(float(np.abs(around).max()), 1e-9), equivalent(shot.stress)
     for axes, values, shades, colours, name in (
         (row[0], around, levels(-limit, limit), DIVERGING, "shear about the wire's axis"),
-        (row[1], mises, levels(float(mises.min()), float(mises.max())), "viridis", "von Mises stress"),
+        (row[1], mises, levels(0.0, float(mises.max())), "viridis", "von Mises stress"),
     ):
         shown = axes.tricontourf(*lattice.places.T, lattice.triangles, values, levels=shades, cmap=colours)
         for side in lattice.rim:

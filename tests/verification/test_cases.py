@@ -57,14 +57,14 @@ def test_the_title_of_a_figure_says_what_was_found(tmp_path):
     study = Study(tmp_path)
     study.check("close", 1.001, 1.0, "closed form", 0.1)
     study.check("force, N", 1.05, 1.0, "closed form", 0.1)
-    near = "All 2 numbers are within tolerance; nearest its limit is force, N: 5 % from closed form, 10 % allowed"
-    assert study.finding == near
-    figure = Figure(figsize=(9.0, 3.0))
+    near = "nearest its limit is force, N, off by 5 % (10 % allowed; reference: closed form)"
+    assert study.finding == f"All 2 numbers are within tolerance; {near}"
+    figure = Figure(figsize=(20.0, 3.0))
     figure.suptitle("A spring")
     study.figure("one", figure)
     study.write("one")
     assert (tmp_path / "one.png").is_file()
-    assert figure.get_suptitle() == f"A spring\n{near}"
+    assert figure.get_suptitle() == f"A spring\nAll 2 numbers are within tolerance; {near}"
     study.check("off", 3.0, 1.0, "open", 1.0, "absolute")
     assert study.finding == "1 of 3 numbers are beyond their tolerance"
 
