@@ -13,6 +13,7 @@ from types import ModuleType
 
 import xarray as xr
 
+from coilset.model.design.opened import FILE, open_design
 from coilset.model.results.labelled import labelled
 
 
@@ -20,8 +21,8 @@ class _Open(ModuleType):
     """This module, which can be called."""
 
     def __call__(self, folder: str | Path) -> xr.Dataset:
-        """Results of a run or a sweep; see coilset.model.results.labelled."""
-        return labelled(folder)
+        """Results of a run, a sweep or a design; see coilset.model.results.labelled, coilset.model.design.opened."""
+        return open_design(folder) if Path(folder, FILE).is_file() else labelled(folder)
 
 
 sys.modules[__name__].__class__ = _Open

@@ -2,6 +2,7 @@
 
 import json
 import math
+import textwrap
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -14,6 +15,7 @@ from coilset.model.results.figures import save
 from coilset.model.results.folder import make, whole
 
 KINDS = ("relative", "absolute", "at_most")
+LETTERS = 14  # of a title, on an inch of a figure
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,17 @@ class Check:
         return not self.reason
 
     @property
+    def used(self) -> float:
+        """Share of the tolerance that the deviation uses; 0 where only a bound is asked for."""
+        return 0.0 if self.kind == "at_most" or not self.tolerance else abs(self.deviation) / self.tolerance
+
+    @property
+    def told(self) -> str:
+        """The deviation in words."""
+        size, limit = (_plainly(value, self.kind) for value in (self.deviation, self.tolerance))
+        return f"{self.quantity}, off by {size} ({limit} allowed; reference: {self.source})"
+
+    @property
     def verdict(self) -> str:
         """`met`, `not met`, or `not judged` with the reason."""
         if not self.judged:
@@ -82,6 +95,7 @@ class Study:
         self.tables: list[dict[str, Any]] = []
         self.notes: list[str] = []
         self.figures: list[str] = []
+        self._drawn: dict[str, Figure] = {}
 
     def check(
         self,
@@ -111,9 +125,20 @@ class Study:
         self.notes.append(text)
 
     def figure(self, name: str, figure: Figure) -> None:
-        """Write a matplotlib Figure as NAME.png."""
-        save(figure, self.folder / f"{name}.png")
+        """A matplotlib Figure, which `write` writes as NAME.png with the finding over it."""
+        self._drawn[f"{name}.png"] = figure
         self.figures.append(f"{name}.png")
+
+    @property
+    def finding(self) -> str:
+        """What the numbers say, in a sentence: the one that is nearest its limit, or how many are beyond."""
+        judged = [check for check in self.checks if check.judged]
+        off = sum(not check.passed for check in judged)
+        if off or not judged:
+            return f"{off} of {len(judged)} numbers are beyond their tolerance" if judged else ""
+        near = max(judged, key=lambda check: check.used)
+        count = "The number is" if len(judged) == 1 else f"All {len(judged)} numbers are"
+        return f"{count} within tolerance" + (f"; nearest its limit is {near.told}" if near.used else "")
 
     @property
     def passed(self) -> bool:
@@ -122,12 +147,20 @@ class Study:
         return bool(judged) and all(check.passed for check in judged)
 
     def write(self, name: str) -> None:
-        """record.json."""
+        """The figures, and record.json."""
+        for file, figure in self._drawn.items():
+            lines = textwrap.wrap(self.finding, int(LETTERS * figure.get_figwidth()))
+            figure.suptitle("\n".join(filter(None, (figure.get_suptitle(), *lines))), fontsize=9)
+            save(figure, self.folder / file)
         checks = [asdict(check) | {"deviation": check.deviation, "verdict": check.verdict} for check in self.checks]
         record = {"case": name, "passed": self.passed, "checks": checks, "tables": self.tables, "notes": self.notes,
                   "figures": self.figures}  # fmt: skip
         with whole(self.folder / "record.json") as path:
             path.write_text(json.dumps(json_ready(record), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def _plainly(value: float, kind: str) -> str:
+    return (f"{100.0 * value:.2g} %" if kind == "relative" else f"{value:.2g}").replace("-", "−")
 
 
 def plain(value: object) -> object:

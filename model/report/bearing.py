@@ -1,5 +1,7 @@
 """Seats and coils: the force centre, and the contact pressure along the wire."""
 
+from typing import Any
+
 import numpy as np
 
 from coilset.model.report.panel import COLOURS, LINE, Panel, axis
@@ -40,10 +42,20 @@ def force_centre(run: Run) -> Panel | None:
         finding,
         f"{finding}. Path of the force centre on each seat, seen along the axis.",
         traces,
-        {"xaxis": axis("x, mm", **shown), "yaxis": axis("y, mm", scaleanchor="x", **shown)},
+        {
+            "xaxis": axis("x, mm", **shown),
+            "yaxis": axis("y, mm", scaleanchor="x", **shown),
+            "shapes": [_coil(float(np.hypot(*run.data["position"].values[0, -1, :2])))],
+        },
         height=420,
-        note=f"Shown up to {REACH:g} coil radii; a double click shows what lies farther away.",
+        note=f"The circle is the coil. Shown up to {REACH:g} coil radii; a double click shows what lies farther away.",
     )
+
+
+def _coil(radius: float) -> dict[str, Any]:
+    """The coil about the axis, as wound."""
+    line = {"width": 1, "color": "#808080"}
+    return {"type": "circle", "x0": -radius, "x1": radius, "y0": -radius, "y1": radius, "line": line}
 
 
 def contact(run: Run) -> Panel | None:

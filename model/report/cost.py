@@ -52,6 +52,6 @@ def step_error(run: Run) -> Panel | None:
         finding,
         f"{finding}. Estimated error over the steps.",
         [trace],
-        {"xaxis": axis("step"), "yaxis": axis("estimated error of the force, N")},
+        {"xaxis": axis("step"), "yaxis": axis("error of the force, N")},
         height=320,
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from coilset.meshes.errors import unreadable
 from coilset.model.case import Case
-from coilset.model.case.reference import entry_unit
+from coilset.model.case.reference import entry_unit, entry_words
 from coilset.model.report.answer import Number, answer
 from coilset.model.report.page import made_with
 from coilset.model.report.panel import COLOURS, LINE, Panel, axis
@@ -41,7 +41,7 @@ def write_design_report(folder: str | Path) -> Path:
     records = list(read_records(folder / "evaluations.jsonl"))
     names = list(design["found"])
     found = [
-        Number(_words(name), f"{plain(value, 6)} {_unit(name)}".strip()) for name, value in design["found"].items()
+        Number(entry_words(name), f"{plain(value, 6)} {_unit(name)}".strip()) for name, value in design["found"].items()
     ]
     return write_page(
         folder,
@@ -49,7 +49,7 @@ def write_design_report(folder: str | Path) -> Path:
         [("The search", [search(design, records)])],
         {},
         title=f"{folder.resolve().name}: {', '.join(f'{one.term} {one.value}' for one in found)}",
-        subtitle=f"{', '.join(_words(name) for name in names)} for {_wish(design)}",
+        subtitle=f"{', '.join(entry_words(name) for name in names)} for {_wish(design)}",
         design=design,
         found=found,
         conditions=[_condition(one) for one in design["conditions"]],
@@ -99,21 +99,13 @@ def _off(values: list[float | None], wish: float) -> float:
     return max(abs(values[0] - wish) / abs(wish), LEAST_OFF)
 
 
-def _words(name: str) -> str:
-    """An entry in words: `spring.wire_diameter` → wire diameter; what stands in a list keeps its place."""
-    parts = name.split(".")
-    if parts[0] == "loading" and len(parts) > 2:
-        return f"{parts[-1].replace('_', ' ')} of phase {int(parts[1]) + 1}"
-    return parts[-1].replace("_", " ")
-
-
 def _unit(name: str) -> str:
     return entry_unit(Case, name)
 
 
 def _head(name: str) -> str:
     unit = _unit(name)
-    return _words(name) + (f", {unit}" if unit else "")
+    return entry_words(name) + (f", {unit}" if unit else "")
 
 
 def _named(condition: Mapping[str, Any]) -> str:
@@ -144,15 +136,16 @@ def _slopes(design: Mapping[str, Any], names: list[str]) -> list[tuple[str, list
 
 def _of(name: str) -> str:
     """What is other than in the wish: an entry of the case, or a condition."""
-    return _words(name) if "." in name else quantity(name)[0]
+    return entry_words(name) if "." in name else quantity(name)[0]
 
 
 def _trade_off(row: Mapping[str, Any], names: list[str]) -> dict[str, Any]:
+    force = "N" if row["of"].startswith("force at ") else ""
     value = plain(row["value"], 6) if isinstance(row["value"], float) else str(row["value"])
     numbers = [*(row["unknowns"][name] for name in names),
                row["wire_length_mm"], row["free_length_before_mm"], row["torque"]]  # fmt: skip
     return {
-        "of": f"{_of(row['of'])} {value} {_unit(row['of']) or quantity(row['of'])[1]}".strip(),
+        "of": f"{_of(row['of'])} {value} {_unit(row['of']) or quantity(row['of'])[1] or force}".strip(),
         "numbers": ["–" if number is None else plain(number, 5) for number in numbers],
         "possible": row["possible"],
     }

@@ -13,6 +13,7 @@ from coilset.model.results.wire import inside
 
 PIXELS = 121  # of a map, across the wire
 BEYOND = 1.04  # wire radii up to which colours go: the rim is drawn over them
+WITHIN = 0.999  # of the wire radius: inside the chords of the rim's polygon, cos(π/96) = 0.99946
 
 
 def shear_map(run: Run) -> Panel:
@@ -78,7 +79,7 @@ def _map(places: np.ndarray, values: np.ndarray, radius: float, end: float, choi
     line = np.linspace(-BEYOND * radius, BEYOND * radius, PIXELS)
     y, z = np.meshgrid(line, line)
     distance = np.hypot(y, z)
-    within = np.minimum(1.0, 0.9995 * radius / np.maximum(distance, 1e-12))
+    within = np.minimum(1.0, WITHIN * radius / np.maximum(distance, 1e-12))
     triangles = Triangulation(*places.T)
     field = LinearTriInterpolator(triangles, values)(y * within, z * within).filled(np.nan)
     field[distance > BEYOND * radius] = np.nan

@@ -5,7 +5,7 @@ import numpy as np
 from coilset.model.report.panel import DIVERGING, Panel
 from coilset.model.report.scale import round_end
 from coilset.model.results.opened import Run
-from coilset.model.results.wire import moments, tubes
+from coilset.model.results.wire import closed, moments, tubes
 
 RINGS = 6000  # of all moments of a page together
 MOST = 60  # moments
@@ -18,7 +18,7 @@ def spring_view(run: Run) -> Panel:
     turns = float(np.ptp(run.data["turn"].values))
     shown = moments(run, int(np.clip(RINGS / (PER_TURN * turns), 2, MOST)))
     rings = min(PER_ELEMENT * (run.data.sizes["station"] - 1), RINGS // len(shown.labels)) + 1
-    places, stress = tubes(run, shown, rings)
+    places, stress = closed(*tubes(run, shown, rings))
     end = round_end(float(np.abs(stress).max()))
     frames = [
         {**dict(zip("xyz", np.moveaxis(place, -1, 0), strict=True)), "surfacecolor": value}

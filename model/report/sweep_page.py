@@ -11,7 +11,7 @@ from coilset.meshes.errors import unreadable
 from coilset.model.report.answer import Number
 from coilset.model.report.panel import COLOURS, Panel, axis
 from coilset.model.report.render import write_page
-from coilset.model.results.labels import plain
+from coilset.model.sweep import findings
 from coilset.model.sweep.sensitivity import rank_correlation
 
 FILE = "sweep.nc"
@@ -52,8 +52,8 @@ def write_sweep_report(folder: str | Path) -> Path:
         answer=[Number("cases", f"{counts['done']} done", f"{counts['failed']} failed, {counts['missing']} missing"),
                 *(_range(data, name) for name in ANSWERS if name in data)],
         warnings=_warnings(data),
-        finding=_over(data, of),
-        made_with=data.attrs["title"],
+        finding=findings.extent(data, of),
+        made_with="; ".join(filter(None, (data.attrs["title"], data.attrs.get("versions", "")))),
     )  # fmt: skip
 
 
@@ -106,15 +106,11 @@ def _inputs(data: xr.Dataset) -> list[str]:
     return [name for name in _list(data.attrs["inputs"]) if data[name].dtype.kind == "f"]
 
 
-def _plain(value: Any) -> str:
-    return plain(float(value)).replace("-", "−")
-
-
 def _range(data: xr.Dataset, name: str) -> Number:
     values, unit = data[name], data[name].attrs["units"]
     if not bool(values.notnull().any()):
         return Number(values.attrs["long_name"], "not reached")
-    low, mean, high = (_plain(value) for value in (values.min(), values.mean(), values.max()))
+    low, mean, high = (findings.number(value) for value in (values.min(), values.mean(), values.max()))
     return Number(values.attrs["long_name"], f"{low} to {high} {unit}", f"mean {mean} {unit}")
 
 
@@ -124,11 +120,6 @@ def _warnings(data: xr.Dataset) -> list[str]:
         for name in filter(None, str(text).split(", ")):
             names[name] = names.get(name, 0) + 1
     return [f"{name}: in {count} of {data.sizes['case']} cases" for name, count in names.items()]
-
-
-def _over(data: xr.Dataset, of: str) -> str:
-    low, high = _plain(data[of].min()), _plain(data[of].max())
-    return f"The {data[of].attrs.get('long_name', of)} runs from {low} to {high} {data[of].attrs['units']}"
 
 
 def _ranked(data: xr.Dataset, of: str) -> list[tuple[str, float, np.ndarray]]:
@@ -154,16 +145,15 @@ def _deciding(data: xr.Dataset, of: str) -> Panel | None:
         return None
     names = [data[name].attrs["long_name"] for name, _, _ in ranked]
     correlation, interval = np.array([one for _, one, _ in ranked]), np.stack([one for _, _, one in ranked])
-    way = "larger" if correlation[0] > 0.0 else "smaller"
-    finding = f"A greater {names[0]} goes with a {way} {data[of].attrs['long_name']} most clearly"
+    finding = findings.strongest(findings.words(data, of), names, correlation, interval)
     trace = {"type": "bar", "orientation": "h", "x": correlation, "y": names, "marker": {"color": COLOURS[0]},
              "error_x": {"type": "data", "symmetric": False, "array": interval[:, 1] - correlation,
                          "arrayminus": correlation - interval[:, 0]}, "showlegend": False}  # fmt: skip
     told = ", ".join(f"{name} {value:.2f}" for name, value in zip(names, correlation, strict=True))
     return Panel("deciding", finding, f"{finding}. Rank correlations: {told}.", [trace],
-                 {"xaxis": axis("rank correlation, with 95 % interval", range=[-1.05, 1.05]),
+                 {"xaxis": axis("rank correlation", range=[-1.05, 1.05]),
                   "yaxis": {"automargin": True, "autorange": "reversed"}},
-                 note="Spearman's; it is 1 where the response only ever grows with the input.")  # fmt: skip
+                 note="Spearman's and its 95 % interval; 1 if the response always grows with the input.")  # fmt: skip
 
 
 def _spread(data: xr.Dataset, of: str) -> Panel | None:
@@ -171,9 +161,7 @@ def _spread(data: xr.Dataset, of: str) -> Panel | None:
     values = data[of].values[np.isfinite(data[of].values)]
     if len(values) < ENOUGH:
         return None
-    words, unit = data[of].attrs.get("long_name", of), data[of].attrs["units"]
-    low, high = map(_plain, np.quantile(values, [0.05, 0.95]))
-    finding = f"Nine in ten cases have a {words} of {low} to {high} {unit}"
+    words, unit, finding = findings.words(data, of), data[of].attrs["units"], findings.middle(data, of)
     trace = {"type": "histogram", "x": values, "marker": {"color": COLOURS[0]}, "showlegend": False}
     return Panel("spread", finding, f"{finding}. Number of cases over the {words}.", [trace],
                  {"xaxis": axis(f"{words}, {unit}"), "yaxis": axis("cases"), "bargap": 0.04})  # fmt: skip

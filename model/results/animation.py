@@ -11,7 +11,7 @@ from coilset.model.results.display import ensure
 from coilset.model.results.folder import whole
 from coilset.model.results.opened import Run
 from coilset.model.results.scene import ABOVE, scale_end
-from coilset.model.results.wire import moments, tubes
+from coilset.model.results.wire import closed, moments, tubes
 from coilset.model.style import DIVERGING
 
 NAME = "animation.gif"
@@ -19,6 +19,7 @@ SIZE = (720, 540)  # pixels
 MOST = 80  # pictures
 RINGS = 40  # of the wire, a turn
 EACH, LAST = 120, 1500  # milliseconds that a picture stays, and the last one
+LIGHT = {"ambient": 0.45, "diffuse": 0.6, "specular": 0.0}  # colours stay close to those of the bar
 BAR = "shear about the wire's axis, positive with the load, MPa"
 
 
@@ -34,7 +35,7 @@ def animate(run: Run) -> Path:
     if not ensure():
         raise CoilsetError(f"{NAME} is not drawn: there is no display and no Xvfb")
     shown = moments(run, MOST)
-    places, stress = tubes(run, shown, int(RINGS * np.ptp(run.data["turn"].values)) + 1)
+    places, stress = closed(*tubes(run, shown, int(RINGS * np.ptp(run.data["turn"].values)) + 1))
     pictures = [Image.fromarray(one) for one in _draw(shown.labels, places, stress)]
     path = run.folder / NAME
     with whole(path) as partial:
@@ -54,7 +55,7 @@ def _draw(labels: tuple[str, ...], places: np.ndarray, stress: np.ndarray) -> li
         bar = {"title": f"{BAR}\n", "color": "black", "n_labels": 5, "fmt": "%.3g", "title_font_size": 14,
                "label_font_size": 13, "position_x": 0.2, "width": 0.6, "position_y": 0.02, "height": 0.12}  # fmt: skip
         plotter.add_mesh(
-            wire, scalars="MPa", clim=(-end, end), cmap=DIVERGING, smooth_shading=False, scalar_bar_args=bar
+            wire, scalars="MPa", clim=(-end, end), cmap=DIVERGING, smooth_shading=False, scalar_bar_args=bar, **LIGHT
         )
         low, high = places.reshape(-1, 3).min(axis=0), places.reshape(-1, 3).max(axis=0)
         across, tall = float(np.max((high - low)[:2])), float((high - low)[2])

@@ -7,13 +7,12 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from coilset.model.results.folder import whole
 from coilset.model.results.labels import named_phases, plain, unnamed
 from coilset.model.results.record import Result, Setup, Snapshot
 from coilset.model.results.rings import ROUND, refined, rings
-from coilset.model.style import DIVERGING, STYLE
+from coilset.model.style import DIVERGING, STYLE, levels
 
 NAMED = 6  # targets in a legend, at most
 BESIDE = 4  # lines of a legend that fit beside a characteristic
@@ -93,8 +92,7 @@ def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
         for place, (values, name) in enumerate(panels):
             axes = figure.add_subplot(1, 2, place + 1)
             limit = max(float(np.abs(values).max()), 1e-9)
-            levels = MaxNLocator(20, steps=[1, 2, 2.5, 5, 10], symmetric=True).tick_values(-limit, limit)
-            shown = axes.tricontourf(y, z, values, levels=levels, cmap=DIVERGING)
+            shown = axes.tricontourf(y, z, values, levels=levels(-limit, limit), cmap=DIVERGING)
             axes.plot(*radius * setup.rule.points.T, "k.", ms=2, alpha=0.5)
             axes.plot(radius * np.cos([*angle, 0.0]), radius * np.sin([*angle, 0.0]), "k-", lw=0.8)
             direction = "towards" if inwards else "away from"

@@ -1,7 +1,9 @@
 """All results in a folder as one labelled data set with units."""
 
 import json
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import xarray as xr
 
@@ -31,11 +33,16 @@ def labelled(folder: str | Path) -> xr.Dataset:
             raise unreadable(folder / "sweep.nc", error) from None
     run = open_run(folder)
     data = run.data.copy()
-    for name, value in run.summary.items():
+    add_summary(data, run.summary)
+    data.attrs["case"] = json.dumps(run.case)
+    return data
+
+
+def add_summary(data: xr.Dataset, summary: Mapping[str, Any]) -> None:
+    """Add each number of a summary as `summary_…` with its `units`, NaN for none, and its words as attributes."""
+    for name, value in summary.items():
         if isinstance(value, int | float) or value is None:
             number = float("nan") if value is None else float(value)
             data[f"summary_{name}"] = ((), number, {"units": unit_of(name)})
         elif isinstance(value, str):
             data.attrs[name] = value
-    data.attrs["case"] = json.dumps(run.case)
-    return data

@@ -106,6 +106,14 @@ def tubes(run: Run, shown: Moments, rings: int) -> tuple[np.ndarray, np.ndarray]
     return places, np.concatenate([stress, stress[..., :1]], axis=-1)
 
 
+def closed(places: np.ndarray, stress: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Tubes of `tubes` with a disk over each end: two more rings, of no radius, with the stress of the ring beside."""
+    first, last = (np.broadcast_to(places[:, [end], :-1].mean(axis=2, keepdims=True), places[:, [end]].shape)
+                   for end in (0, -1))  # fmt: skip
+    values = np.concatenate([stress[:, :1], stress, stress[:, -1:]], axis=1)
+    return np.concatenate([first, places, last], axis=1), values
+
+
 def section_points(run: Run, snapshot: int) -> np.ndarray:
     """Where the section points lie in space at a snapshot, shape (elements, 2, points, 3), mm."""
     turn, at = run.data["turn"].values, section_turns(run)

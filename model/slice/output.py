@@ -10,9 +10,10 @@ from matplotlib.figure import Figure
 
 from coilset.model.results.figures import save
 from coilset.model.results.folder import make, whole
+from coilset.model.results.labels import plain
 from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot
 from coilset.model.slice.watch import equivalent, shear
-from coilset.model.style import STYLE
+from coilset.model.style import DIVERGING, STYLE, levels
 
 
 def write_fields(folder: Path, analysis: SliceAnalysis) -> None:
@@ -54,19 +55,21 @@ def figure(path: Path, analysis: SliceAnalysis) -> None:
         for row, shot in zip(axes, rows, strict=True):
             _row(sheet, row, analysis, shot)
         law, coil = analysis.law.name, analysis.coil
-        sheet.suptitle(f"Section of the coil, {law}, D = {2 * coil.radius:g} mm; the coil's axis is on the left")
+        least, most = (plain(float(f(equivalent(shots[-1].stress))), 2) for f in (np.min, np.max))
+        sheet.suptitle(f"At {shots[-1].name} the von Mises stress runs from {least} to {most} MPa ({law}, "
+                       f"D = {2 * coil.radius:g} mm; the coil's axis is on the left)")  # fmt: skip
         save(sheet, path)
 
 
 def _row(sheet: Figure, row: list[Axes], analysis: SliceAnalysis, shot: SliceSnapshot) -> None:
     lattice, when = analysis.lattice, f"{shot.name}, {round(shot.force, 2) + 0.0:.2f} N"
     around = around_the_wire(lattice.places, shot.stress)
-    limit = max(float(np.abs(around).max()), 1e-9)
-    for axes, values, levels, colours, name in (
-        (row[0], around, np.linspace(-limit, limit, 25), "RdBu_r", "shear about the wire's axis"),
-        (row[1], equivalent(shot.stress), 24, "viridis", "von Mises stress"),
+    limit, mises = max(float(np.abs(around).max()), 1e-9), equivalent(shot.stress)
+    for axes, values, shades, colours, name in (
+        (row[0], around, levels(-limit, limit), DIVERGING, "shear about the wire's axis"),
+        (row[1], mises, levels(0.0, float(mises.max())), "viridis", "von Mises stress"),
     ):
-        shown = axes.tricontourf(*lattice.places.T, lattice.triangles, values, levels=levels, cmap=colours)
+        shown = axes.tricontourf(*lattice.places.T, lattice.triangles, values, levels=shades, cmap=colours)
         for side in lattice.rim:
             axes.plot(*lattice.places[side].T, "k-", lw=0.8)
         axes.set(aspect="equal", xlabel="outward, ξ in mm", ylabel="upward, η in mm", title=f"{name}\n{when}")
@@ -75,6 +78,6 @@ def _row(sheet: Figure, row: list[Axes], analysis: SliceAnalysis, shot: SliceSna
     row[2].plot(ξ, shot.line[:, 4], "C0-", lw=1.4, label="shear τ13, upward")
     row[2].plot(ξ, shot.line[:, 0], "C1--", lw=1.1, label="normal stress σ11")
     row[2].axhline(0, color="k", lw=0.5)
-    row[2].set(xlabel="ξ on the line η = 0, in mm", ylabel="MPa", title=f"from the inside to the outside\n{when}")
+    row[2].set(xlabel="ξ on the line η = 0, in mm", ylabel="stress in MPa", title=f"from inside to outside\n{when}")
     row[2].grid(lw=0.3)
     row[2].legend(fontsize=8)

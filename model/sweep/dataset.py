@@ -9,11 +9,12 @@ import numpy as np
 import xarray as xr
 
 from coilset.model.case import Case
-from coilset.model.case.reference import entry_unit
+from coilset.model.case.reference import entry_unit, entry_words
 from coilset.model.case.settings import located
 from coilset.model.results.folder import reserve, whole
 from coilset.model.sweep.journal import read_records
 from coilset.model.sweep.plan import Plan
+from coilset.model.version import versions
 
 UNITS = {"_N_per_mm2": "N/mm²", "_N_per_mm": "N/mm", "_deg": "degrees", "_MPa": "MPa", "_mm": "mm", "_N": "N"}
 CURVE = {"travel_mm": "mm", "seat_height_mm": "mm", "force_N": "N", "phase": "1"}
@@ -21,10 +22,9 @@ CURVE = {"travel_mm": "mm", "seat_height_mm": "mm", "force_N": "N", "phase": "1"
 
 def quantity(name: str) -> tuple[str, str]:
     """Description and unit of a response from its name, as in `set_mm`."""
-    for ending, unit in UNITS.items():
-        if name.endswith(ending):
-            return name.removesuffix(ending).replace("_", " "), unit
-    return name.replace("_", " "), ""
+    ending, unit = next(((one, unit) for one, unit in UNITS.items() if name.endswith(one)), ("", ""))
+    words = name.removesuffix(ending).replace("_", " ")
+    return f"maximum {words.removesuffix(' max')}" if words.endswith(" max") else words, unit
 
 
 def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
@@ -73,7 +73,8 @@ def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
         "seconds": ("case", seconds, {"units": "s"}),
     }
     coordinates: dict[str, Any] = {name: ("case", *_input(plan, k)) for k, name in enumerate(plan.names)}
-    attributes: dict[str, Any] = {"title": f"sweep {plan.path.stem}", "design": plan.spec.design, "inputs": plan.names}
+    attributes: dict[str, Any] = {"title": f"sweep {plan.path.stem}", "versions": versions(),
+                                  "design": plan.spec.design, "inputs": plan.names}  # fmt: skip
     attributes |= _recipe(plan)
     if plan.spec.samples is not None:
         attributes |= {"samples": plan.spec.samples, "seed": plan.spec.seed}
@@ -98,12 +99,18 @@ def _attributes(words: str, unit: str) -> dict[str, str]:
 def _input(plan: Plan, k: int) -> tuple[Any, dict[str, str]]:
     """Values of an input for all cases, words where they are not all numbers, and its attributes."""
     vary, values = plan.spec.vary[plan.names[k]], [row[k] for row in plan.rows]
-    words = vary.label or plan.names[k]
+    words = vary.label or _plain_words(plan.names)[k]
     if not _numeric(values):
         return np.array([str(value) for value in values], dtype=object), _attributes(words, vary.unit or "")
     units = {entry_unit(Case, entry) for entry in vary.entries or [plan.names[k]]}
     own = units.pop() if len(units) == 1 else ""
     return np.array(values, dtype=float), _attributes(words, own if vary.unit is None else vary.unit)
+
+
+def _plain_words(names: Sequence[str]) -> list[str]:
+    """Names of inputs in words; the entries themselves if two of them had the same."""
+    found = [entry_words(name) for name in names]
+    return found if len(set(found)) == len(found) else list(names)
 
 
 def _numeric(values: Sequence[Any]) -> bool:

@@ -14,6 +14,7 @@ from matplotlib.ticker import NullLocator
 from coilset.meshes.errors import InputError
 from coilset.model.results.figures import save
 from coilset.model.style import STYLE
+from coilset.model.sweep import findings
 from coilset.model.sweep import spec as sp
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.sensitivity import rank_correlation, sobol_indices
@@ -57,7 +58,8 @@ def draw(folder: Path, plan: Plan, data: xr.Dataset) -> tuple[list[str], list[In
                 continue
             if drawn is None:
                 continue
-            drawn.suptitle(f"{plan.path.stem}: {int((data.status == 'done').sum())} of {len(plan)} cases", fontsize=10)
+            cases = f"{plan.path.stem}: {int((data.status == 'done').sum())} of {len(plan)} cases"
+            drawn.suptitle("\n".join(filter(None, (drawn.get_suptitle(), cases))), fontsize=10)
             files.append(f"{number + 1:02d}_{figure.kind}.png")
             save(drawn, folder / files[-1])
     return files, problems
@@ -98,12 +100,14 @@ def lines(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
     shades = mpl.colormaps[COLOURS](np.linspace(0.0, 0.9, len(colours)))
     drawn = Figure(figsize=(1.6 + 3.4 * min(len(panels), 3), 0.8 + 3.2 * -(-len(panels) // 3)), layout="constrained")
     axes = drawn.subplots(-(-len(panels) // 3), min(len(panels), 3), sharex=True, sharey=True, squeeze=False).ravel()
+    along = []
     for panel, (panel_value, in_panel) in zip(axes, panels, strict=False):
         for shade, (value, in_line) in zip(shades, colours, strict=True):
             x, y = data[figure.x].to_numpy()[in_panel & in_line], values[in_panel & in_line]
             order = np.argsort(x)
             label = None if figure.colour is None else _text(data, figure.colour, value)
             panel.plot(x[order], y[order], "o-", ms=3, lw=1.2, color=shade, label=label)
+            along.append(y[order])
         panel.set(xlabel=_axis(data, figure.x), ylabel=_axis(data, figure.of))
         if figure.panels is not None:
             panel.set_title(_text(data, figure.panels, panel_value), fontsize=9)
@@ -113,6 +117,8 @@ def lines(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
         spare.remove()
     if figure.colour is not None:
         axes[0].legend(fontsize=7)
+    if np.isfinite(values).any():
+        drawn.suptitle(findings.trend(data, figure.of, figure.x, along))
     return drawn
 
 
@@ -134,6 +140,7 @@ def contours(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
         axes.legend(fontsize=7)
     drawn.colorbar(shown, label=_axis(data, figure.of))
     axes.set(xlabel=_axis(data, figure.x), ylabel=_axis(data, figure.y))
+    drawn.suptitle(findings.extent(data, figure.of))
     return drawn
 
 
@@ -165,6 +172,8 @@ def characteristics(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) ->
         bar.set_ticks(range(len(words)), labels=list(words))
     axes.set(xlabel="travel in mm", ylabel="axial force in N")
     axes.grid(lw=0.3)
+    if "force_max_N" in data:
+        drawn.suptitle(findings.extent(data, "force_max_N"))
     return drawn
 
 
@@ -188,8 +197,8 @@ def scatter(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
     low, high = np.quantile(values[good], [0.05, 0.95])
     last.axvspan(low, high, color="C0", alpha=0.15)
     last.set(xlabel=_axis(data, figure.of), ylabel="cases")
-    found = f"mean {mean:.5g}, standard deviation {deviation:.3g}\n5 % to 95 %: {low:.5g} to {high:.5g}"
-    last.set_title(found, fontsize=8)
+    last.set_title(f"mean {mean:.5g}, standard deviation {deviation:.3g}\nshaded: 5 % to 95 % of the cases", fontsize=8)
+    drawn.suptitle(findings.middle(data, figure.of))
     for spare in axes[count:]:
         spare.remove()
     return drawn
@@ -200,7 +209,8 @@ def sensitivity(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any
     numeric = [name for name in plan.names if data[name].dtype.kind == "f"]
     sobol = plan.spec.design == "sobol_indices"
     names = plan.names if sobol else numeric
-    drawn = Figure(figsize=(6.4, 0.9 + 0.45 * len(names) * len(figure.of) + 0.6 * len(figure.of)), layout="constrained")
+    words = [findings.words(data, name) for name in names]
+    drawn = Figure(figsize=(6.4, 0.9 + 0.45 * len(names) * len(figure.of) + 0.8 * len(figure.of)), layout="constrained")
     panels = drawn.subplots(len(figure.of), 1, squeeze=False).ravel()
     for panel, of in zip(panels, figure.of, strict=True):
         values = _response(data, of, place)
@@ -213,14 +223,16 @@ def sensitivity(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any
             _bars(panel, place_y - 0.2, 0.38, found.first, found.first_interval, "C0", "first order: the input alone")
             _bars(panel, place_y + 0.2, 0.38, found.total, found.total_interval, "C1", "total: with its interactions")
             panel.set(xlabel=f"share of the variance of {data[of].attrs['long_name']} ({found.samples} base samples)")
+            panel.set_title(findings.share(findings.words(data, of), words, found.total), fontsize=9)
             panel.set_xlim(left=min(0.0, panel.get_xlim()[0]))
         else:
             x = np.stack([data[name].to_numpy() for name in names], axis=1)
             correlation, interval = rank_correlation(x, values)
             _bars(panel, place_y, 0.6, correlation, interval, "C0", "Spearman, 95 % interval")
             panel.set(xlabel=f"rank correlation with {data[of].attrs['long_name']}", xlim=(-1.05, 1.05))
+            panel.set_title(findings.strongest(findings.words(data, of), words, correlation, interval), fontsize=9)
         panel.axvline(0.0, color="k", lw=0.6)
-        panel.set_yticks(place_y, [data[name].attrs["long_name"] for name in names])
+        panel.set_yticks(place_y, words)
         panel.invert_yaxis()
     panels[0].legend(fontsize=7)
     return drawn
@@ -239,7 +251,7 @@ def convergence(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any
     names = [name for name in plan.names if data[name].dtype.kind == "f"]
     drawn = Figure(figsize=(1.2 + 2.9 * len(names), 3.6), layout="constrained")
     panels = drawn.subplots(1, len(names), sharey=True, squeeze=False).ravel()
-    inputs = np.array(plan.rows, dtype=object)
+    inputs, last = np.array(plan.rows, dtype=object), []
     for panel, name in zip(panels, names, strict=True):
         others = [k for k, other in enumerate(plan.names) if other != name]
         ray = (inputs[:, others] == inputs[0, others]).all(axis=1)  # only this input differs from the base case
@@ -248,6 +260,7 @@ def convergence(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any
         for k, of in enumerate(figure.of):
             values = _response(data, of, place)[ray][order]
             error = np.abs(values[:-1] / values[-1] - 1.0)
+            last += [error[-1]] if k == 0 and len(error) else []
             panel.loglog(x[order][:-1], error, "o-", ms=3, lw=1.2, color=f"C{k}", label=data[of].attrs["long_name"])
         panel.set(xlabel=_axis(data, name), ylabel="relative distance from the finest")
         panel.set_title(f"base {inputs[0, plan.names.index(name)]}, finest {x.max():g}", fontsize=9)
@@ -256,6 +269,8 @@ def convergence(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any
         panel.label_outer()
         panel.grid(lw=0.3, which="both")
     panels[0].legend(fontsize=7)
+    if last and np.isfinite(last).all():
+        drawn.suptitle(findings.refinement(data, figure.of[0], last))
     return drawn
 
 

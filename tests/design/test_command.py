@@ -8,6 +8,7 @@ import re
 import pytest
 import yaml
 
+import coilset.open
 from coilset.meshes.errors import InputError
 from coilset.model.report.design_page import write_design_report
 from coilset.model.sweep.journal import read_records
@@ -27,6 +28,7 @@ def test_a_folder_is_not_overwritten_unasked_and_a_cut_journal_is_gone_on_from(w
     }
     assert "off by" in capsys.readouterr().out
     page_of(out, said)
+    labelled(out, said)
     with pytest.raises(InputError, match="holds a design already"):
         design(path, str(out), False, False)
     lines = (out / "evaluations.jsonl").read_text(encoding="utf-8").splitlines(keepends=True)
@@ -51,6 +53,21 @@ def page_of(folder, said):
     assert (folder / "found.yaml").read_text(encoding="utf-8").splitlines()[-1] in text
     (trace,) = unpacked(text, "data")["figures"]["search"]["data"]
     assert trace["y"] == [abs(r["values"][0] - 25.0) / 25.0 for r in read_records(folder / "evaluations.jsonl")]
+
+
+def labelled(folder, said):
+    """What `coilset.open` gives of it."""
+    data, records = coilset.open(folder), list(read_records(folder / "evaluations.jsonl"))
+    name = "loading.0.to.height"
+    assert data[name].attrs == {"units": "mm"}
+    assert data[name].values.tolist() == [record["x"][0] for record in records]
+    assert data["free_length_after_mm"].attrs == {"units": "mm", "wish": 25.0}
+    assert data["free_length_after_mm"].values.tolist() == [record["values"][0] for record in records]
+    assert data[f"found_{name}"].item() == said["found"][name]
+    slope = data["slope"].sel(condition="free_length_after_mm", unknown=name)
+    assert slope.item() == said["slopes"]["such_that.free_length_after_mm"][name]
+    assert data["summary_set_mm"].item() == said["summary"]["set_mm"]
+    assert json.loads(data.attrs["case"])["loading"][0]["to"]["height"] == said["found"][name]
 
 
 def unpacked(page, name):

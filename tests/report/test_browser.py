@@ -69,9 +69,11 @@ def until(browser, script):
 
 
 def drawn(browser):
-    """Draw each figure, as for printing."""
-    until(browser, "window.dispatchEvent(new Event('beforeprint')); return [...document.querySelectorAll('.plot')]"
-                   ".filter((one) => one.offsetParent).every((one) => one.querySelector('svg'))")  # fmt: skip
+    """Draw each figure, as printing does, and go back to the screen's widths."""
+    browser.run("window.dispatchEvent(new Event('beforeprint'))")
+    until(browser, "return [...document.querySelectorAll('.plot')].filter((one) => one.offsetParent)"
+                   ".every((one) => one.querySelector('svg'))")  # fmt: skip
+    browser.run("window.dispatchEvent(new Event('afterprint'))")
 
 
 @pytest.mark.skipif(not Path(AXE).is_file(), reason="COILSET_AXE names no axe.min.js")

@@ -16,7 +16,7 @@ from coilset.model.report.glossary import GLOSSARY
 from coilset.model.report.page import CHAPTERS, write_report
 from coilset.model.report.scale import round_end
 from coilset.model.results.opened import open_run
-from coilset.model.results.wire import moments, shear_around, tubes
+from coilset.model.results.wire import closed, moments, shear_around, tubes
 from coilset.scripts.report import report
 from coilset.scripts.sheet import sheet
 
@@ -52,16 +52,26 @@ def test_each_figure_is_there_with_a_text(page):
 
 
 def test_numbers_are_those_of_the_summary(folder, page):
-    """A summary with another set, and nothing else changed, gives a page with that set."""
+    """Other numbers in the summary, and the same fields beside it, give a page with these numbers and no older one."""
     path = folder / "summary.json"
     before = path.read_text()
-    summary = json.loads(before)
-    assert f"<strong>{summary['set_mm']:.3f} mm</strong>" in page
+    other = {"set_mm": 1.234567, "free_length_after_mm": 23.4567, "free_length_before_mm": 24.6913,
+             "force_max_N": 345.67, "residual_shear_inside_MPa": -45.678, "rate_N_per_mm": 5.6789,
+             "block_height_mm": 6.789, "rate_30_70_after_N_per_mm": 7.8912, "estimated_force_error_N": 0.089123,
+             "steps": 91, "evaluations": 912}  # fmt: skip
+    shown = ["1.235 mm", "23.457 mm", "−45.7 MPa", "345.7 N", "5.679 N/mm", "6.79 mm"]
+    told = ["5.0 % of the free length", "after; 24.691 mm before", "7.891 N/mm on release", "0.089 N estimated error",
+            "Compressed with up to 345.7 N, the spring sets 1.235 mm", "The rate begins at 5.679 N/mm",
+            "−46 MPa of shear remain", "91 steps took 912 evaluations",
+            "about 0.089 N in the maximum force"]  # fmt: skip
+    assert not any(text in page for text in (*shown, *told))
     try:
-        path.write_text(json.dumps({**summary, "set_mm": 1.234567}))
-        assert "<strong>1.235 mm</strong>" in write_report(open_run(folder)).read_text(encoding="utf-8")
+        path.write_text(json.dumps({**json.loads(before), **other}))
+        changed = write_report(open_run(folder)).read_text(encoding="utf-8")
     finally:
         path.write_text(before)
+    assert re.findall(r"<dd><strong>([^<]*)</strong>", changed) == shown
+    assert [text for text in told if text not in changed] == []
 
 
 def test_words_of_the_glossary_are_explained(page):
@@ -93,6 +103,10 @@ def test_the_tube_is_round_the_wire(folder):
     assert np.linalg.norm(places - centre[:, :, None], axis=-1) == pytest.approx(2.5, rel=1e-9)
     assert np.all(np.hypot(*np.moveaxis(places[:, :, 0, :2], -1, 0)) < np.hypot(*np.moveaxis(centre[..., :2], -1, 0)))
     assert np.array_equal(stress[:, :, 0], stress[:, :, -1])
+    ends, shown = closed(places, stress)
+    assert ends.shape[1] == shown.shape[1] == 83
+    assert np.ptp(ends[:, [0, -1]], axis=2) == pytest.approx(0.0, abs=1e-12)  # a point, in the middle of the ring
+    assert np.linalg.norm(ends[:, [0, -1]] - places[:, [0, -1]], axis=-1) == pytest.approx(2.5, rel=1e-9)
     assert stress[4].min() > 0.0 > stress[-1].min()  # with the load at block; against it, somewhere, after
 
 

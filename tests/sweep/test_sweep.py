@@ -291,7 +291,7 @@ def test_inputs_have_the_units_of_their_entries(write_sweep, tmp_path):
     found = {name: data[name].attrs["units"] for name in data.attrs["inputs"]}
     assert found == {"spring.wire_diameter": "mm", "loading.0.to.travel": "mm", "spring.turns": "", "material": "",
                      "inches": "in", "both": "mm", "mixed": ""}  # fmt: skip
-    assert dataset.quantity("plastic_work_max_N_per_mm2") == ("plastic work max", "N/mm²")
+    assert dataset.quantity("plastic_work_max_N_per_mm2") == ("maximum plastic work", "N/mm²")
 
 
 def test_a_sweep_with_failed_cases_says_so_and_ends_with_3(write_sweep, tmp_path):

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from matplotlib.figure import Figure
 
 from coilset.verification import registry
 from coilset.verification.page import page
@@ -50,6 +51,22 @@ def test_a_number_that_is_shown_is_not_judged(tmp_path):
     study.check("a third", 2.0, 1.0, "by hand", 0.5)
     assert study.checks[-1].verdict == "not met"
     assert not study.passed
+
+
+def test_the_title_of_a_figure_says_what_was_found(tmp_path):
+    study = Study(tmp_path)
+    study.check("close", 1.001, 1.0, "closed form", 0.1)
+    study.check("force, N", 1.05, 1.0, "closed form", 0.1)
+    near = "nearest its limit is force, N, off by 5 % (10 % allowed; reference: closed form)"
+    assert study.finding == f"All 2 numbers are within tolerance; {near}"
+    figure = Figure(figsize=(20.0, 3.0))
+    figure.suptitle("A spring")
+    study.figure("one", figure)
+    study.write("one")
+    assert (tmp_path / "one.png").is_file()
+    assert figure.get_suptitle() == f"A spring\nAll 2 numbers are within tolerance; {near}"
+    study.check("off", 3.0, 1.0, "open", 1.0, "absolute")
+    assert study.finding == "1 of 3 numbers are beyond their tolerance"
 
 
 def test_the_page_tells_what_uses_most_of_its_tolerance(tmp_path):

@@ -72,7 +72,7 @@ def draw(study: Study, found: dict[tuple[int, str], tuple[Step, ...]], exact: di
                           ms=3.5, mfc="none", color=f"C{k}", label=f"L0/D = {ratio}, {ends}")  # fmt: skip
             axes.axvline(critical_travel(found[ratio, "clamped"]), color=f"C{k}", lw=0.7, ls=":")
             axes.plot(*exact[ratio], "k+", ms=10, label="Haringx" if k == 0 else None)
-        axes.set(xlabel="travel in mm", ylabel="force in N", title="Slender springs press, and buckle")
+        axes.set(xlabel="travel in mm", ylabel="force in N", title="Slender springs, pressed until they buckle")
         axes.grid(lw=0.3)
         axes.legend(fontsize=7)
     study.figure("buckling_of_ends", figure)

@@ -91,6 +91,6 @@ def figure(found: dict[str, tuple[Analysis, Snapshot]]) -> Figure:
             right.plot(y[order], rows[order, 2], "o", ms=3, label=word, **style)
         for axes, name in ((left, "normal stress"), (right, "shear stress")):
             axes.axhline(0.0, color="0.7", lw=0.8)
-            axes.set(xlabel="y/r, towards the coil's axis", ylabel=f"{name} / MPa", title=f"Residual {name}")
+            axes.set(xlabel="y/r, towards the coil's axis", ylabel=f"{name} in MPa", title=f"Residual {name}")
         left.legend()
     return picture

@@ -130,7 +130,7 @@ def draw(ways: dict[str, list[float]]) -> Figure:
                 range(1, len(off) + 1), np.maximum(off, 1e-13), f"C{number % 5}o{style}", ms=3, lw=1, label=name
             )
         axes.axhline(CLOSE, color="0.5", lw=0.8)
-        axes.set(xlabel="run", ylabel="largest deviation of a condition, relative", title="Ten wishes")
+        axes.set(xlabel="run", ylabel="largest relative deviation of a condition", title="Ten wishes")
         axes.grid(lw=0.3)
         axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     return figure

@@ -108,7 +108,7 @@ def draw(study: Study, curves: dict[float, np.ndarray]) -> None:
             if mu:
                 right.plot(travel, force - curves[0.0][1], ".-", color=colour, lw=0.8, ms=3, label=f"μ = {mu:g}")
         left.set(xlabel="travel in mm", ylabel="axial force in N", title="Closed and ground, two cycles")
-        right.set(xlabel="travel in mm", ylabel="force minus that without friction, N")
+        right.set(xlabel="travel in mm", ylabel="force minus that without friction in N")
         for axes in (left, right):
             axes.grid(lw=0.3)
             axes.legend(fontsize=8)

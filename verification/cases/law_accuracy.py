@@ -70,7 +70,7 @@ def run(study: Study) -> None:
             axes.set_xticks(INCREMENTS, [f"{1e3 * h:g}" for h in INCREMENTS])
             axes.minorticks_off()
             axes.grid(lw=0.3, which="both")
-        figure.axes[0].set_ylabel("error of stress / flow stress")
+        figure.axes[0].set_ylabel("error of the stress over the flow stress")
         figure.axes[0].legend(fontsize=8)
         figure.suptitle("Ck 15, against Heun's method with tolerance 1e-8", fontsize=10)
     study.figure("law_accuracy", figure)

@@ -162,14 +162,16 @@ def figure(bars: dict[bool, np.ndarray], radii: np.ndarray, stress: np.ndarray) 
         for preset, word, exact, colour in ((False, "virgin", closed, "C0"), (True, "preset", integrated, "C1")):
             left.semilogx(fine, [exact(t) for t in fine], color=colour)
             left.semilogx(HOURS, bars[preset], "o", ms=4, color=colour, label=word)
-        left.set(xlabel="time / h", ylabel="torque / torque at the start", title="A preset bar loses less")
+        left.set(xlabel="time in h", ylabel="torque over that at the start", title="A preset bar loses less")
         left.legend(title="line: exact; dots: coilset")
         r = np.linspace(0.0, 1.0, 200)
         right.plot(r, r ** (1.0 / EXPONENT), label="(r/R)^(1/N)")
         right.plot(r, r * 4.0 / (3.0 + 1.0 / EXPONENT), "--", color="0.5", label="elastic, at the start")
         right.plot(radii, stress, "o", ms=4, color="C0", label="coilset")
         right.set(
-            xlabel="r/R", ylabel="shear stress / that of steady creep at R", title="Steady creep evens out the stress"
+            xlabel="r/R",
+            ylabel="shear stress over that of steady creep at R",
+            title="Steady creep evens out the stress",
         )
         right.legend()
     return picture

@@ -143,7 +143,7 @@ def figure(rows: np.ndarray, columns: list[str]) -> Figure:
         axes.axhspan(-0.2, 0.2, color="0.9", zorder=0)
         axes.set_xticks(INDICES, [f"{index:g}" for index in INDICES])
         axes.xaxis.set_minor_locator(mpl.ticker.NullLocator())
-        axes.set(xlabel="D/d", ylabel="force after 1,000 h over\nthe straight bar's, deviation / %",
+        axes.set(xlabel="D/d", ylabel="force after 1,000 h over\nthe straight bar's, deviation in %",
                  title="A curved wire loses its load faster")  # fmt: skip
         axes.legend()
     return picture

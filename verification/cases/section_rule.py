@@ -127,7 +127,7 @@ def draw(
             for rule, found in errors.items():
                 axes[k].plot(100.0 * np.array(found)[:, k], names, "o", ms=4, label=label(rule))
             axes[k].axvspan(-100.0 * TOLERANCE, 100.0 * TOLERANCE, color="0.93")
-            axes[k].set(xlabel="off the finest rule in %", title=what)
+            axes[k].set(xlabel="deviation from the finest rule in %", title=what)
         axes[1].set_yticks([])
         for (law, rule), worst in bent.items():
             style = "-" if law == "ck15" else ":"

@@ -84,6 +84,8 @@ def _figure(found: dict[tuple[float, int, float], Errors]) -> Figure:
                                 label=f"{name}, degree {degree}")  # fmt: skip
             axes.axhline(0.05, color="0.5", lw=0.8, ls=":")
             axes.set(xlabel="unknowns", title=f"D/d = {index:g}")
+            axes.set_xticks([500, 1000, 2000], ["500", "1000", "2000"])
+            axes.minorticks_off()
             axes.grid(lw=0.3)
         figure.axes[0].set(ylabel="error in %")
         figure.legend(*figure.axes[1].get_legend_handles_labels(), loc="outside right center", fontsize=8)

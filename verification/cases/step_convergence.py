@@ -148,7 +148,7 @@ def draw(presses: Mapping[str, Sequence[Press]], off: Mapping[tuple[str, int], S
                 evaluations, colour = [one.evaluations for one in runs], f"C{number}"
                 axes.loglog(evaluations[:-1], off[name, k][:-1], "o-", ms=4, lw=1, color=colour, label=name)
                 axes.loglog(evaluations[-1], off[name, k][-1], "*", ms=11, color=colour, mec="k", mew=0.5)
-            axes.set(xlabel="states evaluated", ylabel="off the limit, %", title=quantity)
+            axes.set(xlabel="states evaluated", ylabel="deviation from the limit in %", title=quantity)
             axes.grid(lw=0.3)
         axes.loglog([], [], "k*", ms=9, label="automatic")
         axes.legend(fontsize=8)

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.tri import TriContourSet
 
-from coilset.model.style import STYLE
+from coilset.model.style import DIVERGING, STYLE, levels
 from coilset.verification.solid_vs_rod import pressing, references, study
 from coilset.verification.solid_vs_rod.pressing import PressedSection
 
@@ -49,7 +49,7 @@ def factors(results: list[study.Numbers]) -> Figure:
     left.text(7, 0.80, "outside")
     left.set(xlabel="spring index D/d", ylabel="shear stress over 8 F D / (π d³)", title="Elastic coil")
     right.axhline(0.02, color="0.5", lw=0.8, ls="--")
-    right.set(xlabel="unknowns", ylabel="error of the factor inside", title="Against Göhner's equation (- -: 2 %)")
+    right.set(xlabel="unknowns", ylabel="error of the factor inside", title="Against Göhner's equation (dashed: 2 %)")
     for axes in (left, right):
         axes.grid(lw=0.3)
         axes.legend(fontsize=8)
@@ -61,7 +61,7 @@ def characteristic(case: PressedSection, solid: study.Numbers, rod: study.Number
     figure = Figure(figsize=(8.6, 3.8), layout="constrained")
     left, right = figure.subplots(1, 2)
     label = f"solid, {solid['unknowns']} unknowns"
-    for axes, name, unit in ((left, "force", "axial force in N"), (right, "torque", "torque about the axis, N mm")):
+    for axes, name, unit in ((left, "force", "axial force in N"), (right, "torque", "torque about the axis in N mm")):
         axes.plot(rod["travel"], rod[name], "C1-", lw=1.4, label="rod")
         axes.plot(solid["travel"], solid[name], "C0o", ms=4, mfc="none", label=label)
         axes.set(xlabel="travel in mm", ylabel=unit)
@@ -80,7 +80,7 @@ def sections(case: PressedSection, solid: study.Numbers, rod: study.Numbers) -> 
         limit = max(np.abs(np.array(r[moment]["stress"])[:, 2]).max() for r in (solid, rod))
         for column, (result, name) in enumerate(((solid, "solid"), (rod, "rod"))):
             shown = _disk(axes[row, column], result[moment], limit)
-            axes[row, column].set(title=f"{name}, {when}", xlabel="outward in mm", ylabel="t × outward in mm")
+            axes[row, column].set(title=f"{name}, {when}", xlabel="outward in mm", ylabel="across in mm")
         figure.colorbar(shown, ax=axes[row, 1], label="τ along the coil's axis in MPa", shrink=0.85)
         for result, style, name in ((solid, "C0.-", "solid"), (rod, "C1.--", "rod")):
             axes[row, 2].plot(*study.diameter(result, moment), style, ms=4, lw=1.3, label=name)
@@ -93,8 +93,7 @@ def sections(case: PressedSection, solid: study.Numbers, rod: study.Numbers) -> 
 
 def _disk(axes: Axes, looked_at: study.Numbers, limit: float) -> TriContourSet:
     y, z = np.array(looked_at["y"]), np.array(looked_at["z"])
-    levels = np.linspace(-limit, limit, 25)
-    shown = axes.tricontourf(y, z, np.array(looked_at["stress"])[:, 2], levels=levels, cmap="RdBu_r")
+    shown = axes.tricontourf(y, z, np.array(looked_at["stress"])[:, 2], levels=levels(-limit, limit), cmap=DIVERGING)
     angle = np.linspace(0, 2 * np.pi, 181)
     radius = 0.5 * pressing.WIRE
     axes.plot(radius * np.cos(angle), radius * np.sin(angle), "k-", lw=0.8)

@@ -136,7 +136,7 @@ def run_rod(case: PressedSection, section: Mapping[str, object] = PLANE) -> dict
         section: entries of the case's `mesh.section`; the thesis's section on a fine rule, if not given.
 
     Returns:
-        The same as `run_solid`, with the section points of the middle element in place of the sample points.
+        The same as `run_solid`, with the middle element's points, in the section and on the rim.
     """
     began = time.perf_counter()
     loading = [{"to": {"travel": case.travel}, "steps": case.steps},
@@ -171,7 +171,7 @@ def _torque(analysis: Analysis) -> float:
 
 
 def _rod_section(analysis: Analysis, snapshot: Snapshot) -> dict[str, Any]:
-    """Places and stresses of the middle element's section points, in the axes t, outward, t × outward."""
+    """Places and stresses of the middle element's points in and on the wire, in the axes t, outward, t × outward."""
     middle = ROD_ELEMENTS // 2
     radius = float(analysis.setup.wire_radius[middle])
     E = snapshot.triads[middle]
@@ -180,8 +180,10 @@ def _rod_section(analysis: Analysis, snapshot: Snapshot) -> dict[str, Any]:
     outward -= (outward @ E[:, 0]) * E[:, 0]
     outward /= np.linalg.norm(outward)
     turn = np.stack([outward, np.cross(E[:, 0], outward)]) @ E[:, 1:]  # local y, z → outward, t × outward
-    places = radius * analysis.rod.rule.points @ turn.T
-    state = snapshot.point_state[middle].mean(axis=0)
+    angle = 2.0 * np.pi * np.arange(snapshot.surface_state.shape[2]) / snapshot.surface_state.shape[2]
+    points = np.concatenate([analysis.rod.rule.points, np.stack([np.cos(angle), np.sin(angle)], axis=-1)])
+    places = radius * points @ turn.T
+    state = np.concatenate([state[middle].mean(axis=0) for state in (snapshot.point_state, snapshot.surface_state)])
     normal, *shears = (component(state, snapshot.components, name) for name in ("s11", "t12", "t13"))
     stress = np.column_stack([normal, np.column_stack(shears) @ turn.T])
     return {"y": places[:, 0].tolist(), "z": places[:, 1].tolist(), "stress": stress.tolist()}

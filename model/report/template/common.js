@@ -2,7 +2,11 @@
 // What all pages share: unpacks the library and the data, follows the theme, the width and the choices, draws figures.
 const page = (() => {
   const byId = (id) => document.getElementById(id);
-  const bytes = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+  const bytes = (text) => { // a plain loop: Uint8Array.from asks an iterator for each of millions of letters
+    const letters = atob(text), found = new Uint8Array(letters.length);
+    for (let place = 0; place < letters.length; place++) found[place] = letters.charCodeAt(place);
+    return found;
+  };
   const inflated = async (id) => {
     const stream = new Blob([bytes(byId(id).textContent)]).stream().pipeThrough(new DecompressionStream("gzip"));
     return new Response(stream).text();
@@ -78,20 +82,24 @@ const page = (() => {
     for (const [plot, { layout }] of figures) if (plot.drawn) Plotly.relayout(plot, themed(layout));
   };
 
-  const PAPER = 640; // pixels: the width of a figure on A4 and on Letter
-  let screenTheme;
-  const onPaper = () => { // light, each figure as wide as the paper
+  const PAPER = 640, LOW = 0.7; // pixels: the width of a figure on A4 and on Letter; so low that two fit below each other
+  let screenTheme, folded;
+  const onPaper = () => { // light, each figure as wide as the paper, what is folded open
     screenTheme = document.documentElement.dataset.theme;
     document.documentElement.dataset.theme = "light";
+    folded = [...document.querySelectorAll("details:not([open])")];
+    for (const one of folded) one.open = true;
     for (const [plot, { layout }] of figures) {
       if (!plot.drawn) draw(plot);
-      Plotly.relayout(plot, { ...themed(layout), autosize: false, width: PAPER });
+      const height = LOW * Number.parseFloat(plot.style.height);
+      Plotly.relayout(plot, { ...themed(layout), autosize: false, width: PAPER, height });
     }
   };
   const onScreen = () => {
     if (screenTheme) document.documentElement.dataset.theme = screenTheme;
     else delete document.documentElement.dataset.theme;
-    for (const [plot, { layout }] of figures) Plotly.relayout(plot, { ...themed(layout), width: null });
+    for (const one of folded) one.open = false;
+    for (const [plot, { layout }] of figures) Plotly.relayout(plot, { ...themed(layout), width: null, height: null });
   };
 
   const showNamed = (named) => document.querySelectorAll(".plot[data-figure]").forEach((plot) => {

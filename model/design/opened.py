@@ -1,0 +1,84 @@
+"""Results of `coilset design` as a labelled data set with units."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from coilset.meshes.errors import InputError
+from coilset.model.case import Case
+from coilset.model.case.reference import entry_unit
+from coilset.model.results.labelled import add_summary
+from coilset.model.results.opened import unit_of
+from coilset.model.sweep.journal import read_records
+
+FILE = "design.json"
+PREFIX = "such_that."  # of a condition's name
+
+
+def open_design(folder: str | Path) -> xr.Dataset:
+    """Read the results of a search.
+
+    Args:
+        folder: the results folder.
+
+    Returns:
+        Over `evaluation`: each unknown by its entry, and the value of each condition (NaN of a run that failed), with
+        `units` and, of a condition, the `wish`. Scalars: `found_` and the entry, and `summary_…` of the spring that was
+        found. `slope` over `condition` and `unknown`, in their units. Over `trade_off`: what is `changed` and its
+        value, `possible`, and estimates of the unknowns, `estimate_` and the entry. The case (JSON) and whether all
+        conditions are `met` are attributes.
+
+    Raises:
+        InputError: if a file cannot be read.
+    """
+    folder = Path(folder)
+    try:
+        design = json.loads((folder / FILE).read_text(encoding="utf-8"))
+        data = _searched(design, list(read_records(folder / "evaluations.jsonl")))
+        _add_trade_offs(data, design)
+        add_summary(data, design["summary"])
+        data.attrs |= {"case": json.dumps(design["origin"]["case"]), "versions": design["origin"]["versions"],
+                       "met": int(design["met"]), "method": design["method"]}  # fmt: skip
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise InputError(f"is not readable: {str(error).partition(chr(10))[0]}", "", folder / FILE) from None
+    return data
+
+
+def _searched(design: dict[str, Any], records: list[dict[str, Any]]) -> xr.Dataset:
+    """Evaluations, what was found, and slopes."""
+    data = xr.Dataset(coords={"evaluation": np.arange(1, len(records) + 1)})
+    for place, (name, value) in enumerate(design["found"].items()):
+        units = {"units": entry_unit(Case, name) or "1"}
+        data[name] = ("evaluation", [record["x"][place] for record in records], units)
+        data[f"found_{name}"] = ((), value, units)
+    for place, one in enumerate(design["conditions"]):
+        column = [_number(record["values"][place : place + 1]) for record in records]
+        of = {"units": one["unit"], "wish": one["wish"]}
+        data[one["name"].removeprefix(PREFIX)] = ("evaluation", column, of)
+    slopes = [list(row.values()) for row in design["slopes"].values()]
+    names = [name.removeprefix(PREFIX) for name in design["slopes"]]
+    return data.assign(slope=(("condition", "unknown"), slopes)).assign_coords(
+        condition=names, unknown=list(design["found"])
+    )
+
+
+def _add_trade_offs(data: xr.Dataset, design: dict[str, Any]) -> None:
+    rows = design["trade_offs"]
+    if not rows:
+        return
+    for name in ("of", "value"):
+        data["changed" if name == "of" else "changed_to"] = ("trade_off", [str(row[name]) for row in rows])
+    data["possible"] = ("trade_off", [bool(row["possible"]) for row in rows])
+    for name in design["found"]:
+        column = [_number([row["unknowns"][name]]) for row in rows]
+        data[f"estimate_{name}"] = ("trade_off", column, {"units": entry_unit(Case, name) or "1"})
+    for name in ("wire_length_mm", "free_length_before_mm"):
+        data[f"estimate_{name}"] = ("trade_off", [_number([row[name]]) for row in rows], {"units": unit_of(name)})
+
+
+def _number(values: list[float | None]) -> float:
+    """NaN for none."""
+    return float("nan") if not values or values[0] is None else float(values[0])
