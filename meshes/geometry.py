@@ -195,10 +195,12 @@ class Spring:
             turn: turns, any shape.
             end: ``bottom`` or ``top``.
         """
-        half = 0.5 * self.wire(turn)
-        if end == "bottom":
-            return np.minimum(half, self.height(turn) - self._planes[0])
-        return np.minimum(half, self._planes[1] - self.height(turn))
+        return np.minimum(0.5 * self.wire(turn), self.seat_level_distance(turn, end))
+
+    def seat_level_distance(self, turn: np.ndarray | float, end: str) -> np.ndarray:
+        """Distance of the centre line from the plane of the `bottom` or `top` seat, mm, in the shape of `turn`."""
+        height = self.height(turn)
+        return height - self._planes[0] if end == "bottom" else self._planes[1] - height
 
     def flat_turns(self, end: str) -> float:
         """Number of turns from the `bottom` or `top` tip over which the wire is ground; 0 where it is not ground."""

@@ -76,18 +76,27 @@ class Placement(NamedTuple):
         stretch: ds/dx, length of wire over length of chord, shape (n, g).
         curvature: κ of the wire, 1/mm, towards the section's y axis, shape (n, g); 0 for sections that ignore it.
         torsion: τ of the wire, 1/mm, shape (n, g).
+        flat: the plane to which an end is ground, as each section sees it, shape (n, g, 3): its distance from the
+            wire's axis in wire radii, negative if the axis itself is cut away and infinite where nothing is, and its
+            unit normal (y, z) into the wire.
     """
 
     matrices: np.ndarray
     stretch: np.ndarray
     curvature: np.ndarray
     torsion: np.ndarray
+    flat: np.ndarray
 
 
 def straight(elements: int) -> Placement:
     """The placement of sections on their straight rods, two for each."""
     zero = np.zeros((elements, 2))
-    return Placement(np.tile(np.eye(6), (elements, 2, 1, 1)), np.ones_like(zero), zero, zero.copy())
+    return Placement(np.tile(np.eye(6), (elements, 2, 1, 1)), np.ones_like(zero), zero, zero.copy(), round_wire(zero))
+
+
+def round_wire(like: np.ndarray) -> np.ndarray:
+    """`Placement.flat` of sections that no grinding has touched, for an array with one entry a section."""
+    return np.stack([np.full(like.shape, np.inf), np.zeros(like.shape), np.zeros(like.shape)], axis=-1)
 
 
 def section_placement(
@@ -123,8 +132,8 @@ def section_placement(
     offset = np.einsum("nki,ngk->ngi", triads, position - on_chord)
     Q = _least_turn(np.einsum("nki,ngk->ngi", triads, tangent))
     curvature, torsion = np.zeros_like(stretch), np.zeros_like(stretch)
+    turn = turns[:-1, None] + np.diff(turns)[:, None] * np.asarray(abscissae)
     if curved:
-        turn = turns[:-1, None] + np.diff(turns)[:, None] * np.asarray(abscissae)
         normal = np.einsum("ngik,nji,ngj->ngk", Q, triads, spring.curvature_vector(turn))[..., 1:]
         curvature, torsion = np.linalg.norm(normal, axis=-1), spring.torsion(turn)
         Q = Q @ _to_normal(normal, curvature)
@@ -135,7 +144,20 @@ def section_placement(
     P = np.zeros((*stretch.shape, 6, 6))
     P[..., :3, :3] = P[..., 3:, 3:] = np.swapaxes(Q, -1, -2)
     P[..., :3, 3:] = np.swapaxes(Q, -1, -2) @ K_cross_o
-    return Placement(P / stretch[..., None, None], stretch, curvature, torsion)
+    flat = _flats(spring, turn, np.einsum("nki,ngij->ngkj", triads, Q)[..., 2, 1:])
+    return Placement(P / stretch[..., None, None], stretch, curvature, torsion, flat)
+
+
+def _flats(spring: Spring, turn: np.ndarray, upwards: np.ndarray) -> np.ndarray:
+    """`Placement.flat` of sections whose axes y and z rise by `upwards` along the spring's axis, shape (n, g, 2)."""
+    steepness = np.linalg.norm(upwards, axis=-1)
+    normal, found = upwards / steepness[..., None], round_wire(turn)
+    for end, side in (("bottom", 1.0), ("top", -1.0)):
+        if getattr(spring, end).tip_thickness < 1.0:
+            away = 2.0 * spring.seat_level_distance(turn, end) / spring.wire_diameter(turn) / steepness
+            cut = away < np.minimum(found[..., 0], 1.0)
+            found[cut] = np.concatenate([away[..., None], side * normal], axis=-1)[cut]
+    return found
 
 
 def refuse_sharp_bends(placement: Placement, radius: np.ndarray, turns: np.ndarray) -> None:

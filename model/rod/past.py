@@ -13,9 +13,10 @@ from coilset.meshes.spring import SpringSpec
 from coilset.model.material.creep import Creeping
 from coilset.model.material.functions import elasticity
 from coilset.model.rod.rod import Rod
-from coilset.model.section.coiling import coil
+from coilset.model.section.coiling import coil, grind
 from coilset.model.section.fibres import FibreSections
 from coilset.model.section.peening import Layer, peen, peening_warnings
+from coilset.model.section.segment import WHOLE
 from coilset.model.section.wire import SectionLaw
 from coilset.model.warning import Warning
 
@@ -120,22 +121,29 @@ def _through(rod: Rod, past: _Past, tight: np.ndarray) -> None:
     place, sections = rod.placement, rod.sections
     assert isinstance(sections, FibreSections)
     radius = np.broadcast_to(rod.radius[:, None], place.curvature.shape)
-    wires = np.stack([radius, place.curvature, place.torsion], axis=-1).reshape(-1, 3)
+    ground = np.where(np.isfinite(place.flat[..., :1]), place.flat, [WHOLE, 0.0, 0.0])
+    wires = np.concatenate([np.stack([radius, place.curvature, place.torsion], axis=-1), ground], axis=-1)
+    wires = wires.reshape(-1, wires.shape[-1])
     size = np.abs(wires).max(axis=0, initial=0.0)
     alike = np.round(wires / np.where(size > 0.0, size, 1.0), DIGITS)
     _, first, which = np.unique(alike, axis=0, return_index=True, return_inverse=True)
     virgin, guess = sections.initial_state()["point_state"], None
     points, surface = (rod.state[name].equilibrium for name in START)
-    for k, (radius, curvature, torsion) in enumerate(wires[first]):
+    for k, (radius, curvature, torsion, *_) in enumerate(wires[first]):
         states = virgin[0, 0, :1]
         here = np.nonzero((which == k).reshape(place.curvature.shape))
+        left = sections.cut_points(here[0][0], here[1][0])  # of a ground section
+        rim = None if left is None else left[0][:2].T / radius
         if past.coiled and curvature >= STRAIGHT:
             if guess is not None:  # as the last one, turned by as much more as this one is
                 guess = guess[0] + curvature - wires[first][k - 1, 1], guess[1] + torsion - wires[first][k - 1, 2]
-            coiled = coil(past.law, rod.rule, radius, curvature, torsion, states, sections.curved, guess, past.relief)
+            coiled = coil(past.law, rod.rule, radius, curvature, torsion, states, sections.curved, guess, past.relief,
+                          rim)  # fmt: skip
             guess, states = coiled.turned, np.concatenate([coiled.points, coiled.surface])
             tight[0][here], tight[1][here] = coiled.curvature, coiled.torsion
         if past.layer is not None:
-            states = peen(past.law, rod.rule, radius, curvature, sections.curved, states, past.layer)
+            states = peen(past.law, rod.rule, radius, curvature, sections.curved, states, past.layer, rim)
+        if left is not None and len(states) > 1:
+            states = grind(past.law, *left, radius, sections.curved, states[len(rod.rule) :])
         if len(states) > 1:
             points[here], surface[here] = np.split(states, [len(rod.rule)])

@@ -9,6 +9,9 @@ half way through it.
 Stress relief may follow: the wire creeps while all resultants stay zero, which unbends it a little. θ and φ are then
 those for which it has the spring's shape afterwards.
 
+An end is ground last: what is left of its sections springs until all resultants are zero again, without a change of the
+spring's shape.
+
 What coiling machines do besides is left out: no temperature, no tension in the wire, no stress from drawing, and no
 second bend where a pitch tool or another pin touches.
 """
@@ -57,6 +60,7 @@ def coil(
     curved: bool = True,
     guess: tuple[float, float] | None = None,
     relief: Sequence[SectionLaw] = (),
+    surface: np.ndarray | None = None,
 ) -> Coiled:
     """The wire of a spring after coiling and stress relief.
 
@@ -69,6 +73,7 @@ def coil(
         curved: logarithmic strains of fibres; else ε = −κ y.
         guess: θ and φ to begin with, 1/mm.
         relief: the law over the intervals of time of the stress relief, one after the other.
+        surface: points without weight, as in `Wire.of_disk`.
 
     Raises:
         SolveError: if no coiling ends at this shape, as of a wire that does not yield.
@@ -78,7 +83,8 @@ def coil(
     before: tuple[np.ndarray, np.ndarray] | None = None
     slope = np.eye(2)
     for _ in range(ATTEMPTS):
-        wire, tight, moments = _coiled(law, rule, radius, turned, row, curved, wanted[0], relief)
+        virgin = Wire.of_disk(law, rule, radius, curved, row, surface)
+        wire, tight, moments = _coiled(virgin, turned, wanted[0], relief)
         off = wire.curvature - wanted
         if np.abs(off).max() <= CLOSE * curvature:
             inside = len(rule.weights)
@@ -93,18 +99,31 @@ def coil(
     raise SolveError("it springs back to another shape, however it is bent")
 
 
+def grind(
+    law: SectionLaw, fibres: np.ndarray, shape: np.ndarray, radius: float, curved: bool, states: np.ndarray
+) -> np.ndarray:
+    """What is left of a section with a past once its other part is ground away: its states without a resultant.
+
+    Args:
+        law: without time, as `Wire` takes it.
+        fibres, shape: of the points that are left, see `integration` and `shape`.
+        radius: of the wire, mm.
+        curved: do the fibres know the wire's curvature?
+        states: of these points in the whole section, shape (points, n_state).
+
+    Raises:
+        SolveError: if there is no such state.
+    """
+    wire = Wire(law, fibres, radius, curved, states, shape)
+    wire.step(np.zeros(6), np.arange(6), np.zeros(6), 0.0)
+    return wire.states
+
+
 def _coiled(
-    law: SectionLaw,
-    rule: DiskRule,
-    radius: float,
-    turned: np.ndarray,
-    row: np.ndarray,
-    curved: bool,
-    end: float,
-    relief: Sequence[SectionLaw],
+    wire: Wire, turned: np.ndarray, end: float, relief: Sequence[SectionLaw]
 ) -> tuple[Wire, tuple[float, float], tuple[float, float]]:
     """The wire after it was turned by θ and φ a length, let go and relieved; curvature and torsion, M3, Mt before."""
-    wire, d = Wire(law, rule, radius, curved, row), np.zeros(6)
+    d = np.zeros(6)
     for _ in range(LOADING):
         d[[BEND, TWIST]] = turned / LOADING / wire.stretch
         wire.step(d, FREE, np.zeros(6), wire.curvature[0] + 0.5 * d[BEND])

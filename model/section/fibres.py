@@ -10,7 +10,8 @@ from coilset.meshes.placement import Placement
 from coilset.model.material.kernel import KERNEL
 from coilset.model.material.law import Law
 from coilset.model.section.chord import to_chord, to_section
-from coilset.model.section.integration import section, update_points
+from coilset.model.section.ground import Ground, ground_sections, rim_rule
+from coilset.model.section.integration import FIBRES, section, update_points
 from coilset.model.section.law_over_time import LawOverTime
 from coilset.model.section.rules import DiskRule, rim
 from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
@@ -50,6 +51,16 @@ class FibreSections:
         self.components += self.law_over_time.columns(self.components[3:6])
         self.y, self.z = np.ascontiguousarray(rule.points.T)
         self.rim_y, self.rim_z = np.ascontiguousarray(rim().T)
+        self.ground = ground_sections(placement, radius, curved, lambda segment: segment.rule(len(rule)))
+        self.ground_rim = ground_sections(placement, radius, curved, rim_rule)
+
+    def cut_points(self, cell: int, g: int) -> tuple[np.ndarray, np.ndarray] | None:
+        """`fibres` and `shape` (see `Ground`) of a ground section's points and of those on its surface; None: whole."""
+        k = self.ground.which[cell, g]
+        if k < 0:
+            return None
+        both = self.ground, self.ground_rim
+        return np.hstack([one.fibres[k] for one in both]), np.hstack([one.shape[k] for one in both])
 
     def initial_state(self) -> dict[str, np.ndarray]:
         """Unstressed points: `point_state`, shape (cells, 2, points, n_state), and `surface_state` on the surface."""
@@ -83,8 +94,9 @@ class FibreSections:
         """
         place, law = self.placement, self.law_over_time.over(start, trial)
         return bool(update_sections(
-            law, self.y, self.z, self.weights, self.radius, place.curvature, self.curved, strain - start["strain"],
-            place.matrices, place.stretch, start["point_state"], trial["point_state"], s, D, with_tangent,
+            law, self.y, self.z, self.weights, self.ground, self.radius, place.curvature, self.curved,
+            strain - start["strain"], place.matrices, place.stretch, start["point_state"], trial["point_state"], s, D,
+            with_tangent,
         ))  # fmt: skip
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
@@ -94,8 +106,8 @@ class FibreSections:
         """
         place, law = self.placement, self.law_over_time.over(start, trial)
         update_surface(
-            law, self.rim_y, self.rim_z, self.radius, place.curvature, self.curved, strain - start["strain"],
-            place.matrices, start["surface_state"], trial["surface_state"],
+            law, self.rim_y, self.rim_z, self.ground_rim, self.radius, place.curvature, self.curved,
+            strain - start["strain"], place.matrices, start["surface_state"], trial["surface_state"],
         )  # fmt: skip
 
 
@@ -105,6 +117,7 @@ def update_sections(
     y: np.ndarray,
     z: np.ndarray,
     w: np.ndarray,
+    ground: Ground,
     radius: np.ndarray,
     curvature: np.ndarray,
     curved: bool,
@@ -125,6 +138,7 @@ def update_sections(
     Args:
         p: parameters of the material law.
         y, z, w: points of the unit disk and weights, shape (points,).
+        ground: the sections that are no disks.
         radius: wire radius of each element, shape (cells,), mm.
         curvature: κ of the wire, towards y, shape (cells, 2), 1/mm; curved: is it known to the sections?
         de: increments of the section strains ε, γ12, γ13, φ′, κ2 = −w″, κ3 = v″, shape (cells, 2, 6).
@@ -137,21 +151,25 @@ def update_sections(
     Returns:
         False if the law found no solution at some point or the strains are no numbers: then the step must be cut.
     """
-    points = len(w)
+    points, cut = len(w), ground.which
     d, resultant, tangent, work = np.empty(6), np.empty(6), np.empty((6, 6)), np.empty((6, 6))
     strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
-    shape = np.empty((SHAPE, points))
-    straight_shape(shape)
-    last, Y, Z, area = 0.0, y, z, w
+    disk, disk_shape = np.empty((FIBRES, points)), np.empty((SHAPE, points))
+    straight_shape(disk_shape)
+    last = 0.0
     for c in range(len(radius)):
         R = radius[c]
         if last != R:
-            last, Y, Z, area = R, R * y, R * z, math.pi * R * R * w
+            last = R
+            round_fibres(y, z, w, R, disk)
         for g in range(2):
             to_section(placement[c, g], de[c, g], d)
-            if curved:
-                curved_shape(y, z, curvature[c, g] * R, shape)
-            if not section(p, Y, Z, area, shape, d, old[c, g], new[c, g], strain, C, with_tangent, count, resultant,
+            fibres, shape = disk, disk_shape
+            if cut[c, g] >= 0:
+                fibres, shape = ground.fibres[cut[c, g]], ground.shape[cut[c, g]]
+            elif curved:
+                curved_shape(y, z, curvature[c, g] * R, disk_shape)
+            if not section(p, fibres, shape, d, old[c, g], new[c, g], strain, C, with_tangent, count, resultant,
                            tangent):  # fmt: skip
                 return False
             to_chord(placement[c, g], stretch[c, g], resultant, tangent, work, s[c, g], D[c, g], with_tangent)
@@ -163,6 +181,7 @@ def update_surface(
     p: np.ndarray,
     y: np.ndarray,
     z: np.ndarray,
+    ground: Ground,
     radius: np.ndarray,
     curvature: np.ndarray,
     curved: bool,
@@ -172,18 +191,31 @@ def update_surface(
     new: np.ndarray,
 ) -> None:
     """Bring the points y, z of the unit circle to the end of the increment; arguments as in `update_sections`."""
-    points, d = len(y), np.empty(6)
+    points, cut, d, weightless = len(y), ground.which, np.empty(6), np.zeros(len(y))
     strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
-    shape = np.empty((SHAPE, points))
-    straight_shape(shape)
+    disk, disk_shape = np.empty((FIBRES, points)), np.empty((SHAPE, points))
+    straight_shape(disk_shape)
     for c in range(len(radius)):
         R = radius[c]
+        round_fibres(y, z, weightless, R, disk)
         for g in range(2):
             to_section(placement[c, g], de[c, g], d)
-            if curved:
-                curved_shape(y, z, curvature[c, g] * R, shape)
-            update_points(p, R * y, R * z, shape, d, old[c, g], new[c, g], strain, C, False, count)
+            fibres, shape = disk, disk_shape
+            if cut[c, g] >= 0:
+                fibres, shape = ground.fibres[cut[c, g]], ground.shape[cut[c, g]]
+            elif curved:
+                curved_shape(y, z, curvature[c, g] * R, disk_shape)
+            update_points(p, fibres, shape, d, old[c, g], new[c, g], strain, C, False, count)
             spoil_failed(count, new[c, g])
+
+
+@njit(**KERNEL)
+def round_fibres(y: np.ndarray, z: np.ndarray, w: np.ndarray, radius: float, fibres: np.ndarray) -> None:
+    """Write y, z, u, v and areas of a disk's points, see `integration`, shape (5, points)."""
+    for k in range(len(y)):
+        fibres[0, k] = fibres[2, k] = radius * y[k]
+        fibres[1, k] = fibres[3, k] = radius * z[k]
+        fibres[4, k] = math.pi * radius * radius * w[k]
 
 
 @njit(**KERNEL)

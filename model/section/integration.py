@@ -3,11 +3,12 @@
 With S = g ∂(ε11, γ12, γ13)/∂(ε, γ2, γ3, φ′, κ2, κ3) at a point y, z,
 
         1  0    0    0  z −y
-    S = 0  a22  a23 −z  0  0
-        0  a32  a33  y  0  0
+    S = 0  a22  a23 −v  0  0
+        0  a32  a33  u  0  0
 
 the strains are S d/g, the resultants ∫ Sᵀ σ dA and their tangent ∫ Sᵀ C S dA/g. The kinds of sections differ in g and
-in the a. Sums over points consist of several partial sums, so that neighbouring points can be added at once.
+in the a. The levers of twist u, v are y, z in a round section; others warp by their twist. Sums over points consist of
+several partial sums, so that neighbouring points can be added at once.
 """
 
 import math
@@ -18,6 +19,7 @@ from numba import njit
 from coilset.model.material.kernel import KERNEL
 from coilset.model.material.point_law import rod_points
 
+FIBRES = 5  # rows of `fibres`: y, z, u, v and area
 SUMS = KERNEL | {"fastmath": {"contract", "reassoc", "nsz"}, "forceinline": True}
 Six = tuple[float, float, float, float, float, float]
 NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -26,8 +28,7 @@ NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 @njit(**KERNEL)
 def update_points(
     p: np.ndarray,
-    y: np.ndarray,
-    z: np.ndarray,
+    fibres: np.ndarray,
     shape: np.ndarray,
     d: np.ndarray,
     old: np.ndarray,
@@ -41,7 +42,7 @@ def update_points(
 
     Args:
         p: parameters of the material law, or a Creeping.
-        y, z: of the points, shape (points,), mm.
+        fibres: y, z, u, v of the points, mm, and their areas, mm², shape (5, points).
         shape: g, a22, a23, a32, a33 of the points, shape (5, points).
         d: increments of the section strains, shape (6,).
         old, new: states of the points at the start, and at the end, which is written, shape (points, n_state).
@@ -51,36 +52,39 @@ def update_points(
     Returns:
         Whether the law found a solution at all points.
     """
+    y, z, u, v = fibres[0], fibres[1], fibres[2], fibres[3]
     for k in range(len(y)):
         inverse = 1.0 / shape[0, k]
         strain[0, k] = (d[0] + d[4] * z[k] - d[5] * y[k]) * inverse
-        strain[1, k] = (shape[1, k] * d[1] + shape[2, k] * d[2] - d[3] * z[k]) * inverse
-        strain[2, k] = (shape[3, k] * d[1] + shape[4, k] * d[2] + d[3] * y[k]) * inverse
+        strain[1, k] = (shape[1, k] * d[1] + shape[2, k] * d[2] - d[3] * v[k]) * inverse
+        strain[2, k] = (shape[3, k] * d[1] + shape[4, k] * d[2] + d[3] * u[k]) * inverse
     return rod_points(p, old, strain, new, C, with_tangent, count)
 
 
 @njit(**SUMS)
-def resultants(y: np.ndarray, z: np.ndarray, dA: np.ndarray, shape: np.ndarray, new: np.ndarray, s: np.ndarray) -> None:
-    """Write N, Q2, Q3, Mt, M2, M3 of the stresses in `new`; dA: shape (points,), mm²."""
+def resultants(fibres: np.ndarray, shape: np.ndarray, new: np.ndarray, s: np.ndarray) -> None:
+    """Write N, Q2, Q3, Mt, M2, M3 of the stresses in `new`."""
+    y, z, u, v, dA = fibres[0], fibres[1], fibres[2], fibres[3], fibres[4]
     n = q2 = q3 = mt = m2 = m3 = 0.0
     for k in range(len(y)):
         sigma, t2, t3 = new[k, 0] * dA[k], new[k, 1] * dA[k], new[k, 2] * dA[k]
         n += sigma
         q2 += t2 * shape[1, k] + t3 * shape[3, k]
         q3 += t2 * shape[2, k] + t3 * shape[4, k]
-        mt += t3 * y[k] - t2 * z[k]
+        mt += t3 * u[k] - t2 * v[k]
         m2 += sigma * z[k]
         m3 -= sigma * y[k]
     s[0], s[1], s[2], s[3], s[4], s[5] = n, q2, q3, mt, m2, m3
 
 
 @njit(**SUMS)
-def _row(y: np.ndarray, z: np.ndarray, dA: np.ndarray, shape: np.ndarray, C: np.ndarray, i: int, k: int) -> Six:
+def _row(fibres: np.ndarray, shape: np.ndarray, C: np.ndarray, i: int, k: int) -> Six:
     """Row i of C S dA/g at the point k."""
+    y, z, u, v, dA = fibres[0], fibres[1], fibres[2], fibres[3], fibres[4]
     w = dA[k] / shape[0, k]
     c0, c1, c2 = C[3 * i, k] * w, C[3 * i + 1, k] * w, C[3 * i + 2, k] * w
     return (
-        c0, c1 * shape[1, k] + c2 * shape[3, k], c1 * shape[2, k] + c2 * shape[4, k], c2 * y[k] - c1 * z[k],
+        c0, c1 * shape[1, k] + c2 * shape[3, k], c1 * shape[2, k] + c2 * shape[4, k], c2 * u[k] - c1 * v[k],
         c0 * z[k], -c0 * y[k],
     )  # fmt: skip
 
@@ -95,18 +99,19 @@ def _added(total: Six, f: float, row: Six) -> Six:
 
 
 @njit(**SUMS)
-def tangents(y: np.ndarray, z: np.ndarray, dA: np.ndarray, shape: np.ndarray, C: np.ndarray, D: np.ndarray) -> None:
+def tangents(fibres: np.ndarray, shape: np.ndarray, C: np.ndarray, D: np.ndarray) -> None:
     """Write ∂s/∂d of the points' tangents C, shape (9, points), into D, shape (6, 6)."""
+    y, z, u, v = fibres[0], fibres[1], fibres[2], fibres[3]
     t0 = t4 = t5 = NOTHING
     for k in range(len(y)):
-        row = _row(y, z, dA, shape, C, 0, k)
+        row = _row(fibres, shape, C, 0, k)
         t0, t4, t5 = _added(t0, 1.0, row), _added(t4, z[k], row), _added(t5, -y[k], row)
     t1 = t2 = t3 = NOTHING
     for k in range(len(y)):
-        second, third = _row(y, z, dA, shape, C, 1, k), _row(y, z, dA, shape, C, 2, k)
+        second, third = _row(fibres, shape, C, 1, k), _row(fibres, shape, C, 2, k)
         t1 = _added(_added(t1, shape[1, k], second), shape[3, k], third)
         t2 = _added(_added(t2, shape[2, k], second), shape[4, k], third)
-        t3 = _added(_added(t3, -z[k], second), y[k], third)
+        t3 = _added(_added(t3, -v[k], second), u[k], third)
     for j in range(6):
         D[0, j], D[1, j], D[2, j], D[3, j], D[4, j], D[5, j] = t0[j], t1[j], t2[j], t3[j], t4[j], t5[j]
 
@@ -114,9 +119,7 @@ def tangents(y: np.ndarray, z: np.ndarray, dA: np.ndarray, shape: np.ndarray, C:
 @njit(**KERNEL)
 def section(
     p: np.ndarray,
-    y: np.ndarray,
-    z: np.ndarray,
-    dA: np.ndarray,
+    fibres: np.ndarray,
     shape: np.ndarray,
     d: np.ndarray,
     old: np.ndarray,
@@ -133,9 +136,9 @@ def section(
     Returns:
         False if the law found no solution at some point or the strains are no numbers.
     """
-    if not update_points(p, y, z, shape, d, old, new, strain, C, with_tangent, count):
+    if not update_points(p, fibres, shape, d, old, new, strain, C, with_tangent, count):
         return False
-    resultants(y, z, dA, shape, new, s)
+    resultants(fibres, shape, new, s)
     if with_tangent:
-        tangents(y, z, dA, shape, C, D)
+        tangents(fibres, shape, C, D)
     return math.isfinite(s.sum())

@@ -35,7 +35,14 @@ class Layer:
 
 
 def peen(
-    law: SectionLaw, rule: DiskRule, radius: float, bend: float, curved: bool, states: np.ndarray, layer: Layer
+    law: SectionLaw,
+    rule: DiskRule,
+    radius: float,
+    bend: float,
+    curved: bool,
+    states: np.ndarray,
+    layer: Layer,
+    surface: np.ndarray | None = None,
 ) -> np.ndarray:
     """States of a section's points after peening.
 
@@ -46,11 +53,12 @@ def peen(
         bend: curvature of its axis, 1/mm, and `curved` whether the fibres know it.
         states: before, of the rule's points and then those of the surface, shape (points, n_state), or one row for all.
         layer: Layer.
+        surface: points without weight, as in `Wire.of_disk`.
 
     Raises:
         SolveError: if the section finds no equilibrium.
     """
-    wire = Wire(law, rule, radius, curved, states)
+    wire = Wire.of_disk(law, rule, radius, curved, states, surface)
     grown = layer.at(radius * (1.0 - np.hypot(*wire.disk))) / INCREMENTS
     for _ in range(INCREMENTS):
         wire.grow(grown)

@@ -1,5 +1,6 @@
-"""Polynomials on the unit disk that are orthogonal to each other, degree by degree."""
+"""Polynomials on a wire's section that are orthogonal to each other, degree by degree."""
 
+from dataclasses import dataclass
 from math import gamma, pi
 
 import numpy as np
@@ -12,38 +13,63 @@ def moment(a: int, b: int) -> float:
     return 2 * gamma((a + 1) / 2) * gamma((b + 1) / 2) / gamma((a + b) / 2 + 1) / (a + b + 2) / pi
 
 
-def orthonormal(degree: int) -> tuple[np.ndarray, np.ndarray]:
-    """Polynomials p_k with mean(p_k p_l) = δ_kl, by Cholesky's factors of the monomials' moments.
-
-    Args:
-        degree: the highest.
-
-    Returns:
-        Exponents of the monomials y^a z^b in ascending degree, shape (n, 2), and coefficients, shape (n, n), one row a
-        polynomial; the first is 1, the next two are proportional to y and z, and n = (degree + 1)(degree + 2)/2.
-    """
-    powers = np.array([(total - b, b) for total in range(degree + 1) for b in range(total + 1)])
-    moments = np.array([[moment(*(p + q)) for q in powers] for p in powers])
-    return powers, np.linalg.inv(np.linalg.cholesky(moments))
+def exponents(degree: int) -> np.ndarray:
+    """Exponents of the monomials y^a z^b up to a degree, ascending, shape ((degree + 1)(degree + 2)/2, 2)."""
+    return np.array([(total - b, b) for total in range(degree + 1) for b in range(total + 1)])
 
 
-def values_and_slopes(degree: int, y: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """The polynomials of degree 2 and more at points of the unit disk.
+@dataclass(frozen=True, eq=False)
+class Basis:
+    """Polynomials p_k of degree 2 and more with mean(p_k p_l) = δ_kl, by Cholesky's factors of the monomials' moments.
 
     They have no mean and no moment, ∫ p dA = ∫ y p dA = ∫ z p dA = 0.
 
-    Args:
-        degree: the highest.
-        y, z: shape (points,).
-
-    Returns:
-        p, ∂p/∂y, ∂p/∂z, shape (3, points, polynomials).
+    Attributes:
+        powers: exponents of the monomials, shape (n, 2).
+        coefficients: shape (n, n), one row a polynomial; the first three are 1 and linear, and left out by a call.
+        origin, axes: the monomials are those of axes (p − origin); shapes (2,) and (2, 2).
     """
-    powers, coefficients = orthonormal(degree)
-    a, b = powers.T
-    monomials = np.array([
-        y[:, None] ** a * z[:, None] ** b,
-        a * y[:, None] ** np.maximum(a - 1, 0) * z[:, None] ** b,
-        b * y[:, None] ** a * z[:, None] ** np.maximum(b - 1, 0),
-    ])  # fmt: skip
-    return np.ascontiguousarray(monomials @ coefficients[3:].T)
+
+    powers: np.ndarray
+    coefficients: np.ndarray
+    origin: np.ndarray
+    axes: np.ndarray
+
+    @classmethod
+    def of_disk(cls, degree: int) -> "Basis":
+        """Over the unit disk."""
+        powers = exponents(degree)
+        moments = np.array([[moment(*(p + q)) for q in powers] for p in powers])
+        return cls(powers, np.linalg.inv(np.linalg.cholesky(moments)), np.zeros(2), np.eye(2))
+
+    @classmethod
+    def over(
+        cls, degree: int, places: np.ndarray, weights: np.ndarray, origin: np.ndarray, axes: np.ndarray
+    ) -> "Basis":
+        """Over a region of any shape.
+
+        Args:
+            degree: the highest.
+            places, weights: a rule that integrates polynomials of twice the degree over it, shapes (m, 2) and (m,).
+            origin, axes: that make its coordinates lie between −1 and 1.
+        """
+        powers = exponents(degree)
+        plain = cls(powers, np.eye(len(powers)), origin, axes)
+        values = plain.monomials(places)[0]
+        moments = values.T @ (weights[:, None] * values) / weights.sum()
+        return cls(powers, np.linalg.inv(np.linalg.cholesky(moments)), origin, axes)
+
+    def monomials(self, places: np.ndarray) -> np.ndarray:
+        """Monomials and their slopes in y and z at points, shape (m, 2) → (3, m, n)."""
+        y, z = ((places - self.origin) @ self.axes.T).T
+        a, b = self.powers.T
+        of_y, of_z = (
+            a * y[:, None] ** np.maximum(a - 1, 0) * z[:, None] ** b,
+            b * y[:, None] ** a * z[:, None] ** np.maximum(b - 1, 0),
+        )
+        (yy, yz), (zy, zz) = self.axes
+        return np.array([y[:, None] ** a * z[:, None] ** b, of_y * yy + of_z * zy, of_y * yz + of_z * zz])
+
+    def __call__(self, places: np.ndarray) -> np.ndarray:
+        """p, ∂p/∂y, ∂p/∂z of the polynomials of degree 2 and more, shape (m, 2) → (3, m, polynomials)."""
+        return np.ascontiguousarray(self.monomials(places) @ self.coefficients[3:].T)

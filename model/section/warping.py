@@ -16,7 +16,7 @@ of the state at the last equilibrium and of the strains, whatever was tried in b
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numba import njit
@@ -27,7 +27,8 @@ from coilset.model.material.point_law import solid_point
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.condensation import condense, find_warping, strain_operator
 from coilset.model.section.law_over_time import LawOverTime
-from coilset.model.section.polynomials import values_and_slopes
+from coilset.model.section.ground import segments
+from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import DiskRule, rim
 
 
@@ -56,12 +57,16 @@ class WarpingSections:
         temperature: float | None = None,
         degree: int = 3,
     ) -> None:
-        self.radius, self.placement, self.weights = radius, placement, rule.weights
+        self.radius, self.placement = radius, placement
         self.law_over_time = LawOverTime(law, parameters, temperature)
         self.components += self.law_over_time.columns(self.components[6:12])
-        self.points = _with_polynomials(rule.points, degree)
-        self.rim = _with_polynomials(rim(), degree)
-        self.unknowns = 3 + 3 * self.points[2].shape[2]
+        basis = Basis.of_disk(degree)
+        self.which, cut = segments(placement)
+        left, bases = [one.rule(len(rule)) for one in cut], [one.basis(degree) for one in cut]
+        self.points = _with_polynomials([rule.points, *(one.points for one in left)], [basis, *bases])
+        self.weights = np.array([rule.weights, *(one.weights for one in left)])
+        self.rim = _with_polynomials([rim(), *(one.rim() for one in cut)], [basis, *bases])
+        self.unknowns = 3 + 3 * self.points[2].shape[3]
         self.iterations = np.zeros(2, dtype=np.int64)  # sections brought up to date, local iterations on the way
 
     def initial_state(self) -> dict[str, np.ndarray]:
@@ -72,8 +77,8 @@ class WarpingSections:
         row = self.law_over_time.unstressed(6)
         shape = (len(self.radius), 2)
         return {
-            "point_state": np.tile(row, (*shape, len(self.weights), 1)),
-            "surface_state": np.tile(row, (*shape, len(self.rim[0]), 1)),
+            "point_state": np.tile(row, (*shape, self.weights.shape[1], 1)),
+            "surface_state": np.tile(row, (*shape, self.rim[0].shape[1], 1)),
             "warping": np.zeros((*shape, self.unknowns)),
             "warping_slope": np.zeros((*shape, self.unknowns, 6)),
         }
@@ -90,7 +95,7 @@ class WarpingSections:
         """Bring all sections to the end of the increment; as `FibreSections.update`, but always with the tangent."""
         place, law = self.placement, self.law_over_time.over(start, trial)
         status = update_sections(
-            law, *self.points, self.weights, self.radius, place.curvature, place.torsion,
+            law, self.which, *self.points, self.weights, self.radius, place.curvature, place.torsion,
             strain - start["strain"], place.matrices, place.stretch, start["point_state"], start["warping"],
             start["warping_slope"], trial["point_state"], trial["warping"], trial["warping_slope"], s, D,
             self.iterations,
@@ -101,20 +106,21 @@ class WarpingSections:
         """Bring the points on the wire's surface to the end of the increment; as `FibreSections.update_surface`."""
         place, law = self.placement, self.law_over_time.over(start, trial)
         update_surface(
-            law, *self.rim, self.radius, place.curvature, place.torsion, strain - start["strain"],
+            law, self.which, *self.rim, self.radius, place.curvature, place.torsion, strain - start["strain"],
             place.matrices, start["surface_state"], trial["warping"] - start["warping"], trial["surface_state"],
         )  # fmt: skip
 
 
-def _with_polynomials(points: np.ndarray, degree: int) -> tuple[np.ndarray, ...]:
-    """y, z, and the polynomials and their slopes there."""
-    y, z = np.ascontiguousarray(points.T)
-    return y, z, values_and_slopes(degree, y, z)
+def _with_polynomials(points: Sequence[np.ndarray], bases: Sequence[Basis]) -> tuple[np.ndarray, ...]:
+    """y, z, and the polynomials and their slopes there, of the whole disk and of each section that is ground."""
+    y, z = np.ascontiguousarray(np.moveaxis(np.array(points), -1, 0))
+    return y, z, np.array([basis(one) for basis, one in zip(bases, points, strict=True)])
 
 
 @njit(cache=True)
 def update_sections(
     p: np.ndarray,
+    which: np.ndarray,
     y: np.ndarray,
     z: np.ndarray,
     f: np.ndarray,
@@ -139,7 +145,8 @@ def update_sections(
 
     Args:
         p: parameters of the material law.
-        y, z, f, w: points, polynomials and weights of the unit disk.
+        which: number of each section among the ground ones, −1 if it is whole, shape (cells, 2).
+        y, z, f, w: points, polynomials and weights, first of the unit disk and then of each ground section.
         radius, curvature, torsion: of the wire, shape (cells,), (cells, 2), (cells, 2), mm and 1/mm.
         de, placement, stretch, s, D: as in `fibres.update_sections`.
         old, old_a, old_slope: state of the points with all six stresses, warping, and its slope da/de in the section's
@@ -153,7 +160,7 @@ def update_sections(
     """
     n = a.shape[2]
     size = 6 + n
-    points = len(w)
+    points = w.shape[1]
     B, CB = np.zeros((points, 6, size)), np.empty((6, size))
     K, r, X = np.empty((size, size)), np.empty(size), np.empty((n, n + 7))
     step, C, dA = np.empty(size), np.empty((6, 6)), np.empty(points)
@@ -161,17 +168,17 @@ def update_sections(
     for c in range(len(radius)):
         R = radius[c]
         for g in range(2):
-            P = placement[c, g]
-            strain_operator(y, z, f, R, curvature[c, g], torsion[c, g], B)
+            P, i = placement[c, g], which[c, g] + 1
+            strain_operator(y[i], z[i], f[i], R, curvature[c, g], torsion[c, g], B)
             for k in range(points):
-                dA[k] = math.pi * R * R * w[k] * (1.0 - curvature[c, g] * R * y[k])
+                dA[k] = math.pi * R * R * w[i, k] * (1.0 - curvature[c, g] * R * y[i, k])
             to_section(P, de[c, g], step)
             good = False
             for follow in (1.0, 0.0):  # from where the slope leads, else from the last equilibrium
-                for i in range(n):
-                    a[c, g, i] = old_a[c, g, i]
+                for m in range(n):
+                    a[c, g, m] = old_a[c, g, m]
                     for j in range(6):
-                        a[c, g, i] += follow * old_slope[c, g, i, j] * step[j]
+                        a[c, g, m] += follow * old_slope[c, g, m, j] * step[j]
                 good = find_warping(p, B, dA, old[c, g], old_a[c, g], a[c, g], new[c, g], step, C, CB, K, r, X, count)
                 if good:
                     break
@@ -189,6 +196,7 @@ def update_sections(
 @njit(cache=True)
 def update_surface(
     p: np.ndarray,
+    which: np.ndarray,
     y: np.ndarray,
     z: np.ndarray,
     f: np.ndarray,
@@ -203,18 +211,19 @@ def update_surface(
 ) -> None:
     """Bring points on the surface to the end of the increment `de`, `da` of strains and warping."""
     n = da.shape[2]
-    B, C = np.zeros((len(y), 6, 6 + n)), np.empty((6, 6))
+    B, C = np.zeros((y.shape[1], 6, 6 + n)), np.empty((6, 6))
     e, strain = np.empty(6), np.empty(6)
     for c in range(len(radius)):
         for g in range(2):
-            strain_operator(y, z, f, radius[c], curvature[c, g], torsion[c, g], B)
+            i = which[c, g] + 1
+            strain_operator(y[i], z[i], f[i], radius[c], curvature[c, g], torsion[c, g], B)
             to_section(placement[c, g], de[c, g], e)
-            for k in range(len(y)):
-                for i in range(6):
-                    strain[i] = 0.0
+            for k in range(y.shape[1]):
+                for a in range(6):
+                    strain[a] = 0.0
                     for j in range(6):
-                        strain[i] += B[k, i, j] * e[j]
+                        strain[a] += B[k, a, j] * e[j]
                     for j in range(n):
-                        strain[i] += B[k, i, 6 + j] * da[c, g, j]
+                        strain[a] += B[k, a, 6 + j] * da[c, g, j]
                 if solid_point(p, old[c, g, k], strain, new[c, g, k], C) < 0:
                     new[c, g, k, :] = math.nan

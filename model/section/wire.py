@@ -22,18 +22,24 @@ class Wire:
 
     Args:
         law: as the compiled loops take it, `LawOverTime.over`.
-        rule: quadrature of the disk.
+        fibres: y, z, u, v and areas of its points, see `integration`.
         radius: of the wire, mm.
         curved: do the fibres get longer and shorter as the wire is bent, see `shape`?
-        states: of the rule's points and then of those on the surface, shape (points, n_state), or a virgin one of
-            shape (1, n_state) for all.
+        states: of the points, shape (points, n_state), or a virgin one of shape (1, n_state) for all.
+        own_shape: g and the a of the points, if they are not those of a disk, see `shape`.
     """
 
-    def __init__(self, law: SectionLaw, rule: DiskRule, radius: float, curved: bool, states: np.ndarray) -> None:
-        self.law, self.curved, self.radius = law, curved, radius
-        self.disk = np.ascontiguousarray(np.concatenate([rule.points, rim()]).T)
-        self.y, self.z = radius * self.disk
-        self.area = math.pi * radius**2 * np.concatenate([rule.weights, np.zeros(len(rim()))])
+    def __init__(
+        self,
+        law: SectionLaw,
+        fibres: np.ndarray,
+        radius: float,
+        curved: bool,
+        states: np.ndarray,
+        own_shape: np.ndarray | None = None,
+    ) -> None:
+        self.law, self.fibres, self.area, self.curved, self.radius = law, fibres, fibres[4], curved, radius
+        self.disk, self._own_shape = np.ascontiguousarray(fibres[:2] / radius), own_shape
         self.states = np.tile(states, (len(self.area) // len(states), 1))
         self.stretch = 1.0
         self.turned = np.zeros(2)  # θ and φ of a length of straight wire
@@ -42,6 +48,27 @@ class Wire:
         self._room = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
         self._shape, self._tangent = np.empty((SHAPE, points)), np.empty((6, 6))
 
+    @classmethod
+    def of_disk(
+        cls,
+        law: SectionLaw,
+        rule: DiskRule,
+        radius: float,
+        curved: bool,
+        states: np.ndarray,
+        surface: np.ndarray | None = None,
+    ) -> "Wire":
+        """A round one; other arguments as above.
+
+        Args:
+            rule: quadrature of the disk; its points are the first.
+            surface: points without weight behind them, on the unit disk, shape (n, 2); None: those of the rim.
+        """
+        further = rim() if surface is None else surface
+        y, z = radius * np.concatenate([rule.points, further]).T
+        area = math.pi * radius**2 * np.concatenate([rule.weights, np.zeros(len(further))])
+        return cls(law, np.array([y, z, y, z, area]), radius, curved, states)
+
     @property
     def curvature(self) -> np.ndarray:
         """Curvature and torsion of the axis, 1/mm."""
@@ -49,12 +76,14 @@ class Wire:
 
     def evaluate(self, d: np.ndarray, bend: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Resultants, their tangent and the points' states after the section strains d, fibres as at a curvature."""
-        straight_shape(self._shape)
-        if self.curved:
+        if self._own_shape is not None:
+            self._shape[:] = self._own_shape
+        elif self.curved:
             curved_shape(*self.disk, bend * self.radius, self._shape)
+        else:
+            straight_shape(self._shape)
         new, s, (strain, C, count) = np.empty_like(self.states), np.empty(6), self._room
-        if not section(self.law, self.y, self.z, self.area, self._shape, d, self.states, new, strain, C, True, count, s,
-                       self._tangent):  # fmt: skip
+        if not section(self.law, self.fibres, self._shape, d, self.states, new, strain, C, True, count, s, self._tangent):
             raise SolveError("the law found no solution")
         return s, self._tangent, new
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import hyp2f1
 
-from coilset.meshes.placement import Placement, straight
+from coilset.meshes.placement import straight
 from coilset.model.material.creep_law import CreepLaw
 from coilset.model.material.file import MaterialFile
 from coilset.model.material.law import Law
@@ -97,7 +97,7 @@ def test_tangent_over_time(kind, yielding):
     rng = np.random.default_rng(4)
     place = straight(1)
     if kind != "plane":
-        place = Placement(place.matrices, place.stretch, np.full((1, 2), 0.05), np.full((1, 2), 0.01))
+        place = place._replace(curvature=np.full((1, 2), 0.05), torsion=np.full((1, 2), 0.01))
     section = Section(creeping("strain", yielding=yielding), kind, 4, 12, place)
     unit = np.array([1, 1, 1, 1 / R, 1 / R, 1 / R])
     section.go(2e-3 * unit * rng.normal(size=6), 0.0)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.placement import Placement
+from coilset.meshes.placement import Placement, round_wire
 from coilset.model.section.kinds import KINDS, make_sections
 from coilset.model.section.rules import polar
 from coilset.verification.springs.curved_rod import section_stiffness
@@ -14,7 +14,8 @@ PLASTIC = np.array([2e-3, 3e-4, -2e-4, 3e-3, -1.5e-3, 1e-3])  # surface strains 
 
 
 def straight():
-    return Placement(np.eye(6)[None, None].repeat(2, axis=1), np.ones((1, 2)), np.zeros((1, 2)), np.zeros((1, 2)))
+    return Placement(np.eye(6)[None, None].repeat(2, axis=1), np.ones((1, 2)), np.zeros((1, 2)), np.zeros((1, 2)),
+                     round_wire(np.zeros((1, 2))))  # fmt: skip
 
 
 def tilted():
@@ -24,7 +25,7 @@ def tilted():
     cross = -np.cross(np.eye(3), offset)  # K × offset = cross @ K
     P = np.block([[tilt, tilt @ cross], [np.zeros((3, 3)), tilt]]) / 1.02
     each = np.ones((1, 2))
-    return Placement(np.tile(P, (1, 2, 1, 1)), 1.02 * each, CURVATURE * each, TORSION * each)
+    return Placement(np.tile(P, (1, 2, 1, 1)), 1.02 * each, CURVATURE * each, TORSION * each, round_wire(each))
 
 
 PLACES = {"straight": straight(), "tilted": tilted()}

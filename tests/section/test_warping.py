@@ -7,7 +7,7 @@ from coilset.meshes.placement import straight
 from coilset.model.material import library
 from coilset.model.section.condensation import TOLERANCE, strain_operator
 from coilset.model.section.kinds import make_sections
-from coilset.model.section.polynomials import orthonormal, values_and_slopes
+from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import polar, rim
 from coilset.verification.sections.helix import HelixSection
 from coilset.verification.solid_vs_rod import references
@@ -22,7 +22,8 @@ def elastic():
 
 def test_polynomials_are_orthonormal():
     """With a rule of degree 15 for products of degree 10; 1, y and z are the first three."""
-    rule, (powers, coefficients) = polar(5, 16), orthonormal(5)
+    rule, basis = polar(5, 16), Basis.of_disk(5)
+    powers, coefficients = basis.powers, basis.coefficients
     y, z = rule.points.T
     p = coefficients @ np.array([y**a * z**b for a, b in powers])
     np.testing.assert_allclose((p * rule.weights) @ p.T, np.eye(21), atol=1e-13)
@@ -31,11 +32,11 @@ def test_polynomials_are_orthonormal():
 
 def test_slopes_of_the_polynomials():
     """Against central differences, also on the axis and on the rim."""
-    y, z = np.concatenate([polar().points, rim(8), [[0.0, 0.0]]]).T
+    places, basis = np.concatenate([polar().points, rim(8), [[0.0, 0.0]]]), Basis.of_disk(5)
     h = 1e-5
-    _, fy, fz = values_and_slopes(5, y, z)
-    for slope, (dy, dz) in ((fy, (h, 0)), (fz, (0, h))):
-        ahead, behind = (values_and_slopes(5, y + k * dy, z + k * dz)[0] for k in (1, -1))
+    _, fy, fz = basis(places)
+    for slope, step in ((fy, (h, 0)), (fz, (0, h))):
+        ahead, behind = (basis(places + k * np.array(step))[0] for k in (1, -1))
         np.testing.assert_allclose(slope, (ahead - behind) / (2 * h), atol=1e-7)
 
 
@@ -86,7 +87,7 @@ def test_warping_does_no_work(ck15):
     y, z = np.ascontiguousarray(rule.points.T)
     n = wire.sections.unknowns
     B = np.zeros((len(rule), 6, 6 + n))
-    f = values_and_slopes(3, y, z)
+    f = Basis.of_disk(3)(np.stack([y, z], axis=-1))
     strain_operator(y, z, f, RADIUS, place.curvature[0, 0], place.torsion[0, 0], B)
     stress = wire.trial["point_state"][0, 0][:, :6]
     volume = rule.weights * (1.0 - place.curvature[0, 0] * RADIUS * y)
