@@ -34,7 +34,7 @@ def _panel(run: Run, name: str, quantity: str, which: int, sign: str) -> Panel:
     for number, both in enumerate(fields):
         end = round_end(max(float(np.abs(field).max()) for field in both))
         traces.append(_map(places * radius, both[which], radius, end, number))
-    y, z = (run.data[axis_name].values[element] for axis_name in "yz")
+    y, z = (run.data[axis_name].values[element, 0] for axis_name in "yz")
     dots = {"type": "scatter", "mode": "markers", "x": y, "y": z, "marker": {"size": 2, "color": "#404040"}}
     traces.append({**dots, "hoverinfo": "skip", "showlegend": False})
     low, high = (said(float(f(fields[-1][which])), "MPa") for f in (np.min, np.max))
@@ -54,7 +54,7 @@ def _panel(run: Run, name: str, quantity: str, which: int, sign: str) -> Panel:
 def _places(run: Run, element: int) -> tuple[np.ndarray, np.ndarray, float]:
     """Places in wire radii, the matrix that carries values at the section points to those within, and the radius."""
     radius = float(run.data["wire_radius"].values[element])
-    points = np.stack([run.data[name].values[element] for name in "yz"], axis=-1) / radius
+    points = np.stack([run.data[name].values[element, 0] for name in "yz"], axis=-1) / radius
     inner, carry = rings(points)
     angle = 2.0 * np.pi * np.arange(ROUND) / ROUND
     return np.concatenate([inner, np.stack([np.cos(angle), np.sin(angle)], axis=-1)]), carry, radius

@@ -12,6 +12,7 @@ from coilset.model.results.folder import make, whole
 from coilset.model.results.netcdf import LabelledData, Variable, write_netcdf
 from coilset.model.results.record import Result, Setup, Snapshot
 from coilset.model.results.warnings import run_warnings
+from coilset.model.section.ground import section_points
 from coilset.model.section.rules import SURFACE_POINTS
 from coilset.model.section.surface import component, shear
 
@@ -21,6 +22,9 @@ RESULTANTS = ["N", "Q2", "Q3", "Mt", "M2", "M3"]
 def point_state(setup: Setup, result: Result) -> LabelledData:
     """All section points at all snapshots with units and coordinates."""
     rule, radius, snapshots = setup.rule, setup.wire_radius, result.snapshots
+    places, weights = section_points(rule, setup.placement)
+    places *= radius[:, None, None, None]
+    of_points = ("element", "gauss", "point")
     of_sections = ("snapshot", "element", "gauss")
 
     def shots(name: str) -> np.ndarray:
@@ -37,10 +41,10 @@ def point_state(setup: Setup, result: Result) -> LabelledData:
             "position": Variable(("snapshot", "station", "axis"), shots("x"), mm),
             "height": Variable(("snapshot",), shots("height"), mm),
             "force": Variable(("snapshot",), shots("force"), {"units": "N"}),
-            "y": Variable(("element", "point"), np.outer(radius, rule.points[:, 0]), mm),
-            "z": Variable(("element", "point"), np.outer(radius, rule.points[:, 1]), mm),
+            "y": Variable(of_points, places[..., 0], mm),
+            "z": Variable(of_points, places[..., 1], mm),
             "wire_radius": Variable(("element",), radius, mm),
-            "weight": Variable(("point",), rule.weights),
+            "weight": Variable(of_points, weights),
             "curvature": Variable(("element", "gauss"), setup.placement.curvature, curvature),
             "torsion": Variable(("element", "gauss"), setup.placement.torsion, {"units": "1/mm"}),
         },

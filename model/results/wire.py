@@ -119,7 +119,7 @@ def section_points(run: Run, snapshot: int) -> np.ndarray:
     turn, at = run.data["turn"].values, section_turns(run)
     line = CubicSpline(turn, run.data["position"].values[snapshot], axis=0)
     centre, inwards, binormal = (values.reshape(*at.shape, 1, 3) for values in _directions(line, at.ravel()))
-    y, z = (run.data[name].values[:, None, :, None] for name in "yz")
+    y, z = (run.data[name].values[..., None] for name in "yz")
     turned = np.cos(inside(run).angle)
     return centre + turned * (y * inwards + z * binormal)
 

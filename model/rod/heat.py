@@ -15,6 +15,7 @@ from coilset.model.rod.heat_equation import HeatConstants, HeatEquation
 from coilset.model.rod.kinematics import GAUSS
 from coilset.model.rod.rod import Rod
 from coilset.model.section.fibres import FibreSections
+from coilset.model.section.ground import section_points
 from coilset.model.state import Where
 
 SLOWEST = 1.8411837813406593**2
@@ -47,14 +48,16 @@ class WireHeat:
         radius = np.empty(cells.size_local + cells.num_ghosts)
         radius[:] = rod.largest_radius
         radius[: len(rod.radius)] = rod.radius
-        stretch = np.ones((len(radius), 2))
+        stretch, left = np.ones((2, len(radius), 2))
         stretch[: len(rod.radius)] = rod.placement.stretch
-        self.equation = HeatEquation(rod.line, radius, constants, rod.temperature, stretch)
-        y, _ = rod.rule.points.T
         assert isinstance(rod.sections, FibreSections)
         bend = rod.placement.curvature if rod.sections.curved else np.zeros_like(rod.placement.curvature)
-        g = 1.0 - bend[..., None] * rod.radius[:, None, None] * y
-        self._weights = rod.rule.weights * g  # sum to 1: the centre of a section lies on its axis
+        places, weights = section_points(rod.rule, rod.placement)
+        g = 1.0 - bend[..., None] * rod.radius[:, None, None] * places[..., 0]
+        left[: len(rod.radius)] = np.sum(weights * g, axis=-1)  # 1 of a round section, whose centre is on its axis
+        self._weights = weights * g
+        self._left = left[: len(rod.radius)]
+        self.equation = HeatEquation(rod.line, radius, constants, rod.temperature, stretch, left)
         self._dofs = np.empty(len(rod.x), dtype=np.int64)  # of the local nodes
         self._dofs[geometry_dofs(mesh)] = self.equation.temperature.function_space.dofmap.list
         self._nodes = rod.state.add("temperature", np.full(len(rod.x), rod.temperature), Where.STATION)
@@ -76,8 +79,8 @@ class WireHeat:
         """Let a step have taken some seconds; changes the last equilibrium; collective."""
         rod, equation, cells = self.rod, self.equation, len(self.rod.radius)
         equation.temperature.x.array[self._dofs] = self._nodes.equilibrium
-        mean = np.sum(self._weights * rod.state["point_state"].equilibrium[..., -1], axis=-1)
-        got = np.pi * rod.radius[:, None] ** 2 * equation.constants.capacity
+        mean = np.sum(self._weights * rod.state["point_state"].equilibrium[..., -1], axis=-1) / self._left
+        got = np.pi * rod.radius[:, None] ** 2 * self._left * equation.constants.capacity
         equation.source[:] = 0.0
         equation.source[:cells] = got * (mean - equation.at_sections(GAUSS)[:cells])
         before = equation.content

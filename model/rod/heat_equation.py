@@ -2,8 +2,9 @@
 
     ρ c A Ṫ = (k A T′)′ − h U (T − T∞) + q,     k A T′ n = −g (T − T∞) at both tips,
 
-with A = πr², U = 2πr, and q the heat that plastic work gives a length. Linear elements, second order in their length;
-backward Euler in time. Lengths are those of the wire in the state the rod is in.
+with A = πr², or what grinding has left of it, U = 2πr, and q the heat that plastic work gives a length. Linear
+elements, second order in their length; backward Euler in time. Lengths are those of the wire in the state the rod is
+in.
 """
 
 from dataclasses import dataclass, fields
@@ -50,6 +51,7 @@ class HeatEquation:
         start: temperature at the start, K.
         stretch: length of wire over length of chord at the two Gauss sections of the local cells, shape (cells, 2);
             None: the wire is straight between the nodes.
+        left: part of the round section that grinding has left there, shape (cells, 2); None: all.
 
     Attributes:
         temperature: function of the nodes, K.
@@ -63,19 +65,21 @@ class HeatEquation:
         constants: HeatConstants,
         start: float,
         stretch: np.ndarray | None = None,
+        left: np.ndarray | None = None,
     ) -> None:
         self.line, mesh, self.constants = line, line.mesh, constants
         self.temperature = fem.Function(fem.functionspace(mesh, ("Lagrange", 1)))
         self.temperature.x.array[:] = start
         before = fem.Function(self.temperature.function_space)
         heat = fem.Function(fem.functionspace(mesh, forms.section_element(())))
-        longer = fem.Function(heat.function_space)
+        longer, whole = fem.Function(heat.function_space), fem.Function(heat.function_space)
         longer.x.array[:] = 1.0 if stretch is None else stretch.ravel()
+        whole.x.array[:] = 1.0 if left is None else left.ravel()
         wire = fem.Function(fem.functionspace(mesh, ("DG", 0)))
         wire.x.array[:] = radius
         self.source, self._before = heat.x.array.reshape(-1, 2), before
         self._seconds = fem.Constant(mesh, PETSc.ScalarType(1.0))
-        area, around = np.pi * wire**2, 2.0 * np.pi * wire
+        area, around = np.pi * wire**2 * whole, 2.0 * np.pi * wire
         capacity, conductivity, convection, tips, air = (
             fem.Constant(mesh, PETSc.ScalarType(getattr(constants, one.name))) for one in fields(constants)
         )

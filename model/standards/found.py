@@ -103,11 +103,12 @@ def _residual(path: Path) -> tuple[float | None, float | None]:
         body = (middle > MIDDLE[0]) & (middle < MIDDLE[1])
         y, z = data["y"].values, data["z"].values
         distance = np.hypot(y, z)
-        outer = distance[0] > (1 - 1e-6) * distance[0].max()
+        round_one = distance[len(distance) // 2, 0]  # of mid height, which no grinding has touched
+        outer = round_one > (1 - 1e-6) * round_one.max()
         state = data["history"].values[[loaded, -1]]
-    across = (state[..., 2] * y[:, None] - state[..., 1] * z[:, None]) / np.maximum(distance, 1e-300)[:, None]
+        weight = data["weight"].values[len(distance) // 2, 0]
+    across = (state[..., 2] * y - state[..., 1] * z) / np.maximum(distance, 1e-300)
     at_load, released = across[:, body][..., outer].mean(axis=(1, 2, 3))
     # the rule's points on the unit disk: Σ w r² = ½ for a wire of radius 1
-    with xr.open_dataset(path, engine="h5netcdf") as data:
-        radius = np.sqrt(2 * float((data["weight"].values * distance[0] ** 2).sum()))
-    return float(released * np.sign(at_load)), float(distance[0].max() / radius)
+    radius = np.sqrt(2 * float((weight * round_one**2).sum()))
+    return float(released * np.sign(at_load)), float(round_one.max() / radius)

@@ -66,7 +66,8 @@ def test_what_one_seat_does_the_other_undoes(example_runs):
 
 
 def test_pressure_adds_up_to_the_force(example_runs, tmp_path):
-    """On level seats the pressure, times the length each point bears with, is the axial force while the tip bears."""
+    """On level seats the pressure, times the length each point bears with, is the axial force while the tip bears; a
+    thin tip lifts off soon, and its soft spring then pulls with 1e-6 of it."""
     analysis, _ = example_runs["closed_and_ground"]
     data = pressure_along_wire(analysis.setup, analysis.result).to_xarray()
     seat = analysis.system.contacts[1]
@@ -74,8 +75,11 @@ def test_pressure_adds_up_to_the_force(example_runs, tmp_path):
     place = np.searchsorted(seat.points.turns, data.wire_turn.values)
     lengths = seat.lengths[place]
     for k in range(6):
-        force = float(data.pressure.sel(contact="bottom seat").values[k] @ lengths)
-        assert force == pytest.approx(analysis.result.seats[k].bottom.force_N, rel=1e-9)
+        pressure = data.pressure.sel(contact="bottom seat").values[k]
+        tip_bears = pressure[data.wire_turn.values == 0.0].any()
+        assert tip_bears or k > 0
+        expected = analysis.result.seats[k].bottom.force_N
+        assert float(pressure @ lengths) == pytest.approx(expected, rel=1e-9 if tip_bears else 2e-6)
     bears = data.pressure.sel(contact="bottom seat").values[2] > 0
     assert data.wire_turn.values[bears].max() < 1.1  # the end coil of one turn
     write_seats(tmp_path, analysis.result.seats)
@@ -88,11 +92,13 @@ def test_pressure_adds_up_to_the_force(example_runs, tmp_path):
 
 def test_active_turns_are_those_of_the_standard():
     """EN 13906-1 counts two dead end turns: 5.5 of 7.5 turns are active; the transition to the dead coil and bending
-    make 1 % of it. At block no turn is free, and the coils have taken over most of the load."""
+    make 1 % of it. The ground ends taper: they lie on their seats near the tip and near the end of the flat, and their
+    middle is as free as the coils; round ends would leave 6 turns free. At block no turn is free, and the coils have
+    taken over most of the load."""
     loading = [{"to": {"force": 20}, "steps": 1}]
     few = Analysis(check({"spring": CLOSED, "material": "elastic", "loading": loading}), MPI.COMM_SELF).run()
     assert few.seats[0].active_turns == pytest.approx(5.5, rel=0.02)
-    assert few.seats[0].free_turns == pytest.approx(5.5, abs=0.6)
+    assert few.seats[0].free_turns == pytest.approx(6.5, abs=0.1)
 
 
 def test_active_turns_make_the_rate():

@@ -64,11 +64,11 @@ def test_section_points_lie_in_the_wire_and_bring_their_state(run, read):
         cloud = mesh(read[2], time)
         assert np.array_equal(cloud["t13"], run.data["history"].sel(component="t13").values[snapshot].ravel())
         points = cloud.points.reshape(*shape, 3)
-        weight = run.data["weight"].values[:, None]
+        weight = run.data["weight"].values[..., None]
         centre = (points * weight).sum(axis=2, keepdims=True)
-        off = np.hypot(run.data["y"].values, run.data["z"].values)[:, None]
+        off = np.hypot(run.data["y"].values, run.data["z"].values)
         assert np.linalg.norm(points - centre, axis=-1) == pytest.approx(np.broadcast_to(off, shape), rel=1e-6)
-        inner = run.data["y"].values[0].argmax()  # towards the axis
+        inner = run.data["y"].values[0, 0].argmax()  # towards the axis
         assert np.all(np.hypot(*points[..., inner, :2].reshape(-1, 2).T) < np.hypot(*centre[..., :2].reshape(-1, 2).T))
 
 

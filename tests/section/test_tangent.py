@@ -28,7 +28,12 @@ def tilted():
     return Placement(np.tile(P, (1, 2, 1, 1)), 1.02 * each, CURVATURE * each, TORSION * each, round_wire(each))
 
 
-PLACES = {"straight": straight(), "tilted": tilted()}
+def ground():
+    """The tilted section, ground beyond its axis."""
+    return tilted()._replace(flat=np.tile([-0.2, 0.6, 0.8], (1, 2, 1)))
+
+
+PLACES = {"straight": straight(), "tilted": tilted(), "ground": ground()}
 
 
 class Section:

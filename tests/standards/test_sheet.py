@@ -50,15 +50,16 @@ def run_folder(folder, residual=-60.0):
     (folder / "history.csv").write_text(history, encoding="utf-8")
     # two snapshots, eight elements, one Gauss section, a ring of four points at 0.9 of a wire of radius 2.5
     angle = np.arange(4) * np.pi / 2
-    y, z = np.broadcast_to(2.25 * np.cos(angle), (8, 4)), np.broadcast_to(2.25 * np.sin(angle), (8, 4))
+    y, z = (np.broadcast_to(2.25 * one, (8, 1, 4)) for one in (np.cos(angle), np.sin(angle)))
+    of_points = ("element", "gauss", "point")
     state = np.zeros((2, 8, 1, 4, 7))
     for i, shear in enumerate((-400.0, -residual)):  # about the axis; the load's is negative here
         state[i, ..., 1], state[i, ..., 2] = -shear * np.sin(angle), shear * np.cos(angle)
     state[:, [0, -1]] = 1e3  # the ends do not count
     xr.Dataset(
         {"history": (("snapshot", "element", "gauss", "point", "component"), state),
-         "y": (("element", "point"), y), "z": (("element", "point"), z), "force": ("snapshot", [700.0, 0.0]),
-         "weight": ("point", np.full(4, 0.25 * 0.5 / 0.9**2))},
+         "y": (of_points, y), "z": (of_points, z), "force": ("snapshot", [700.0, 0.0]),
+         "weight": (of_points, np.full((8, 1, 4), 0.25 * 0.5 / 0.9**2))},
         coords={"turn": ("station", np.linspace(0, 11.5, 9))},
     ).to_netcdf(folder / "points.nc", engine="h5netcdf")  # fmt: skip
     return folder
