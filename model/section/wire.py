@@ -83,7 +83,9 @@ class Wire:
         else:
             straight_shape(self._shape)
         new, s, (strain, C, count) = np.empty_like(self.states), np.empty(6), self._room
-        if not section(self.law, self.fibres, self._shape, d, self.states, new, strain, C, True, count, s, self._tangent):
+        if not section(
+            self.law, self.fibres, self._shape, d, self.states, new, strain, C, True, count, s, self._tangent
+        ):
             raise SolveError("the law found no solution")
         return s, self._tangent, new
 

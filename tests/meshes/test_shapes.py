@@ -232,3 +232,15 @@ def test_outer_and_inner_diameters_are_a_wire_off_the_mean_one():
     spring = SpringSpec(wire_diameter=wire, outer_diameter=barrel, turns=4.0, pitch=12.0).build()
     outer = 40.0 + 10.0 * (1.0 - (t / 2.0 - 1.0) ** 2)
     np.testing.assert_allclose(2 * spring.mean_radius(t), outer - spring.wire_diameter(t), rtol=1e-13)
+
+
+def test_dead_coils_several_pitches_and_coils_that_are_closed_in_the_middle():
+    """Two dead coils at each end; pitches of 6 and 8 mm with two and a half closed coils between them, by hand."""
+    pitch = {"turns": [0, 4, 4.5, 7, 7.5, 12], "values": [6, 6, 3, 3, 8, 8], "interpolation": "linear"}
+    ends = {"form": "closed and ground", "turns": 2.0}
+    spring = SpringSpec(wire_diameter=3.0, mean_diameter=24.0, turns=12.0, pitch=pitch, end_coils=ends).build()
+    rise = 2 * 3 + 0.5 * 4.5 + 1.5 * 6 + 0.5 * 4.5 + 2.5 * 3 + 0.5 * 5.5 + 2 * 8 + 0.5 * 5.5 + 2 * 3
+    assert spring.free_length == pytest.approx(rise - 2 * 0.25 * 3.0)
+    assert spring.block_height == pytest.approx(12 * 3.0 - 2 * 0.25 * 3.0)
+    assert spring.active_turns == 8.0
+    assert spring.pitch(np.array([1.9, 3.0, 5.5, 8.5, 10.1])) == pytest.approx([3.0, 6.0, 3.0, 8.0, 3.0])
