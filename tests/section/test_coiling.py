@@ -12,6 +12,7 @@ from coilset.model.material.creep_law import CreepLaw
 from coilset.model.material.points import initial_state
 from coilset.model.section.coiling import _coiled, coil
 from coilset.model.section.rules import polar
+from coilset.model.section.wire import Wire
 from coilset.verification.references.springback import Bar
 
 RADIUS = 2.5
@@ -93,4 +94,5 @@ def test_relief_against_fibres_that_creep():
 
 def coiled_with(law, rule, row, turned):
     """Stress of a bar that was turned so and let go, before its relief."""
-    return _coiled(law.parameters(), rule, RADIUS, np.array(turned), row, False, 0.05, ())[0].states[: len(rule), 0]
+    wire = Wire.of_disk(law.parameters(), rule, RADIUS, False, row)
+    return _coiled(wire, np.array(turned), 0.05, ())[0].states[: len(rule), 0]
