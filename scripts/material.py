@@ -2,6 +2,7 @@
 
 import csv
 import os
+import re
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,6 +17,7 @@ if TYPE_CHECKING:  # commands load what they need
     from rich.console import Console
     from rich.table import Table
 
+    from coilset.model.material.identification.cyclic import CyclicFit
     from coilset.model.material.law import Law
     from coilset.model.material.programs import History, Program
 
@@ -85,19 +87,25 @@ def fit(
         "--saturation/--no-saturation",
         help="fit the second branch of k², which the tests must reach [default: not for tension tests alone]",
     ),
+    back_stresses: int | None = typer.Option(
+        None, "--back-stresses", help="fit so many back stresses (Chaboche), 1 to 4, to cyclic tension or torsion"
+    ),
     engineering: bool = typer.Option(False, "--engineering", help="tension tests have engineering strain and stress"),
     name: str = typer.Option("fitted", help="name of the material"),
     out: str = OUT,
     force: bool = FORCE,
 ) -> None:
-    """Identify material constants: k² from tension tests, with reversed torsion and tension-torsion also ζ and κ."""
+    """Identify material constants: k² from tension tests, with reversed torsion and tension-torsion also ζ and κ.
+
+    With --back-stresses: a yield stress, its rise, and several back stresses from cyclic tests in one direction.
+    """
     import yaml
     from rich.console import Console
     from rich.table import Table
 
     from coilset.model.material import figures
     from coilset.model.material.file import UNITS
-    from coilset.model.material.identification import experiments
+    from coilset.model.material.identification import cyclic, experiments
     from coilset.model.material.identification import fit as fitting
     from coilset.model.results.folder import make, whole
 
@@ -105,12 +113,18 @@ def fit(
     folder = _folder(out, name)
     _refuse([folder / f"{name}.yaml"], force)
     tests = [experiments.read_test(path, engineering) for path in data]
-    result = fitting.fit(tests, shear_modulus, poisson, saturation, temperature)
+    if back_stresses is None:
+        result = fitting.fit(tests, shear_modulus, poisson, saturation, temperature)
+    else:
+        result = cyclic.fit_back_stresses(tests, shear_modulus, poisson, back_stresses, temperature)
     console = Console(highlight=False)
     table = Table("constant", "value", "standard deviation", "± (95 %, all together)", "unit", box=None, padding=(0, 2))
     for key, value in result.constants.items():
-        table.add_row(key, f"{value:.6g}", f"{result.standard[key]:.2g}", f"{result.uncertainty[key]:.2g}", UNITS[key])
+        unit = UNITS[re.sub(r"_\d+$", "", key)]  # C_1, C_2, ...
+        table.add_row(key, f"{value:.6g}", f"{result.standard[key]:.2g}", f"{result.uncertainty[key]:.2g}", unit)
     console.print(table)
+    if isinstance(result, cyclic.CyclicFit):
+        _say_what_is_told(result, console)
     for test, scatter in zip(result.tests, result.scatter, strict=True):
         console.print(f"{test.name} ({test.kind}): rms residual {scatter:.3g} N/mm²")
     make(folder)
@@ -118,6 +132,14 @@ def fit(
         path.write_text(yaml.safe_dump(result.material(name), sort_keys=False, allow_unicode=True), encoding="utf-8")
     console.print(f"material file in {folder / name}.yaml")
     _save(figures.fit(result, name), folder / "fit.png", force, console)
+
+
+def _say_what_is_told(fit: "CyclicFit", console: "Console") -> None:
+    """What the tests do not tell of back stresses."""
+    if fit.doubtful:
+        console.print(f"the tests hardly tell {', '.join(fit.doubtful)}")
+    if fit.enough < fit.terms:
+        console.print(f"{fit.enough} back stress{'es' * (fit.enough > 1)} would do: the others are within the scatter")
 
 
 def _folder(out: str | None, name: str) -> Path:

@@ -49,14 +49,19 @@ class Fit:
         isotropic: dict[str, Any] = {key: c[key] for key in ("k0_squared", "a1", "a2", "a3")}
         if "b1" in c:
             isotropic["saturation"] = {key: c[key] for key in ("b1", "k1_squared", "k_inf_squared", "a4")}
+        remark = "As far as the tests went." if "a5" in c else "Tension only; no reversed loading was tested."
+        kinematic = {key: c[key] for key in ("a5", "a6", "a7")} if "a5" in c else "none"
+        return self.file(name, remark, isotropic, kinematic, {"a": c["a"]} if "a" in c else "none")
+
+    def file(self, name: str, remark: str, isotropic: Any, kinematic: Any, non_normality: Any) -> dict[str, Any]:
+        """Content of a material file with these functions."""
         at = {
             "temperature": self.temperature,
             "elasticity": {"G": self.G, "nu": self.nu},
             "isotropic": isotropic,
-            "kinematic": {key: c[key] for key in ("a5", "a6", "a7")} if "a5" in c else "none",
-            "non_normality": {"a": c["a"]} if "a" in c else "none",
+            "kinematic": kinematic,
+            "non_normality": non_normality,
         }
-        remark = "As far as the tests went." if "a5" in c else "Tension only; no reversed loading was tested."
         return {
             "name": name,
             "description": "Constants identified from tests",
@@ -76,18 +81,18 @@ def result(model: FittedLaw, minima: Sequence[Minimum], tests: tuple[Test, ...],
     value = np.array(list(constants.values()))
     spread = _spread(model, best, found)
     variance = 2 * found.cost / (found.fun.size - len(model.names))
-    coverage = norm.isf(0.5 * (1 - CONFIDENCE) / len(model.names))  # Bonferroni's, for all constants together
-    uncertainty = coverage * spread
+    covers = coverage(len(model.names))
+    uncertainty = covers * spread
     for other, local in minima[1:]:
-        if 2 * (local.cost - found.cost) < coverage**2 * variance:
+        if 2 * (local.cost - found.cost) < covers**2 * variance:
             away = abs(np.array(list(_constants(model, other).values())) - value)
-            uncertainty = np.maximum(uncertainty, away + coverage * _spread(model, other, local))
+            uncertainty = np.maximum(uncertainty, away + covers * _spread(model, other, local))
     followed = [model.follow(best, test) for test in tests]
     stress = tuple(stress for stress, _ in followed)
     scatter = tuple(float(np.sqrt(np.mean((s - t.stress) ** 2))) for s, t in zip(stress, tests, strict=True))
-    standard, uncertainty = (dict(zip(constants, v.tolist(), strict=True)) for v in (spread, uncertainty))
+    standard, reach = (dict(zip(constants, values.tolist(), strict=True)) for values in (spread, uncertainty))
     work = max(work for _, work in followed)
-    return Fit(model.G, model.nu, temperature, constants, standard, uncertainty, tests, stress, scatter, work)
+    return Fit(model.G, model.nu, temperature, constants, standard, reach, tests, stress, scatter, work)
 
 
 def _constants(model: FittedLaw, values: Variables) -> dict[str, float]:
@@ -103,9 +108,24 @@ def _constants(model: FittedLaw, values: Variables) -> dict[str, float]:
 
 
 def _spread(model: FittedLaw, values: Variables, found: OptimizeResult) -> np.ndarray:
-    """Standard deviations of the file's constants.
+    """Standard deviations of the file's constants."""
+    covariance = robust_covariance(found)
+    start = {name: values[name] for name in model.names}
+    moved = [list(_constants(model, moved_by(start, step)).values()) for step in 1e-6 * np.eye(len(start))]
+    gradient = (np.array(moved) - list(_constants(model, start).values())).T / 1e-6
+    return np.sqrt(np.einsum("ij,jk,ik->i", gradient, covariance, gradient))
 
-    The covariance of the variables' logarithms is robust against scatter that differs from test to test.
+
+def coverage(constants: int) -> float:
+    """Standard deviations within which so many constants lie all together (Bonferroni)."""
+    return float(norm.isf(0.5 * (1 - CONFIDENCE) / constants))
+
+
+def robust_covariance(found: OptimizeResult) -> np.ndarray:
+    """Covariance of the variables, also where the scatter differs from test to test.
+
+    Raises:
+        SolveError: if the tests do not distinguish them.
     """
     J = found.jac
     weighted = J * found.fun[:, None]
@@ -113,8 +133,4 @@ def _spread(model: FittedLaw, values: Variables, found: OptimizeResult) -> np.nd
         inverse = np.linalg.inv(J.T @ J)
     except np.linalg.LinAlgError as error:
         raise SolveError("these tests cannot distinguish the constants; other strain paths are needed") from error
-    covariance = inverse @ (weighted.T @ weighted) @ inverse * J.shape[0] / (J.shape[0] - J.shape[1])
-    start = {name: values[name] for name in model.names}
-    moved = [list(_constants(model, moved_by(start, step)).values()) for step in 1e-6 * np.eye(len(start))]
-    gradient = (np.array(moved) - list(_constants(model, start).values())).T / 1e-6
-    return np.sqrt(np.einsum("ij,jk,ik->i", gradient, covariance, gradient))
+    return inverse @ (weighted.T @ weighted) @ inverse * J.shape[0] / (J.shape[0] - J.shape[1])
