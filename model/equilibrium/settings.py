@@ -82,8 +82,8 @@ class StepControl:
         finest: size below which an automatic step is no longer shortened because of its error.
         caution: factor on the size that the estimated error allows.
         least_factor: smallest factor on the length of a step after a large error, or when it is cut because of one.
-        bend: share of a step's starting point by which the change from one step to the next may alter it; a larger change
-            is taken for a kink of the path.
+        bend: share of a step's starting point by which the change between the last two steps may alter it; a larger
+            change is taken for a kink of the path.
         regrowth: factor by which an equal step that was cut grows again, up to size 1.
         probe: travel over which the initial rate is measured.
         unstable_cuts: number of times that a step ending in an unstable state is cut before its path is left.
