@@ -18,7 +18,7 @@ from coilset.model.equilibrium.system import System
 from coilset.model.results.buckling import axis_offset, buckling
 from coilset.model.results.record import BucklingMode, Frame, Result, SeatReactions, Setup, Snapshot, Step
 from coilset.model.results.seat_reactions import faint_force, mean_torque, seat_reactions
-from coilset.model.results.shape import clearance, least_rise
+from coilset.model.results.shape import LeastRise, clearance
 from coilset.model.results.warnings import step_warnings
 from coilset.model.rod.rod import Rod
 from coilset.model.section import surface
@@ -46,7 +46,7 @@ class Recorder:
         self.layout, self._newton, self._stability = system.line, newton, stability
         self.torque = system.state.add("torque", mean_torque(rod), Where.ELEMENT)
         self.torque_force = system.state.add("torque_force", np.zeros(1), Where.SHARED)
-        self.result = Result()
+        self.result, self._least_rise = Result(), LeastRise(setup.turns, setup.spring)
         self._warned: set[str] | None = None  # names of the steps' warnings so far; None until they are requested
 
     def begin(self, rate: float) -> None:
@@ -86,7 +86,7 @@ class Recorder:
                     taken.outcome.negative_pivots, int(taken.outcome.left_branch), taken.outcome.released,
                     axis_offset(x, self.rod.line.stations, turns), weakest.value if weakest else None,
                     self._greatest_plastic_work(), lift_off,
-                    least_rise(x, turns, self.setup.spring), *self._errors(taken.outcome),
+                    self._least_rise.of(x), *self._errors(taken.outcome),
                     hours=float(hours), temperature_K=float(temperature),
                     load_loss_percent=self._load_loss(phase, force, loading))  # fmt: skip
         seats = self._seat_reactions(step.number, greatest)

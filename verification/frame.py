@@ -96,7 +96,7 @@ class Frame:
         self.load = load = Load.of(self.layout, {**self.held, **(moves or {})}, forces or {})
         start = Start()
         if predictor_scale is not None and self._stepped and not self._has_turned_far():
-            start = self.continuation.scaled_last(predictor_scale)
+            start = Start(self.continuation.guess.scaled_last(predictor_scale))
         outcome = self.continuation.attempt(load, [start])
         self._stepped = self._stepped or outcome.converged
         return outcome

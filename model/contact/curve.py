@@ -166,6 +166,6 @@ class WirePoints:
         """Number of the point at the wire's tip of an end, `bottom` or `top`."""
         return 0 if end == "bottom" else len(self) - 1
 
-    def at(self, values: np.ndarray) -> np.ndarray:
-        """Values of the stations, shape (n, …), at the points, shape (m, …)."""
-        return np.einsum("mk,mk...->m...", self.weights, values[self.stations])
+    def at(self, values: np.ndarray, number: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """Values of the stations, shape (n, …), at the points, or at those with a `number`, shape (m, …)."""
+        return np.einsum("mk,mk...->m...", self.weights[number], values[self.stations[number]])

@@ -87,7 +87,9 @@ class AxialControl:
         return float(getattr(state["seats"], when)[SEAT_DOFS + LEVEL])
 
     def _force(self, reactions: np.ndarray) -> float:
-        return -float(self.layout.values(self.layout.vector(reactions), np.array(self.axial)))
+        here = self.axial - self.layout.start
+        mine = float(reactions[here]) if 0 <= here < len(reactions) else 0.0
+        return -(self.layout.comm.allreduce(mine) if self.layout.comm.size > 1 else mine)
 
     def centre(self, end: str, x: np.ndarray) -> np.ndarray:
         """Centre of the seat, or where the axis meets the head, at station positions `x`, shape (3,), mm."""

@@ -15,6 +15,7 @@ from petsc4py import PETSc
 from coilset.meshes.errors import SolveError
 from coilset.model.equilibrium.branch_switching import Snap
 from coilset.model.equilibrium.convergence import Outcome
+from coilset.model.equilibrium.guess import Guess
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.newton import Newton, Start
 from coilset.model.equilibrium.settings import StepControl
@@ -34,7 +35,7 @@ class Continuation:
         control: StepControl.
         penetration_limit: penetration beyond which a state is rejected, mm.
         starts: starting points for solving a load for a step of the given length, to be tried in order; default: the
-            last step's increments, scaled, then the last equilibrium.
+            guess of the last steps, then the last equilibrium.
 
         stability: Stability; None: stability is not checked.
         step_error: StepError; None: the error is unknown, and automatic steps depend on convergence alone.
@@ -60,8 +61,8 @@ class Continuation:
         self.stability, self.negative_pivots, self.step_error = stability, 0, step_error
         self.refusal: Callable[[], str | None] = lambda: None
         self.steps, self.number = StepSizes(self.control), 0
+        self.guess = Guess(self.system, self.control.bend)
         self._spent: list[Outcome] = []  # all solves of the step in progress
-        self._too_far: tuple[PETSc.Vec, float] | None = None  # increments of a step with too large an error, its length
         self._unstable: PETSc.Vec | None = None  # increments of an attempt that ended unstable
 
     # ---- one solve -------------------------------------------------------------------------------------------------
@@ -97,13 +98,14 @@ class Continuation:
         """
         if outcome.converged and self.step_error is not None:
             outcome = self._estimated(outcome, self.step_error, size, accurately)
-        self._too_far = None
+        self.guess.too_far = None
         if outcome.converged:
+            self.guess.remember()
             self.system.commit()
             self.negative_pivots = outcome.negative_pivots
         else:
             if outcome.estimate is not None:
-                self._too_far = self.system.increments.copy(), size
+                self.guess.too_far = self.system.increments.copy(), size
             self.system.restore()
         return outcome
 
@@ -205,23 +207,11 @@ class Continuation:
         return self._judged(self._newton(load, start))
 
     def from_last_step(self, load: Load, size: float) -> Iterator[Start]:
-        """The last step's increments, scaled to a step of this size; then the last equilibrium.
-
-        Where the error of a longer step was too large its increments lead to this one, for they know what touches.
-        """
-        if self._too_far is not None:
-            guess, length = self._too_far[0].copy(), self._too_far[1]
-            guess.scale(size / length)
+        """The guess of the last steps; then the last equilibrium."""
+        guess = self.guess.of(load, self.steps.position, size)
+        if guess is not None:
             yield Start(guess)
-        elif self.steps.position.last:
-            yield self.scaled_last(size / self.steps.position.last)
         yield Start()
-
-    def scaled_last(self, factor: float) -> Start:
-        """The last step's increments times a factor."""
-        guess = self.system.layout.vector(self.system.state["increments"].equilibrium.copy())
-        guess.scale(factor)
-        return Start(guess)
 
     # ---- along a path -----------------------------------------------------------------------------------------
 

@@ -293,9 +293,9 @@ class Newton:
             self.test.begin(norm, body.axial_force if self.foresees and isinstance(body, Foresees) else 0.0)
         if not np.isfinite(norm):
             return NOT_A_NUMBER
-        if self.method.is_arc_length:
-            if iteration == 0:
-                return Reason.ITERATING  # at the load factor 0 every step is in equilibrium
+        if self.method.is_arc_length and iteration == 0:
+            return Reason.ITERATING  # at the load factor 0 every step is in equilibrium
+        if self.method.is_arc_length or self.method.searches:
             balance = self.F
         else:  # some methods call a preconditioned step their function: judge the forces themselves
             balance = self._balance

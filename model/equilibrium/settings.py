@@ -82,6 +82,8 @@ class StepControl:
         finest: size below which an automatic step is no longer shortened because of its error.
         caution: factor on the size that the estimated error allows.
         least_factor: smallest factor on the length of a step after a large error, or when it is cut because of one.
+        bend: share of a step's starting point by which the change between the last two steps may alter it; a larger
+            change is taken for a kink of the path.
         regrowth: factor by which an equal step that was cut grows again, up to size 1.
         probe: travel over which the initial rate is measured.
         unstable_cuts: number of times that a step ending in an unstable state is cut before its path is left.
@@ -107,6 +109,7 @@ class StepControl:
     finest: Fraction = 2.0**-6
     caution: Fraction = 0.9
     least_factor: Fraction = 0.25
+    bend: Fraction = 0.05
     regrowth: Growth = 2.0
     probe: Annotated[Fraction, Unit("free lengths")] = 1e-3
     unstable_cuts: Count = 8

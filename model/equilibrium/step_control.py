@@ -53,6 +53,7 @@ class Position:
         cuts: how often the step in progress was cut.
         last: length of the last step, whose increments are the guess for the next one; 0 if there is no guess.
         before: length of the last step on this path; 0 if there is none.
+        earlier: length of the step before that one on this path; 0 if there is none.
     """
 
     done: float = 0.0
@@ -60,6 +61,7 @@ class Position:
     cuts: int = 0
     last: float = 0.0
     before: float = 0.0
+    earlier: float = 0.0
 
 
 class StepSizes:
@@ -104,7 +106,8 @@ class StepSizes:
     def accept(self, path: Path, outcome: Outcome, size: float) -> None:
         """Stand at the end of a step of this size."""
         last = 0.0 if outcome.left_branch else path.step_length(self.position.done, size)
-        self.position = Position(self.position.done + size, self._following(path, outcome, size), 0, last, last)
+        done, following = self.position.done + size, self._following(path, outcome, size)
+        self.position = Position(done, following, 0, last, last, self.position.before if last else 0.0)
 
     def cut(self, outcome: Outcome, size: float) -> bool:
         """Make a step of this size, which failed, shorter; is it still as long as a step must be?"""

@@ -49,8 +49,8 @@ class System:
             rad; None for a body without seats.
 
     Attributes:
-        state: the body's State, with `seats`, the contacts' memories, the `increments` of the last step and the
-            internal forces `reactions` beside the body's fields.
+        state: the body's State, with `seats`, the contacts' memories, the `increments` of the last step, those of the
+            step before it, and the internal forces `reactions` beside the body's fields.
         increments: PETSc's vector of the increments on trial, that of the state.
         internal: internal forces at the last evaluation, without constraints and loads, that of the state.
         bearing: does each of the contacts bear on the wire (BearsOnWire)?
@@ -69,6 +69,7 @@ class System:
             self.state.include(f"contact_{number}_", memory.state)
         trial = self.state.add("increments", np.zeros(layout.size_local), Where.UNKNOWN).trial
         self.increments = layout.vector(trial)
+        self.state.add("increments_before", np.zeros(layout.size_local), Where.UNKNOWN)  # of the step before the last
         self._reactions = self.state.add("reactions", np.zeros(layout.size_local), Where.UNKNOWN)
         self.internal = layout.vector(self._reactions.trial)
         self._local = la.vector(layout.index_map, layout.block_size)
@@ -101,7 +102,8 @@ class System:
     def evaluate(self, increments: PETSc.Vec) -> bool:
         """Bring the trial state to increments, unless it is there; False if some point has no stress; collective."""
         values = increments.getArray(readonly=True)
-        same = np.array_equal(self.last.increments, values)
+        # bytes are compared several times as fast as numbers; not a number is no place, so that nothing expired is
+        same = self.last.increments.tobytes() == values.tobytes() and not np.isnan(values[:1]).any()
         if self.comm.size > 1:
             same = self.comm.allreduce(int(same)) == self.comm.size
         if not same:
@@ -132,13 +134,16 @@ class System:
 
     def _assemble_internal(self, add_forces: Callable[[np.ndarray], None] | None = None) -> None:
         """Into `internal`; `add_forces` in place of the body's own `internal_forces`."""
-        local, owned = self._local, self.layout.owned
-        local.array[:] = 0.0
-        (add_forces or self.body.internal_forces)(local.array)
-        local.scatter_reverse(la.InsertMode.add)
+        local, owned, add = self._local, self.layout.owned, add_forces or self.body.internal_forces
         with self.internal as values:
-            values[:owned] = local.array[:owned]
-            values[owned:] = 0.0
+            values[:] = 0.0
+            if self.comm.size == 1:
+                add(values)
+            else:
+                local.array[:] = 0.0
+                add(local.array)
+                local.scatter_reverse(la.InsertMode.add)
+                values[:owned] = local.array[:owned]
         if self.last.contributions:
             parts, start, stop = self.last.contributions, self.layout.start, self.layout.stop
             rows = np.concatenate([self.line.contact_dofs[part.dofs].ravel() for part in parts])

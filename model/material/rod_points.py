@@ -27,7 +27,7 @@ from coilset.model.material.local import (
     turn,
     turn_at_rest,
 )
-from coilset.model.material.rod import Beginning, active, begin, end, inner, return_map, softening
+from coilset.model.material.rod import Beginning, Plastic, active, begin, end, inner, return_map, softening
 
 GROUP = 64  # points processed together; their rows fill half of a processor's first-level cache
 NEWTON = 8  # iterations at most, before a point is left to `return_map`
@@ -246,27 +246,37 @@ def _end(p: np.ndarray, size: int, with_tangent: bool, w: np.ndarray) -> None:
     """Replace the initial states by the final ones, and write the reduction of the elastic tangent, from A on."""
     E, G, _ = elasticity(p, 0.0)
     still = (0.0, 0.0, 0.0)
+    if not with_tangent:
+        for j in range(size):
+            _end_state(E, G, w, j)
+        return
     for j in range(size):
-        ga, gc = (
-            Group(w[A, j], w[A + 1, j], w[A + 2, j], w[A + 3, j]),
-            Group(w[C, j], w[C + 1, j], w[C + 2, j], w[C + 3, j]),
-        )
-        local = Local(
-            1, False, w[B, j], w[MULTIPLIER, j], w[ZETA, j], w[DZETA, j], ga, gc,
-            w[JACOBIAN, j], w[JACOBIAN + 1, j], w[JACOBIAN + 2, j], w[JACOBIAN + 3, j],
-        )  # fmt: skip
-        n0 = (w[NORMAL, j], w[NORMAL + 1, j], w[NORMAL + 2, j])
-        e = (E * w[DE, j] / 1.5, G * w[DE + 1, j], G * w[DE + 2, j])
-        beginning = Beginning(w[BETA, j], w[CROSSING, j], n0, e, _start(E, G, w, j))
-        plastic = end(beginning, local, 0.0, 0.0)
-        taken = softening(plastic, still, still, still, E, G, 0.0)
-        pl = plastic.p
-        w[START, j] += E * (w[DE, j] - pl[0])
-        w[START + 1, j] += G * (w[DE + 1, j] - 2.0 * pl[1])
-        w[START + 2, j] += G * (w[DE + 2, j] - 2.0 * pl[2])
-        for i in range(3):
-            w[START + 3 + i, j] += local.zeta * pl[i]  # (3.1.8)
-        w[START + 6, j] = local.b
+        taken = softening(_end_state(E, G, w, j), still, still, still, E, G, 0.0)
         for i in range(3):
             for k in range(3):
                 w[A + 3 * i + k, j] = taken[k][i]
+
+
+@njit(**INLINE)
+def _end_state(E: float, G: float, w: np.ndarray, j: int) -> Plastic:
+    """Replace the initial state of a point by the final one; returns its plastic part."""
+    ga, gc = (
+        Group(w[A, j], w[A + 1, j], w[A + 2, j], w[A + 3, j]),
+        Group(w[C, j], w[C + 1, j], w[C + 2, j], w[C + 3, j]),
+    )
+    local = Local(
+        1, False, w[B, j], w[MULTIPLIER, j], w[ZETA, j], w[DZETA, j], ga, gc,
+        w[JACOBIAN, j], w[JACOBIAN + 1, j], w[JACOBIAN + 2, j], w[JACOBIAN + 3, j],
+    )  # fmt: skip
+    n0 = (w[NORMAL, j], w[NORMAL + 1, j], w[NORMAL + 2, j])
+    e = (E * w[DE, j] / 1.5, G * w[DE + 1, j], G * w[DE + 2, j])
+    beginning = Beginning(w[BETA, j], w[CROSSING, j], n0, e, _start(E, G, w, j))
+    plastic = end(beginning, local, 0.0, 0.0)
+    pl = plastic.p
+    w[START, j] += E * (w[DE, j] - pl[0])
+    w[START + 1, j] += G * (w[DE + 1, j] - 2.0 * pl[1])
+    w[START + 2, j] += G * (w[DE + 2, j] - 2.0 * pl[2])
+    for i in range(3):
+        w[START + 3 + i, j] += local.zeta * pl[i]  # (3.1.8)
+    w[START + 6, j] = local.b
+    return plastic

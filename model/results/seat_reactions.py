@@ -90,7 +90,7 @@ class _Observer:
             if contact.end == end:
                 bears = part.bears
                 number, wire = part.point[bears], contact.points
-                points = wire.at(self.x)[number]
+                points = wire.at(self.x, number)
                 length += float(wire.length[number].sum())
                 down = float(np.abs(wire.turns[number] - wire.turns[wire.tip(end)]).max(initial=down))
                 if part.pressure.sum() > faint:
@@ -110,7 +110,8 @@ class _Observer:
 
 def mean_torque(rod: Rod) -> np.ndarray:
     """Mt of the owned elements, the mean over each, N mm."""
-    return rod.s.values[:, :, 3].mean(axis=1)
+    torque = rod.s.values[:, :, 3]
+    return 0.5 * (torque[:, 0] + torque[:, 1])
 
 
 def active_turns(rod: Rod, turns: np.ndarray, change: float, before: np.ndarray) -> float:

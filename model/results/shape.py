@@ -21,26 +21,27 @@ def clearance(system: System, x: np.ndarray) -> float:
     return max((float(seat.gaps(seat.points.at(x), system.seats).min()) for seat in seats), default=0.0)
 
 
-def least_rise(x: np.ndarray, turns: np.ndarray, spring: Spring) -> float | None:
+class LeastRise:
     """Smallest rise of the wire over one turn, relative to the rise at which adjacent coils touch: 1 at block.
 
     Contact cannot hold a coil that has slipped sideways past the next one; the value then falls far below 1, and
     below 0 once it has passed.
 
     Args:
-        x: station positions, shape (n, 3), mm.
         turns: of the stations, shape (n,).
         spring: the stress-free spring.
-
-    Returns:
-        None unless there are two coils, one above the other.
     """
-    lower = turns[turns <= turns[-1] - 1.0]
-    diameter = 0.5 * (spring.wire_diameter(lower) + spring.wire_diameter(lower + 1.0))
-    change = spring.mean_radius(lower + 1.0) - spring.mean_radius(lower)
-    touching = touching_pitch(diameter, change)
-    lies = touching > PASSING * diameter
-    if not lies.any():
-        return None
-    rise = np.interp(lower + 1.0, turns, x[:, 2]) - np.interp(lower, turns, x[:, 2])
-    return float((rise[lies] / touching[lies]).min())
+
+    def __init__(self, turns: np.ndarray, spring: Spring) -> None:
+        lower = turns[turns <= turns[-1] - 1.0]
+        diameter = 0.5 * (spring.wire_diameter(lower) + spring.wire_diameter(lower + 1.0))
+        touching = touching_pitch(diameter, spring.mean_radius(lower + 1.0) - spring.mean_radius(lower))
+        lies = touching > PASSING * diameter
+        self._turns, self._lower, self._touching = turns, lower[lies], touching[lies]
+
+    def of(self, x: np.ndarray) -> float | None:
+        """At station positions `x`, shape (n, 3), mm; None unless there are two coils, one above the other."""
+        if not len(self._lower):
+            return None
+        z, turns, lower = x[:, 2], self._turns, self._lower
+        return float(((np.interp(lower + 1.0, turns, z) - np.interp(lower, turns, z)) / self._touching).min())

@@ -3,20 +3,24 @@
 A step integrates the law along a straight strain path. This causes two errors of second order: the law's own, and that
 of the path, which is really curved. After each step the sections therefore follow the step's strains again, from their
 own previous state, in two halves that meet on a parabola through the strains at the last three equilibria. If coils or
-seats
-close or open, the path has a kink within the step: at worst in its middle, where it deviates from the chord by four
-times as much. This divides the law's error and the area between path and chord by 4, so that
+seats close or open, the path has a kink within the step: at worst in its middle, where it deviates from the chord by
+four times as much. This divides the law's error and the area between path and chord by 4, so that
 
     s* − s ≈ 4/3 (s_finer − s)
 
 is the error of the section forces. Errors that plastic flow erases are erased here, too.
 """
 
+import copy
+from collections.abc import Iterable
+
 import numpy as np
 
+from coilset.meshes.placement import Placement
 from coilset.model.section.kinds import Sections
 from coilset.model.state import State, Where
 
+BLOCK = 256  # cells that are followed together: only for these the state in the middle of a step is kept
 RICHARDSON = 4.0 / 3.0
 KINK = 4.0  # of the parabola's height over the chord: after steps of one size, that of a kink in the middle of this one
 
@@ -29,18 +33,22 @@ class FinerPath:
         state: the rod's State; the finer path's fields are added to it: the increments of `strain` in the step
             and in the first one of all, the sections' arrays with `finer_` before their names, and the error of the
             section forces.
+        names: of the sections' arrays that are followed.
     """
 
-    def __init__(self, sections: Sections, state: State) -> None:
-        self._sections, self._state, self._strain = sections, state, state["strain"]
+    def __init__(self, sections: Sections, state: State, names: Iterable[str]) -> None:
+        self._state, self._strain = state, state["strain"]
         shape = self._strain.trial.shape
         self._increment = state.add("strain_increment", np.zeros(shape), Where.ELEMENT)
         self._first = state.add("first_strain_increment", np.zeros(shape), Where.ELEMENT)
         self._error = state.add("section_force_error", np.zeros(shape), Where.ELEMENT)
         self._fields = {name: state.add(f"finer_{name}", state[name].equilibrium.copy(), Where.ELEMENT)
-                        for name in sections.initial_state() if name != "surface_state"}  # fmt: skip
-        self._half = {name: field.trial.copy() for name, field in self._fields.items()}
-        self._s, self._D = np.empty(shape), np.empty((*shape, 6))
+                        for name in names}  # fmt: skip
+        cells = len(self._strain.trial)
+        self._half = {name: field.trial[:BLOCK].copy() for name, field in self._fields.items()}
+        self._D = np.empty((min(BLOCK, cells), 2, 6, 6))
+        self._parts = [(part, _part(sections, part)) for part in
+                       (slice(first, min(first + BLOCK, cells)) for first in range(0, cells, BLOCK))]  # fmt: skip
 
     def follow(self, s: np.ndarray, ratio: float, kinked: bool = False) -> bool:
         """Advance the finer path to the trial strains.
@@ -60,21 +68,29 @@ class FinerPath:
         self._increment.trial[:] = change
         if not self._first.equilibrium.any():
             self._first.trial[:] = change
-        start = {name: field.equilibrium for name, field in self._fields.items()} | {"strain": strain.equilibrium}
-        half, end = self._half, {name: field.trial for name, field in self._fields.items()}
-        if "clock" in self._state:
-            clock = self._state["clock"]
-            start, end = start | {"clock": clock.equilibrium}, end | {"clock": clock.trial}
-            half = half | {"clock": self._state["halfway_clock"].trial}
         middle = strain.equilibrium + 0.5 * change + bend
-        good = self._sections.update(middle, start, half, self._s, self._D, False)
-        good = good and self._sections.update(strain.trial, half | {"strain": middle}, end, self._s, self._D, False)
-        if good:
-            self._error.trial[:] = RICHARDSON * (self._s - s)
-        else:
+        good = all(self._follow(cells, sections, middle, s) for cells, sections in self._parts)
+        if not good:
             self._error.trial[:] = self._error.equilibrium
             for name, field in self._fields.items():
                 field.trial[:] = self._state[name].trial
+        return good
+
+    def _follow(self, cells: slice, sections: Sections, middle: np.ndarray, s: np.ndarray) -> bool:
+        """Advance some of the cells over `middle`, all cells' strains there, and write their errors."""
+        strain, size, forces = self._strain, cells.stop - cells.start, np.empty((cells.stop - cells.start, 2, 6))
+        start = {name: field.equilibrium[cells] for name, field in self._fields.items()}
+        start["strain"] = strain.equilibrium[cells]
+        half = {name: values[:size] for name, values in self._half.items()}
+        end = {name: field.trial[cells] for name, field in self._fields.items()}
+        if "clock" in self._state:
+            start["clock"], end["clock"] = self._state["clock"].equilibrium, self._state["clock"].trial
+            half["clock"] = self._state["halfway_clock"].trial
+        reached, D = middle[cells], self._D[:size]
+        good = sections.update(reached, start, half, forces, D, False)
+        good = good and sections.update(strain.trial[cells], half | {"strain": reached}, end, forces, D, False)
+        if good:
+            self._error.trial[cells] = RICHARDSON * (forces - s[cells])
         return bool(good)
 
     def rejoin(self) -> None:
@@ -94,3 +110,11 @@ class FinerPath:
         pairs = (error, now), (new, now), (new, first), (error, first)
         own, new_own, left, error_left = (float(np.sum(force * strain)) for force, strain in pairs)
         return own, new_own, left, error_left
+
+
+def _part(sections: Sections, cells: slice) -> Sections:
+    """The sections of some of the cells."""
+    part = copy.copy(sections)
+    part.radius = sections.radius[cells]
+    part.placement = Placement(*(values[cells] for values in sections.placement))
+    return part

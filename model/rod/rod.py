@@ -215,7 +215,8 @@ class Rod:
 
     def estimate_errors(self) -> None:
         """Follow every step on a finer path from now on; see EstimatesErrors."""
-        self._finer = FinerPath(self.sections, self.state)
+        names = [name for name in self._section_trial if name not in ("surface_state", *CLOCKS)]
+        self._finer = FinerPath(self.sections, self.state, names)
 
     def error_works(self, ratio: float, kinked: bool) -> tuple[float, float, float, float]:
         """Works of the errors of all steps so far and of the last one; see EstimatesErrors."""

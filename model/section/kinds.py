@@ -20,7 +20,14 @@ KINDS = ("plane", "curved", "warping")
 
 
 class Sections(Protocol):
-    """Interface of sections for the rod; `FibreSections` documents the methods."""
+    """Interface of sections for the rod; `FibreSections` documents the methods.
+
+    Attributes:
+        radius, placement: of the cells.
+    """
+
+    radius: np.ndarray
+    placement: Placement
 
     @property
     def components(self) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from coilset.meshes.spring import SpringSpec
-from coilset.model.results.shape import least_rise
+from coilset.model.results.shape import LeastRise
 
 TURNS = np.linspace(0.0, 4.0, 65)
 
@@ -20,10 +20,10 @@ def spring(diameter=40.0):
 
 @pytest.mark.parametrize("pitch", [5.0, 2.5, -1.0])
 def test_the_rise_is_counted_in_wires(pitch):
-    assert least_rise(helix(pitch), TURNS, spring()) == pytest.approx(pitch / 5.0, rel=1e-12)
+    assert LeastRise(TURNS, spring()).of(helix(pitch)) == pytest.approx(pitch / 5.0, rel=1e-12)
 
 
 def test_coils_of_a_flat_cone_pass_each_other_by_their_shape():
     cone = {"shape": "cone", "bottom": 100.0, "top": 50.0}
     entries = {"wire_diameter": 5.0, "mean_diameter": cone, "turns": 4.0, "pitch": 12.0}
-    assert least_rise(helix(1.0), TURNS, SpringSpec.model_validate(entries).build()) is None
+    assert LeastRise(TURNS, SpringSpec.model_validate(entries).build()).of(helix(1.0)) is None

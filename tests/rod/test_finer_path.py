@@ -5,6 +5,7 @@ import pytest
 
 from coilset.meshes.placement import straight
 from coilset.model.material import library
+from coilset.model.rod import finer_path
 from coilset.model.rod.finer_path import FinerPath
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import polar
@@ -21,17 +22,17 @@ def strains(time):
 
 
 class Path:
-    """Sections of one element, brought along a path of strains."""
+    """Sections of elements with these radii, brought along a path of strains."""
 
-    def __init__(self):
-        law = library.load("ck15", spin=False)
-        self.sections = make_sections("plane", law, law.parameters(), polar(), np.array([2.5]), straight(1))
+    def __init__(self, radii=(2.5,)):
+        law, n = library.load("ck15", spin=False), len(radii)
+        self.sections = make_sections("plane", law, law.parameters(), polar(), np.array(radii), straight(n))
         self.state = State()
-        self.strain = self.state.add("strain", np.zeros((1, 2, 6)), Where.ELEMENT)
+        self.strain = self.state.add("strain", np.zeros((n, 2, 6)), Where.ELEMENT)
         self.points = {
             name: self.state.add(name, rows, Where.ELEMENT) for name, rows in self.sections.initial_state().items()
         }
-        self.s, self.D = np.zeros((1, 2, 6)), np.zeros((1, 2, 6, 6))
+        self.s, self.D = np.zeros((n, 2, 6)), np.zeros((n, 2, 6, 6))
 
     def to(self, strain):
         """On trial."""
@@ -44,7 +45,7 @@ class Path:
 def test_error_of_section_forces_is_known(steps):
     """Error of 1.1 % with four steps, 0.29 % with eight: estimated within 0.7 and 0.1 % of itself."""
     path = Path()
-    finer = FinerPath(path.sections, path.state)
+    finer = FinerPath(path.sections, path.state, ["point_state"])
     for k in range(1, steps + 1):
         path.to(strains(k / steps))
         assert finer.follow(path.s, 1.0 if k > 1 else 0.0)
@@ -61,10 +62,26 @@ def test_error_of_section_forces_is_known(steps):
 
 def test_what_stays_elastic_has_no_error():
     path = Path()
-    finer = FinerPath(path.sections, path.state)
+    finer = FinerPath(path.sections, path.state, ["point_state"])
     for k in (1, 2):
         path.to(0.05 * strains(0.5 * k))
         finer.follow(path.s, 1.0 if k > 1 else 0.0)
         path.state.commit()
     assert np.abs(path.state["section_force_error"].equilibrium).max() < 1e-12 * np.abs(path.s).max()
     assert finer.works(np.array([1.0])) == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=1e-8)
+
+
+def test_many_elements_are_followed_block_by_block(monkeypatch):
+    radii, errors = np.linspace(2.0, 3.0, 5), []
+    for block in (2, 64):
+        monkeypatch.setattr(finer_path, "BLOCK", block)
+        path = Path(radii)
+        finer = FinerPath(path.sections, path.state, ["point_state"])
+        for k in (1, 2):
+            path.to(strains(0.5 * k))
+            assert finer.follow(path.s, k - 1.0)
+            path.state.commit()
+        errors.append(path.state["section_force_error"].equilibrium)
+    assert np.abs(errors[0]).max() > 1.0
+    assert np.array_equal(*errors)
+    assert len(finer._half["point_state"]) == 5

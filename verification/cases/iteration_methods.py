@@ -105,7 +105,7 @@ def newton_along(ends: str, steps: Iterable[Step]) -> Snapshot | None:
         load = (control.to_height if by_height else control.to_force)(end)
         starts = [Start()]
         if phase == step.phase:
-            starts.insert(0, analysis.continuation.scaled_last((end - begin) / size))
+            starts.insert(0, Start(analysis.continuation.guess.scaled_last((end - begin) / size)))
         for newton, start in itertools.product(newtons, starts):
             if newton.solve(load, start).converged:
                 break

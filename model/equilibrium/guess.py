@@ -1,0 +1,80 @@
+"""Where a step starts: what the last steps on the path say about the next one.
+
+The mean rates of two steps, Δ₁/h₁ and Δ₂/h₂, stand in the middles of these; the straight line through both gives that
+of a next step of length h, so that
+
+    Δ = h (r₂ + (r₂ − r₁) (h + h₂)/(h₁ + h₂)),   r = Δ/h
+
+is wrong by terms of third order, h r₂ alone by terms of second order. Rotation vectors may be added so because those of
+neighbouring steps are nearly parallel. At a kink of the path, where the wire begins to yield or something touches, the
+rates differ more than they would along a smooth one, and r₂ alone is the better guess.
+"""
+
+import numpy as np
+from petsc4py import PETSc
+
+from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.step_control import Position
+from coilset.model.equilibrium.system import System
+
+
+class Guess:
+    """Guesses of a step's increments.
+
+    Args:
+        system: System.
+        bend: part of h r₂ that the difference of the rates may add to it; with more the path has a kink.
+
+    Attributes:
+        too_far: increments of a step that was given up for its error only, and its length.
+    """
+
+    def __init__(self, system: System, bend: float) -> None:
+        self.system, self.bend = system, bend
+        self.too_far: tuple[PETSc.Vec, float] | None = None
+        self._last = system.state["increments"]
+        self._before = system.state["increments_before"]
+
+    def remember(self) -> None:
+        """The trial state is about to become the last equilibrium: its step follows the last one."""
+        np.copyto(self._before.trial, self._last.equilibrium)
+
+    def scaled_last(self, factor: float) -> PETSc.Vec:
+        """The last step's increments times a factor."""
+        guess = self.system.layout.vector(self._last.equilibrium.copy())
+        guess.scale(factor)
+        return guess
+
+    def of(self, load: Load, position: Position, size: float) -> PETSc.Vec | None:
+        """The best guess for a step of a size; None if nothing is known; collective.
+
+        Where the error of a longer step was too large, its increments know what touches, those of the last steps what
+        does not yet: that with less force out of balance is taken.
+        """
+        if self.too_far is None:
+            return self._along_path(position, size) if position.last else None
+        guess, length = self.too_far
+        shorter = guess.copy()
+        shorter.scale(size / length)
+        if not position.before:
+            return shorter
+        along = self._along_path(position, size)
+        return min(shorter, along, key=lambda start: self._out_of_balance(load, start))
+
+    def _along_path(self, position: Position, size: float) -> PETSc.Vec:
+        guess = self.scaled_last(size / position.before)
+        if position.earlier:
+            last, earlier = position.before, position.earlier
+            difference = guess.duplicate(self._before.equilibrium)
+            difference.scale(-size / earlier)
+            difference.axpy(1.0, guess)
+            difference.scale((size + last) / (earlier + last))
+            if difference.norm() <= self.bend * guess.norm():
+                guess.axpy(1.0, difference)
+        return guess
+
+    def _out_of_balance(self, load: Load, start: PETSc.Vec) -> float:
+        forces = start.duplicate()
+        self.system.residual(start, load, 1.0, forces)
+        forces.getArray()[load.held] = 0.0
+        return forces.norm()
