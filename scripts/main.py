@@ -126,6 +126,20 @@ def slice_(
 
 
 @app.command()
+def nest(
+    file: str = typer.Argument(help="nest file (YAML): two case files, and the heights of their common seats"),
+    out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-FILE]"),
+    force: bool = typer.Option(False, "--force", help="overwrite existing results"),
+    pictures: bool = typer.Option(True, help="draw the characteristic"),
+) -> None:
+    """Press two nested springs together between the same seats: summed force, set and stress of each, their room."""
+    from coilset.scripts.nest import nest as press
+
+    announce_compiling()
+    press(file, out, force, pictures)
+
+
+@app.command()
 def mesh(
     case: str = typer.Argument(help="case file (YAML)"),
     out: str = typer.Option(

@@ -103,7 +103,7 @@ def _solve(
     interrupt.over()
     analysed = time.perf_counter() - began
     summary = comm.bcast(summarise(analysis.setup, analysis.result) if comm.rank == 0 else None)
-    on_first_rank(comm, lambda: _write(out, analysis.setup, analysis.result, summary, origin(analysis.case)))
+    on_first_rank(comm, lambda: write_run(out, analysis.setup, analysis.result, summary, origin(analysis.case)))
     telling.conclude(summary, out)
     for warning in summary["warnings"]:
         log.warning("warning: %s: %s", warning["name"], warning["message"])
@@ -142,7 +142,8 @@ def _run(
     return None
 
 
-def _write(out: Path, setup: Setup, result: Result, summary: dict[str, Any], made_with: dict[str, Any]) -> None:
+def write_run(out: Path, setup: Setup, result: Result, summary: dict[str, Any], made_with: dict[str, Any]) -> None:
+    """Write the results of a run, without pictures, into its folder."""
     from coilset.model.results import dataset
 
     clear(out, DERIVED)  # a continued run still has the pictures and the page of before

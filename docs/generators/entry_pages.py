@@ -9,6 +9,7 @@ from coilset.model.case.reference import Form, Group, Row
 from coilset.model.design.wish import WishSpec
 from coilset.model.material.file import MaterialFile
 from coilset.model.material.programs import Program
+from coilset.model.nest.file import NestFile
 from coilset.model.sweep.spec import SweepSpec
 
 FILES = {  # name of the page: its title, what the file is for, its model
@@ -21,6 +22,8 @@ FILES = {  # name of the page: its title, what the file is for, its model
                 Program),
     "wish": ("The wish", "A case, entries of it to find, and conditions: the file of `coilset design`. "
              "[Find dimensions](../../how-to/design.md) shows one.", WishSpec),
+    "nest": ("The nest file", "Two springs between the same seats: the file of `coilset nest`. "
+             "[Nested springs](../../how-to/nested.md) shows one.", NestFile),
     "sweep": ("The sweep file", "A base case, and entries that vary: the file of `coilset sweep`.", SweepSpec),
 }  # fmt: skip
 NAMES = {  # of groups, where the name of the class alone would not do

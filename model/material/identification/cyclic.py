@@ -24,6 +24,7 @@ from scipy.optimize import OptimizeResult, least_squares
 
 from coilset.meshes.errors import InputError
 from coilset.model.material.identification.experiments import Test
+from coilset.model.material.identification.fit import check_units
 from coilset.model.material.identification.result import Fit, coverage, robust_covariance
 from coilset.model.material.kernel import KERNEL
 
@@ -143,6 +144,7 @@ def fit_back_stresses(tests: Iterable[Test], G: float, nu: float, terms: int, te
         if test.kind not in AXIS:
             problem = "is a test of both tension and torsion; back stresses are fitted to tests in one direction"
             raise InputError(problem, file=test.name)
+        check_units(test, (2.0 * float(G) * (1.0 + float(nu)), float(G)))
     paths = [_path(test, G, nu) for test in tests]
     _refuse_one_way(paths)
     found, enough, best = None, 1, math.inf

@@ -52,7 +52,7 @@ def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool | None = Non
     """
     tests = tuple(tests)
     for test in tests:
-        _check_units(test, (2.0 * float(G) * (1.0 + float(nu)), float(G)))
+        check_units(test, (2.0 * float(G) * (1.0 + float(nu)), float(G)))
     kinds = {kind: [test for test in tests if test.kind == kind] for kind in ("tension", "torsion", "combined")}
     isotropic = bool(tests) and len(kinds["tension"]) == len(tests)
     saturates = not isotropic if saturates is None else saturates
@@ -72,7 +72,7 @@ def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool | None = Non
     return result(model, minima, tests, float(temperature))
 
 
-def _check_units(test: Test, moduli: tuple[float, float]) -> None:
+def check_units(test: Test, moduli: tuple[float, float]) -> None:
     """Refuse a test whose first loaded reading is far softer than the elastic moduli E and G allow, N/mm²."""
     for component in COMPONENTS[test.kind]:
         strain, stress = np.abs(test.strain[:, component]), np.abs(test.stress[:, component])

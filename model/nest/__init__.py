@@ -1,0 +1,1 @@
+"""Springs nested in each other: coaxial, between the same seats."""

@@ -1,0 +1,155 @@
+"""Two coaxial springs between the same seats, each on its own as long as they do not touch each other.
+
+Seats that are rigid and stay level give both springs the same height, and their forces add up. That holds while the
+wire of the inner spring stays inside that of the outer one: the room between them is computed after every step, from
+the largest distance of the one and the least distance of the other from the axis, wherever along the axis they are. It
+is sufficient, not necessary: a cone may stand in a cone with less. Contact between the two is not computed.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from mpi4py import MPI
+
+from coilset.meshes.errors import InputError, SolveError
+from coilset.meshes.geometry import Spring
+from coilset.model.analysis import Analysis
+from coilset.model.case import Case
+from coilset.model.nest.clearance import inside, outside
+from coilset.model.nest.file import NAMES, Nest
+from coilset.model.nest.plan import Plan, plan
+from coilset.model.results.record import Result, Setup, Step
+from coilset.model.warning import Warning
+
+NEAR = 1e-6  # mm, between a step's height and the plan's
+
+
+@dataclass(frozen=True)
+class Member:
+    """One spring of the nest after its run; `result` is None of a spring that the seats never reach."""
+
+    name: str
+    case: Case
+    setup: Setup
+    result: Result | None
+
+
+@dataclass(frozen=True)
+class Pressed:
+    """The nest after its run.
+
+    Attributes:
+        plan: heights of the seats.
+        members: outer and inner spring.
+        forces: of each spring after every step of the plan, N, shape (2, steps + 1).
+        clearance: between them then, mm, shape (steps + 1,).
+        warnings: of the nest itself.
+    """
+
+    plan: Plan
+    members: tuple[Member, Member]
+    forces: np.ndarray
+    clearance: np.ndarray
+    warnings: tuple[Warning, ...]
+
+    @property
+    def force(self) -> np.ndarray:
+        """Of both together, N, shape (steps + 1,)."""
+        return self.forces.sum(axis=0)
+
+    @property
+    def free_length_after(self) -> float | None:
+        """Height at which the seats touch the first spring after the run, mm; None if one was not let go."""
+        lengths = [self._after(member) for member in self.members]
+        return None if None in lengths else max(length for length in lengths if length is not None)
+
+    @staticmethod
+    def _after(member: Member) -> float | None:
+        if member.result is None:
+            return member.setup.spring.free_length
+        if not member.result.complete:
+            return None
+        return float(member.setup.outer_length(member.result.snapshots[-1].x))
+
+
+def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: None) -> Pressed:
+    """Press both springs through the heights of the nest, and let them go.
+
+    Args:
+        nest: Nest.
+        told: called with the name of a spring and each of its steps.
+
+    Raises:
+        InputError: if the inner spring has no room in the outer one, or a case is wrong.
+        SolveError: if a spring finds no equilibrium, or the springs would touch each other.
+    """
+    springs = [case.spring.build() for case in nest.cases]
+    turns = [np.linspace(0.0, one.turns, 64 * int(np.ceil(one.turns)) + 1) for one in springs]
+    wires = [one.centre_line(t) for one, t in zip(springs, turns, strict=True)]
+    room, reach = inside(springs[0], turns[0], wires[0]), outside(springs[1], turns[1], wires[1])
+    if not room > reach:
+        raise InputError(f"reaches {reach:.4g} mm from the axis, but the outer spring leaves {room:.4g} mm: it has no "
+                         "room inside", "inner", nest.path)  # fmt: skip
+    try:
+        heights = plan(nest.loading, springs)
+    except InputError as error:
+        raise InputError(error.problem, error.place, nest.path) from None
+    members = tuple(_run(name, case, heights, told) for name, case in zip(NAMES, nest.cases, strict=True))
+    steps = [_steps(member, heights) for member in members]
+    forces = np.array([[0.0 if step is None else step.force_N for step in one] for one in steps])
+    clearance = _clearance(members, steps)
+    _refuse_touching(heights, clearance)
+    return Pressed(heights, (members[0], members[1]), forces, clearance, tuple(_hands(springs)))
+
+
+def _run(name: str, case: Case, heights: Plan, told: Callable[[str, Step], object]) -> Member:
+    """Run one spring's own program."""
+    program = heights.program(case.spring.build().free_length)
+    analysis = Analysis(case.model_copy(update={"loading": program or case.loading}), MPI.COMM_SELF)
+    if not program:
+        return Member(name, case, analysis.setup, None)
+    analysis.run(lambda step: told(name, step))
+    return Member(name, analysis.case, analysis.setup, analysis.result)
+
+
+def _steps(member: Member, heights: Plan) -> list[Step | None]:
+    """The spring's step at each height of the plan; None where the seats do not reach it, or at the start."""
+    length, found = member.setup.spring.free_length, list[Step | None]([None])
+    taken = iter(member.result.steps if member.result else ())
+    at = length
+    for height in np.minimum(heights.heights[1:], length):
+        if abs(height - at) > NEAR:
+            found.append(next(step for step in taken if abs(step.seat_height_mm - height) < NEAR))
+        else:
+            found.append(found[-1])
+        at = height
+    return found
+
+
+def _clearance(members: Sequence[Member], steps: Sequence[Sequence[Step | None]]) -> np.ndarray:
+    """Room between the springs after every step of the plan, mm."""
+    far = []
+    for member, own, reach in zip(members, steps, (inside, outside), strict=True):
+        spring, turns, frames = member.setup.spring, member.setup.turns, member.result.frames if member.result else []
+        start = reach(spring, turns, spring.centre_line(turns))
+        far.append([start if step is None else reach(spring, turns, frames[step.number - 1].x) for step in own])
+    room, reach = np.array(far)
+    return room - reach
+
+
+def _refuse_touching(heights: Plan, clearance: np.ndarray) -> None:
+    touching = np.flatnonzero(clearance <= 0.0)
+    if touching.size:
+        at = int(touching[0])
+        raise SolveError(f"at the height of {heights.heights[at]:.6g} mm the springs touch each other: they overlap by "
+                         f"{-clearance[at]:.3g} mm; their contact is not known, and forces do not add up from "
+                         "there")  # fmt: skip
+
+
+def _hands(springs: Sequence[Spring]) -> list[Warning]:
+    if springs[0].hand != springs[1].hand:
+        return []
+    return [Warning("hands", "inner.spring.hand", "both springs are wound in the same direction: coils of one can slip "
+                    "between those of the other; nested springs are wound in opposite ones (a maker's rule)",
+                    float(springs[1].hand), float(-springs[0].hand))]  # fmt: skip

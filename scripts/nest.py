@@ -1,0 +1,71 @@
+"""`coilset nest`: two coaxial springs between the same seats."""
+
+import os
+from pathlib import Path
+from typing import Any
+
+from mpi4py import MPI
+from rich.console import Console
+from rich.table import Table
+
+from coilset.model.nest import output
+from coilset.model.nest.file import read_nest
+from coilset.model.nest.nest import Pressed, press
+from coilset.model.results.folder import make, prepare, write_summary
+from coilset.model.results.provenance import origin
+from coilset.model.results.record import Step
+from coilset.model.results.summary import summarise
+from coilset.scripts.solve import write_run
+from coilset.scripts.target import results_folder
+
+
+def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool) -> None:
+    """Press a nest; see `coilset nest --help`.
+
+    Raises:
+        InputError, SolveError: nothing is written then.
+    """
+    if MPI.COMM_WORLD.rank:
+        return  # both springs are run by one process
+    console, wanted = Console(highlight=False), read_nest(file)
+    folder = results_folder(out, Path(file).stem)
+
+    def told(name: str, step: Step) -> None:
+        console.print(f"{name:6}{step.number:6d}{step.seat_height_mm:14.4f} mm{round(step.force_N, 3) + 0.0:14.3f} N")
+
+    pressed = press(wanted, told)
+    prepare(folder, force)
+    found = output.summary(pressed)
+    for member in pressed.members:
+        if member.result is not None:
+            make(folder / member.name)
+            own = summarise(member.setup, member.result)
+            write_run(folder / member.name, member.setup, member.result, own, origin(member.case))
+    output.write_steps(folder / "nest.csv", pressed)
+    if pictures:
+        output.draw(folder / "characteristic.png", pressed, found)
+    write_summary(folder, found)
+    _conclude(console, pressed, found, folder)
+
+
+def _conclude(console: Console, pressed: Pressed, found: dict[str, Any], folder: Path) -> None:
+    def number(value: float | None, unit: str, digits: int = 4) -> str:
+        return "not reached" if value is None else f"{round(value, digits) + 0.0:.{digits}f} {unit}"  # no -0.0
+
+    table = Table("", "nest", *(member.name for member in pressed.members), box=None, padding=(0, 2))
+    rows = {"free length before": "free_length_before_mm", "free length after": "free_length_after_mm",
+            "set": "set_mm", "block": "block_height_mm"}  # fmt: skip
+    columns = [found, *(found[member.name] or {} for member in pressed.members)]
+    for name, key in rows.items():
+        table.add_row(name, *(number(one.get(key), "mm") for one in columns))
+    table.add_row("maximum force", *(number(one.get("force_max_N"), "N", 2) for one in columns))
+    for name, key in (("maximum", "shear_inside_max_MPa"), ("residual", "residual_shear_inside_MPa")):
+        table.add_row(f"shear inside, {name}", "", *(number(one.get(key), "MPa", 1) for one in columns[1:]))
+    table.add_row("least room between them", number(found["clearance_min_mm"], "mm"), "", "")
+    console.print(table)
+    for warning in pressed.warnings:
+        console.print(f"[yellow]warning:[/] {warning.message}")
+    for member in pressed.members:
+        for warning in (found[member.name] or {"warnings": []})["warnings"]:
+            console.print(f"[yellow]warning:[/] {member.name}: {warning['message']}")
+    console.print(f"results in {folder}{os.sep}")
