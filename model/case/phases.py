@@ -78,8 +78,9 @@ class Phase(Stepped):
     seconds: Annotated[
         float | None,
         Unit("s"),
-        Field(gt=0, le=1e9, description="how long it takes, in a case with the entry `heat`: heat flows meanwhile"),
-    ] = None
+        Field(gt=0, le=1e9, description="how long it takes, where heat flows (entry `heat`) or yield depends on the "
+                                        "rate; without it a step is infinitely slow"),
+    ] = None  # fmt: skip
 
     @property
     def label(self) -> str:
