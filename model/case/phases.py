@@ -78,12 +78,9 @@ class Phase(Stepped):
     seconds: Annotated[
         float | None,
         Unit("s"),
-        Field(
-            gt=0,
-            le=1e9,
-            description="duration of the phase, during which heat flows; only in a case with the entry `heat`",
-        ),
-    ] = None
+        Field(gt=0, le=1e9, description="duration of a phase, where heat flows (entry `heat`) or yield depends on "
+                                        "the rate; without it a step is infinitely slow"),
+    ] = None  # fmt: skip
 
     @property
     def label(self) -> str:
