@@ -5,7 +5,6 @@ Penetrations up to a few hundredths of the wire diameter are therefore free; dee
 """
 
 import numpy as np
-from mpi4py import MPI
 from petsc4py import PETSc
 
 from coilset.model.contact.base import LimitsStep
@@ -40,9 +39,7 @@ class ContactLimit:
         x, seats = system.state["x"].equilibrium + x, system.state["seats"].equilibrium + seats
 
         def penetration(length: float) -> float:
-            trial = system.surroundings.trial(x + length * u, seats + length * moved)
-            deepest = max(contact.max_penetration(trial) for contact in self.limiting)
-            return system.comm.allreduce(deepest, op=MPI.MAX) if system.comm.size > 1 else deepest
+            return system.touching.max_penetration(x + length * u, seats + length * moved)
 
         allowed = self.allowed(penetration(0.0))
         if penetration(1.0) <= allowed:

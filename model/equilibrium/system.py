@@ -5,23 +5,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from dolfinx import la
-from mpi4py import MPI
 from petsc4py import PETSc
 
 from coilset.model.body import Body, Foresees, HasRotations, Moment, PassesTime
-from coilset.model.contact.base import (
-    Augmented,
-    BearsOnWire,
-    Contact,
-    Contribution,
-    HasMemory,
-    LimitsStep,
-)
-from coilset.model.contact.memory import Memory
+from coilset.model.contact.base import BearsOnWire, Contact, Contribution, HasMemory
+from coilset.model.equilibrium.contact_parts import ContactParts
 from coilset.model.equilibrium.layout import Layout, LineLayout
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import TangentMatrix
-from coilset.model.equilibrium.surroundings import Surroundings
 from coilset.model.state import Where
 
 
@@ -61,7 +52,7 @@ class System:
         increments: PETSc's vector of the increments on trial, that of the state.
         internal: internal forces at the last evaluation, without constraints and loads, that of the state.
         bearing: does each of the contacts bear on the wire (BearsOnWire)?
-        surroundings: Surroundings, if there are contacts.
+        touching: ContactParts, if there are contacts.
         last: Evaluation.
         evaluations: number of states that were evaluated so far.
     """
@@ -83,11 +74,9 @@ class System:
         # asked once, for the test of a protocol takes longer than what it guards
         self._rotating = body if isinstance(body, HasRotations) else None
         self._foreseeing = body if isinstance(body, Foresees) else None
-        self._limiting = [k for k, contact in enumerate(self.contacts) if isinstance(contact, LimitsStep)]
         self.bearing = [isinstance(contact, BearsOnWire) for contact in self.contacts]
         if self.contacts:
-            self.surroundings = Surroundings(self.line, self.contacts)
-        self._augmented = [contact for contact in self.contacts if isinstance(contact, Augmented)]
+            self.touching = ContactParts(self.line, self.contacts)
         self._is_rotation = np.zeros(layout.size_local, dtype=bool)
         if self._rotating is not None:
             body = self._rotating
@@ -139,17 +128,10 @@ class System:
 
     def _touch(self) -> tuple[list[Contribution], float, int]:
         """Contributions, penetration and number of closed elements of an Evaluation."""
-        line, rotations = self.line, None
-        if any(contact.needs_rotations for contact in self.contacts):
-            rotations = self.body.increment.x.array[line.rod.rotation_dofs]
-        trial = self.surroundings.trial(self.state["x"].trial, self.seats, rotations)
-        parts = [contact.evaluate(trial) for contact in self.contacts]
-        deepest = max((parts[k].penetration.max(initial=0.0) for k in self._limiting), default=0.0)
-        if self.comm.size == 1:
-            return parts, deepest, sum(part.closed for part in parts)
-        parts = [part.only(line.acts_here(part.dofs)) for part in parts]
-        found = self.comm.allgather((deepest, sum(part.only(line.begins_here(part.dofs)).closed for part in parts)))
-        return parts, max(each[0] for each in found), sum(each[1] for each in found)
+        rotations = None
+        if self.touching.need_rotations:
+            rotations = self.body.increment.x.array[self.line.rod.rotation_dofs]
+        return self.touching.evaluate(self.state["x"].trial, self.seats, rotations)
 
     def _assemble_internal(self, add_forces: Callable[[np.ndarray], None] | None = None) -> None:
         """Into `internal`; `add_forces` in place of the body's own `internal_forces`."""
@@ -198,24 +180,16 @@ class System:
         return self.last.closed > 0
 
     def gathered_contacts(self) -> list[Contribution]:
-        """Contributions of the contacts of all ranks at the last evaluation, without stiffness, for output; collective.
-
-        They are in the order of the contacts; elements come in the order of the ranks.
-        """
-        parts = self.last.contributions
-        if self.comm.size == 1:
-            return parts
-        once = [replace(part, stiffness=part.pressure).only(self.line.begins_here(part.dofs)) for part in parts]
-        return [Contribution.joined(each) for each in zip(*self.comm.allgather(once), strict=True)]
+        """Contributions of all ranks at the last evaluation, without stiffness, for output; collective."""
+        return self.touching.gathered(self.last.contributions) if self.contacts else []
 
     # ---- transactions ----------------------------------------------------------------------------------------------
 
     def commit(self) -> None:
         """Make the trial state the equilibrium."""
         self.body.follow()
-        for contact in self.contacts:
-            if isinstance(contact, HasMemory) and not isinstance(contact, Augmented):
-                self._share(contact.memory)
+        if self.contacts:
+            self.touching.share_memories()
         self.state.commit()
         self.body.increment.x.array[:] = 0.0
         self.expire()
@@ -234,20 +208,9 @@ class System:
 
     def augment(self) -> None:
         """Press contacts harder where they have sunk in (augmented Lagrange), from now on; collective."""
-        trial = self.surroundings.trial(self.state["x"].trial, self.seats)
-        for contact in self._augmented:
-            contact.augment(trial)
-            self._share(contact.memory)
+        if self.contacts:
+            self.touching.augment(self.state["x"].trial, self.seats)
         self.expire()
-
-    def _share(self, memory: Memory) -> None:
-        """Let all ranks know what each knows of the contacts at its own stations; collective."""
-        if self.comm.size == 1:
-            return
-        for name, stations in memory.stations.items():
-            values = memory[name]
-            values[~np.isin(stations, self.line.own_stations)] = 0.0
-            self.comm.Allreduce(MPI.IN_PLACE, values)
 
     # ---- residual and tangent --------------------------------------------------------------------------------------
 

@@ -41,7 +41,7 @@ def pressed(request, example):
 def nearby(analysis, x, seats, rotations):
     """The state as a rank knows it."""
     node = analysis.rod.line.node
-    return analysis.system.surroundings.trial(x[node], seats, rotations[node])
+    return analysis.system.touching.surroundings.trial(x[node], seats, rotations[node])
 
 
 def rows(analysis, part):
@@ -90,6 +90,6 @@ def test_what_ranks_know_at_their_own_stations_all_know_after_it_is_shared(press
             contact.evaluate(TrialPositions(*state))
             expected = contact.memory["traction"].copy()
             contact.evaluate(nearby(*pressed))
-            analysis.system._share(contact.memory)
+            analysis.system.touching.share(contact.memory)
             np.testing.assert_allclose(contact.memory["traction"], expected, rtol=0, atol=1e-13 * expected.max())
             np.testing.assert_array_equal(contact.memory["x"], state[0])
