@@ -72,7 +72,6 @@ class Recorder:
             phase: number of the phase; taken: the step that led there; loading: all phases.
         """
         height, force, last = self.control.height, self.control.force, self.system.last
-        contacts = sum(part.closed for part in last.contributions)
         greatest = max(self.result.greatest_force, abs(force))
         x, turns = self.layout.gather(self.rod.x), self.setup.turns
         pulls = self.setup.ends == "seats" and force < -faint_force(self.rod, greatest)
@@ -82,7 +81,7 @@ class Recorder:
         weakest = self._weakest()
         step = Step(taken.number, phase, taken.progress, height, self.setup.spring.free_length - height, bears,
                     taken.outcome.iterations, taken.outcome.evaluations, taken.outcome.failed_solves, taken.cuts,
-                    contacts, self.system.max_penetration,
+                    last.closed, self.system.max_penetration,
                     taken.outcome.negative_pivots, int(taken.outcome.left_branch), taken.outcome.released,
                     axis_offset(x, self.rod.line.stations, turns), weakest.value if weakest else None,
                     self._greatest_plastic_work(), lift_off,

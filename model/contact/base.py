@@ -2,14 +2,16 @@
 
 Degrees of freedom are numbered independently of the partition: 3 i + k is the displacement k of station i; after
 those of the n stations come x, y, z and rotations θx, θy, θz of the bottom and of the top seat, 3 n + j, and after
-these the stations' rotations since the last equilibrium, 3 n + 12 + 3 i + k. Positions of all stations are known on
-every rank (they are small), every rank evaluates all contacts, and adds each row where it lives.
+these the stations' rotations since the last equilibrium, 3 n + 12 + 3 i + k. Every rank evaluates the contacts that act
+on its own degrees of freedom: those of its part of the wire, and those of other parts near it. It is told the positions
+that these depend on, see coilset.model.equilibrium.surroundings.
 
 Every kind is a `Contact`. What only some of them do has a protocol of its own, asked for by isinstance: `BearsOnWire`,
-`LimitsStep`, `HasMemory`, `Augmented`.
+`LimitsStep`, `HasMemory`, `Augmented`, `ActsNearby`.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -27,6 +29,22 @@ CLOSED_OF_ONSET_FORCE = 4e-8
 
 
 @dataclass(frozen=True)
+class Known:
+    """The part of the wire whose positions a rank knows.
+
+    Attributes:
+        elements: ranges of elements of which all stations of the centre line's cubics are known, ascending, shape
+            (k, 2).
+        longest: distance of neighbouring stations, the maximum along the whole wire, mm.
+        own: which stations are the rank's own, shape (n,), bool.
+    """
+
+    elements: np.ndarray
+    longest: float
+    own: np.ndarray
+
+
+@dataclass(frozen=True)
 class TrialPositions:
     """Where stations and seats are at a trial state.
 
@@ -35,11 +53,18 @@ class TrialPositions:
         seats: x, y, z and rotation vector of the bottom seat, then of the top seat, shape (12,), mm and rad.
         rotations: rotation vectors of the stations since the last equilibrium, shape (n, 3), rad, or None if no contact
             asked for them.
+        known: the part of the wire whose positions and rotations are known, or None if it is all of it. Rows of the
+            other stations have no meaning.
     """
 
     x: np.ndarray
     seats: np.ndarray
     rotations: np.ndarray | None = None
+    known: Known | None = None
+
+    def points(self, points: WirePoints) -> np.ndarray:
+        """Numbers of those of the wire's points whose positions are known."""
+        return np.arange(len(points)) if self.known is None else points.of(self.known.elements)
 
 
 @dataclass(frozen=True)
@@ -63,6 +88,16 @@ class Contribution:
     penetration: np.ndarray
     point: np.ndarray
     onset_force: np.ndarray
+
+    def only(self, elements: np.ndarray) -> "Contribution":
+        """Some of the elements, given as numbers or as booleans."""
+        return Contribution(*(getattr(self, field.name)[elements] for field in fields(self)))
+
+    @classmethod
+    def joined(cls, parts: Sequence["Contribution"]) -> "Contribution":
+        """The elements of several parts, one after the other."""
+        names = [field.name for field in fields(cls)]
+        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
     @property
     def bears(self) -> np.ndarray:
@@ -137,6 +172,36 @@ class LimitsStep(Contact, Protocol):
 
     def max_penetration(self, trial: TrialPositions) -> float:
         """Maximum penetration, mm; 0 where nothing touches. Cheaper than `evaluate`, and writes nothing."""
+        ...
+
+
+@runtime_checkable
+class ActsNearby(Contact, Protocol):
+    """A contact that can be evaluated where only the stations near those on which it acts are known.
+
+    What acts on a station depends on those that are up to `aside` further along the wire from it, on points of the wire
+    within `reach` of these, and on the stations up to `aside` further from those.
+    """
+
+    @property
+    def aside(self) -> int:
+        """Number of stations."""
+        ...
+
+    @property
+    def reach(self) -> float:
+        """Distance, mm."""
+        ...
+
+    def acts_on_seats(self, stations: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
+        """Which of some stations may be among those with which it acts on the seats, shape (m,), bool.
+
+        Args:
+            stations: their numbers, shape (m,).
+            x: their positions, shape (m, 3), mm.
+            seats: of both seats, shape (12,).
+            span: how far stations that are `aside` of each other are apart along each axis at most, shape (3,), mm.
+        """
         ...
 
 

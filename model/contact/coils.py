@@ -4,16 +4,20 @@ The gap is the distance from the point to the other coil's centre line less both
 onto the other with half of the bedding, so that neither is the master.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from coilset.model.contact.base import Contribution, TrialPositions
 from coilset.model.contact.curve import WirePoints
 from coilset.model.contact.elements import at_points, coil_elements
 from coilset.model.contact.memory import Memory
-from coilset.model.contact.search import near_locations
+from coilset.model.contact.search import longest_element, near_locations, post_stride
 
 LOCATIONS_PER_POINT = 4  # initial capacity: locations on other coils, average per point
 SKIN = 0.5  # in wire radii: how far beyond what touches pairs are sought
+# Along the wire, a pair depends on three more stations of the cubic, and the search oversteps by two and by two posts.
+STATIONS_ASIDE, POSTS_ASIDE = 5, 2
 NO_PAIR = np.empty((0, 3), np.int64), np.empty((0, 2)), np.empty(0), np.empty((0, 3))
 
 
@@ -37,11 +41,14 @@ class Coils:
         self.stiffness, self.lengths = 0.5 * bedding * points.length, points.length
         self.overlap = np.zeros((len(points), 2))
         self._y = np.column_stack([stations, points.line.radius])  # stations of the last search, with their radii
-        pair, where, _ = self.near(stations)
+        self._widest = float(points.line.radius.max())
+        self.aside = STATIONS_ASIDE + POSTS_ASIDE * post_stride(self._widest, longest_element(self._y))
+        pair, where, _ = self.near(TrialPositions(stations, np.empty(0)))
         np.minimum.at(self.overlap, self.sides(pair), where[:, 1])
-        self.memory = Memory(multiplier_offset=np.zeros_like(self.overlap))
-        self._amplification, self._skin = points.line.amplification(), SKIN * points.line.radius.max()
-        self._clear: tuple[np.ndarray, float] | None = None  # stations at which all gaps were greater than a distance
+        first = points.stations[:, 0]
+        self.memory = Memory({"multiplier_offset": first}, multiplier_offset=np.zeros_like(self.overlap))
+        self._amplification, self._skin = points.line.amplification(), SKIN * self._widest
+        self._clear: tuple[TrialPositions, float] | None = None  # where all gaps were greater than a distance
 
     @property
     def multiplier_offset(self) -> np.ndarray:
@@ -53,35 +60,41 @@ class Coils:
         i = pair[:, 0]
         return i, (self.points.line.turns[pair[:, 1]] > self.points.turns[i]).astype(int)
 
-    def near(self, x: np.ndarray, margin: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def near(self, trial: TrialPositions, margin: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Pairs of points and locations nearer than `margin`, see `near_locations`, and the points' positions."""
-        points, line = self.points, self.points.line
-        p, capacity = np.empty((len(points), 3)), LOCATIONS_PER_POINT * len(points)
-        self._y[:, :3] = x
-        at_points(points.weights, points.stations, x, p)
+        points, line, known = self.points, self.points.line, trial.known
+        p, capacity, active = np.empty((len(points), 3)), LOCATIONS_PER_POINT * len(points), trial.points(points)
+        self._y[:, :3] = trial.x
+        at_points(active, points.weights, points.stations, trial.x, p)
+        elements = np.array([[0, len(line.lengths)]]) if known is None else known.elements
+        longest = longest_element(self._y) if known is None else known.longest
         while True:
             pair, where = np.empty((capacity, 3), np.int64), np.empty((capacity, 2))
-            found = near_locations(p, points.radius, points.turns, self._y, line.turns, line.first, line.cubic,
-                                   self.overlap, margin, pair, where)  # fmt: skip
+            found = near_locations(active, p, points.radius, points.turns, self._y, line.turns, line.first, line.cubic,
+                                   self.overlap, margin, elements, self._widest, longest, pair, where)  # fmt: skip
             if found <= capacity:
                 return pair[:found], where[:found], p
             capacity = found
 
-    def pressed(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    def pressed(self, trial: TrialPositions) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Pairs in contact, with ξ and gaps, their offsets, and the points' positions; these only if there are pairs.
 
-        Nothing is sought while the stations have moved by less than the gap that was found clear.
+        Nothing is sought while the stations have moved by less than the gap that was found clear. Pairs that have no
+        station of this rank are left to the others.
         """
         margin = self.multiplier_offset.max()
         if self._clear is not None:
             there, clearance = self._clear
-            if 2.0 * self._amplification * np.abs(x - there).max() * np.sqrt(3.0) < clearance - margin:
+            if 2.0 * self._amplification * moved(there, trial) * np.sqrt(3.0) < clearance - margin:
                 return NO_PAIR
-        pair, where, p = self.near(x, margin + self._skin)
-        self._clear = None if len(pair) else (x.copy(), margin + self._skin)
-        if not len(pair):
-            return NO_PAIR
+        pair, where, p = self.near(trial, margin + self._skin)
+        self._clear = None if len(pair) else (replace(trial, x=trial.x.copy()), margin + self._skin)
         near = where[:, 1] < margin
+        if trial.known is not None:
+            own, points = trial.known.own, self.points
+            near &= (own[points.stations[pair[:, 0]]] | own[points.line.stations[pair[:, 1]]]).any(axis=1)
+        if not near.any():
+            return NO_PAIR
         pair, where = pair[near], where[near]
         offset = self.multiplier_offset[self.sides(pair)]
         bears = where[:, 1] < offset
@@ -89,22 +102,42 @@ class Coils:
 
     def max_penetration(self, trial: TrialPositions) -> float:
         """Maximum penetration, mm."""
-        return -self.near(trial.x)[1][:, 1].min(initial=0.0)
+        return -self.near(trial)[1][:, 1].min(initial=0.0)
 
     def evaluate(self, trial: TrialPositions) -> Contribution:
         """Forces along the connection of closest points, where these touch."""
         points, line = self.points, self.points.line
-        pair, where, offset, p = self.pressed(trial.x)
+        pair, where, offset, p = self.pressed(trial)
         forces, k, pressure = coil_elements(p, points.weights, self._y, line.first, line.cubic, pair, where, offset,
                                             self.stiffness, self.onset)  # fmt: skip
         i = pair[:, 0]
         dofs = np.hstack([points.dofs[i], line.dofs[pair[:, 1]]])
         return Contribution(dofs, forces, k, pressure, -where[:, 1], i, self.stiffness[i] * self.onset)
 
+    @property
+    def reach(self) -> float:
+        """Distance of the centre lines up to which pairs are sought; see ActsNearby."""
+        return 2.0 * self._widest + float(self.multiplier_offset.max()) + self._skin
+
+    def acts_on_seats(self, stations: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
+        """None; see ActsNearby."""
+        return np.zeros(len(stations), dtype=bool)
+
     def augment(self, trial: TrialPositions) -> None:
         """Increase each point's offset by its penetration."""
         before, after = self.multiplier_offset, np.zeros_like(self.overlap)
-        pair, where, _ = self.near(trial.x, before.max())
+        pair, where, _ = self.near(trial, before.max())
         sides = self.sides(pair)
         np.maximum.at(after, sides, before[sides] - where[:, 1])
         self.memory["multiplier_offset"] = after
+
+
+def moved(there: TrialPositions, here: TrialPositions) -> float:
+    """Bound of the motion of the known stations along any axis, mm; infinite if others were known then."""
+    if there.known is None or here.known is None:
+        return float(np.abs(here.x - there.x).max())
+    ranges = here.known.elements
+    if not np.array_equal(ranges, there.known.elements):
+        return np.inf
+    parts = (slice(max(begin - 1, 0), stop + 2) for begin, stop in ranges)
+    return max((float(np.abs(here.x[part] - there.x[part]).max()) for part in parts), default=0.0)

@@ -162,10 +162,17 @@ class WirePoints:
     def __len__(self) -> int:
         return len(self.xi)
 
+    def of(self, elements: np.ndarray) -> np.ndarray:
+        """Numbers of the points of ranges of elements, shape (k, 2), ascending; at the wire's end with its last one."""
+        last, parts = len(self.line.lengths), POINTS_PER_ELEMENT
+        return np.concatenate(
+            [np.empty(0, np.int64), *(np.arange(parts * a, parts * b + (b == last)) for a, b in elements)]
+        )
+
     def tip(self, end: str) -> int:
         """Number of the point at the wire's tip of an end, `bottom` or `top`."""
         return 0 if end == "bottom" else len(self) - 1
 
-    def at(self, values: np.ndarray, number: np.ndarray | slice = slice(None)) -> np.ndarray:
-        """Values of the stations, shape (n, …), at the points, or at those with a `number`, shape (m, …)."""
-        return np.einsum("mk,mk...->m...", self.weights[number], values[self.stations[number]])
+    def at(self, values: np.ndarray, points: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """Values of the stations, shape (n, …), at all points or at the `points`, shape (m, …)."""
+        return np.einsum("mk,mk...->m...", self.weights[points], values[self.stations[points]])

@@ -18,9 +18,18 @@ def one_sided_at(g: float, c: float, onset: float) -> tuple[float, float]:
 
 
 @njit(**COMPILED)
-def at_points(weights: np.ndarray, stations: np.ndarray, values: np.ndarray, out: np.ndarray) -> None:
-    """Write the stations' vectors at the points: weights and stations of shape (m, 4), values (n, 3), out (m, 3)."""
-    for i in range(len(weights)):
+def at_points(
+    points: np.ndarray, weights: np.ndarray, stations: np.ndarray, values: np.ndarray, out: np.ndarray
+) -> None:
+    """Write the stations' vectors at some of the m points.
+
+    Args:
+        points: their numbers.
+        weights, stations: of all points, shape (m, 4).
+        values: of the stations, shape (n, 3).
+        out: written at the points, shape (m, 3).
+    """
+    for i in points:
         for k in range(3):
             out[i, k] = 0.0
             for a in range(STENCIL):
@@ -124,6 +133,7 @@ def coil_elements(
 
 @njit(**COMPILED)
 def flat_seat_elements(
+    points: np.ndarray,
     z: np.ndarray,
     stations: np.ndarray,
     weights: np.ndarray,
@@ -140,8 +150,9 @@ def flat_seat_elements(
     """The points that bear on a flat seat which moves along the axis only, and the tip.
 
     Args:
+        points: numbers of the points that are asked for.
         z: levels of the stations, mm.
-        stations, weights: of the points, shape (m, 4).
+        stations, weights: of all points, shape (m, 4).
         level: of the seat, mm; side: 1 where the wire lies above it, else −1.
         reach, offset, stiffness, onset, tip, tip_spring, slack: of the Seat.
 
@@ -149,18 +160,18 @@ def flat_seat_elements(
         Numbers of the b points, shape (b,), their forces, shape (b, 5), stiffness, (b, 5, 5), pressure and
         penetration, (b,).
     """
-    gap, count = np.empty(len(weights)), 0
-    for i in range(len(weights)):
+    gap, count = np.empty(len(points)), 0
+    for at, i in enumerate(points):
         height = -level
         for a in range(STENCIL):
             height += weights[i, a] * z[stations[i, a]]
-        gap[i] = side * height - reach[i]
-        count += gap[i] < offset[i] or i == tip
+        gap[at] = side * height - reach[i]
+        count += gap[at] < offset[i] or i == tip
     point, pressure, penetration = np.empty(count, np.int64), np.empty(count), np.empty(count)
     forces, k, grad = np.empty((count, FLAT)), np.empty((count, FLAT, FLAT)), np.empty(FLAT)
     e = 0
-    for i in range(len(weights)):
-        g = gap[i] - offset[i]
+    for at, i in enumerate(points):
+        g = gap[at] - offset[i]
         if g >= 0.0 and i != tip:
             continue
         if i != tip:
@@ -171,7 +182,7 @@ def flat_seat_elements(
         else:
             c = stiffness[i]
             force = -c * g
-        point[e], pressure[e], penetration[e] = i, max(force, 0.0), -gap[i]
+        point[e], pressure[e], penetration[e] = i, max(force, 0.0), -gap[at]
         for a in range(FLAT):
             grad[a] = side * (weights[i, a] if a < STENCIL else -1.0)
             forces[e, a] = -force * grad[a]

@@ -59,9 +59,12 @@ class Friction(ABC):
     needs_rotations = True
 
     def __init__(self, normal: Seat | Coils, mu: float, stations: np.ndarray, seats: np.ndarray):
+        self.aside = normal.aside
         self.normal, self.mu, self.end, self.name = normal, mu, normal.end, f"{normal.name} friction"
-        self.memory = Memory(traction=np.zeros((*normal.multiplier_offset.shape, 3)), x=stations, seats=seats)
         n = len(stations)
+        rows = {"traction": normal.points.stations[:, 0], "x": np.arange(n)}
+        traction = np.zeros((*normal.multiplier_offset.shape, 3))
+        self.memory = Memory(rows, traction=traction, x=stations, seats=seats)
         self.first_rotation = 3 * n + 2 * SEAT_DOFS  # number of the first degree of freedom of the stations' rotations
 
     @abstractmethod
@@ -98,6 +101,15 @@ class Friction(ABC):
         none = np.zeros(len(force))
         return Contribution(dofs, force, stiffness, none, none, at[0], none)
 
+    @property
+    def reach(self) -> float:
+        """That of the contact that presses; see ActsNearby."""
+        return self.normal.reach
+
+    def acts_on_seats(self, stations: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
+        """As the contact that presses; see ActsNearby."""
+        return self.normal.acts_on_seats(stations, x, seats, span)
+
     def slide(
         self, before: np.ndarray, slip: np.ndarray, n: np.ndarray, pressure: np.ndarray, c: np.ndarray
     ) -> np.ndarray:
@@ -116,11 +128,12 @@ class SeatFriction(Friction):
     def touching(self, trial: TrialPositions) -> tuple[tuple, np.ndarray, tuple]:
         """Points that bear, their degrees of freedom, and what stays the same while these vary."""
         seat, points = self.normal, self.normal.points
-        i = np.flatnonzero(seat.gaps(points.at(trial.x), trial.seats) < seat.multiplier_offset)
+        known = trial.points(points)
+        i = known[seat.gaps(points.at(trial.x, known), trial.seats, known) < seat.multiplier_offset[known]]
         rotations = self.first_rotation + points.dofs[i]
         plate = np.broadcast_to(seat.plate.dofs, (len(i), SEAT_DOFS))
         seats0 = self.memory.committed("seats")
-        q0 = seat.plate.to_seat_frame(points.at(self.memory.committed("x"))[i], seats0)
+        q0 = seat.plate.to_seat_frame(points.at(self.memory.committed("x"), i), seats0)
         θ0 = np.broadcast_to(seats0[seat.plate.own][3:], q0.shape)
         return (i,), np.hstack([points.dofs[i], plate, rotations]), (i, q0, θ0)
 
@@ -132,7 +145,7 @@ class SeatFriction(Friction):
         d = mean(w, nodal(u, 0)) - c
         q = rotate_back(d, θ)
         n, gap = seat.surface(q)
-        p = seat.pressures(i, seat.reach[i] + seat.multiplier_offset[i] - gap)
+        p = seat.pressures(i, seat.distance[i] + seat.multiplier_offset[i] - gap)
         ω = rotate_back(mean(w, nodal(u, NODAL + SEAT_DOFS)), θ) - (θ - θ0)
         t = self.slide(before, q - q0 - r * np.cross(ω, n), n, p, seat.stiffness[i])
         on_wire, roll = rotate(t, θ), rotate(r * np.cross(n, t), θ)
@@ -151,7 +164,7 @@ class CoilFriction(Friction):
     def touching(self, trial: TrialPositions) -> tuple[tuple, np.ndarray, tuple]:
         """Pairs that bear, their degrees of freedom, and what stays the same while these vary."""
         coils, points, line = self.normal, self.normal.points, self.normal.points.line
-        pair, where, offset, _ = coils.pressed(trial.x)
+        pair, where, offset, _ = coils.pressed(trial)
         i, e = pair[:, 0], pair[:, 1]
         dofs = np.hstack([points.dofs[i], line.dofs[e]])
         start = self.memory.committed("x")

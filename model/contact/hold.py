@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from coilset.model.contact.base import Contribution, TrialPositions
-from coilset.model.contact.curve import WirePoints
+from coilset.model.contact.curve import STENCIL, WirePoints
 from coilset.model.contact.plate import Plate, radial
 
 
@@ -27,6 +27,7 @@ class Groove:
     """
 
     needs_rotations = False
+    aside, reach = STENCIL, 0.0  # no other part of the wire matters
 
     def __init__(
         self, end: str, points: WirePoints, turns: float, stations: np.ndarray, bedding: float, seats: np.ndarray
@@ -45,15 +46,22 @@ class Groove:
 
     def evaluate(self, trial: TrialPositions) -> Contribution:
         """Forces across the groove, and along it at its end."""
-        p = self.wire.at(trial.x)[self.at]
+        own = np.flatnonzero(np.isin(self.at, trial.points(self.wire)))
+        at, stiffness = self.at[own], self.stiffness[own]
+        p = self.wire.at(trial.x, at)
         q = self.plate.to_seat_frame(p, trial.seats)
         s, g, H = radial(q)
-        s[-1], g[-1], H[-1] = q[-1] @ self.along, self.along, 0.0
-        force = self.stiffness * (s - self.start)
-        grad, hessian = self.plate.derivatives(p, trial.seats, self.wire.weights[self.at], g, H)
-        k = self.stiffness[:, None, None] * grad[:, :, None] * grad[:, None, :] + force[:, None, None] * hessian
+        end = own == self.stop
+        s[end], g[end], H[end] = q[end] @ self.along, self.along, 0.0
+        force = stiffness * (s - self.start[own])
+        grad, hessian = self.plate.derivatives(p, trial.seats, self.wire.weights[at], g, H)
+        k = stiffness[:, None, None] * grad[:, :, None] * grad[:, None, :] + force[:, None, None] * hessian
         none = np.zeros(len(force))
-        return Contribution(self.dofs, force[:, None] * grad, k, none, none, self.at, none)
+        return Contribution(self.dofs[own], force[:, None] * grad, k, none, none, at, none)
+
+    def acts_on_seats(self, stations: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
+        """Those of the groove; see ActsNearby."""
+        return np.isin(stations, self.wire.stations[self.at])
 
 
 class Mount:
@@ -67,6 +75,7 @@ class Mount:
     """
 
     end, needs_rotations = None, False
+    aside, reach = 0, 0.0
 
     def __init__(self, end: str, stations: int, stiffness: ArrayLike, seats: np.ndarray):
         plate = Plate(end, stations)
@@ -78,3 +87,7 @@ class Mount:
         force = self.stiffness[0] @ (trial.seats[self.own] - self.slack)
         none = np.zeros(1)
         return Contribution(self.dofs, force[None], self.stiffness, none, none, np.zeros(1, dtype=int), none)
+
+    def acts_on_seats(self, stations: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
+        """None; see ActsNearby."""
+        return np.zeros(len(stations), dtype=bool)

@@ -38,6 +38,12 @@ def grid(x: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, float, np.
 
 
 @njit(cache=True)
+def post_stride(widest: float, longest: float) -> int:
+    """How many stations the posts are apart, with the wire's largest radius and the longest element, mm."""
+    return max(1, int(LEAST_POST_DISTANCE * widest / longest))
+
+
+@njit(cache=True)
 def distance2(p: np.ndarray, x: np.ndarray, j: int) -> float:
     """Square of the distance of the point `p` from station `j`."""
     return (p[0] - x[j, 0]) ** 2 + (p[1] - x[j, 1]) ** 2 + (p[2] - x[j, 2]) ** 2
@@ -73,15 +79,28 @@ def station_slope(
 
 @njit(cache=True, error_model="numpy")
 def closest(
-    p: np.ndarray, y: np.ndarray, first: np.ndarray, cubic: np.ndarray, j: int, work: np.ndarray
+    p: np.ndarray,
+    y: np.ndarray,
+    first: np.ndarray,
+    cubic: np.ndarray,
+    j: int,
+    begin: int,
+    end: int,
+    work: np.ndarray,
 ) -> tuple[int, float, bool]:
-    """Closest point to `p` along the wire, sought from station `j`: element, ξ, and whether it is inside the wire."""
+    """Closest point to `p` along the wire, sought from station `j` between the stations `begin` and `end`.
+
+    Returns:
+        Element, ξ, and whether it is inside the wire; element −1 if it is beyond `begin` or `end`, inside the wire.
+    """
     last = len(first)
     direction = -1 if station_slope(p, y, first, cubic, j, work) > 0.0 else 1
     near, stride = j, 1
     while True:  # in growing steps until the gap no longer decreases
-        far = min(max(near + direction * stride, 0), last)
+        far = min(max(near + direction * stride, begin), end)
         if far == near:
+            if 0 < near < last:
+                return -1, 0.0, False
             return (0, 0.0, False) if near == 0 else (last - 1, 1.0, False)
         if station_slope(p, y, first, cubic, far, work) * direction >= 0.0:
             break
@@ -109,8 +128,46 @@ def closest(
     return e, xi, True
 
 
+@njit(cache=True)
+def find_posts(elements: np.ndarray, last: int, stride: int) -> tuple[np.ndarray, np.ndarray]:
+    """Every so manieth station along the wire, of those where the curve's slope is known.
+
+    Args:
+        elements: ranges of elements whose four stations are known, shape (k, 2).
+        last: number of elements.
+        stride: distance of the posts, in stations.
+
+    Returns:
+        Numbers of the posts, ascending, and first and last station of the range in which each lies, shape (posts, 2).
+    """
+    most = 0
+    for part in range(len(elements)):
+        most += (elements[part, 1] - elements[part, 0]) // stride + 2
+    posts, ranges, count = np.empty(most, np.int64), np.empty((most, 2), np.int64), 0
+    for part in range(len(elements)):
+        begin, stop = elements[part, 0], elements[part, 1]
+        end = last if stop == last else stop - 1  # the slope at station `stop` is that of the element behind it
+        for k in range(-(-begin // stride), (last - 1) // stride + 2):
+            post = min(k * stride, last)
+            if post > end:
+                break
+            posts[count], ranges[count, 0], ranges[count, 1] = post, begin, end
+            count += 1
+    return posts[:count], ranges[:count]
+
+
+@njit(cache=True)
+def longest_element(y: np.ndarray) -> float:
+    """Greatest distance of neighbouring stations, mm; `y` of shape (n, 3 or more)."""
+    longest = 0.0
+    for i in range(1, len(y)):
+        longest = max(longest, distance2(y[i], y, i - 1))
+    return math.sqrt(longest)
+
+
 @njit(cache=True, error_model="numpy")
 def near_locations(
+    active: np.ndarray,
     p: np.ndarray,
     radius: np.ndarray,
     turns: np.ndarray,
@@ -120,39 +177,40 @@ def near_locations(
     cubic: np.ndarray,
     overlap: np.ndarray,
     margin: float,
+    elements: np.ndarray,
+    widest: float,
+    longest: float,
     pair: np.ndarray,
     where: np.ndarray,
 ) -> int:
     """All locations where a point of the wire and another coil are closer than `margin`.
 
     Args:
+        active: numbers of the points that are asked for, ascending.
         p: points, shape (m, 3), with radius and turn, shape (m,).
         y: stations with their radii, shape (n, 4); station_turns: shape (n,).
         first, cubic: of the CentreLine.
         overlap: what counts as touching though the bodies overlap, for the coil before and after, shape (m, 2), mm.
         margin: maximum gap, mm.
+        elements: ranges of elements whose four stations are known, shape (k, 2).
+        widest, longest: largest radius and distance of neighbouring stations along the wire, mm.
         pair: written, point, element and whether the location is inside the wire, shape (capacity, 3).
         where: written, ξ and gap, shape (capacity, 2).
 
     Returns:
         Number of locations; more than `capacity` if the arrays were too short.
     """
-    n, widest, longest = len(y), 0.0, 0.0
-    for i in range(n):
-        widest = max(widest, y[i, 3])
-        if i:
-            longest = max(longest, distance2(y[i], y, i - 1))
     # if elements are much shorter than the wire diameter, only every so many stations are sorted: the posts
-    stride = max(1, int(LEAST_POST_DISTANCE * widest / math.sqrt(longest)))
-    posts = np.empty((n - 2) // stride + 2, np.int64)
-    for k in range(len(posts)):
-        posts[k] = min(k * stride, n - 1)
+    stride = post_stride(widest, longest)
+    posts, ranges = find_posts(elements, len(first), stride)
+    if not len(posts):
+        return 0
     x = y[posts]
     # the post nearest to a location is at most half a stride from it
-    reach = 2.0 * widest + margin + 0.6 * stride * math.sqrt(longest)
+    reach = 2.0 * widest + margin + 0.6 * stride * longest
     low, count, size, head, after = grid(x[:, :3], reach)
     work, cube, found = np.empty((3, 4)), np.empty(3, np.int64), 0
-    for i in range(len(p)):
+    for i in active:
         for k in range(3):
             cube[k] = math.floor((p[i, k] - low[k]) / size)
         for a in range(max(cube[0] - 1, 0), min(cube[0] + 2, count[0])):
@@ -164,11 +222,14 @@ def near_locations(
                         j = after[j]
                         if here > reach**2 or abs(station_turns[posts[now]] - turns[i]) < LEAST_TURNS_BETWEEN:
                             continue
-                        if now > 0 and distance2(p[i], x, now - 1) < here:
+                        begin, end = ranges[now, 0], ranges[now, 1]
+                        if now > 0 and posts[now - 1] >= begin and distance2(p[i], x, now - 1) < here:
                             continue
-                        if now + 1 < len(posts) and distance2(p[i], x, now + 1) <= here:
+                        if now + 1 < len(posts) and posts[now + 1] <= end and distance2(p[i], x, now + 1) <= here:
                             continue
-                        e, xi, inside = closest(p[i], y, first, cubic, posts[now], work)
+                        e, xi, inside = closest(p[i], y, first, cubic, posts[now], begin, end, work)
+                        if e < 0:
+                            continue
                         turn = station_turns[e] + xi * (station_turns[e + 1] - station_turns[e])
                         if abs(turn - turns[i]) < LEAST_TURNS_BETWEEN:
                             continue

@@ -6,7 +6,7 @@ In the coordinates q of its plate (plate.py) a flat seat is the plane qz = 0; a 
 import numpy as np
 
 from coilset.model.contact.base import LEVEL, Contribution, TrialPositions, one_sided
-from coilset.model.contact.curve import STENCIL, WirePoints
+from coilset.model.contact.curve import POINTS_PER_ELEMENT, STENCIL, WirePoints
 from coilset.model.contact.elements import flat_seat_elements
 from coilset.model.contact.memory import Memory
 from coilset.model.contact.plate import Plate, radial
@@ -26,7 +26,7 @@ class Seat:
     Args:
         end: `bottom` or `top`.
         points: WirePoints.
-        reach: distance from the centre line to the surface that meets the seat, at the points, shape (m,), mm.
+        distance: from the centre line to the surface that meets the seat, at the points, shape (m,), mm.
         stations: stress-free positions, shape (n, 3), mm.
         seats: of both seats in the stress-free state, shape (12,), mm and rad.
         bedding: force per length of wire and penetration, N/mm per mm.
@@ -37,12 +37,13 @@ class Seat:
     """
 
     needs_rotations = False
+    aside, reach = STENCIL, 0.0  # no other part of the wire matters
 
     def __init__(
         self,
         end: str,
         points: WirePoints,
-        reach: np.ndarray,
+        distance: np.ndarray,
         stations: np.ndarray,
         seats: np.ndarray,
         bedding: float,
@@ -62,16 +63,16 @@ class Seat:
         self.stiffness[self.tip] = bedding * 2.0 * points.radius[self.tip]
         self.lengths = self.stiffness / bedding
         self.tip_spring = TIP_SPRING_OF_BEDDING * self.stiffness[self.tip]
-        self.reach = np.array(reach, dtype=float)
+        self.distance = np.array(distance, dtype=float)
         gap = self.gaps(points.at(stations), seats)
         if stepped:
             away = np.abs(points.turns - points.turns[self.tip])
             on_step = away <= stepped + 1e-9
             last = np.flatnonzero(on_step)[-1 if self.side > 0 else 0]
-            self.reach += np.where(on_step, gap, gap[last])
+            self.distance += np.where(on_step, gap, gap[last])
         else:
-            self.reach += gap.min()  # zero on a flat seat; a cone is moved until it touches
-        self.memory = Memory(multiplier_offset=np.zeros(len(points)))
+            self.distance += gap.min()  # zero on a flat seat; a cone is moved until it touches
+        self.memory = Memory({"multiplier_offset": points.stations[:, 0]}, multiplier_offset=np.zeros(len(points)))
         self.slack = 0.0 if stepped else gap[self.tip] - gap.min()
         self.dofs = self.plate.dofs_with(points)
         if self.linear:
@@ -82,11 +83,11 @@ class Seat:
         """Offset by which each point is pressed in addition to its penetration, shape (m,), mm."""
         return self.memory["multiplier_offset"]
 
-    def gaps(self, p: np.ndarray, seats: np.ndarray) -> np.ndarray:
-        """Gap of the underside at the points `p`, shape (m, 3), negative for penetration, shape (m,), mm."""
+    def gaps(self, p: np.ndarray, seats: np.ndarray, points: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """Gap of the underside at all points or the `points`, at `p`, shape (m, 3), negative for penetration, mm."""
         if self.linear:
-            return self.side * (p[:, 2] - seats[self.plate.own][LEVEL]) - self.reach
-        return self.surface(self.plate.to_seat_frame(p, seats))[1] - self.reach
+            return self.side * (p[:, 2] - seats[self.plate.own][LEVEL]) - self.distance[points]
+        return self.surface(self.plate.to_seat_frame(p, seats))[1] - self.distance[points]
 
     def surface(self, q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Normal of the surface under the points `q`, towards the wire, and their distance from it; also if complex."""
@@ -114,7 +115,15 @@ class Seat:
 
     def max_penetration(self, trial: TrialPositions) -> float:
         """Maximum penetration, mm."""
-        return -self.gaps(self.points.at(trial.x), trial.seats).min(initial=0.0)
+        points = trial.points(self.points)
+        return -self.gaps(self.points.at(trial.x, points), trial.seats, points).min(initial=0.0)
+
+    def acts_on_seats(self, stations: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
+        """Those of which a neighbour may be in contact, and those of the tip; see ActsNearby."""
+        points = POINTS_PER_ELEMENT * stations
+        along_wire = span[2] if self.linear else np.linalg.norm(span)
+        near = self.gaps(x, seats, points) < self.multiplier_offset.max() + 2.0 * along_wire
+        return near | np.isin(stations, self.points.stations[self.tip])
 
     def evaluate(self, trial: TrialPositions) -> Contribution:
         """Forces across the seat's surface, for the points that touch, and for the tip on its spring."""
@@ -124,17 +133,19 @@ class Seat:
         """On a flat seat that moves along the axis only."""
         points = self.points
         i, forces, k, pressure, penetration = flat_seat_elements(
-            trial.x[:, 2], points.stations, points.weights, trial.seats[self.plate.own][LEVEL], self.side, self.reach,
-            self.multiplier_offset, self.stiffness, self.onset, self.tip, self.tip_spring, self.slack,
+            trial.points(points), trial.x[:, 2], points.stations, points.weights, trial.seats[self.plate.own][LEVEL],
+            self.side, self.distance, self.multiplier_offset, self.stiffness, self.onset, self.tip, self.tip_spring,
+            self.slack,
         )  # fmt: skip
         return Contribution(self.dofs[i], forces, k, pressure, penetration, i, self.stiffness[i] * self.onset)
 
     def _curved(self, trial: TrialPositions) -> Contribution:
         """On a cone, or on a seat that moves in any way."""
-        p = self.points.at(trial.x)
-        gap = self.gaps(p, trial.seats)
-        bearing = np.flatnonzero((gap < self.multiplier_offset) | (np.arange(len(gap)) == self.tip))
-        penetration, gap, p = -gap[bearing], (gap - self.multiplier_offset)[bearing], p[bearing]
+        points = trial.points(self.points)
+        p, offset = self.points.at(trial.x, points), self.multiplier_offset[points]
+        gap = self.gaps(p, trial.seats, points)
+        found = np.flatnonzero((gap < offset) | (points == self.tip))
+        bearing, penetration, gap, p = points[found], -gap[found], (gap - offset)[found], p[found]
         onset_force = self.stiffness[bearing] * self.onset
         pressure, c = one_sided(gap, self.stiffness[bearing], self.onset)
         force, tip = pressure.copy(), np.flatnonzero(bearing == self.tip)
@@ -149,5 +160,6 @@ class Seat:
 
     def augment(self, trial: TrialPositions) -> None:
         """Increase each point's offset by its penetration."""
-        gap = self.gaps(self.points.at(trial.x), trial.seats)
-        self.memory["multiplier_offset"] = np.maximum(self.multiplier_offset - gap, 0.0)
+        points = trial.points(self.points)
+        gap = self.gaps(self.points.at(trial.x, points), trial.seats, points)
+        self.multiplier_offset[points] = np.maximum(self.multiplier_offset[points] - gap, 0.0)

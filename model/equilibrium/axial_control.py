@@ -83,7 +83,7 @@ class AxialControl:
         """Axial position of the driven head, mm; collective."""
         state = self.system.state
         if self.clamped:
-            return float(self.layout.gather(getattr(state["x"], when))[-1, 2])
+            return float(self.layout.at_station(getattr(state["x"], when), len(self.layout.station_dofs) - 1)[2])
         return float(getattr(state["seats"], when)[SEAT_DOFS + LEVEL])
 
     def _force(self, reactions: np.ndarray) -> float:

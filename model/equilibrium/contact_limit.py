@@ -4,10 +4,10 @@ A correction that presses bodies deeply into each other makes the wire yield, wh
 Penetrations up to a few hundredths of the wire diameter are therefore free; deeper ones may grow only by a factor.
 """
 
+import numpy as np
 from petsc4py import PETSc
 
-from coilset.model.contact.base import LimitsStep, TrialPositions
-from coilset.model.equilibrium.layout import SEATS, LineLayout
+from coilset.model.contact.base import LimitsStep
 from coilset.model.equilibrium.settings import NewtonControl
 from coilset.model.equilibrium.system import System
 
@@ -31,20 +31,15 @@ class ContactLimit:
 
     def step_length(self, start: PETSc.Vec, direction: PETSc.Vec, sign: float = 1.0) -> float:
         """Largest λ ≤ 1 up to which start + λ · sign · direction presses no deeper than allowed; collective."""
-        layout = self.system.layout
+        system = self.system
         if not self.limiting:
             return 1.0
-        assert isinstance(layout, LineLayout)
-        n, state = len(layout.station_dofs), self.system.state
-        before, (x, seats), (u, moved) = (layout.gather(state["x"].equilibrium), *(
-            (values[: 6 * n].reshape(n, 6)[:, :3], values[-SEATS:])
-            for values in (layout.to_order(start.getArray(readonly=True)),
-                           sign * layout.to_order(direction.getArray(readonly=True)))))  # fmt: skip
-        x, seats = before + x, state["seats"].equilibrium + seats
+        x, seats = self._moves(start)
+        u, moved = (sign * part for part in self._moves(direction))
+        x, seats = system.state["x"].equilibrium + x, system.state["seats"].equilibrium + seats
 
         def penetration(length: float) -> float:
-            trial = TrialPositions(x + length * u, seats + length * moved)
-            return max(contact.max_penetration(trial) for contact in self.limiting)
+            return system.touching.max_penetration(x + length * u, seats + length * moved)
 
         allowed = self.allowed(penetration(0.0))
         if penetration(1.0) <= allowed:
@@ -54,6 +49,11 @@ class ContactLimit:
             middle = 0.5 * (low + high)
             low, high = (middle, high) if penetration(middle) <= allowed else (low, middle)
         return low
+
+    def _moves(self, increments: PETSc.Vec) -> tuple[np.ndarray, np.ndarray]:
+        """Displacements of the local nodes and of both seats; collective."""
+        line, values = self.system.line, increments.getArray(readonly=True)
+        return self.system.with_ghosts(values)[line.rod.u_dofs], line.extra(values)
 
     def limit_start(self, guess: PETSc.Vec, start: PETSc.Vec) -> None:
         """Write into `start` as much of the guess as the contacts allow from the last equilibrium; collective."""

@@ -65,6 +65,7 @@ class LineLayout(Layout):
         element_dofs: of the elements' own shear angles, shape (elements, 2).
         seat_dofs: of the seats, shape (12,).
         rod: the Rod whose unknowns they are.
+        own_stations: numbers of this rank's stations, in the order of the local nodes.
         contact_dofs: unknown of each degree of freedom as contacts number them, see coilset.model.contact.base.
     """
 
@@ -76,7 +77,8 @@ class LineLayout(Layout):
         self._nodes = line.mesh.geometry.index_map().size_local
         mine = np.concatenate([rod.u_dofs[: self._nodes], rod.rotation_dofs[: self._nodes]], axis=1)
         mine = index_map.local_to_global(mine.ravel().astype(np.int32)).reshape(-1, 6)
-        self._order = np.concatenate(comm.allgather(line.node[: self._nodes]))
+        self.own_stations = line.node[: self._nodes]
+        self._order = np.concatenate(comm.allgather(self.own_stations))
         self.station_dofs = np.empty((len(line.stations), 6), dtype=PETSc.IntType)
         self.station_dofs[self._order] = np.concatenate(comm.allgather(mine))
         self.seat_dofs = self.body_size + np.arange(SEATS, dtype=PETSc.IntType)
@@ -97,6 +99,21 @@ class LineLayout(Layout):
         out = np.empty_like(gathered)
         out[self._order] = gathered
         return out
+
+    def at_station(self, values: np.ndarray, station: int) -> np.ndarray:
+        """Values of the local nodes, shape (nodes, …), at one station, on every rank, shape (…); collective."""
+        mine = np.flatnonzero(self.own_stations == station)
+        found = values[mine].sum(axis=0)
+        return self.comm.allreduce(found) if self.comm.size > 1 else found
+
+    def acts_here(self, dofs: np.ndarray) -> np.ndarray:
+        """Which contact elements act on unknowns of this rank, shape (m, k) → (m,), bool."""
+        rows = self.contact_dofs[dofs]
+        return ((rows >= self.start) & (rows < self.stop)).any(axis=1)
+
+    def begins_here(self, dofs: np.ndarray) -> np.ndarray:
+        """Which contact elements have their first unknown on this rank, so that each counts once; as `acts_here`."""
+        return self.acts_here(dofs[:, :1])
 
     def to_order(self, values: np.ndarray) -> np.ndarray:
         """This rank's part of a vector → the whole by stations, elements and seats, the same on any number of ranks."""

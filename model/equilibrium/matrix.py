@@ -48,7 +48,10 @@ class TangentMatrix:
     def clear(self, contributions: Sequence[Contribution], exactly: bool) -> None:
         """Zero the matrix, with room for the closed contacts; with `exactly`, for no others."""
         places = self._contact_places(contributions)
-        if np.array_equal(places, self._places) or (not exactly and np.isin(places, self._places).all()):
+        fits = np.array_equal(places, self._places) or (not exactly and bool(np.isin(places, self._places).all()))
+        if self.layout.comm.size > 1:
+            fits = self.layout.comm.allreduce(int(fits)) == self.layout.comm.size
+        if fits:
             self.mat.zeroEntries()
         else:
             self._make_room(contributions)
@@ -58,11 +61,7 @@ class TangentMatrix:
         layout = self.layout
         for part in contributions:
             assert isinstance(layout, LineLayout)
-            dofs, stiffness = layout.contact_dofs[part.dofs], part.stiffness
-            if layout.comm.size > 1:
-                mine = ((dofs >= layout.start) & (dofs < layout.stop)).any(axis=1)
-                dofs, stiffness = dofs[mine], stiffness[mine]
-            add_blocks(self.mat, dofs, stiffness, layout.start, layout.stop)
+            add_blocks(self.mat, layout.contact_dofs[part.dofs], part.stiffness, layout.start, layout.stop)
 
     def _make_room(self, contributions: Sequence[Contribution]) -> None:
         """Reallocate the rows: a node couples with its neighbours, shear angles, and contacts."""
@@ -73,9 +72,10 @@ class TangentMatrix:
         for part in contributions:
             assert isinstance(layout, LineLayout)
             dofs = layout.contact_dofs[part.dofs].astype(np.int64)
-            places = np.unique(dofs[:, :, None] * layout.size + dofs[:, None, :])  # row by row, each once
-            in_rows = np.bincount(places // layout.size, minlength=layout.size)
-            entries += in_rows[layout.start : layout.stop].astype(PETSc.IntType)
+            element, k = np.nonzero((dofs >= layout.start) & (dofs < layout.stop))
+            rows = dofs[element, k] - layout.start
+            places = np.unique(rows[:, None] * layout.size + dofs[element])  # row by row, each once
+            entries += np.bincount(places // layout.size, minlength=layout.size_local).astype(PETSc.IntType)
         here = np.minimum(entries, layout.size_local)  # in columns of this rank
         there = np.minimum(entries, layout.size - layout.size_local)
         self.mat.setPreallocationNNZ((here, there) if layout.comm.size > 1 else here)

@@ -70,7 +70,7 @@ class StepError:
         """
         control, comm = self.control, self.control.system.comm
         memory, last = self._memory.trial, self._memory.equilibrium
-        memory[CLOSED] = sum(part.closed for part in control.system.last.contributions)
+        memory[CLOSED] = control.system.last.closed
         kinked = controls and memory[CLOSED] != last[CLOSED]
         works = np.array(self._body.error_works(ratio, bool(kinked)))
         if comm.size > 1:

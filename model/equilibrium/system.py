@@ -1,22 +1,15 @@
 """Residual and tangent of a body and what touches it, as functions of one vector of increments."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from dolfinx import la
 from petsc4py import PETSc
 
 from coilset.model.body import Body, Foresees, HasRotations, Moment, PassesTime
-from coilset.model.contact.base import (
-    Augmented,
-    BearsOnWire,
-    Contact,
-    Contribution,
-    HasMemory,
-    LimitsStep,
-    TrialPositions,
-)
+from coilset.model.contact.base import BearsOnWire, Contact, Contribution, HasMemory
+from coilset.model.equilibrium.contact_parts import ContactParts
 from coilset.model.equilibrium.layout import Layout, LineLayout
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import TangentMatrix
@@ -30,12 +23,17 @@ class Evaluation:
     Attributes:
         increments: this rank's part of the vector that it was made at.
         has_stress: on every rank and at every point?
-        contributions: of the contacts, in their order; empty where there is no stress.
+        contributions: of the contacts, in their order, those of their elements that act on this rank's unknowns; empty
+            where there is no stress.
+        penetration: of coils and seats, the maximum over all ranks, mm.
+        closed: number of closed contact elements of all ranks.
     """
 
     increments: np.ndarray
     has_stress: bool
     contributions: list[Contribution]
+    penetration: float = 0.0
+    closed: int = 0
 
 
 class System:
@@ -54,6 +52,7 @@ class System:
         increments: PETSc's vector of the increments on trial, that of the state.
         internal: internal forces at the last evaluation, without constraints and loads, that of the state.
         bearing: does each of the contacts bear on the wire (BearsOnWire)?
+        touching: ContactParts, if there are contacts.
         last: Evaluation.
         evaluations: number of states that were evaluated so far.
     """
@@ -76,9 +75,9 @@ class System:
         # asked once, for the test of a protocol takes longer than what it guards
         self._rotating = body if isinstance(body, HasRotations) else None
         self._foreseeing = body if isinstance(body, Foresees) else None
-        self._limiting = [k for k, contact in enumerate(self.contacts) if isinstance(contact, LimitsStep)]
         self.bearing = [isinstance(contact, BearsOnWire) for contact in self.contacts]
-        self._augmented = [contact for contact in self.contacts if isinstance(contact, Augmented)]
+        if self.contacts:
+            self.touching = ContactParts(self.line, self.contacts)
         self._is_rotation = np.zeros(layout.size_local, dtype=bool)
         if self._rotating is not None:
             body = self._rotating
@@ -120,17 +119,21 @@ class System:
         has_stress = self.body.update()
         if self.comm.size > 1:
             has_stress = self.comm.allreduce(int(has_stress)) == self.comm.size
-        contributions = self._touch() if self.contacts and has_stress else []
-        self.last = Evaluation(values, has_stress, contributions)
+        if not has_stress:
+            self.last = Evaluation(values, False, [])
+        elif not self.contacts:
+            self.last = Evaluation(values, True, [])
+        else:
+            self.last = Evaluation(values, True, *self._touch())
         if has_stress:
             self._assemble_internal()
 
-    def _touch(self) -> list[Contribution]:
-        line, rotations = self.line, None
-        if any(contact.needs_rotations for contact in self.contacts):
-            rotations = line.gather(self.body.increment.x.array[line.rod.rotation_dofs])
-        trial = TrialPositions(line.gather(self.state["x"].trial), self.seats, rotations)
-        return [contact.evaluate(trial) for contact in self.contacts]
+    def _touch(self) -> tuple[list[Contribution], float, int]:
+        """Contributions, penetration and number of closed elements of an Evaluation."""
+        rotations = None
+        if self.touching.need_rotations:
+            rotations = self.body.increment.x.array[self.line.rod.rotation_dofs]
+        return self.touching.evaluate(self.state["x"].trial, self.seats, rotations)
 
     def _assemble_internal(self, add_forces: Callable[[np.ndarray], None] | None = None) -> None:
         """Into `internal`; `add_forces` in place of the body's own `internal_forces`."""
@@ -152,9 +155,18 @@ class System:
             with self.internal as values:
                 np.add.at(values, rows[mine] - start, forces[mine])
 
+    def with_ghosts(self, values: np.ndarray) -> np.ndarray:
+        """The body's unknowns of this rank's part `values` of a vector, and after them the ghosts'; collective.
+
+        The next call overwrites what it gives.
+        """
+        self._local.array[: self.layout.owned] = values[: self.layout.owned]
+        self._local.scatter_forward()
+        return self._local.array
+
     def expire(self) -> None:
         """The next evaluation is to be made, wherever it is: something else than the increments has changed."""
-        self.last = Evaluation(np.full(self.layout.size_local, np.nan), self.last.has_stress, self.last.contributions)
+        self.last = replace(self.last, increments=np.full(self.layout.size_local, np.nan))
 
     def pass_time(self, middle: Moment, end: Moment) -> None:
         """Let the step that begins take time; see PassesTime."""
@@ -165,21 +177,24 @@ class System:
     @property
     def max_penetration(self) -> float:
         """Maximum penetration of coils and seats at the last evaluation, mm; infinite where no stress was found."""
-        if not self.last.has_stress:
-            return np.inf
-        parts = [self.last.contributions[k] for k in self._limiting] if self.last.contributions else []
-        return max((part.penetration.max(initial=0.0) for part in parts), default=0.0)
+        return self.last.penetration if self.last.has_stress else np.inf
 
     @property
     def touches(self) -> bool:
-        """Does any contact bear at the last evaluation? Every rank knows all of them."""
-        return any(part.closed > 0 for part in self.last.contributions)
+        """Does any contact bear at the last evaluation, on any rank?"""
+        return self.last.closed > 0
+
+    def gathered_contacts(self) -> list[Contribution]:
+        """Contributions of all ranks at the last evaluation, without stiffness, for output; collective."""
+        return self.touching.gathered(self.last.contributions) if self.contacts else []
 
     # ---- transactions ----------------------------------------------------------------------------------------------
 
     def commit(self) -> None:
         """Make the trial state the equilibrium."""
         self.body.follow()
+        if self.contacts:
+            self.touching.share_memories()
         self.state.commit()
         self.body.increment.x.array[:] = 0.0
         self.expire()
@@ -198,9 +213,8 @@ class System:
 
     def augment(self) -> None:
         """Press contacts harder where they have sunk in (augmented Lagrange), from now on; collective."""
-        trial = TrialPositions(self.line.gather(self.state["x"].trial), self.seats)
-        for contact in self._augmented:
-            contact.augment(trial)
+        if self.contacts:
+            self.touching.augment(self.state["x"].trial, self.seats)
         self.expire()
 
     # ---- residual and tangent --------------------------------------------------------------------------------------

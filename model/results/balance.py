@@ -44,8 +44,9 @@ def imbalance(shot: Snapshot, system: System, control: AxialControl) -> tuple[fl
     """
     layout, x = system.layout, shot.x
     assert isinstance(layout, LineLayout)
-    forces = station_forces(system.last.contributions, len(x))
-    moments = station_moments(system.last.contributions, layout.gather(layout.rod.chart))
+    contacts = system.gathered_contacts()
+    forces = station_forces(contacts, len(x))
+    moments = station_moments(contacts, layout.gather(layout.rod.chart))
     for station, components in control.tips.values():
         reaction = np.zeros(6)
         reaction[components] = layout.values(system.internal, layout.station_dofs[station, components])

@@ -68,7 +68,7 @@ class _Observer:
         self.layout, self.system, self.control = system.layout, system, control
         self.x = self.layout.gather(system.state["x"].trial)
         self.chart = self.layout.gather(self.layout.rod.chart)
-        self.parts: Parts = list(zip(system.contacts, system.last.contributions, strict=True))
+        self.parts: Parts = list(zip(system.contacts, system.gathered_contacts(), strict=True))
         self.on_wire: OnWire = [(kind, *self.parts[kind]) for kind, bears in enumerate(system.bearing) if bears]
 
     def wrench(self, end: str) -> Wrench:

@@ -20,7 +20,7 @@ def make_coils(points, helix):
 
 def energy(coils, x):
     """The integral of the force law with its onset: c p²/(4w), then c (p − w)."""
-    pair, where, _ = coils.near(x)
+    pair, where, _ = coils.near(TrialPositions(x, SEATS))
     p, w = -where[:, 1], coils.onset
     soft, hard = np.minimum(p, 2 * w), np.maximum(p - 2 * w, 0.0)
     return float(coils.stiffness[pair[:, 0]] @ (soft**3 / (12 * w) + hard * (hard / 2 + w)))
@@ -62,7 +62,7 @@ def test_coils_upside_down_press_the_same(make_coils, helix, dense):
 def test_true_distance_of_the_coils_of_a_helix(make_coils, helix):
     """Coils of a helix are nearest not above each other but across the wire: distance p cos α but for terms of α⁴."""
     pitch = 4.9
-    pair, where, _ = make_coils().near(helix(pitch), margin=0.5)
+    pair, where, _ = make_coils().near(TrialPositions(helix(pitch), SEATS), margin=0.5)
     slope = np.arctan(pitch / (2 * np.pi * 20.0))
     inside = (pair[:, 0] > 10) & (pair[:, 0] < 70) & (pair[:, 1] > 2) & (pair[:, 1] < 37)
     assert inside.sum() > 60
@@ -71,7 +71,7 @@ def test_true_distance_of_the_coils_of_a_helix(make_coils, helix):
 
 def test_coils_of_a_flat_cone_touch_sideways(make_coils, helix):
     """Turns that lie in one plane, 4.9 mm apart: the gap is −0.1 mm wherever one lies beside the other."""
-    pair, where, p = make_coils().near(helix(0.0, taper=4.9))
+    pair, where, p = make_coils().near(TrialPositions(helix(0.0, taper=4.9), SEATS))
     assert {0, 1} == {int(turn) for turn in make_coils().points.turns[pair[:, 0]] // 1.5}
     ρ = np.hypot(*p[pair[:, 0], :2].T)
     middle = (pair[:, 0] > 2) & (pair[:, 0] < 78) & (pair[:, 1] > 1) & (pair[:, 1] < 38)

@@ -93,7 +93,8 @@ def test_tractions_stay_in_the_cone_and_points_stick_and_slide(rubbing, kind, se
     dense(friction, x, seats, rotations)
     normal = friction.normal.evaluate(TrialPositions(x, seats))
     # on coils a point has a place on either side; both lists are in the order of the pairs that bear
-    places = friction.normal.sides(friction.normal.pressed(x)[0]) if kind == "coils" else (normal.point,)
+    coils, trial = friction.normal, TrialPositions(x, seats)
+    places = coils.sides(coils.pressed(trial)[0]) if kind == "coils" else (normal.point,)
     assert len(set(zip(*places, strict=True))) == len(normal.pressure) > 10
     share = np.linalg.norm(friction.memory["traction"][places], axis=1) / (MU * normal.pressure)
     assert share.max() == pytest.approx(1.0, rel=1e-9)

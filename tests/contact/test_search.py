@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
+from coilset.model.contact.base import TrialPositions
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.curve import CentreLine
 
@@ -24,7 +25,7 @@ def test_every_point_finds_its_neighbours(elements):
     points = CentreLine(turns, np.full(elements + 1, WIRE), lengths).points()
     far = x * [1.0, 1.0, 3.0]  # free of contact, so that no overlap counts as touching
     coils = Coils(points, far, 1e3, 0.005)
-    pair, where, _ = coils.near(x, margin=0.5)
+    pair, where, _ = coils.near(TrialPositions(x, np.zeros(12)), margin=0.5)
 
     def distance(turn):
         φ = 2 * np.pi * turn

@@ -162,4 +162,3 @@ def test_examples_say_what_presetting_is_worth():
         losses.append(summary["load_loss_percent"])
     assert losses[:3] == pytest.approx([9.72, 8.47, 0.54], abs=0.1)  # finer, as shipped, see docs/how-to/load-loss.md
     assert losses[0] + 1.0 < losses[4] < losses[3] - 1.0  # nine points are too few for numbers of a coiled wire
-

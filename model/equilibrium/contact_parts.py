@@ -1,0 +1,97 @@
+"""The contacts of a system on one or several ranks: each evaluates what acts on its own unknowns."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from mpi4py import MPI
+
+from coilset.model.contact.base import Augmented, Contact, Contribution, HasMemory, LimitsStep
+from coilset.model.contact.memory import Memory
+from coilset.model.equilibrium.layout import LineLayout
+from coilset.model.equilibrium.surroundings import Surroundings
+
+
+class ContactParts:
+    """Contacts, evaluated at positions of this rank's nodes.
+
+    Args:
+        layout: LineLayout.
+        contacts: kinds of contact.
+
+    Attributes:
+        surroundings: Surroundings.
+        need_rotations: whether some kind needs the rotations of the nodes.
+    """
+
+    def __init__(self, layout: LineLayout, contacts: Sequence[Contact]) -> None:
+        self.layout, self.comm, self.contacts = layout, layout.comm, contacts
+        self.surroundings = Surroundings(layout, contacts)
+        self.need_rotations = any(contact.needs_rotations for contact in contacts)
+        # asked once, for the test of a protocol takes longer than what it guards
+        self._limiting = [contact for contact in contacts if isinstance(contact, LimitsStep)]
+        self._augmented = [contact for contact in contacts if isinstance(contact, Augmented)]
+        self._kept = [contact.memory for contact in contacts
+                      if isinstance(contact, HasMemory) and not isinstance(contact, Augmented)]  # fmt: skip
+
+    def evaluate(
+        self, x: np.ndarray, seats: np.ndarray, rotations: np.ndarray | None
+    ) -> tuple[list[Contribution], float, int]:
+        """All contacts; collective.
+
+        Args:
+            x, rotations: of the local nodes, shape (nodes, 3), mm and rad.
+            seats: of both seats, shape (12,).
+
+        Returns:
+            For each kind the elements that act on this rank's unknowns; the maximum penetration of coils and seats, mm,
+            and the number of closed elements of all ranks.
+        """
+        trial = self.surroundings.trial(x, seats, rotations)
+        parts = [contact.evaluate(trial) for contact in self.contacts]
+        limiting = (part for contact, part in zip(self.contacts, parts, strict=True) if contact in self._limiting)
+        deepest = max((part.penetration.max(initial=0.0) for part in limiting), default=0.0)
+        if self.comm.size == 1:
+            return parts, deepest, sum(part.closed for part in parts)
+        parts = [part.only(self.layout.acts_here(part.dofs)) for part in parts]
+        closed = sum(part.only(self.layout.begins_here(part.dofs)).closed for part in parts)
+        found = np.empty((self.comm.size, 2))
+        self.comm.Allgather(np.array([deepest, closed]), found)
+        return parts, float(found[:, 0].max()), int(found[:, 1].sum())
+
+    def max_penetration(self, x: np.ndarray, seats: np.ndarray) -> float:
+        """Maximum penetration of coils and seats, mm, cheaper than `evaluate`; collective."""
+        trial = self.surroundings.trial(x, seats)
+        deepest = max(contact.max_penetration(trial) for contact in self._limiting)
+        return self.comm.allreduce(deepest, op=MPI.MAX) if self.comm.size > 1 else deepest
+
+    def gathered(self, parts: list[Contribution]) -> list[Contribution]:
+        """What `evaluate` gave, of all ranks, without stiffness, for output; collective.
+
+        The elements come in the order of the ranks.
+        """
+        if self.comm.size == 1:
+            return parts
+        once = [replace(part, stiffness=part.pressure).only(self.layout.begins_here(part.dofs)) for part in parts]
+        return [Contribution.joined(each) for each in zip(*self.comm.allgather(once), strict=True)]
+
+    def augment(self, x: np.ndarray, seats: np.ndarray) -> None:
+        """Press contacts harder where they have sunk in; collective."""
+        trial = self.surroundings.trial(x, seats)
+        for contact in self._augmented:
+            contact.augment(trial)
+            self.share(contact.memory)
+
+    def share_memories(self) -> None:
+        """Let all ranks know the memories, except what `augment` has shared already; collective."""
+        for memory in self._kept:
+            self.share(memory)
+
+    def share(self, memory: Memory) -> None:
+        """Let all ranks know what each knows of a memory at its own stations; collective."""
+        if self.comm.size == 1:
+            return
+        for name, stations in memory.stations.items():
+            values = memory[name]
+            values[~np.isin(stations, self.layout.own_stations)] = 0.0
+            self.comm.Allreduce(MPI.IN_PLACE, values)

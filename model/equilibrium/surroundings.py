@@ -1,0 +1,136 @@
+"""What a rank must know of the other parts of the wire to evaluate the contacts that act on its own unknowns.
+
+Each rank tells the box around its stations to all others, and sends each the stations of its own that lie within the
+contacts' reach of that one's box; to the last rank, which owns the seats' unknowns, also those that may act on a seat.
+Every contact that joins two parts is then evaluated on both ranks, from the same numbers in the same order, so that
+forces and stiffness need not be exchanged.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from coilset.model.contact.base import ActsNearby, Contact, Known, TrialPositions
+from coilset.model.contact.curve import STENCIL
+from coilset.model.equilibrium.layout import LineLayout
+
+NUMBER, PLACE, ROTATION = 0, slice(1, 4), slice(4, 7)  # columns of what is sent for a station
+
+
+class Surroundings:
+    """Positions on trial, of this rank's part of the wire and of what is near it.
+
+    If some kind of contact cannot be evaluated from nearby stations alone, every rank knows all stations.
+
+    Args:
+        layout: LineLayout.
+        contacts: of the system.
+    """
+
+    def __init__(self, layout: LineLayout, contacts: Sequence[Contact]) -> None:
+        self.layout, self.comm = layout, layout.comm
+        self._nearby = [contact for contact in contacts if isinstance(contact, ActsNearby)]
+        self._own, n = layout.own_stations, len(layout.station_dofs)
+        self._all = layout.comm.size == 1 or len(self._nearby) < len(contacts) or n < STENCIL
+        self._is_own = np.zeros(n, dtype=bool)
+        self._is_own[self._own] = True
+        self._along = np.argsort(self._own)
+        self._aside = max((contact.aside for contact in self._nearby), default=0)
+        self._x, self._rotations = np.zeros((n, 3)), np.zeros((n, 3))
+
+    def trial(self, x: np.ndarray, seats: np.ndarray, rotations: np.ndarray | None = None) -> TrialPositions:
+        """TrialPositions from those of the local nodes; the next call overwrites them; collective.
+
+        Args:
+            x: positions, shape (local nodes, 3), mm.
+            seats: of both seats, shape (12,).
+            rotations: since the last equilibrium, shape (local nodes, 3), rad, or None.
+        """
+        layout = self.layout
+        if self._all:
+            turned = None if rotations is None else layout.gather(rotations)
+            return TrialPositions(layout.gather(x), seats, turned)
+        own = len(self._own)
+        rows = np.column_stack([self._own, x[:own], *([] if rotations is None else [rotations[:own]])])
+        boxes, span, longest = self._boxes(x)
+        found = self._exchange(rows, [self._near(rank, boxes, rows, seats, span) for rank in range(self.comm.size)])
+        stations = found[:, NUMBER].astype(np.int64)
+        self._x[stations] = found[:, PLACE]
+        if rotations is not None:
+            self._rotations[stations] = found[:, ROTATION]
+        known = Known(whole_elements(np.sort(stations), len(self._x)), longest, self._is_own)
+        return TrialPositions(self._x, seats, None if rotations is None else self._rotations, known)
+
+    def _boxes(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+        """Around all ranks' stations, and along the wire.
+
+        Returns:
+            Corners of the boxes, shape (ranks, 2, 3); how far stations up to `aside` of each other are apart along each
+            axis at most, shape (3,); the longest distance of neighbouring stations; mm.
+        """
+        own, cells = x[: len(self._own)][self._along], self.layout.rod.cells
+        mine, boxes = np.zeros(10), np.empty((self.comm.size, 10))
+        mine[:3], mine[3:6] = own.min(axis=0, initial=np.inf), own.max(axis=0, initial=-np.inf)
+        mine[6:9] = span_along(own, self._aside)
+        mine[9] = np.linalg.norm(x[cells[:, 1]] - x[cells[:, 0]], axis=1).max(initial=0.0)
+        self.comm.Allgather(mine, boxes)
+        return boxes[:, :6].reshape(-1, 2, 3), boxes[:, 6:9].max(axis=0), float(boxes[:, 9].max())
+
+    def _near(self, rank: int, boxes: np.ndarray, rows: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
+        """Which of the own stations another rank must know, bool; all for this rank itself."""
+        if rank == self.comm.rank:
+            return np.ones(len(rows), dtype=bool)
+        reach, x = max(contact.reach for contact in self._nearby) + 2.0 * span, rows[:, PLACE]
+        near = ((x >= boxes[rank, 0] - reach) & (x <= boxes[rank, 1] + reach)).all(axis=1)
+        if rank == self.comm.size - 1:
+            for contact in self._nearby:
+                near |= contact.acts_on_seats(self._own, x, seats, span)
+        return near
+
+    def _exchange(self, rows: np.ndarray, chosen: Sequence[np.ndarray]) -> np.ndarray:
+        """Rows that all ranks have for this one, its own among them; to each rank goes what is chosen for it."""
+        width, sent = rows.shape[1], [rows[each] for each in chosen]
+        give, take = np.array([len(each) for each in sent]), np.empty(self.comm.size, np.int64)
+        self.comm.Alltoall(give, take)
+        out = np.empty((take.sum(), width))
+        self.comm.Alltoallv((np.concatenate(sent), give * width), (out, take * width))
+        return out
+
+
+def span_along(x: np.ndarray, stations: int) -> np.ndarray:
+    """Bound of how far any two of so many neighbouring stations are apart along each axis, shape (3,), mm.
+
+    It is the extent of two neighbouring ones of the pieces into which the wire is cut.
+
+    Args:
+        x: positions along the wire, shape (n, 3), mm.
+        stations: their number.
+    """
+    if not len(x):
+        return np.zeros(3)
+    starts = np.arange(0, len(x), max(stations, 1))
+    low, high = np.minimum.reduceat(x, starts), np.maximum.reduceat(x, starts)
+    if len(starts) > 1:
+        low, high = np.minimum(low[1:], low[:-1]), np.maximum(high[1:], high[:-1])
+    return (high - low).max(axis=0)
+
+
+def whole_elements(stations: np.ndarray, n: int) -> np.ndarray:
+    """Ranges of elements whose four stations of the centre line are among some stations.
+
+    An element's stations are its own two and their neighbours; at an end of the wire, the four that are nearest.
+
+    Args:
+        stations: numbers, ascending.
+        n: number of all stations, at least 4.
+
+    Returns:
+        First element and the one after the last, shape (k, 2).
+    """
+    if not len(stations):
+        return np.empty((0, 2), np.int64)
+    cuts = np.flatnonzero(np.diff(stations) > 1)
+    first, last = stations[np.append(0, cuts + 1)], stations[np.append(cuts, len(stations) - 1)]
+    begin, stop = np.where(first == 0, 0, first + 1), np.where(last == n - 1, n - 1, last - 1)
+    ranges = np.stack([begin, stop], axis=1)
+    return ranges[(last - first >= 3) & (stop > begin)]
