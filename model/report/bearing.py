@@ -71,7 +71,9 @@ def contact(run: Run) -> Panel | None:
         row, place = np.nonzero(values > 0.0)
         if not len(row):
             continue
-        marker = {"symbol": "square", "size": 9, "color": values[row, place], "colorscale": "Viridis", "cmin": 0.0}
+        edge = {"width": 0.7, "color": "#808080"}
+        marker = {"symbol": "square", "size": 9, "color": values[row, place], "colorscale": "Viridis", "cmin": 0.0,
+                  "line": edge}  # fmt: skip
         bar = {"title": {"text": "N/mm"}, "thickness": 14}
         traces.append(
             {

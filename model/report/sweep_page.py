@@ -147,7 +147,7 @@ def _deciding(data: xr.Dataset, of: str) -> Panel | None:
     correlation, interval = np.array([one for _, one, _ in ranked]), np.stack([one for _, _, one in ranked])
     finding = findings.strongest(findings.words(data, of), names, correlation, interval)
     trace = {"type": "bar", "orientation": "h", "x": correlation, "y": names, "marker": {"color": COLOURS[0]},
-             "error_x": {"type": "data", "symmetric": False, "array": interval[:, 1] - correlation,
+             "error_x": {"type": "data", "symmetric": False, "color": "#808080", "array": interval[:, 1] - correlation,
                          "arrayminus": correlation - interval[:, 0]}, "showlegend": False}  # fmt: skip
     told = ", ".join(f"{name} {value:.2f}" for name, value in zip(names, correlation, strict=True))
     return Panel("deciding", finding, f"{finding}. Rank correlations: {told}.", [trace],

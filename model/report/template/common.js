@@ -133,9 +133,10 @@ const page = (() => {
     addEventListener("afterprint", onScreen);
     try {
       const library = document.createElement("script");
-      library.textContent = await inflated("plotly");
+      const [code, data] = await Promise.all([inflated("plotly"), inflated("data")]); // beside each other
+      library.textContent = code;
       document.head.append(library);
-      return unpacked(JSON.parse(await inflated("data")));
+      return unpacked(JSON.parse(data));
     } catch (error) {
       byId("trouble").textContent = `The figures cannot be drawn by this browser (${error}); a newer one can.`;
       byId("trouble").hidden = false;

@@ -171,7 +171,7 @@
       type: "scatter", mode: "markers", x: pick(x, left), y: pick(y, left), customdata: left, showlegend: false,
       text: left.map((row) => `case ${columns[0].values[row]}`),
       hovertemplate: "%{text}<br>%{x:.5g}, %{y:.5g}, %{marker.color:.5g}<extra></extra>",
-      marker: { size: 7, color: pick(c, left), colorscale: "Viridis", showscale: true,
+      marker: { size: 7, color: pick(c, left), colorscale: "Viridis", showscale: true, line: { width: 0.7, color: "#808080" },
         colorbar: { title: { text: head(c), side: "right" }, thickness: 14 } },
     };
     const ring = open === null ? [] : [{
