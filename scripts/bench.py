@@ -42,6 +42,7 @@ def bench(out: str, full: bool, cold: bool, against: str | None = None) -> None:
         _stages(record),
         _elements(record["elements"]),
         _ranks(record["ranks"]),
+        _one_and_two(record["one_and_two_ranks"]),
         _opensees(record["opensees"]),
         _targets(record["targets"]),
     ):
@@ -139,6 +140,17 @@ def _opensees(runs: list[dict[str, Any]]) -> Table:
 
 def _answer(run: dict[str, Any]) -> list[str]:
     return [f"{run['force_N']:.3f}", f"{run['set_mm']:.4f}", f"{run['seconds']:.3f}"]
+
+
+def _one_and_two(rows: list[dict[str, Any]]) -> Table:
+    table = _new("one rank and two in turns, medians; processor time is that of the busier rank, its waiting included",
+                 "spring", "elements", "contacts", "one rank, s", "two, s", "faster", "one, processor",
+                 "two, processor", "force against one rank")  # fmt: skip
+    for row in rows:
+        (one, two), spent = row["elapsed"], row["processor"]
+        table.add_row(row["kind"], f"{row['elements']:,}", f"{row['contacts']:,}", f"{one:.2f}", f"{two:.2f}",
+                      f"{one / two:.2f}", *(f"{each:.2f} s" for each in spent), f"{row['difference']:.1e}")  # fmt: skip
+    return table
 
 
 def _targets(rows: list[dict[str, Any]]) -> Table:

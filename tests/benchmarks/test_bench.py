@@ -14,6 +14,7 @@ from coilset.meshes.errors import CoilsetError, InputError
 from coilset.model import analysis
 from coilset.scripts import bench as command
 from coilset.verification.benchmarks import everyday, measure, run, same_spring, stopwatch
+from coilset.verification.benchmarks.ranks import compare
 from coilset.verification.benchmarks.stopwatch import Stopwatch
 from coilset.verification.benchmarks.target import ITERATION, per_element, seconds, spread, targets
 
@@ -71,6 +72,19 @@ COMPARED = {
 }  # fmt: skip
 
 
+def compared_ranks(runs):
+    """Rows as if two ranks were measured; the run with `ranks` of them takes turns with the one on one rank."""
+    turns = []
+
+    def measured(*job, ranks):
+        turns.append(ranks)
+        return runs[ranks - 1] | {"force_N": 100.0 + ranks}
+
+    rows = compare(measured, "quick", lambda name: None)
+    assert turns == [1, 2] * (len(turns) // 2)
+    return rows
+
+
 @pytest.fixture(scope="module")
 def record():
     """A bench of the smallest size, its measurements made in this process."""
@@ -81,8 +95,8 @@ def record():
         runs = [measure.press(elements) for elements in (20, 40)]
     commands = [{"name": "solve", "first_line": [0.25, 0.75], "end": [1.5, 3.5]}]
     record = {"machine": run.machine(), "commands": commands, "example": example, "elements": runs,
-              "ranks": [runs[0], runs[0]], "cases": measure.cases(1), "opensees": [COMPARED],
-              "load_after": 0.0}  # fmt: skip
+              "ranks": [runs[0], runs[0]], "one_and_two_ranks": compared_ranks(runs), "cases": measure.cases(1),
+              "opensees": [COMPARED], "load_after": 0.0}  # fmt: skip
     return record | {"targets": targets(record)}
 
 
@@ -120,6 +134,7 @@ def test_command_prints_and_writes(record, tmp_path, monkeypatch, capsys):
     command.bench(tmp_path / "out", False, False)
     said = capsys.readouterr().out
     for words in ("factorise", "µs", "ranks", "an hour and core", "aimed at", "first line, the other", "times as fast",
+                  "with contact", "9.9e-03",
                   "345.200", "4.0"):  # fmt: skip
         assert words in said
     assert "OpenSees is not here" not in said

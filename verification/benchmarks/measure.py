@@ -1,7 +1,7 @@
 """One measurement, in a process of its own so that its memory is its own: prints one line of JSON.
 
     python -m coilset.verification.benchmarks.measure example [REPEATS]
-    mpirun -n RANKS python -m coilset.verification.benchmarks.measure press ELEMENTS [REPEATS]
+    mpirun -n RANKS python -m coilset.verification.benchmarks.measure press ELEMENTS [REPEATS [TOUCHING]]
     python -m coilset.verification.benchmarks.measure cases COUNT
     python -m coilset.verification.benchmarks.measure opensees ELEMENTS [CURVED]
 
@@ -171,8 +171,23 @@ def write(watch: Stopwatch, analysis: "Analysis") -> None:
                 scene.springs(folder / "springs.png", result.snapshots, analysis.setup.wire_radius)
 
 
-def press(elements: int, repeats: int = 1) -> dict[str, Any]:
-    """The example's spring between clamped heads, in many elements, compressed far into the plastic range in one step.
+def pressed(elements: int, touching: bool) -> list[str]:
+    """Settings of a spring between clamped heads and of one step: see `press`."""
+    if touching:
+        return ["ends=clamped", f"spring.turns={elements / 16}", "spring.pitch=5.25", "mesh.elements_per_turn=16",
+                "loading=[{to: block, steps: 1}]"]  # fmt: skip
+    return ["ends=clamped", f"mesh.elements_per_turn={elements / TURNS}",
+            f"loading=[{{to: {{travel: {TRAVEL}}}, steps: 1}}]"]  # fmt: skip
+
+
+def press(elements: int, repeats: int = 1, touching: int = 0) -> dict[str, Any]:
+    """One step of a spring between clamped heads, in many elements.
+
+    Args:
+        elements: their number.
+        repeats: how often it is measured.
+        touching: 0: the example's spring in elements of any length, compressed far into the plastic range, without
+            contact; 1: windings of 16 elements whose pitch is 5 % more than the wire's diameter, pressed to block.
 
     Returns:
         Dict of counts, the force, the share of plastic points, peak memory of a rank, and `stages`: wall and CPU
@@ -182,12 +197,11 @@ def press(elements: int, repeats: int = 1) -> dict[str, Any]:
 
     comm, watch, runs = MPI.COMM_WORLD, watch_meshing(), []
     logged = Logged(watch)
-    settings = ["ends=clamped", f"mesh.elements_per_turn={elements / TURNS}",
-                f"loading=[{{to: {{travel: {TRAVEL}}}, steps: 1}}]"]  # fmt: skip
+    case = read_example(pressed(elements, bool(touching)))
     for _ in range(repeats):
         watch.wall.clear()
         watch.cpu.clear()
-        analysis = build(watch, read_example(settings), comm)
+        analysis = build(watch, case, comm)
         with watch.stage("other"):
             taken = list(analysis.program.run(analysis.stage(analysis.case.loading[0])))
         logged.charge()
@@ -200,6 +214,7 @@ def press(elements: int, repeats: int = 1) -> dict[str, Any]:
         "unknowns": analysis.layout.size,
         "force_N": analysis.control.force,
         "iterations": sum(step.outcome.iterations for step in taken),
+        "contacts": analysis.system.last.closed,
         "cuts": sum(step.cuts for step in taken),
         "evaluations": taken[-1].outcome.evaluations,
         "plastic": comm.allreduce(int(plastic.sum())) / comm.allreduce(plastic.size),

@@ -1,5 +1,6 @@
 """Runs the measurements, each in a process of its own, and brings them together in one record."""
 
+import functools
 import json
 import os
 import platform
@@ -13,6 +14,7 @@ from typing import Any
 from coilset.meshes.errors import CoilsetError
 from coilset.model.processes import end_with_parent, mpi_settings, mpirun
 from coilset.verification.benchmarks.everyday import everyday
+from coilset.verification.benchmarks.ranks import compare
 from coilset.verification.benchmarks.target import targets
 
 MODULE = "coilset.verification.benchmarks.measure"
@@ -88,6 +90,7 @@ def bench(
     for ranks in RANKS:
         report(f"{ranks} rank(s)")
         record["ranks"].append(measure(environment, "press", SHARED[size], ranks=ranks))
+    record["one_and_two_ranks"] = compare(functools.partial(measure, environment), size, report)
     report("cases")
     record["cases"] = measure(environment, "cases", CASES[size])
     record["opensees"] = []
