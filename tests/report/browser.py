@@ -13,6 +13,7 @@ from collections.abc import Iterator
 
 TAB, ENTER, END, RIGHT = "\ue004", "\ue007", "\ue010", "\ue014"
 DRIVER, BROWSER = "chromedriver", "chromium"
+PATIENCE = 300  # s, for a script: a busy machine without a graphics card draws a spring in 3D slowly
 
 
 class Browser:
@@ -21,7 +22,8 @@ class Browser:
     def __init__(self, address: str) -> None:
         arguments = ["--headless=new", "--no-sandbox", "--disable-gpu", "--force-device-scale-factor=1",
                      "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"]  # fmt: skip
-        wish = {"alwaysMatch": {"browserName": "chrome", "goog:chromeOptions": {"args": arguments}}}
+        wish = {"alwaysMatch": {"browserName": "chrome", "goog:chromeOptions": {"args": arguments},
+                                "timeouts": {"script": 1000 * PATIENCE}}}  # fmt: skip
         self.address = f"{address}/session"
         self.address += "/" + self._ask("POST", "", {"capabilities": wish})["sessionId"]
 
@@ -29,7 +31,7 @@ class Browser:
         data = None if body is None else json.dumps(body).encode()
         asked = urllib.request.Request(self.address + path, data, {"Content-Type": "application/json"}, method=method)
         try:
-            with urllib.request.urlopen(asked, timeout=120) as answer:
+            with urllib.request.urlopen(asked, timeout=PATIENCE) as answer:
                 return json.load(answer)["value"]
         except urllib.error.HTTPError as error:
             raise RuntimeError(json.load(error)["value"]["message"]) from None

@@ -83,7 +83,7 @@ def test_no_serious_finding_of_axe(request, browser, page, width, dark):
     browser.look(width, dark=dark)
     browser.open(request.getfixturevalue(page))
     drawn(browser)
-    assert browser.run("return document.documentElement.scrollWidth") <= width  # nothing sticks out to the side
+    until(browser, f"return document.documentElement.scrollWidth <= {width}")  # nothing sticks out to the side
     browser.run(Path(AXE).read_text(encoding="utf-8"))
     found = browser.wait("axe.run()")
     assert len(found["passes"]) > 20
