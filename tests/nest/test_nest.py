@@ -137,7 +137,7 @@ def test_the_command_writes_the_nest_and_each_spring(tmp_path, capsys):
         assert (out / name / "summary.json").is_file()
         assert (out / name / "points.nc").is_file()
     assert (out / "characteristic.png").stat().st_size > 10_000
-    with pytest.raises(InputError, match="holds results already"):
+    with pytest.raises(InputError, match="already holds results"):
         nest_command(tmp_path / "nest.yaml", out, False, False)
     page = (REPOSITORY / "docs/reference/results.md").read_text(encoding="utf-8")
     table = page[page.index("## Nests") :]
