@@ -264,14 +264,14 @@ class Analysis:
             time = phase.duration
             return Stage(time.keep, None, steps, phase.label, time.length, phase.temperature)
         to, free_length = phase.to, self.spring.free_length
+        hours = (phase.seconds or 0.0) / 3600.0 if self.heat is None else 0.0  # heat flows after each step
         if to == "block":
-            return Stage("height", self.spring.block_height, steps, phase.label)
-        if to.force is not None:
-            return Stage("force", to.force, steps, phase.label)
-        if to.height is not None:
-            return Stage("height", to.height, steps, phase.label)
-        assert to.travel is not None
-        return Stage("height", free_length - to.travel, steps, phase.label)
+            kind, value = "height", self.spring.block_height
+        elif to.force is not None:
+            kind, value = "force", to.force
+        else:
+            kind, value = "height", to.height if to.height is not None else free_length - (to.travel or 0.0)
+        return Stage(kind, value, steps, phase.label, hours, even=True)  # type: ignore[arg-type]
 
     def _keep(self, save: Save | None) -> None:
         if save is not None:

@@ -1,4 +1,4 @@
-"""`coilset material`: draw a material's functions, drive one point through a program, identify constants from tests."""
+"""`coilset material`: draw a material's functions, drive one point through a program, fit constants to tests."""
 
 import csv
 import os
@@ -22,6 +22,7 @@ if TYPE_CHECKING:  # commands load what they need
 app = typer.Typer(help="Show a material, test it at one point, or fit it to test data.", no_args_is_help=True)
 MATERIAL = typer.Argument(help="name in the library, or path of a material file")
 DATA = typer.Argument(help="tests (CSV): columns eps11, gamma12, sigma11, tau12; of tension strain, stress")
+RELAXATION = typer.Argument(help="relaxation tests (CSV): columns hours, temperature, loss, stress or shear_stress")
 OUT = typer.Option(None, callback=folder_target, help="results folder [default: results/material/NAME]")
 FORCE = typer.Option(False, "--force", help="overwrite existing files")
 
@@ -118,6 +119,49 @@ def fit(
         path.write_text(yaml.safe_dump(result.material(name), sort_keys=False, allow_unicode=True), encoding="utf-8")
     console.print(f"material file in {folder / name}.yaml")
     _save(figures.fit(result, name), folder / "fit.png", force, console)
+
+
+@app.command()
+def creep(
+    material: str = MATERIAL,
+    data: list[str] = RELAXATION,
+    form: str = typer.Option("norton_bailey", help="norton_bailey, or garofalo"),
+    hardening: str = typer.Option("strain", help="strain, or time"),
+    name: str = typer.Option("creeping", help="name of the material"),
+    out: str = OUT,
+    force: bool = FORCE,
+) -> None:
+    """Fit the constants of creep to relaxation tests, and write the material with them."""
+    import yaml
+    from rich.console import Console
+    from rich.table import Table
+
+    from coilset.model.material import library
+    from coilset.model.material.creep_figure import creep_figure
+    from coilset.model.material.identification.creep_fit import UNITS, fit_creep
+    from coilset.model.material.identification.relaxation_tests import read_relaxation
+    from coilset.model.results.folder import make, whole
+
+    for value, known, option in ((form, ("norton_bailey", "garofalo"), "--form"),
+                                 (hardening, ("strain", "time"), "--hardening")):  # fmt: skip
+        if value not in known:
+            raise InputError(f"'{value}' is none of {', '.join(known)}", option)
+    folder = _folder(out, name)
+    _refuse([folder / f"{name}.yaml"], force)
+    result = fit_creep(library.load(material), tuple(read_relaxation(path) for path in data), form, hardening)
+    console = Console(highlight=False)
+    table = Table("constant", "value", "from", "to (95 %)", "unit", box=None, padding=(0, 2))
+    for key, (low, high) in result.interval.items():
+        table.add_row(key, f"{result.constants[key]:.4g}", f"{low:.4g}", f"{high:.4g}", UNITS[key])
+    console.print(table)
+    console.print(f"at {result.constants['temperature']:g} K and, of strain, {result.constants['stress']:g} N/mm²; "
+                  f"residual {result.scatter:.2g} % of the load")  # fmt: skip
+    make(folder)
+    with whole(folder / f"{name}.yaml") as path:
+        content = result.material(name, "coilset material creep, " + ", ".join(Path(one).name for one in data))
+        path.write_text(yaml.safe_dump(content, sort_keys=False, allow_unicode=True), encoding="utf-8")
+    console.print(f"material file in {folder / name}.yaml")
+    _save(creep_figure(result), folder / f"{name}.png", force, console)
 
 
 def _folder(out: str | None, name: str) -> Path:

@@ -277,10 +277,12 @@ class Case(Strict):
             raise ValueError("heat needs sections of fibres; give mesh.section.kind: curved or plane")
         for number, phase in enumerate(self.loading):
             timed = isinstance(phase, Phase) and phase.seconds is not None
+            if self.heat and not isinstance(phase, Phase):
+                raise ValueError(f"loading.{number}: hold and heat give the whole wire one temperature, but with the "
+                                 "entry heat each place has its own; give a target and seconds, as in "
+                                 "{to: {force: 0}, seconds: 600}")  # fmt: skip
             if self.heat and not timed:
                 raise ValueError(f"loading.{number} takes no time, but heat flows; give a target and seconds")
-            if timed and not self.heat:
-                raise ValueError(f"loading.{number}.seconds: no heat flows; give the entry heat, or leave seconds out")
         return self
 
     @property

@@ -78,12 +78,9 @@ class Phase(Stepped):
     seconds: Annotated[
         float | None,
         Unit("s"),
-        Field(
-            gt=0,
-            le=1e9,
-            description="duration of the phase, during which heat flows; only in a case with the entry `heat`",
-        ),
-    ] = None
+        Field(gt=0, le=1e9, description="duration of the phase; only where heat flows (entry `heat`) or yield depends "
+                                        "on the rate, and infinitely slow without"),
+    ] = None  # fmt: skip
 
     @property
     def label(self) -> str:

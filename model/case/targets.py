@@ -54,10 +54,13 @@ def check_times(case: Case, law: Law) -> None:
         except InputError as error:
             raise InputError(error.problem, "heat.surroundings") from None
     for number, phase in enumerate(case.loading):
+        if isinstance(phase, Phase) and phase.seconds is not None and not case.heat and law.data.rate is None:
+            raise InputError(f"no heat flows, and '{law.name}' does not depend on the rate; give the entry heat, or "
+                             "leave seconds out", f"loading.{number}.seconds")  # fmt: skip
         if not isinstance(phase, TimePhase):
             continue
         word = "heat" if phase.heat else "hold"
-        if law.creep is None:
+        if law.creep is None and (phase.heat or law.data.rate is None):
             raise InputError(f"'{law.name}' does not creep, so that time changes nothing; give a material with creep",
                              f"loading.{number}.{word}")  # fmt: skip
         if phase.heat:

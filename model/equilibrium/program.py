@@ -31,6 +31,7 @@ class Stage:
         label: in words.
         hours: how long it takes; 0: no time.
         temperature: at the end, K; None: as at the start.
+        even: whether equal parts take equal times although the temperature stays.
     """
 
     kind: Literal["height", "force"]
@@ -39,6 +40,7 @@ class Stage:
     label: str
     hours: float = 0.0
     temperature: float | None = None
+    even: bool = False
 
 
 @dataclass(frozen=True)
@@ -157,14 +159,15 @@ class LoadProgram:
     def _moments(self, stage: Stage, part: Callable[[float], float]) -> Callable[[float], Moment]:
         """Time and temperature along a stage, by places on its path.
 
-        A temperature goes linearly in time, with equal times in equal steps. At constant temperature creep slows down:
-        equal steps then are equal ones of log(1 + t/t₁), with t₁ = `FIRST_TIME` of the whole.
+        A temperature goes linearly in time, with equal times in equal steps, and so does a target. Held at constant
+        temperature a spring creeps ever more slowly: equal steps then are equal ones of log(1 + t/t₁), with t₁ =
+        `FIRST_TIME` of the whole.
         """
         begun, last = self._begun, self._begun.temperature if stage.temperature is None else stage.temperature
 
         def moment(done: float) -> Moment:
             time = min(part(done), 1.0)
-            if stage.temperature is None and time < 1.0:
+            if stage.temperature is None and not stage.even and time < 1.0:
                 time = FIRST_TIME * math.expm1(time * math.log1p(1.0 / FIRST_TIME))
             return Moment(begun.hours + time * stage.hours, begun.temperature + time * (last - begun.temperature))
 

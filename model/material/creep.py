@@ -39,6 +39,10 @@ from coilset.model.material.solid import return_map as solid_return_map
 # Replaces the parameter array of the law's kernels where time passes: that array, the same without yield,
 # and the array of creep.
 Creeping = namedtuple("Creeping", "plastic elastic viscous")
+# What a stage starts from: state at its temperature, mechanical strain of the whole stage, u, and its length in time.
+Part = namedtuple("Part", "start strain u h")
+# What is written at its end: creep strain x, state and tangent of the return mapping there, ∂X/∂σ.
+End = namedtuple("End", "x new C A")
 
 GAMMA = 1.0 - math.sqrt(0.5)
 MAX_ITERATIONS = 60
@@ -70,11 +74,12 @@ def creep_map(law: Creeping, old: np.ndarray, de: np.ndarray, new: np.ndarray, C
     h, power, c0 = q[TIME], q[POWER], old[columns]
     u0 = c0 ** (1.0 / power)
     start, strain = np.empty(columns), np.empty(n)
-    x, first, C1, A = np.empty(n), np.empty(n), np.empty((n, n)), np.empty((n, n))
+    first, C1, A = np.empty(n), np.empty((n, n)), np.empty((n, n))
+    end = End(np.empty(n), new[:columns], C1, A)
 
     # ---- first stage: σ₁ at γ, and S = γ dσ₁/dε
     _warmed(law, old, de, GAMMA, start, strain)
-    count = _stage(law, start, strain, u0, GAMMA * h, x, new[:columns], C1, A)
+    count = _stage(law, Part(start, strain, u0, GAMMA * h), end)
     if count < 0:
         return count
     S = _eliminated(_product(C1, A), GAMMA * C1)
@@ -87,27 +92,19 @@ def creep_map(law: Creeping, old: np.ndarray, de: np.ndarray, new: np.ndarray, C
     # ---- second stage
     _warmed(law, old, de, 1.0, start, strain)
     strain -= first
-    more = _stage(law, start, strain, middle, GAMMA * h, x, new[:columns], C1, A)
+    more = _stage(law, Part(start, strain, middle, GAMMA * h), end)
     if more < 0:
         return more
-    end = direction(new[:n])
+    along = direction(new[:n])
     u = middle + GAMMA * h * rate(q, equivalent(new[:n]))[0]
     new[columns] = u**power
     if middle > 0.0:  # dX₂/du at fixed σ₂
-        end *= power * (u ** (power - 1.0) - middle ** (power - 1.0))
+        along *= power * (u ** (power - 1.0) - middle ** (power - 1.0))
         for i in range(n):
             for j in range(n):
-                d_first[i, j] += end[i] * d_u[j]
+                d_first[i, j] += along[i] * d_u[j]
     C[:] = _eliminated(_product(C1, A), C1 - _product(C1, _product(d_first, S)))
     return count + more
-
-
-@njit(**KERNEL)
-def rod_map(
-    law: Creeping, old: np.ndarray, de11: float, dg12: float, dg13: float, new: np.ndarray, C: np.ndarray
-) -> int:
-    """`creep_map` with the arguments of the rod's return mapping."""
-    return creep_map(law, old, np.array([de11, dg12, dg13]), new, C)
 
 
 @njit(**KERNEL)
@@ -149,50 +146,24 @@ def _warmed(law: Creeping, old: np.ndarray, de: np.ndarray, part: float, start: 
 
 
 @njit(**KERNEL)
-def _stage(
-    law: Creeping,
-    start: np.ndarray,
-    strain: np.ndarray,
-    u0: float,
-    h: float,
-    x: np.ndarray,
-    new: np.ndarray,
-    C: np.ndarray,
-    A: np.ndarray,
-) -> int:
-    """Solve x = X(σ(strain − x)).
-
-    Args:
-        x: written, creep strain; new, C: written, state and tangent of the return mapping there; A: written, ∂X/∂σ.
-
-    Returns:
-        Number of iterations, or -1.
-    """
-    x[:] = 0.0
-    count = _newton(law.elastic, law.viscous, start, strain, u0, h, x, new, C, A)
-    if count < 0 or elastoplastic(law.plastic, start, strain - x, new, C) == 0:
+def _stage(law: Creeping, part: Part, end: End) -> int:
+    """Solve x = X(σ(strain − x)); returns the number of iterations, or -1."""
+    end.x[:] = 0.0
+    count = _newton(law.elastic, law.viscous, part, end)
+    if count < 0 or elastoplastic(law.plastic, part.start, part.strain - end.x, end.new, end.C) == 0:
         return count
-    more = _newton(law.plastic, law.viscous, start, strain, u0, h, x, new, C, A)
+    more = _newton(law.plastic, law.viscous, part, end)
     return more if more < 0 else count + more
 
 
 @njit(**KERNEL)
-def _newton(
-    p: np.ndarray,
-    q: np.ndarray,
-    start: np.ndarray,
-    strain: np.ndarray,
-    u0: float,
-    h: float,
-    x: np.ndarray,
-    new: np.ndarray,
-    C: np.ndarray,
-    A: np.ndarray,
-) -> int:
+def _newton(p: np.ndarray, q: np.ndarray, part: Part, end: End) -> int:
     """Newton's method for x from its current value, with corrections halved if they do not help; as `_stage`."""
+    start, strain, u0, h = part
+    x, new, C, A = end
     n = strain.shape[0]
     wanted, r, step = np.empty(n), np.empty((n, 1)), np.zeros(n)
-    last, part = math.inf, 1.0
+    last, share = math.inf, 1.0
     for iteration in range(1, MAX_ITERATIONS + 1):
         off = math.inf
         if elastoplastic(p, start, strain - x, new, C) >= 0:
@@ -203,12 +174,12 @@ def _newton(
                 off += r[i, 0] * r[i, 0]
         if iteration == 1 and not math.isfinite(off):
             return -1
-        if not off <= last and part > SHORTEST:
-            part *= 0.5
+        if not off <= last and share > SHORTEST:
+            share *= 0.5
             for i in range(n):
-                x[i] -= part * step[i]
+                x[i] -= share * step[i]
             continue
-        last, part = off, 1.0
+        last, share = off, 1.0
         correction = _eliminated(_product(A, C), r)
         largest, size = 0.0, np.abs(strain).max()
         for i in range(n):

@@ -171,6 +171,17 @@ class Creep(Strict):
     temperature: Annotated[float, Unit("K"), Field(gt=0, description="the temperature of these constants, K")] = 293.15
 
 
+class RateDependence(Strict):
+    """Yield that rises with the plastic strain rate (Perzyna): ṗ = reference_rate · (σ/σ_yield − 1)^exponent."""
+
+    reference_rate: Annotated[
+        float, Unit("1/s"), Field(gt=0, description="plastic strain rate at twice the static yield stress, 1/s")
+    ]
+    exponent: Annotated[
+        float, Unit("1"), Field(ge=1, le=50, description="the exponent of the stress beyond yield over it, m")
+    ]
+
+
 class Validity(Strict):
     """Range in which the constants are valid; the functions are checked up to its maximum plastic work."""
 
@@ -196,6 +207,9 @@ class MaterialFile(Strict):
     creep: Annotated[Creep | None, Field(description="constants of creep; left out: the material does not creep")] = (
         None
     )
+    rate: Annotated[
+        RateDependence | None, Field(description="yield that rises with the strain rate; left out: it does not")
+    ] = None
 
 
 UNITS = {

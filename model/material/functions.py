@@ -23,7 +23,9 @@ HEATING = 2  # K mm²/N: rise of temperature per plastic work b*; 0: isothermal
 TOLERANCE = 3  # relative error of stress that the Heun integrator allows in a sub-step; inf: one step
 CHANGE = 4  # K: prescribed change of temperature over the increment; 0: isothermal or adiabatic
 N_ROWS = 5  # number of temperatures
-ROWS_START = 6
+RATE = 6  # 1/(ṗ₀ Δt) of an increment that takes the time Δt; 0: yield does not depend on the rate
+EXPONENT = 7  # m of rate-dependent yield, see `perzyna`; 0: yield never depends on the rate
+ROWS_START = 8
 
 # A row: temperature, elastic constants, then the constants of 6.2.2 by their names there; KAPPA is a/(2G). CURVE is
 # where in `p` the points of k² begin, NODES their number, 0 if k² is that of 6.2.2.

@@ -47,6 +47,8 @@ class Law:
             self._fail("creep", "there is none where plastic work heats the points, which takes no time; leave one out")
         if spin and data.creep:
             self._fail("creep", "there is none with spin; leave out creep, or the spin")
+        if data.rate:
+            self._check_rate()
         self._check_functions()
 
     @property
@@ -163,6 +165,7 @@ class Law:
         head[fn.HEATING] = self.heating
         head[fn.TOLERANCE] = self.heun_tolerance
         head[fn.N_ROWS] = len(self._rows)
+        head[fn.EXPONENT] = self.data.rate.exponent if self.data.rate else 0.0
         rows, start = self._rows.copy(), fn.ROWS_START + self._rows.size
         for i, points in self._curves.items():
             rows[i, fn.CURVE] = start
@@ -176,9 +179,9 @@ class Law:
 
     def content(self) -> bytes:
         """All constants, for a digest."""
-        creep = self.data.creep
         terms = self._terms.tobytes() if self.n_terms else b""
-        return self.parameters().tobytes() + terms + (creep.model_dump_json().encode() if creep else b"")
+        parts = (part.model_dump_json().encode() for part in (self.data.creep, self.data.rate) if part)
+        return self.parameters().tobytes() + terms + b"".join(parts)
 
     def known(self, temperature: float) -> float:
         """The temperature, K, as a number.
@@ -231,7 +234,8 @@ class Law:
         if self.n_terms:
             if any(at.non_normality != "none" for at in self.data.temperatures):
                 self._fail("temperatures", "several back stresses go with normality only; make non_normality 'none'")
-            for part, word in ((self.data.heating, "heating"), (self.data.creep, "creep")):
+            parts = (self.data.heating, "heating"), (self.data.creep, "creep"), (self.data.rate, "rate")
+            for part, word in parts:
                 if part:
                     self._fail(word, "goes not with several back stresses; leave it out, or give kinematic constants")
             if self.spin:
@@ -240,6 +244,16 @@ class Law:
 
     def _fail(self, place: str, problem: str) -> NoReturn:
         raise InputError(problem, place, self.file)
+
+    def _check_rate(self) -> None:
+        """Yield that depends on the rate goes with hardening alone."""
+        for part, word in ((self.data.heating, "heating"), (self.data.creep, "creep")):
+            if part:
+                self._fail("rate", f"goes not with {word}; leave one of both out")
+        if any(at.isotropic == "none" for at in self.data.temperatures):
+            self._fail("rate", "a material that never yields has no rate-dependent yield; leave it out")
+        if any(at.non_normality != "none" for at in self.data.temperatures):
+            self._fail("rate", "goes with normality only; make non_normality 'none', or leave rate out")
 
     def _row(self, i: int, at: Constants) -> np.ndarray:
         row = np.zeros(fn.ROW_LENGTH)

@@ -311,13 +311,21 @@ def _failed(start: Start, why: int = FAILED) -> Local:
 
 
 @njit(**INLINE)
-def solve(p: np.ndarray, start: Start, values: Functions) -> Local:
+def _raised(values: Functions, factor: float) -> Functions:
+    """Material functions with k² times a factor."""
+    k2, dk2, zeta, dzeta, kappa, dkappa = values
+    return k2 * factor, dk2 * factor, zeta, dzeta, kappa, dkappa
+
+
+@njit(**KERNEL)
+def solve(p: np.ndarray, start: Start, static: Functions, factor: float) -> Local:
     """Solve the two local equations.
 
     Args:
         p: parameter array.
         start: the increment's plastic part, a `Start`.
-        values: `functions` where it starts.
+        static: `functions` where it starts.
+        factor: of k² at the end of the increment; 1, or what `perzyna` raises it by.
 
     Returns:
         A `Local`; its `iterations` are -1 if there was no convergence, -2 if the temperature left the table.
@@ -326,7 +334,7 @@ def solve(p: np.ndarray, start: Start, values: Functions) -> Local:
     # max over n of ½ (n₀ + n):(n₀ + e − n) is ½ |n₀ + ½ e|²; twice that leaves room for thermal strain.
     middle_a, middle_c = start.na + 0.5 * start.ea, start.nn + start.ne + 0.25 * start.ee
     high = low + 1.5 * middle_a * middle_a / start.ca + middle_c / start.cc
-    b, multiplier, last = low, 0.0, math.inf
+    b, multiplier, last, values = low, 0.0, math.inf, _raised(static, factor)
     for iteration in range(1, MAX_ITERATIONS):
         middle = _half_way(p, start, b)
         if not (values[0] > 0.0 and middle[0] > 0.0):
@@ -365,5 +373,5 @@ def solve(p: np.ndarray, start: Start, values: Functions) -> Local:
             step = 0.5 * (low + high) - b
         last = step
         b += step
-        values = functions(p, b, start.temperature + start.heating * (b - start.b))
+        values = _raised(functions(p, b, start.temperature + start.heating * (b - start.b)), factor)
     return _failed(start)

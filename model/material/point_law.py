@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit, types
 from numba.extending import overload
 
-from coilset.model.material import creep, rod, solid
+from coilset.model.material import creep, creep_rod, rod, solid
 from coilset.model.material.back_stresses import BackStresses, back_stress_map
 from coilset.model.material.kernel import KERNEL
 from coilset.model.material.rod_points import return_map_points
@@ -91,4 +91,4 @@ def _rod_point(law: Any, old: Any, e11: Any, g12: Any, g13: Any, new: Any, C: An
         return lambda law, old, e11, g12, g13, new, C: rod.return_map(law, old, e11, g12, g13, new, C)
     if law.instance_class is BackStresses:
         return lambda law, old, e11, g12, g13, new, C: back_stress_map(law, old, np.array([e11, g12, g13]), new, C)
-    return lambda law, old, e11, g12, g13, new, C: creep.rod_map(law, old, e11, g12, g13, new, C)
+    return lambda law, old, e11, g12, g13, new, C: creep_rod.rod_map(law, old, e11, g12, g13, new, C)

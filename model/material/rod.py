@@ -12,6 +12,7 @@ from numba import njit
 
 from coilset.model.material.functions import (
     CHANGE,
+    EXPONENT,
     HEATING,
     SPIN,
     TEMPERATURE,
@@ -20,7 +21,8 @@ from coilset.model.material.functions import (
     functions,
 )
 from coilset.model.material.kernel import INLINE, KERNEL
-from coilset.model.material.local import Local, Start, solve, surface, turn, yield_crossing
+from coilset.model.material.local import Local, Start, surface, turn, yield_crossing
+from coilset.model.material.perzyna import solve_at_rate
 from coilset.model.material.spin import WHOLE, Crossing, Vector, spun
 
 # Where the increment starts, and by columns how its spin changes that with ε11, γ12, γ13.
@@ -159,8 +161,9 @@ def _plastic(
 ) -> Plastic:
     """Solve the plastic part: n and p at its end."""
     k2, growth = surface(p, b, temperature, values[0])
-    beginning = begin(b, temperature, heating, alpha, E, G, n0, e, k2, growth)
-    local = solve(p, beginning.start, values)
+    outside = p[EXPONENT] > 0.0 and inner(n0, n0) > k2
+    beginning = begin(b, temperature, heating, alpha, E, G, n0, e, k2, growth, outside)
+    local = solve_at_rate(p, beginning.start, values)
     if local.neutral:
         heating = 0.0
     return end(beginning, local, heating, alpha * heating)
@@ -178,11 +181,12 @@ def begin(
     e: Vector,
     k2: float,
     growth: float,
+    outside: bool,
 ) -> Beginning:
-    """Where the plastic part starts: n₀ there (n0 + β e), with e reduced to it."""
+    """Where the plastic part starts: n₀ there (n0 + β e), with e reduced to it; at once if n0 is `outside` of k²."""
     ne = inner(n0, e) - 0.5 * growth
     ee = inner(e, e)
-    beta = yield_crossing(inner(n0, n0), ne, ee, k2)
+    beta = 0.0 if outside else yield_crossing(inner(n0, n0), ne, ee, k2)
     n0 = (n0[0] + beta * e[0], n0[1] + beta * e[1], n0[2] + beta * e[2])
     crossing = inner(n0, e) - 0.5 * growth
     rest = 1.0 - beta

@@ -3,14 +3,23 @@
 Points are processed in groups. All points of a group get an elastic trial; those that flow are collected, and Newton's
 method of `local` runs on all of them until each has converged; then the tangent is built. Cases that would make a loop
 branch are left to `return_map` itself, point by point: neutral loading, Newton steps that leave the bracket or do not
-converge, spin, temperature tables, heating, and hardening by a curve. Arrays hold a quantity of all points in a row, so
-that vector registers can take neighbouring points at once.
+converge, spin, temperature tables, heating, yield that depends on the rate, and hardening by a curve. Arrays hold a
+quantity of all points in a row, so that vector registers can take neighbouring points at once.
 """
 
 import numpy as np
 from numba import njit
 
-from coilset.model.material.functions import CHANGE, N_ROWS, NODES, ROWS_START, SPIN, elasticity, row_constants
+from coilset.model.material.functions import (
+    CHANGE,
+    EXPONENT,
+    N_ROWS,
+    NODES,
+    ROWS_START,
+    SPIN,
+    elasticity,
+    row_constants,
+)
 from coilset.model.material.kernel import INLINE, KERNEL
 from coilset.model.material.local import (
     Group,
@@ -66,7 +75,7 @@ def return_map_points(
         Whether the law found a solution at all points.
     """
     points = old.shape[0]
-    alone = p[SPIN] != 0.0 or p[N_ROWS] != 1.0 or p[CHANGE] != 0.0 or p[ROWS_START + NODES] > 0.0
+    alone = p[SPIN] != 0.0 or p[N_ROWS] != 1.0 or p[CHANGE] != 0.0 or p[ROWS_START + NODES] > 0.0 or p[EXPONENT] > 0.0
     if alone or old.shape[1] != STATE:
         good = True
         for k in range(points):
@@ -180,7 +189,7 @@ def _begin(p: np.ndarray, size: int, w: np.ndarray) -> None:
         )
         e = (E * w[DE, j] / 1.5, G * w[DE + 1, j], G * w[DE + 2, j])
         k2 = row_constants(p, ROWS_START, b)[0]
-        beginning = begin(b, 0.0, 0.0, 0.0, E, G, active(stress, back), e, k2, 0.0)
+        beginning = begin(b, 0.0, 0.0, 0.0, E, G, active(stress, back), e, k2, 0.0, False)
         start = beginning.start
         w[BETA, j], w[CROSSING, j] = beginning.beta, beginning.crossing
         w[NORMAL, j], w[NORMAL + 1, j], w[NORMAL + 2, j] = beginning.n0[0], beginning.n0[1], beginning.n0[2]

@@ -12,9 +12,10 @@ Either the caller works in such a frame, or it rotates the point's state by the 
 import numpy as np
 from numba import njit
 
-from coilset.model.material.functions import CHANGE, HEATING, TEMPERATURE, elasticity, functions
+from coilset.model.material.functions import CHANGE, EXPONENT, HEATING, TEMPERATURE, elasticity, functions
 from coilset.model.material.kernel import INLINE, KERNEL
-from coilset.model.material.local import Local, Start, Turn, solve, surface, turn, yield_crossing
+from coilset.model.material.local import Local, Start, Turn, surface, turn, yield_crossing
+from coilset.model.material.perzyna import solve_at_rate
 
 Six = tuple[float, float, float, float, float, float]  # components 11, 22, 33, 12, 13, 23
 Pair = tuple[float, float]
@@ -102,13 +103,14 @@ def return_map(p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, 
 
     ne, ee = _inner(n0, e), _inner(e, e)
     k2, growth = surface(p, old[12], temperature, values[0])
-    beta = yield_crossing(_inner(n0, n0), ne - 0.5 * growth, ee, k2)
+    nn = _inner(n0, n0)
+    beta = 0.0 if p[EXPONENT] > 0.0 and nn > k2 else yield_crossing(nn, ne - 0.5 * growth, ee, k2)
     rest = 1.0 - beta
     n0 = _combined(1.0, n0, beta, e)
     nn, ne = _inner(n0, n0), _inner(n0, e)
     c = 2.0 * G
     start = Start(old[12], temperature, heating, c, 0.0, 0.0, 0.0, c, nn, rest * ne, rest * rest * ee)
-    local = solve(p, start, values)
+    local = solve_at_rate(p, start, values)
     if local.iterations < 0:
         for i in range(new.shape[0]):
             new[i] = old[i]

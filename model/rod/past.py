@@ -11,6 +11,7 @@ from coilset.meshes.past import Peening, Relief
 from coilset.meshes.placement import STRAIGHT
 from coilset.meshes.spring import SpringSpec
 from coilset.model.material.creep import Creeping
+from coilset.model.material.creep_law import CreepLaw
 from coilset.model.material.functions import elasticity
 from coilset.model.rod.rod import Rod
 from coilset.model.section.coiling import coil
@@ -101,7 +102,8 @@ def _relief(rod: Rod, relief: Relief | None) -> tuple[Creeping, ...]:
     """The law over the intervals of a stress relief; heating and cooling take no time."""
     if relief is None:
         return ()
-    if rod.creep is None:
+    creep = rod.in_time
+    if not isinstance(creep, CreepLaw):
         raise InputError(f"'{rod.law.name}' does not creep, so that time relieves nothing; give a material with creep",
                          "spring.relieved")  # fmt: skip
     try:
@@ -109,10 +111,10 @@ def _relief(rod: Rod, relief: Relief | None) -> tuple[Creeping, ...]:
     except InputError as error:
         raise InputError(error.problem, "spring.relieved.temperature") from None
     hours = relief.minutes / 60.0 * FIRST * np.expm1(np.linspace(0.0, 1.0, INTERVALS + 1) * np.log1p(1.0 / FIRST))
-    clocks = [rod.creep.clock(0.0, rod.temperature)]
+    clocks = [creep.clock(0.0, rod.temperature)]
     for time, temperature in (*((float(time), warm) for time in hours), (float(hours[-1]), rod.temperature)):
-        clocks.append(rod.creep.clock(time, temperature, clocks[-1]))
-    return tuple(rod.creep.over(before, after) for before, after in pairwise(clocks))
+        clocks.append(creep.clock(time, temperature, clocks[-1]))
+    return tuple(creep.over(before, after) for before, after in pairwise(clocks))
 
 
 def _through(rod: Rod, past: _Past, tight: np.ndarray) -> None:

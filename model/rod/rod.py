@@ -9,8 +9,8 @@ from coilset.meshes.compat import geometry_dofs
 from coilset.meshes.line import LineMesh
 from coilset.meshes.placement import Placement, straight
 from coilset.model.body import Moment
-from coilset.model.material.creep_law import CreepLaw
 from coilset.model.material.law import Law
+from coilset.model.material.rate_law import law_in_time
 from coilset.model.rod import forms
 from coilset.model.rod.assembly import add_element_vectors
 from coilset.model.rod.compiled import compiled_forms
@@ -79,7 +79,7 @@ class Rod:
         mesh, n = line.mesh, line.owned_cells
         self.mesh, self.parameters = mesh, law.parameters(temperature)
         self.temperature = law.reference_temperature if temperature is None else temperature
-        self.creep = CreepLaw(law.creep, self.parameters) if law.creep else None
+        self.in_time = law_in_time(law, self.parameters)
         element = line.element[:n]
         self.radius = np.ascontiguousarray(np.asarray(radius, float)[element])
         self.placement = straight(n)
@@ -147,9 +147,9 @@ class Rod:
         self._section_start = {name: field.equilibrium for name, field in points.items()}
         self._section_trial = {name: field.trial for name, field in points.items()}
         self._section_start["strain"] = self._strain.equilibrium
-        if self.creep is not None:
+        if self.in_time is not None:
             for name in CLOCKS:
-                clock = state.add(name, self.creep.clock(0.0, self.temperature), Where.SHARED)
+                clock = state.add(name, self.in_time.clock(0.0, self.temperature), Where.SHARED)
                 self._section_start[name], self._section_trial[name] = clock.equilibrium, clock.trial
         self.state, self.chart = state, np.tile(np.eye(3), (len(x), 1, 1))
         self.update()
@@ -164,11 +164,11 @@ class Rod:
 
     def pass_time(self, middle: Moment, end: Moment) -> None:
         """Set the clocks of the state on trial; see PassesTime."""
-        if self.creep is None:
-            raise ValueError(f"'{self.law.name}' has no creep, so time has no effect on it")
+        if self.in_time is None:
+            raise ValueError(f"'{self.law.name}' neither creeps nor depends on the rate, so time has no effect on it")
         start, halfway, on_trial = self.clock, *(self.state[name].trial for name in reversed(CLOCKS))
-        halfway[:] = self.creep.clock(*middle, start)
-        on_trial[:] = self.creep.clock(*end, halfway)
+        halfway[:] = self.in_time.clock(*middle, start)
+        on_trial[:] = self.in_time.clock(*end, halfway)
 
     # ---- results on trial ------------------------------------------------------------------------------------------
 

@@ -6,9 +6,10 @@ import numpy as np
 
 from coilset.model.material.back_stresses import BackStresses
 from coilset.model.material.creep import Creeping
-from coilset.model.material.creep_law import CREEP_COLUMNS, CreepLaw
+from coilset.model.material.creep_law import CREEP_COLUMNS
 from coilset.model.material.law import Law
 from coilset.model.material.points import initial_state
+from coilset.model.material.rate_law import law_in_time
 
 
 class LawOverTime:
@@ -20,23 +21,23 @@ class LawOverTime:
         temperature: K, of the points at the start; None: the material's first.
 
     Attributes:
-        creep: CreepLaw, or None for a material that does not creep.
+        in_time: CreepLaw, RateLaw, or None for a material that does not depend on time.
     """
 
     def __init__(self, law: Law, parameters: np.ndarray, temperature: float | None) -> None:
         self._law, self._temperature = law, temperature
         self._point_law = law.point_law(temperature) if law.n_terms else parameters
-        self.creep = CreepLaw(law.creep, parameters) if law.creep else None
+        self.in_time = law_in_time(law, parameters)
 
     def columns(self, back_stress: tuple[str, ...]) -> tuple[str, ...]:
         """Names of what the law adds to the columns of a point's state; `back_stress` names one back stress's."""
         further = tuple(f"{name}_{term}" for term in range(1, self._law.n_terms) for name in back_stress)
-        return further + (CREEP_COLUMNS if self.creep else ())
+        return further + (CREEP_COLUMNS if self._law.creep else ())
 
     def unstressed(self, components: int) -> np.ndarray:
         """The row of an unstressed point of 3 or 6 stresses, shape (1, columns)."""
         row = initial_state(self._law, 1, components, self._temperature)
-        if self.creep is None:
+        if self._law.creep is None:
             return row
         start = self._law.reference_temperature if self._temperature is None else self._temperature
         return np.append(row, [[start, 0.0]], axis=1)
@@ -48,6 +49,6 @@ class LawOverTime:
 
         To the return mapping, a row with the columns of creep is one with a temperature of its own.
         """
-        if self.creep is None or "clock" not in trial or np.array_equal(start["clock"], trial["clock"]):
+        if self.in_time is None or "clock" not in trial or np.array_equal(start["clock"], trial["clock"]):
             return self._point_law
-        return self.creep.over(start["clock"], trial["clock"])
+        return self.in_time.over(start["clock"], trial["clock"])

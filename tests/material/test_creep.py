@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from coilset.meshes.errors import InputError
-from coilset.model.material import creep, library, points
+from coilset.model.material import creep, creep_rod, library, points
 from coilset.model.material.creep_law import GAS_CONSTANT, CreepLaw
 from coilset.model.material.file import MaterialFile
 from coilset.model.material.law import Law
@@ -37,7 +37,8 @@ def law_of(entries, isotropic="none", kinematic="none"):
 def advance(law, state, de, before, after):
     """One increment over the time between two clocks; state and tangent."""
     new, C = np.full_like(state, np.nan), np.empty((len(de), len(de)))
-    count = creep.creep_map(CreepLaw(law.creep, law.parameters()).over(before, after), state, de, new, C)
+    over = CreepLaw(law.creep, law.parameters()).over(before, after)
+    count = creep_rod.rod_map(over, state, *de, new, C) if len(de) == 3 else creep.creep_map(over, state, de, new, C)
     assert count >= 0
     return new, C
 
@@ -276,6 +277,33 @@ def test_tangent(components, entries, yielding):
         assert slope == pytest.approx(1, abs=0.15)
         flowed += new[2 * components] > state[2 * components]
     assert (flowed > 0) == yielding
+
+
+@pytest.mark.parametrize("entries", [CREEP, GAROFALO, CREEP | {"hardening": "time"}])
+@pytest.mark.parametrize("yielding", [False, True])
+def test_both_ways_through_a_rods_point(entries, yielding):
+    """In closed form where nothing yields, and by the general iteration: the same stress, creep strain and tangent."""
+    law = law_of(entries, {"k0_squared": 2 / 3 * 250.0**2, "a1": 1.0, "a2": 4000.0} if yielding else "none")
+    rng, creeping, n = np.random.default_rng(4), CreepLaw(law.creep, law.parameters()), 0
+    for hours in (1e-6, 1e-2, 1.0, 1e3, 1e8):
+        for size in (0.0, 1e-9, 1e-4, 3e-3):
+            before = creeping.clock(0.5, COLD)
+            start = unstressed(3)
+            start[-1] = 10.0 ** rng.uniform(-9, -4) * rng.integers(2)
+            state, _ = advance(law, start, size * _unit(rng, 3), before, creeping.clock(1.0, COLD + 20, before))
+            middle = creeping.clock(1.0, COLD + 20, before)
+            over = creeping.over(middle, creeping.clock(1.0 + hours, COLD + 60, middle))
+            de, found = 0.3 * size * _unit(rng, 3), []
+            for way in (lambda *a: creep_rod.rod_map(a[0], a[1], *a[2], *a[3:]), creep.creep_map):
+                new, C = np.full_like(state, np.nan), np.empty((3, 3))
+                assert way(over, state, de, new, C) >= 0
+                found.append((new, C))
+            (new, C), (other, D) = found
+            np.testing.assert_allclose(new[:3], other[:3], rtol=1e-8, atol=1e-7)
+            np.testing.assert_allclose(new[3:], other[3:], rtol=1e-7, atol=1e-14)
+            np.testing.assert_allclose(C, D, atol=1e-6 * law.E)
+            n += creep_rod._without_yield(over, state, (de[0], de[1], de[2]), new, C) >= 0
+    assert n >= 19 if not yielding else 5 <= n < 19  # one takes the general way, 1e8 h after a large load
 
 
 def test_creep_belongs():

@@ -97,6 +97,35 @@ def test_a_run_goes_on_in_the_middle_of_a_hold(resumed_after):
         assert (field.equilibrium == resumed.system.state[name].equilibrium).all(), name
 
 
+@pytest.fixture
+def viscous(tmp_path):
+    """A law whose yield stress rises with the rate, by 15 % at a plastic strain rate of 0.001 1/s."""
+    data = yaml.safe_load((library.FOLDER / "linear_isotropic.yaml").read_text(encoding="utf-8"))
+    data["rate"] = {"reference_rate": 30.0, "exponent": 5.5}
+    path = tmp_path / "viscous.yaml"
+    path.write_text(yaml.safe_dump(data), encoding="utf-8")
+    return str(path)
+
+
+def test_a_fast_press_bears_more_and_then_relaxes(viscous):
+    """Infinitely slow without seconds, as without the entry; fast, the force is higher, and falls to it in a hold."""
+    press = {"to": {"travel": 12}, "steps": 6}
+    still = analysis_of([press], material=viscous, temperature=293.15).run().steps[-1]
+    plain = analysis_of([press], material="linear_isotropic", temperature=293.15).run().steps[-1]
+    slow = analysis_of([press | {"seconds": 1e9}], material=viscous, temperature=293.15).run().steps[-1]
+    assert still.force_N == pytest.approx(plain.force_N, rel=1e-6)
+    assert plain.force_N < slow.force_N < 1.02 * plain.force_N
+    program = [press | {"seconds": 1.0}, {"hold": {"hours": 1e6}, "steps": 12}]
+    steps = analysis_of(program, material=viscous, temperature=293.15).run().steps
+    assert steps[5].hours == pytest.approx(1.0 / 3600.0)
+    assert all(step.estimated_force_error_N is not None for step in steps)
+    assert steps[5].force_N > 1.03 * plain.force_N
+    forces = [step.force_N for step in steps[5:]]
+    assert (np.diff(forces) < 0.0).all()
+    assert forces[-1] < 0.98 * forces[0]
+    assert forces[-1] < 1.01 * plain.force_N
+
+
 @pytest.mark.parametrize(
     ("loading", "changes", "message"),
     [
@@ -107,6 +136,8 @@ def test_a_run_goes_on_in_the_middle_of_a_hold(resumed_after):
         ([{"hold": {"hours": 1, "minutes": 2}}], {}, "give exactly one of hours or minutes, as in {hours: 48}"),
         ([{"hold": {"hours": 1}, "heat": {"to": 300, "hours": 1}}], {}, "give exactly one of hold or heat"),
         ([{"hold": {"hours": -1}}], {}, "loading.0.hold.hours: -1: must be greater than 0"),
+        ([{"to": {"travel": 1}, "seconds": 2}], {},
+         "loading.0.seconds: no heat flows, and 'creeping' does not depend on the rate"),
     ],
 )  # fmt: skip
 def test_what_time_cannot_be(loading, changes, message):
@@ -131,3 +162,4 @@ def test_examples_say_what_presetting_is_worth():
         losses.append(summary["load_loss_percent"])
     assert losses[:3] == pytest.approx([9.72, 8.47, 0.54], abs=0.1)  # finer, as shipped, see docs/how-to/load-loss.md
     assert losses[0] + 1.0 < losses[4] < losses[3] - 1.0  # nine points are too few for numbers of a coiled wire
+

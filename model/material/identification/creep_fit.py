@@ -1,0 +1,179 @@
+"""Fit of the constants of creep to relaxation tests, with their uncertainty.
+
+Least squares of the losses over log c₀, N, p, Q (and log σ₀ of Garofalo's form), with c₀ at the tests' mean stress and
+temperature, so that the constants are nearly independent of each other. All readings count alike. The covariance is
+s² (JᵀJ)⁻¹ with s² of the residuals; the interval of each constant holds it with 95 % confidence (Student's t).
+Readings of one specimen that err together make the intervals too narrow.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+from scipy.stats import t as student
+
+from coilset.meshes.errors import InputError, SolveError
+from coilset.model.material.file import MaterialFile
+from coilset.model.material.identification.relaxation_tests import Readings
+from coilset.model.material.identification.relaxing import loss
+from coilset.model.material.law import Law
+
+CONFIDENCE = 0.95
+BOUNDS = {"log_strain": (-60.0, 0.0), "exponent": (1.0, 50.0), "time_exponent": (0.05, 1.0),
+          "activation_energy": (0.0, 1e6), "log_stress": (0.0, 10.0)}  # fmt: skip
+STEPS = {"log_strain": 1e-5, "exponent": 1e-4, "time_exponent": 1e-5, "activation_energy": 10.0, "log_stress": 1e-5}
+LOGARITHMIC = "strain", "stress"
+STARTS = ((5.0, 0.2, 8e4), (8.0, 0.5, 1.5e5))  # N, p, Q
+UNITS = {"strain": "", "stress": "N/mm²", "exponent": "", "time_exponent": "", "activation_energy": "J/mol"}
+
+
+@dataclass(frozen=True)
+class CreepFit:
+    """The result of `fit_creep`.
+
+    Attributes:
+        law: the material whose elastic constants were used.
+        form, hardening: as in a material file.
+        constants: all entries of creep that are numbers.
+        interval: lowest and highest value of each fitted constant, 95 % confidence each.
+        tests: as given; loss: of the law at their readings, per cent.
+        scatter: standard deviation of the residuals, per cent.
+    """
+
+    law: Law
+    form: str
+    hardening: str
+    constants: dict[str, float]
+    interval: dict[str, tuple[float, float]]
+    tests: tuple[Readings, ...]
+    loss: tuple[np.ndarray, ...]
+    scatter: float
+
+    def material(self, name: str, source: str) -> dict[str, object]:
+        """Content of a material file: that of the law, with this creep."""
+        creep = {"form": self.form, "hardening": self.hardening} | self.constants
+        data = self.law.data.model_dump(mode="json", exclude_none=True)
+        data |= {"name": name, "source": f"{self.law.source}; creep: {source}", "creep": creep}
+        MaterialFile.model_validate(data)
+        return data
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """What is fitted: the names of the variables, and what they are turned into."""
+
+    form: str
+    hardening: str
+    tests: tuple[Readings, ...]
+    moduli: tuple[np.ndarray, ...]
+    stress: float
+    temperature: float
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(BOUNDS)[: 5 if self.form == "garofalo" else 4]
+
+    def constants(self, x: np.ndarray) -> dict[str, float]:
+        """Entries of a material file."""
+        values = dict(zip(self.names, x.tolist(), strict=True))
+        stress = self.stress if "log_stress" not in values else float(np.exp(values.pop("log_stress")))
+        found = {"strain": float(np.exp(values.pop("log_strain"))), "stress": stress, **values}
+        if self.form == "garofalo":  # log_strain is that at the mean stress
+            found["strain"] /= np.sinh(self.stress / stress) ** found["exponent"]
+        return found | {"temperature": self.temperature}
+
+    def losses(self, x: np.ndarray) -> list[np.ndarray]:
+        constants = self.constants(x)
+        pairs = zip(self.tests, self.moduli, strict=True)
+        return [loss(self.form, self.hardening, constants, tests, modulus) for tests, modulus in pairs]
+
+    def residual(self, x: np.ndarray) -> np.ndarray:
+        found = zip(self.losses(x), self.tests, strict=True)
+        return np.concatenate([values - tests.loss for values, tests in found])
+
+    def slopes(self, x: np.ndarray) -> np.ndarray:
+        steps = np.array([STEPS[name] for name in self.names])
+        low, high = (np.array(ends) for ends in zip(*(BOUNDS[name] for name in self.names), strict=True))
+        columns = []
+        for step in np.diag(steps):
+            up, down = np.minimum(x + step, high), np.maximum(x - step, low)
+            columns.append((self.residual(up) - self.residual(down)) / np.abs(up - down).max())
+        return np.array(columns).T
+
+
+def fit_creep(
+    law: Law, tests: tuple[Readings, ...], form: str = "norton_bailey", hardening: str = "strain"
+) -> CreepFit:
+    """Identify the constants of creep.
+
+    Args:
+        law: gives E and G over temperature.
+        tests: Readings at two stresses and two temperatures at least.
+        form, hardening: as in a material file.
+
+    Raises:
+        InputError: if the tests cannot determine a constant, or lie outside the material's table.
+        SolveError: if no constants are found.
+    """
+    _check(tests)
+    stresses = np.concatenate([one.stress * (1.0 if one.kind == "tension" else np.sqrt(3.0)) for one in tests])
+    temperatures = np.concatenate([one.temperature for one in tests])
+    problem = _Problem(form, hardening, tests, tuple(modulus(law, one) for one in tests),
+                       float(f"{np.exp(np.log(stresses).mean()):.3g}"),
+                       float(np.round(temperatures.mean())))  # fmt: skip
+    found = min((_adjusted(problem, start) for start in STARTS), key=lambda one: one.cost)
+    freedom = found.fun.size - found.x.size
+    scatter = float(np.sqrt(2.0 * found.cost / freedom))
+    J = problem.slopes(found.x)
+    scale = np.linalg.norm(J, axis=0)
+    if not scale.min() > 0.0 or np.linalg.cond(J / scale) > 1e8:
+        raise SolveError("these tests cannot distinguish the constants of creep; other stresses, temperatures or times "
+                         "are needed")  # fmt: skip
+    inverse = np.linalg.inv((J / scale).T @ (J / scale)) / np.outer(scale, scale)
+    intervals = _intervals(problem, found.x, inverse * (scatter * student.isf(0.5 * (1.0 - CONFIDENCE), freedom)) ** 2)
+    return CreepFit(law, form, hardening, problem.constants(found.x), intervals, tests,
+                    tuple(problem.losses(found.x)), scatter)  # fmt: skip
+
+
+def _intervals(problem: _Problem, x: np.ndarray, squares: np.ndarray) -> dict[str, tuple[float, float]]:
+    """Of the constants, from the squared half-widths of the variables (with their products), in log c₀ and log σ₀."""
+
+    def values(x: np.ndarray) -> np.ndarray:
+        constants = problem.constants(x)
+        return np.array([np.log(constants[name]) if name in LOGARITHMIC else constants[name] for name in names])
+
+    names = [name.removeprefix("log_") for name in problem.names]
+    steps = np.diag([STEPS[name] for name in problem.names])
+    slopes = np.array([(values(x + step) - values(x - step)) / (2.0 * step.max()) for step in steps]).T
+    half = np.sqrt(np.einsum("ij,jk,ik->i", slopes, squares, slopes))
+    found = {}
+    for name, value, width in zip(names, values(x), half, strict=True):
+        low, high = value - width, value + width
+        found[name] = (float(np.exp(low)), float(np.exp(high))) if name in LOGARITHMIC else (float(low), float(high))
+    return found
+
+
+def _check(tests: tuple[Readings, ...]) -> None:
+    for name, what in (("stress", "stresses: N"), ("temperature", "temperatures: Q"), ("hours", "times: p")):
+        values = np.concatenate([getattr(one, name) for one in tests])
+        if len(np.unique(values)) < 2:
+            raise InputError(f"the tests need two {what} is unknown otherwise; there is only {values[0]:g}", name)
+
+
+def modulus(law: Law, tests: Readings) -> np.ndarray:
+    """E or 3 G at the temperatures of the tests, shape (readings,), N/mm²."""
+    known = np.array([law.known(float(T)) for T in tests.temperature])
+    constants = [dict(law.constants(T)) for T in law.temperatures]
+    G = np.interp(known, law.temperatures, [one["G"][0] for one in constants])
+    nu = np.interp(known, law.temperatures, [one["nu"][0] for one in constants])
+    return 3.0 * G if tests.kind == "torsion" else 2.0 * G * (1.0 + nu)
+
+
+def _adjusted(problem: _Problem, start: tuple[float, float, float]):  # type: ignore[no-untyped-def]
+    """Least squares from a start, with log c₀ found first by trying."""
+    bounds = np.array([BOUNDS[name] for name in problem.names]).T
+    tries = [np.array([log_strain, *start, np.log(0.5 * problem.stress)])[: len(problem.names)]
+             for log_strain in np.arange(-24.0, -1.0, 2.0)]  # fmt: skip
+    first = min(tries, key=lambda x: float(np.sum(problem.residual(x) ** 2)))
+    return least_squares(problem.residual, first, problem.slopes, bounds=bounds, x_scale="jac", xtol=1e-9, ftol=1e-12,
+                         max_nfev=100)  # fmt: skip
