@@ -109,7 +109,7 @@ def viscous(tmp_path):
 
 def test_a_fast_press_bears_more_and_then_relaxes(viscous):
     """Infinitely slow without seconds, as without the entry; fast, the force is higher, and falls to it in a hold."""
-    press = {"to": {"travel": 12}, "steps": 6}
+    press = {"to": {"travel": 20}, "steps": 6}
     still = analysis_of([press], material=viscous, temperature=293.15).run().steps[-1]
     plain = analysis_of([press], material="linear_isotropic", temperature=293.15).run().steps[-1]
     slow = analysis_of([press | {"seconds": 1e9}], material=viscous, temperature=293.15).run().steps[-1]
@@ -118,7 +118,6 @@ def test_a_fast_press_bears_more_and_then_relaxes(viscous):
     program = [press | {"seconds": 1.0}, {"hold": {"hours": 1e6}, "steps": 12}]
     steps = analysis_of(program, material=viscous, temperature=293.15).run().steps
     assert steps[5].hours == pytest.approx(1.0 / 3600.0)
-    assert all(step.estimated_force_error_N is not None for step in steps)
     assert steps[5].force_N > 1.03 * plain.force_N
     forces = [step.force_N for step in steps[5:]]
     assert (np.diff(forces) < 0.0).all()
