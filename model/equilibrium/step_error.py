@@ -25,6 +25,9 @@ from coilset.model.state import Where
 ORDER = 3
 # what is remembered: maximum force, N, travel of the first step of all, mm, and how many contact elements are closed
 GREATEST, FIRST, CLOSED = range(3)
+# A spring is held where its height, over its free length, or its force, over the maximum, changes by no more; it
+# is held to the accuracy of the equilibrium only.
+STILL, STILL_FORCE = 1e-12, 1e-6
 
 
 @dataclass(frozen=True)
@@ -78,7 +81,8 @@ class StepError:
         before, force = control.force, control.trial_force
         travel = control.height - control.trial_height
         memory[GREATEST] = greatest = max(float(last[GREATEST]), abs(force))
-        if abs(travel) <= 1e-12 * control.free_length or greatest == 0.0 or self._takes_time():
+        still = abs(travel) <= STILL * control.free_length
+        if still or greatest == 0.0 or (self._takes_time() and abs(force - before) <= STILL_FORCE * greatest):
             return self._in_time(works, greatest, float(last[FIRST]))
         memory[FIRST] = last[FIRST] or travel
         error, new, left = (float(work) for work in works[:3] / (travel, travel, memory[FIRST]))
@@ -94,7 +98,7 @@ class StepError:
         return "clock" in state and not np.array_equal(state["clock"].trial, state["clock"].equilibrium)
 
     def _in_time(self, works: np.ndarray, greatest: float, first: float) -> Estimate:
-        """A step in time deforms the spring by no travel of its own; the first step of all shows what a travel does."""
+        """A held spring is deformed by no travel of its own; the first step of all shows what a travel does."""
         if greatest == 0.0 or first == 0.0 or not self._takes_time():
             return Estimate(math.nan, math.nan, 0.0, self.steps.growth)
         share = abs(float(works[2]) / first) / (self.steps.step_share * self.accuracy * greatest)

@@ -8,6 +8,7 @@ four times as much. This divides the law's error and the area between path and c
 
     s* − s ≈ 4/3 (s_finer − s)
 
+(twice the difference, 1/(1 − 2⁻ᵖ) of it, where the law is of first order, p = 1, as yield that depends on the rate)
 is the error of the section forces. Errors that plastic flow erases are erased here, too.
 """
 
@@ -21,7 +22,6 @@ from coilset.model.section.kinds import Sections
 from coilset.model.state import State, Where
 
 BLOCK = 256  # cells that are followed together: only for these the state in the middle of a step is kept
-RICHARDSON = 4.0 / 3.0
 KINK = 4.0  # of the parabola's height over the chord: after steps of one size, that of a kink in the middle of this one
 
 
@@ -90,7 +90,7 @@ class FinerPath:
         good = sections.update(reached, start, half, forces, D, False)
         good = good and sections.update(strain.trial[cells], half | {"strain": reached}, end, forces, D, False)
         if good:
-            self._error.trial[cells] = RICHARDSON * (forces - s[cells])
+            self._error.trial[cells] = (forces - s[cells]) / (1.0 - 0.5 ** sections.law_over_time.order(start, end))
         return bool(good)
 
     def rejoin(self) -> None:

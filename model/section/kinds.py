@@ -13,6 +13,7 @@ import numpy as np
 from coilset.meshes.placement import Placement
 from coilset.model.material.law import Law
 from coilset.model.section.fibres import FibreSections
+from coilset.model.section.law_over_time import LawOverTime
 from coilset.model.section.rules import DiskRule
 from coilset.model.section.warping import WarpingSections
 
@@ -24,10 +25,12 @@ class Sections(Protocol):
 
     Attributes:
         radius, placement: of the cells.
+        law_over_time: the law of their points.
     """
 
     radius: np.ndarray
     placement: Placement
+    law_over_time: LawOverTime
 
     @property
     def components(self) -> tuple[str, ...]:

@@ -6,10 +6,10 @@ import numpy as np
 
 from coilset.model.material.back_stresses import BackStresses
 from coilset.model.material.creep import Creeping
-from coilset.model.material.creep_law import CREEP_COLUMNS
+from coilset.model.material.creep_law import CREEP_COLUMNS, CreepLaw
 from coilset.model.material.law import Law
 from coilset.model.material.points import initial_state
-from coilset.model.material.rate_law import law_in_time
+from coilset.model.material.rate_law import RateLaw, law_in_time
 
 
 class LawOverTime:
@@ -49,6 +49,16 @@ class LawOverTime:
 
         To the return mapping, a row with the columns of creep is one with a temperature of its own.
         """
-        if self.in_time is None or "clock" not in trial or np.array_equal(start["clock"], trial["clock"]):
-            return self._point_law
-        return self.in_time.over(start["clock"], trial["clock"])
+        law = self._while_time_passes(start, trial)
+        return self._point_law if law is None else law.over(start["clock"], trial["clock"])
+
+    def order(self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]) -> int:
+        """Order of the law's accuracy in the length of a step; the rate of plastic strain is its mean over the step."""
+        return 1 if isinstance(self._while_time_passes(start, trial), RateLaw) else 2
+
+    def _while_time_passes(
+        self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]
+    ) -> CreepLaw | RateLaw | None:
+        """The law in time, or None if there is none or no time passes."""
+        stands = "clock" not in trial or np.array_equal(start["clock"], trial["clock"])
+        return None if stands else self.in_time

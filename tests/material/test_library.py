@@ -103,7 +103,7 @@ WRONG = {
     "unknown key": (
         lambda c: c.update(colour="red"),
         "colour: unknown entry; the entries here are name, description, source, units, validity, temperatures, heating,"
-        " creep",
+        " creep, rate",
     ),
     "misspelt key": (
         lambda c: at(c)["isotropic"].update(k0_square=1),

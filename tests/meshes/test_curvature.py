@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
+from coilset.meshes.ends import OPEN
 from coilset.meshes.errors import InputError
 from coilset.meshes.placement import section_placement
 from coilset.meshes.spring import SpringSpec
@@ -76,6 +77,8 @@ def test_sections_that_know_of_no_curvature_stay_as_they_were():
 
 class Straight:
     """A wire along x, as far as the placement asks."""
+
+    bottom = top = OPEN
 
     def centre_line(self, turn):
         return np.stack([10.0 * np.asarray(turn), 0.0 * np.asarray(turn), 0.0 * np.asarray(turn)], axis=-1)

@@ -161,3 +161,16 @@ def test_examples_say_what_presetting_is_worth():
         losses.append(summary["load_loss_percent"])
     assert losses[:3] == pytest.approx([9.72, 8.47, 0.54], abs=0.1)  # finer, as shipped, see docs/how-to/load-loss.md
     assert losses[0] + 1.0 < losses[4] < losses[3] - 1.0  # nine points are too few for numbers of a coiled wire
+
+
+def test_the_error_of_fast_steps_is_known(viscous):
+    """It is of first order in the step, and larger than that of the law without the rate."""
+
+    def pressed(steps, **fast):
+        phase = {"to": {"travel": 12}, "steps": steps} | fast
+        return analysis_of([phase], material=viscous, temperature=293.15).run().steps[-1]
+
+    coarse, fine, still = pressed(6, seconds=1.0), pressed(24, seconds=1.0), pressed(6)
+    error = fine.force_N + fine.estimated_force_error_N - coarse.force_N
+    assert coarse.estimated_force_error_N == pytest.approx(error, rel=0.15)
+    assert coarse.estimated_force_error_N > 5.0 * still.estimated_force_error_N
