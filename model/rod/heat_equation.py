@@ -7,7 +7,7 @@ elements, second order in their length; backward Euler in time. Lengths are thos
 in.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 import ufl
@@ -16,6 +16,7 @@ from dolfinx.fem.petsc import assemble_matrix, assemble_vector
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from coilset.meshes.compat import geometry_dofs
 from coilset.meshes.line import LineMesh
 from coilset.model.rod import forms
 
@@ -80,9 +81,11 @@ class HeatEquation:
         self.source, self._before = heat.x.array.reshape(-1, 2), before
         self._seconds = fem.Constant(mesh, PETSc.ScalarType(1.0))
         area, around = np.pi * wire**2 * whole, 2.0 * np.pi * wire
-        capacity, conductivity, convection, tips, air = (
-            fem.Constant(mesh, PETSc.ScalarType(getattr(constants, one.name))) for one in fields(constants)
+        capacity, conductivity, convection, air = (
+            fem.Constant(mesh, PETSc.ScalarType(getattr(constants, name)))
+            for name in ("capacity", "conductivity", "convection", "surroundings")
         )
+        tips = self._at_tips(constants.tips)
         dx, tip = ufl.dx(metadata=forms.QUADRATURE), ufl.ds
         T, v = ufl.TrialFunction(self.temperature.function_space), ufl.TestFunction(self.temperature.function_space)
         t, now = self._seconds, self.temperature
@@ -96,6 +99,15 @@ class HeatEquation:
         self._right = fem.form(warm + t * outwards(air, v))
         self._loss = fem.form(outwards(now - air, fem.Constant(mesh, PETSc.ScalarType(1.0))))
         self._content = fem.form(capacity * area * (now - air) * longer * dx)
+
+    def _at_tips(self, value: float) -> fem.Function:
+        """A function of the nodes, zero but at both tips: between two ranks, too, DOLFINx sees an end of a line."""
+        space, line = self.temperature.function_space, self.line
+        dofs = np.empty(len(line.node), dtype=np.int64)
+        dofs[geometry_dofs(line.mesh)] = space.dofmap.list
+        function = fem.Function(space)
+        function.x.array[dofs[np.isin(line.node, (0, len(line.stations) - 1))]] = value
+        return function
 
     def advance(self, seconds: float) -> float:
         """Go on by some seconds, in which the lengths of wire get the heat `source`; collective.
