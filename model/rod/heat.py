@@ -9,7 +9,6 @@ section's thermal strain reaches the rod in its next step. Stress follows G(T), 
 import numpy as np
 from mpi4py import MPI
 
-from coilset.meshes.compat import geometry_dofs
 from coilset.model.material.law import Law
 from coilset.model.rod.heat_equation import HeatConstants, HeatEquation
 from coilset.model.rod.kinematics import GAUSS
@@ -58,8 +57,6 @@ class WireHeat:
         self._weights = weights * g
         self._left = left[: len(rod.radius)]
         self.equation = HeatEquation(rod.line, radius, constants, rod.temperature, stretch, left)
-        self._dofs = np.empty(len(rod.x), dtype=np.int64)  # of the local nodes
-        self._dofs[geometry_dofs(mesh)] = self.equation.temperature.function_space.dofmap.list
         self._nodes = rod.state.add("temperature", np.full(len(rod.x), rod.temperature), Where.STATION)
         self.start_content = self.equation.content
         self._totals = rod.state.add("heat", np.zeros(2), Where.SHARED)  # generated, given off
@@ -78,7 +75,7 @@ class WireHeat:
     def advance(self, seconds: float) -> None:
         """Let a step have taken some seconds; changes the last equilibrium; collective."""
         rod, equation, cells = self.rod, self.equation, len(self.rod.radius)
-        equation.temperature.x.array[self._dofs] = self._nodes.equilibrium
+        equation.temperature.x.array[equation.dofs] = self._nodes.equilibrium
         mean = np.sum(self._weights * rod.state["point_state"].equilibrium[..., -1], axis=-1) / self._left
         got = np.pi * rod.radius[:, None] ** 2 * self._left * equation.constants.capacity
         equation.source[:] = 0.0
@@ -92,7 +89,7 @@ class WireHeat:
         self._warm(mean, still, equation.at_sections(GAUSS)[:cells], seconds)
         totals = self._totals.equilibrium
         totals += generated, given_off
-        self._nodes.equilibrium[:] = equation.temperature.x.array[self._dofs]
+        self._nodes.equilibrium[:] = equation.temperature.x.array[equation.dofs]
         hottest = rod.mesh.comm.allreduce(self._nodes.equilibrium.max(initial=0.0), op=MPI.MAX)
         self._clock.equilibrium[:2] = self._clock.equilibrium[0] + seconds / 3600.0, hottest
         rod.state.restore()

@@ -56,6 +56,7 @@ class HeatEquation:
 
     Attributes:
         temperature: function of the nodes, K.
+        dofs: place of each local node in it, shape (local nodes,).
         source: heat that a length got over the step, at the two Gauss sections of the local cells, shape (cells, 2), N.
     """
 
@@ -71,6 +72,8 @@ class HeatEquation:
         self.line, mesh, self.constants = line, line.mesh, constants
         self.temperature = fem.Function(fem.functionspace(mesh, ("Lagrange", 1)))
         self.temperature.x.array[:] = start
+        self.dofs = np.empty(len(line.node), dtype=np.int64)
+        self.dofs[geometry_dofs(mesh)] = self.temperature.function_space.dofmap.list
         before = fem.Function(self.temperature.function_space)
         heat = fem.Function(fem.functionspace(mesh, forms.section_element(())))
         longer, whole = fem.Function(heat.function_space), fem.Function(heat.function_space)
@@ -102,11 +105,8 @@ class HeatEquation:
 
     def _at_tips(self, value: float) -> fem.Function:
         """A function of the nodes, zero but at both tips: between two ranks, too, DOLFINx sees an end of a line."""
-        space, line = self.temperature.function_space, self.line
-        dofs = np.empty(len(line.node), dtype=np.int64)
-        dofs[geometry_dofs(line.mesh)] = space.dofmap.list
-        function = fem.Function(space)
-        function.x.array[dofs[np.isin(line.node, (0, len(line.stations) - 1))]] = value
+        function, line = fem.Function(self.temperature.function_space), self.line
+        function.x.array[self.dofs[np.isin(line.node, (0, len(line.stations) - 1))]] = value
         return function
 
     def advance(self, seconds: float) -> float:
