@@ -1,7 +1,10 @@
 """`python -m coilset.scripts`, and the installed command."""
 
+import gc
 import os
 import signal
+
+GARBAGE = 100_000  # objects after which Python looks for circular ones: modules are none, and loading them makes many
 
 
 def _leave(*_: object) -> None:
@@ -17,6 +20,7 @@ def main() -> None:
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, _leave)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
+    gc.set_threshold(GARBAGE)
     from coilset.scripts.main import run
 
     run()

@@ -100,14 +100,13 @@ def imbalance(system: System, load: Load, F: PETSc.Vec) -> Imbalance:
     """Imbalance of the state evaluated last, which has the residual `F`; collective."""
     residual = F.getArray(readonly=True).copy()
     residual[load.held] = 0.0
-    supports = np.union1d(load.held, load.loaded) if len(load.loaded) else load.held
     reactions = system.state["reactions"]
-    change = reactions.trial[supports] - reactions.equilibrium[supports]
+    change = reactions.trial[load.supports] - reactions.equilibrium[load.supports]
     missed = F.getArray(readonly=True)[load.held] / system.body.constraint_weight
     squares = np.array([residual @ residual, change @ change, missed @ missed])
     if system.comm.size > 1:
         squares = system.comm.allreduce(squares)
-    norms, prescribed = np.sqrt(squares), load.prescribed()
+    norms, prescribed = np.sqrt(squares), load.prescribed
     return Imbalance(norms[0], norms[1], norms[2] / prescribed if prescribed > 0.0 else norms[2])
 
 

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 from petsc4py import PETSc
-from scipy import sparse
 
 ORDERING = "qmd"  # PETSc's quotient minimum degree; along a chain it finds an order without fill
 # Fraction of zeros accepted for larger fronts: small fronts cost more to move than to eliminate.
@@ -83,6 +82,8 @@ def _order(indptr: np.ndarray, indices: np.ndarray, kept: np.ndarray) -> np.ndar
     The kept ones are coupled with each other, so that the elimination reaches the interface last: starting there would
     carry the interface along.
     """
+    from scipy import sparse  # takes a fifth of a second, and one rank with few contacts never comes here
+
     n = len(indptr) - 1
     if n == 0:
         return np.empty(0, np.int64)

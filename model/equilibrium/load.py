@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from mpi4py import MPI
@@ -65,14 +66,25 @@ class Load:
         """The same load with another drag, or none."""
         return replace(self, drag=drag)
 
+    @cached_property
+    def supports(self) -> np.ndarray:
+        """Places that are held or loaded, each once, ascending."""
+        return np.union1d(self.held, self.loaded)
+
+    @cached_property
     def prescribed(self) -> float:
-        """Norm of the prescribed increments; collective."""
+        """Norm of the prescribed increments; collective when it is first asked for."""
         return float(np.sqrt(self._sum(self.increments @ self.increments)))
+
+    @cached_property
+    def _greatest(self) -> float:
+        """The greatest of the prescribed increments of all ranks; collective when it is first asked for."""
+        return self._max(np.abs(self.increments).max(initial=0.0))
 
     def misses(self, increments: np.ndarray, load_factor: float) -> bool:
         """Whether the increments, this rank's part, miss prescribed ones by more than rounding; collective."""
         off = np.abs(increments[self.held] - load_factor * self.increments).max(initial=0.0)
-        return self._max(off) > 1e-12 * self._max(np.abs(self.increments).max(initial=0.0))
+        return self._max(off) > 1e-12 * self._greatest
 
     def reached(self, increments: np.ndarray) -> float:
         """Fraction of the step reached by the increments, from the largest prescribed one, else 1; collective."""

@@ -312,6 +312,8 @@ class Newton:
         return Reason.ITERATING if lost is None else lost
 
     def _tell(self, iteration: int, norm: float) -> None:
+        if not each_iteration.isEnabledFor(logging.DEBUG):
+            return
         length = "" if self._step_length is None else f", step length {self._step_length:.3g}"
         part = "" if self.load_factor == 1.0 else f", at {self.load_factor:.3g} of the step"
         balance = f", out of balance {self.ratio:.2e}" if np.isfinite(self.ratio) else ""

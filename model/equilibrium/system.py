@@ -295,8 +295,9 @@ class System:
         self.body.tangent(matrix.mat)
         matrix.add(self.last.contributions)
         if isinstance(self.layout, LineLayout) and self.layout.has_extra:
-            for dof in self.layout.seat_dofs:  # the diagonal must exist for a fixed or untouched seat
-                matrix.mat.setValue(dof, dof, 0.0, addv=PETSc.InsertMode.ADD_VALUES)
+            # the diagonal must exist for a fixed or untouched seat
+            seats = self.layout.seat_dofs[:, None]
+            matrix.mat.setValuesRCV(seats, seats, np.zeros((len(seats), 1, 1)), addv=PETSc.InsertMode.ADD_VALUES)
         matrix.mat.assemble()
         if load.drag is not None:
             matrix.mat.setDiagonal(self.layout.vector(load.drag.stiffness.copy()), addv=PETSc.InsertMode.ADD_VALUES)

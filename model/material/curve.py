@@ -14,8 +14,6 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from annotated_types import Unit
 from pydantic import Field, ValidationInfo, field_validator, model_validator
-from scipy.integrate import cumulative_simpson
-from scipy.interpolate import PchipInterpolator
 
 from coilset.meshes.errors import InputError
 from coilset.model.entries.entry import Strict
@@ -186,6 +184,8 @@ class Table(Strict):
         Raises:
             InputError: a file that is wrong, strains that do not ascend, or stress that falls.
         """
+        from scipy.interpolate import PchipInterpolator  # as in `sample`
+
         strain, stress = self.points()
         if self.measure == "engineering":
             strain, stress = np.log1p(strain), stress * (1.0 + strain)
@@ -244,6 +244,8 @@ def sample(
     strain: np.ndarray, stress: Callable[[np.ndarray], np.ndarray], slope: Callable[[np.ndarray], np.ndarray]
 ) -> Sampled:
     """b*, k² and dk²/db* at plastic strains, the first of which is 0."""
+    from scipy.integrate import cumulative_simpson  # takes a quarter of a second, so only where needed
+
     part = np.linspace(0.0, 1.0, FINE + 1)
     within = strain[:-1, None] + np.diff(strain)[:, None] * part
     work = cumulative_simpson(stress(within), x=within, axis=1)[:, -1]

@@ -32,17 +32,20 @@ class CompiledForms:
     tangent: Any
     loops: tuple[Loop, Loop]
 
-    def on(self, fields: Mapping[str, np.ndarray]) -> tuple[ElementKernel, ElementKernel]:
+    def on(
+        self, fields: Mapping[str, np.ndarray], x: np.ndarray, nodes: np.ndarray
+    ) -> tuple[ElementKernel, ElementKernel]:
         """Residual and tangent of a rod's elements, shapes (cells, 14) and (cells, 14, 14).
 
         Args:
             fields: values by their names in forms.FIELDS, shape (cells, …); read at each evaluation.
+            x, nodes: positions of the nodes and the cells' nodes, as in ElementKernel.
         """
         of = {coefficient: fields[name] for name, coefficient in self.coefficients.items()}
 
         def kernel(compiled: Any, loop: Loop, rank: int) -> ElementKernel:
             used = [of[coefficient] for coefficient in compiled.ufl_form.coefficients()]
-            return ElementKernel(compiled, loop, used, (UNKNOWNS,) * rank)
+            return ElementKernel(compiled, loop, used, x, nodes, (UNKNOWNS,) * rank)
 
         return kernel(self.residual, self.loops[0], 1), kernel(self.tangent, self.loops[1], 2)
 

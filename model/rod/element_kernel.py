@@ -81,36 +81,43 @@ class ElementKernel:
         compiled: DOLFINx's CompiledForm of a form with one integral over the cells, line elements of two nodes.
         loop: what `load` has made of it.
         fields: values of its coefficients, in the order of `compiled.ufl_form.coefficients()`, each of shape
-            (cells, …); they are read where they are.
+            (cells, …).
+        x: positions of the nodes, shape (nodes, 3), mm.
+        nodes: of the cells, shape (cells, 2), 32-bit whole numbers.
         shape: of an element's tensor.
+
+    The arrays are read where they are, at each call.
     """
 
-    def __init__(self, compiled: Any, loop: Loop, fields: Sequence[np.ndarray], shape: tuple[int, ...]) -> None:
+    def __init__(
+        self,
+        compiled: Any,
+        loop: Loop,
+        fields: Sequence[np.ndarray],
+        x: np.ndarray,
+        nodes: np.ndarray,
+        shape: tuple[int, ...],
+    ) -> None:
         form = compiled.ufcx_form
         used = [fields[form.original_coefficient_positions[i]] for i in range(form.num_coefficients)]
-        self._fields, self._cells = used, len(used[0])  # kept: C knows their addresses only
+        self.out = np.zeros((len(used[0]), *shape))
+        self._kept = used, x, nodes  # C knows their addresses only
         self._ffi, self._function = loop
         lengths = [int(np.prod(field.shape[1:])) for field in used]
-        self._addresses = self._ffi.new("double *[]", [self._pointer(field) for field in used])
-        self._lengths, self._width, self._size = self._ffi.new("long[]", lengths), sum(lengths), int(np.prod(shape))
-        self.out = np.zeros((self._cells, *shape))
+        self._arguments = (
+            len(self.out), self._pointer(x), self._pointer(nodes, "int32_t *"), len(used),
+            self._ffi.new("double *[]", [self._pointer(field) for field in used]), self._ffi.new("long[]", lengths),
+            sum(lengths), int(np.prod(shape)), self._pointer(self.out),
+        )  # fmt: skip
 
     def _pointer(self, values: np.ndarray, kind: str = "double *") -> Any:
         if not values.flags.c_contiguous:
             raise ValueError("the values of a coefficient must lie one after the other")
         return self._ffi.cast(kind, values.ctypes.data)
 
-    def __call__(self, x: np.ndarray, nodes: np.ndarray) -> np.ndarray:
-        """The elements' tensors, shape (cells, …); the next call writes over them.
-
-        Args:
-            x: positions of the nodes, shape (nodes, 3), mm.
-            nodes: of the cells, shape (cells, 2), 32-bit whole numbers.
-        """
-        self._function(
-            self._cells, self._pointer(x), self._pointer(nodes, "int32_t *"), len(self._fields), self._addresses,
-            self._lengths, self._width, self._size, self._pointer(self.out),
-        )  # fmt: skip
+    def __call__(self) -> np.ndarray:
+        """The elements' tensors, shape (cells, …); the next call writes over them."""
+        self._function(*self._arguments)
         return self.out
 
 

@@ -11,6 +11,7 @@ from coilset.model.rotations.kernels import (
     logarithm,
     multiply,
     multiply_transposed,
+    rotate,
 )
 
 GAUSS = np.array([0.5 - 0.5 / math.sqrt(3.0), 0.5 + 0.5 / math.sqrt(3.0)])  # abscissae ξ = x/l (5.2.43)
@@ -26,6 +27,51 @@ def chord_triads(chords: np.ndarray) -> np.ndarray:
     e2 = np.cross(helper, e1)
     e2 /= np.linalg.norm(e2, axis=1, keepdims=True)
     return np.stack([e1, e2, np.cross(e1, e2)], axis=-1)
+
+
+@njit(cache=True)
+def displace_nodes(
+    increment: np.ndarray,
+    u_dofs: np.ndarray,
+    rotation_dofs: np.ndarray,
+    shear_dofs: np.ndarray,
+    cells: np.ndarray,
+    x0: np.ndarray,
+    chord0: np.ndarray,
+    R0: np.ndarray,
+    shear0: np.ndarray,
+    x: np.ndarray,
+    chord: np.ndarray,
+    R: np.ndarray,
+    shear: np.ndarray,
+    T: np.ndarray,
+    T_cells: np.ndarray,
+) -> None:
+    """Bring nodes and shear angles from the last equilibrium, 0, to the increments of the unknowns.
+
+    Chords are updated by differences of the increments: differences of the positions would lose digits as l/L.
+
+    Args:
+        increment: of the local unknowns.
+        u_dofs, rotation_dofs: of the nodes, shape (nodes, 3); shear_dofs: of the cells, shape (cells, 2).
+        cells: node numbers, shape (cells, 2).
+        x, x0: positions, shape (nodes, 3), mm; chord, chord0: shape (cells, 3), mm.
+        R, R0: rotations of the nodes, shape (nodes, 3, 3); shear, shear0: shape (cells, 2).
+        T: written, tangents of the nodes' charts, shape (nodes, 3, 3); T_cells: the same of the cells' nodes.
+    """
+    v, turn = np.empty(3), np.empty((3, 3))
+    for node in range(len(x)):
+        for k in range(3):
+            x[node, k] = x0[node, k] + increment[u_dofs[node, k]]
+            v[k] = increment[rotation_dofs[node, k]]
+        rotate(v, R0[node], R[node], T[node], turn)
+    for c in range(len(cells)):
+        i, j = cells[c, 0], cells[c, 1]
+        for k in range(3):
+            chord[c, k] = chord0[c, k] + (increment[u_dofs[j, k]] - increment[u_dofs[i, k]])
+        for k in range(2):
+            shear[c, k] = shear0[c, k] + increment[shear_dofs[c, k]]
+        T_cells[c, 0], T_cells[c, 1] = T[i], T[j]
 
 
 @njit(cache=True)

@@ -15,9 +15,8 @@ from coilset.model.rod import forms
 from coilset.model.rod.assembly import add_element_vectors
 from coilset.model.rod.compiled import compiled_forms
 from coilset.model.rod.finer_path import FinerPath
-from coilset.model.rod.kinematics import GAUSS, chord_triads, section_strains
+from coilset.model.rod.kinematics import GAUSS, chord_triads, displace_nodes, section_strains
 from coilset.model.rod.prediction import Frames, Prediction, linear_strains
-from coilset.model.rotations.kernels import rotate_nodes
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule
 from coilset.model.state import State, Where
@@ -114,7 +113,7 @@ class Rod:
         self._prediction: Prediction | None = None
         self._finer: FinerPath | None = None
         values = {name: field.values for name, field in zip(forms.FIELDS, fields, strict=True)}
-        self._residual, self._tangent = compiled_forms(mesh.comm).on(values)
+        self._residual, self._tangent = compiled_forms(mesh.comm).on(values, x, self._nodes)
         self.row_entries = np.full(self.V.dofmap.index_map.size_local, NODAL_ENTRIES, dtype=PETSc.IntType)
         self.row_entries[self.shear_dofs] = SHEAR_ENTRIES
         self.largest_radius = comm_max(mesh.comm, self.radius.max(initial=0.0))
@@ -191,19 +190,16 @@ class Rod:
 
     def update(self) -> bool:
         """Update the trial state to the increments; see Body."""
-        increment = self.increment.x.array
-        # Chords are updated by differences of the increments: differences of the positions would lose digits as l/L.
-        moved = increment[self.u_dofs]
-        np.add(self._x.equilibrium, moved, out=self._x.trial)
-        np.add(self._chord.equilibrium, moved[self.cells[:, 1]] - moved[self.cells[:, 0]], out=self._chord.trial)
-        rotate_nodes(increment[self.rotation_dofs], self._R.equilibrium, self._R.trial, self.chart)
-        np.add(self._shear.equilibrium, increment[self.shear_dofs], out=self._shear.trial)
+        displace_nodes(
+            self.increment.x.array, self.u_dofs, self.rotation_dofs, self.shear_dofs, self.cells,
+            self._x.equilibrium, self._chord.equilibrium, self._R.equilibrium, self._shear.equilibrium,
+            self._x.trial, self._chord.trial, self._R.trial, self._shear.trial, self.chart, self.T.values,
+        )  # fmt: skip
         section_strains(
             self.cells, self._chord.trial, self._R.trial, self.E0, self.l0, self._shear.trial,
             self.timoshenko_factor.values[:, 0], GAUSS, self.triads.values, self.P.values, self.W.values,
             self._strain.trial,
         )  # fmt: skip
-        self.T.values[:] = self.chart[self.cells]
         start, trial = self._section_start, self._section_trial
         has_stress = self.sections.update(self._strain.trial, start, trial, self.s.values, self.D.values)
         self.stop_foreseeing()
@@ -259,7 +255,7 @@ class Rod:
 
     def internal_forces(self, vector: np.ndarray) -> None:
         """Add ∫ ¹σ : δΔE_l of the owned cells; see Body."""
-        add_element_vectors(self._residual(self._x.trial, self._nodes), self._dofs, vector)
+        add_element_vectors(self._residual(), self._dofs, vector)
 
     def to_charts(self, values: np.ndarray) -> None:
         """Replace the moments m at the owned nodes by Tᵀ m; see HasRotations."""
@@ -280,7 +276,7 @@ class Rod:
 
     def tangent(self, matrix: PETSc.Mat) -> None:
         """Add K_l and the stiffness of the rotating frame; see Body."""
-        values = self._tangent(self._x.trial, self._nodes)
+        values = self._tangent()
         matrix.setValuesLocalRCV(self._dofs, self._dofs, values, addv=PETSc.InsertMode.ADD_VALUES)
 
     @property

@@ -106,16 +106,15 @@ def multiply_transposed(A: np.ndarray, B: np.ndarray, C: np.ndarray) -> None:
 
 
 @njit(cache=True)
-def rotate_nodes(v: np.ndarray, R_old: np.ndarray, R_new: np.ndarray, T: np.ndarray) -> None:
-    """Rotate the nodes' matrices by their rotation vectors: R_new = exp(v) R_old, with the charts' tangents T.
+def rotate(v: np.ndarray, R_old: np.ndarray, R_new: np.ndarray, T: np.ndarray, work: np.ndarray) -> None:
+    """Rotate a node's matrix by its rotation vector: R_new = exp(v) R_old, with the chart's tangent T.
 
     Args:
-        v: rotation vectors since the last equilibrium, shape (nodes, 3), rad.
-        R_old: rotations at the last equilibrium, shape (nodes, 3, 3).
-        R_new, T: written, shape (nodes, 3, 3).
+        v: rotation vector since the last equilibrium, shape (3,), rad.
+        R_old: rotation at the last equilibrium, shape (3, 3).
+        R_new, T: written, shape (3, 3).
+        work: 3×3 matrix of work space.
     """
-    increment = np.empty((3, 3))
-    for node in range(len(v)):
-        exponential(v[node], increment)
-        multiply(increment, R_old[node], R_new[node])
-        chart_tangent(v[node], T[node])
+    exponential(v, work)
+    multiply(work, R_old, R_new)
+    chart_tangent(v, T)

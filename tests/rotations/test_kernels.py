@@ -56,8 +56,9 @@ def test_nodes_are_rotated_by_their_vectors():
     """R_new = exp(v) R_old for each node, with the tangent of its chart."""
     rng = np.random.default_rng(3)
     v, old = rng.normal(size=(4, 3)), Rotation.random(4, rng).as_matrix()
-    new, T, expected = np.empty((4, 3, 3)), np.empty((4, 3, 3)), np.empty((3, 3))
-    kernels.rotate_nodes(v, old, new, T)
+    new, T, expected, work = np.empty((4, 3, 3)), np.empty((4, 3, 3)), np.empty((3, 3)), np.empty((3, 3))
+    for node in range(4):
+        kernels.rotate(v[node], old[node], new[node], T[node], work)
     np.testing.assert_allclose(new, Rotation.from_rotvec(v).as_matrix() @ old, rtol=0, atol=1e-14)
     for node in range(4):
         kernels.chart_tangent(v[node], expected)
