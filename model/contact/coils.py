@@ -105,14 +105,18 @@ class Coils:
         """As `near`, with all pairs nearer than `margin` among them.
 
         While the stations have moved by less than the skin, only points are asked for that were nearer to a coil than
-        margin and skin when all were.
+        margin and skin when all were. They are asked in the same way, so that what is found does not depend on this.
         """
+        near = None
         if self._last is not None:
-            there, reach, near = self._last
+            there, reach, candidates = self._last
             if 2.0 * self._amplification * moved(there, trial) * np.sqrt(3.0) < reach - margin:
-                return self.near(trial, margin, near) if len(near) else (*NO_PAIR[:2], NO_PAIR[3])
-        found = self.near(trial, margin + self._skin)
-        self._last = replace(trial, x=trial.x.copy()), margin + self._skin, np.unique(found[0][:, 0])
+                near = candidates
+                if not len(near):
+                    return *NO_PAIR[:2], NO_PAIR[3]
+        found = self.near(trial, margin + self._skin, near)
+        if near is None:
+            self._last = replace(trial, x=trial.x.copy()), margin + self._skin, np.unique(found[0][:, 0])
         return found
 
     def max_penetration(self, trial: TrialPositions) -> float:
