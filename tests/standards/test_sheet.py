@@ -13,7 +13,7 @@ from coilset.model.standards import found, goodman
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.rows import sections
 from coilset.model.standards.sheet import Sheet
-from coilset.model.standards.wires import wire
+from coilset.model.standards.wires import names, wire
 from coilset.scripts.sheet import list_wires, sheet
 
 # HeliSpring, spring S.198: wire DM of 5 mm, De 39.6, n 9.5, n_t 11.5, L0 105.8, 280 N at 88.5 mm, 620 N at 67.5 mm
@@ -162,6 +162,19 @@ def test_command_draws_nothing_without_a_wire(case, tmp_path, capsys):
 def test_wires_are_listed(capsys):
     list_wires()
     assert "EN 10270-2 VDSiCr" in capsys.readouterr().out
+    for name in names():
+        list_wires(name)
+        printed = capsys.readouterr().out
+        for _, entry in wire(name).entry.sourced():
+            assert wire(name).citation(entry) in printed
+    list_wires("EN 10270-2 FDC")
+    printed = capsys.readouterr().out
+    assert "d = 0.5 to 17: 1834 − 488 lg d, at most 1900 N/mm²" in printed
+    assert "0.56 Rm, uncorrected stress" in printed
+    assert "1e+07 times: upper stress 375 − 117 lg d over 0, 889 − 263 lg d over 669 − 183 lg d N/mm²" in printed
+    assert "not found: endurance of all wires of CrV, SiCr and SiCrV" in printed
+    with pytest.raises(InputError, match="'copper' is not a known wire"):
+        list_wires("copper")
 
 
 def test_wrong_questions(case, tmp_path):

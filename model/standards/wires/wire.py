@@ -15,11 +15,13 @@ class Wire:
 
     Attributes:
         name: standard and grade, such as `EN 10270-1 SH`.
+        standard: the first of them, the name of its file.
         entry: its numbers with their sources.
         sources: the meaning of the keys of the sources.
     """
 
     name: str
+    standard: str
     entry: WireEntry
     sources: dict[str, str]
 
