@@ -148,6 +148,11 @@ def section_placement(
     return Placement(P / stretch[..., None, None], stretch, curvature, torsion, flat)
 
 
+def chord_placement(spring: Spring, turns: np.ndarray, triads: np.ndarray, abscissae: np.ndarray) -> Placement:
+    """The placement of sections on the chords themselves, cut as the true sections are; arguments as above."""
+    return straight(len(triads))._replace(flat=section_placement(spring, turns, triads, abscissae).flat)
+
+
 def _flats(spring: Spring, turn: np.ndarray, upwards: np.ndarray) -> np.ndarray:
     """`Placement.flat` of sections whose axes y and z rise by `upwards` along the spring's axis, shape (n, g, 2)."""
     steepness = np.linalg.norm(upwards, axis=-1)

@@ -10,7 +10,7 @@ from mpi4py import MPI
 
 from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.line import line_mesh
-from coilset.meshes.placement import refuse_sharp_bends, section_placement, straight
+from coilset.meshes.placement import chord_placement, refuse_sharp_bends, section_placement
 from coilset.model.case import Case
 from coilset.model.case.heat import HeatSpec
 from coilset.model.case.phases import AnyPhase, Phase, TimePhase
@@ -81,9 +81,10 @@ class Analysis:
         effort.check_memory(machine_memory())
         line = line_mesh(spring.centre_line(turns), comm)
         radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
-        section, placement = case.mesh.section, straight(len(turns) - 1)
-        if case.mesh.axis == "curved":
-            chords = chord_triads(np.diff(line.stations, axis=0))
+        section, chords = case.mesh.section, chord_triads(np.diff(line.stations, axis=0))
+        if case.mesh.axis == "chords":
+            placement = chord_placement(spring, turns, chords, GAUSS)
+        else:
             to_normal = section.kind != "plane" or bool(case.past)
             placement = section_placement(spring, turns, chords, GAUSS, to_normal)
             refuse_sharp_bends(placement, radius, turns)

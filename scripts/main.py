@@ -172,14 +172,14 @@ def sheet(
     ),
     force: bool = typer.Option(False, "--force", help="overwrite an existing figure"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
-    wires: bool = typer.Option(False, "--wires", help="list the standard wires"),
+    wires: bool = typer.Option(False, "--wires", help="list the standard wires, or all numbers of --wire"),
     pictures: bool = typer.Option(True, help="draw the Goodman diagram"),
 ) -> None:
     """Print rate, stresses, lengths and tolerances by the standards, beside the results of a run."""
     from coilset.scripts import sheet as sheets
 
     if wires:
-        sheets.list_wires()
+        sheets.list_wires(wire)
     else:
         sheets.sheet(case, results, wire, length, grade, surface, dynamic, out, force, settings, pictures)
 

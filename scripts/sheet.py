@@ -21,6 +21,8 @@ from coilset.model.standards.rows import Row, sections
 from coilset.model.standards.sheet import Sheet
 from coilset.model.standards.warnings import spring_warnings
 from coilset.model.standards.wires import names, wire
+from coilset.model.standards.wires.library import files
+from coilset.model.standards.wires.words import described
 from coilset.model.standards.working import presetting_warning
 from coilset.model.warning import Warning
 from coilset.scripts.target import results_folder
@@ -77,9 +79,21 @@ def sheet(
         console.print(f"Goodman diagram in {folder}{os.sep}{FIGURE}")
 
 
-def list_wires() -> None:
-    """Print the known wires, the range of their diameters, and how certain their strength is."""
+def list_wires(name: str | None = None) -> None:
+    """Print the known wires, their diameters and how certain their strength is, or all numbers of one of them.
+
+    Raises:
+        InputError: if there is no wire of this name.
+    """
     console = Console(highlight=False)
+    if name is not None:
+        known = wire(name)
+        console.print(f"[bold]{known.name}[/], d in mm")
+        for label, number, citation in described(known):
+            console.print(f"  {label:29} {number}\n  {'':29} [dim]{citation}[/]", soft_wrap=True)
+        for missing in files()[known.standard].missing:
+            console.print(f"  not found: {missing}", soft_wrap=True)
+        return
     for name in names():
         known = wire(name)
         ranges = ", ".join(f"{low:.4g} to {high:.4g}" for low, high in known.ranges)

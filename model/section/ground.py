@@ -77,7 +77,7 @@ def cut_section(segment: Segment, rule: DiskRule, radius: float, bend: float) ->
         bend: κ r, 0 for a section that ignores it.
     """
     y, z = rule.points.T
-    (a22, a23, by_twist_12), (a32, a33, by_twist_13) = segment.saint_venant.shear(rule.points, bend)
+    (a22, a23, by_twist_12), (a32, a33, by_twist_13) = segment.warping(bend).shear(rule.points)
     levers = radius * np.array([y, z, by_twist_13, -by_twist_12])
     areas = math.pi * radius**2 * rule.weights
     return np.array([*levers, areas]), np.array([1.0 - bend * y, a22, a23, a32, a33])

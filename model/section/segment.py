@@ -7,7 +7,6 @@ With the height ζ = cos φ above the axis along the normal and the place η = v
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -81,68 +80,59 @@ class Segment:
         axes = np.stack([np.array([n[1], -n[0]]) / across, n / half])
         return Basis.over(degree, *self.product(FINE, FINE), (1.0 - half) * n, axes)
 
-    @cached_property
-    def saint_venant(self) -> "SaintVenant":
-        """How it warps."""
-        return SaintVenant(self)
+    def warping(self, bend: float = 0.0) -> "Warping":
+        """How it warps in a wire of curvature `bend`, κ r."""
+        return Warping(self, bend)
 
 
-class SaintVenant:
+class Warping:
     """Warping w(y, z) along the wire for unit transverse shear strains γ2, γ3 and for unit twist φ′ of a segment.
 
-    Of an elastic straight wire, by Ritz's method: among the polynomials without rotation, ∫ w dA = ∫ y w dA =
-    ∫ z w dA = 0, those that minimise ∫ ½ |e + ∇w|² dA, where e is (1, 0), (0, 1) and (−z, y). At the disk's own centre,
-    not at the centre of shear: a twist about it goes with a transverse shear, which the rod finds by itself. Of the
-    whole disk this is the warping of `coilset.model.section.shape`.
+    Of an elastic wire of constant curvature κ, by Ritz's method. With g = 1 − κ y and e = (1, 0), (0, 1), (−z, y) its
+    shear strains are (γ12, γ13) = (e + κ w (1, 0))/g + ∇w, see `coilset.model.section.shape`, and w minimises
+    ∫ ½ |(γ12, γ13)|² g dA among the polynomials with ∫ w dA = ∫ y w dA = ∫ z w dA = 0. These conditions only rename γ2,
+    γ3 and φ′. A straight wire, κ = 0, has Saint-Venant's warping; with it a thin segment would be some (κ r)² too stiff
+    in a coil. The twist is about the disk's own centre, not about the centre of shear: with it goes a transverse shear,
+    which the rod finds by itself.
 
     Args:
         segment: Segment.
+        bend: κ r.
         degree: of the polynomials; with 6 the torsional stiffness is 2e-4 too high at half of a disk.
 
     Attributes:
-        area: over that of the disk.
-        centroid: (y, z).
-        second_moments: ∫ y² dA, ∫ y z dA, ∫ z² dA about the disk's centre, in π.
         stiffness: shear stiffness of (γ2, γ3, φ′) over G π r², with φ′ in 1/r, shape (3, 3).
     """
 
-    def __init__(self, segment: Segment, degree: int = 6) -> None:
-        self._basis = segment.basis(degree)
+    def __init__(self, segment: Segment, bend: float = 0.0, degree: int = 6) -> None:
+        self._basis, self._bend = segment.basis(degree), bend
         places, weights = segment.product(FINE, FINE)
-        y, z = places.T
-        self.area = float(weights.sum())
-        self.centroid = weights @ places / self.area
-        self.second_moments = np.array([weights @ (y * y), weights @ (y * z), weights @ (z * z)])
-        slopes = self._basis(places)[1:]
-        e = self._unwarped(y, z)
+        weights = weights / (1.0 - bend * places[:, 0])
+        e, slopes = self._unwarped(places), self._slopes(places)
         stiffness = np.einsum("ipk,p,ipl->kl", slopes, weights, slopes)
         self._coefficients = -np.linalg.solve(stiffness, np.einsum("ipk,p,ijp->kj", slopes, weights, e))
-        strains = e + np.einsum("ipk,kj->ijp", slopes, self._coefficients)
+        strains = self.shear(places)
         self.stiffness = np.einsum("ikp,p,ilp->kl", strains, weights, strains)
 
     @staticmethod
-    def _unwarped(y: np.ndarray, z: np.ndarray) -> np.ndarray:
+    def _unwarped(places: np.ndarray) -> np.ndarray:
         """(γ12, γ13) of plane sections for γ2, γ3 and φ′, shape (2, 3, points)."""
+        y, z = places.T
         zero, one = np.zeros_like(y), np.ones_like(y)
         return np.array([[one, zero, -z], [zero, one, y]])
 
+    def _slopes(self, places: np.ndarray) -> np.ndarray:
+        """g (γ12, γ13) of each polynomial as w, κ w (1, 0) + g ∇w, shape (2, points, polynomials)."""
+        value, of_y, of_z = self._basis(places)
+        g = 1.0 - self._bend * places[:, :1]
+        return np.array([self._bend * value + g * of_y, g * of_z])
+
     @property
     def torsion(self) -> float:
-        """Torsional stiffness over G r⁴ if no transverse force goes with it: Saint-Venant's J."""
+        """Torsional stiffness over G r⁴ if no transverse force goes with it: of a straight wire, Saint-Venant's J."""
         K = self.stiffness
         return float(np.pi * (K[2, 2] - K[2, :2] @ np.linalg.solve(K[:2, :2], K[:2, 2])))
 
-    def shear(self, places: np.ndarray, bend: float) -> np.ndarray:
-        """g (γ12, γ13) in a wire of curvature κ for unit γ2, γ3 and φ′, with g = 1 − κ y; see `shape`.
-
-        Args:
-            places: points (y, z), shape (points, 2).
-            bend: κ r.
-
-        Returns:
-            Shape (2, 3, points); lengths in wire radii.
-        """
-        value, slope_y, slope_z = np.einsum("ipk,kj->ijp", self._basis(places), self._coefficients)
-        y, z = places.T
-        g = 1.0 - bend * y
-        return self._unwarped(y, z) + np.array([bend * value + g * slope_y, g * slope_z])
+    def shear(self, places: np.ndarray) -> np.ndarray:
+        """g (γ12, γ13) for unit γ2, γ3 and φ′ at points (y, z), shape (points, 2) → (2, 3, points), in wire radii."""
+        return self._unwarped(places) + np.einsum("ipk,kj->ijp", self._slopes(places), self._coefficients)

@@ -23,12 +23,19 @@ def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
         spring: its spring.
         law: its material.
     """
-    return (*_renamed(case), *spring_warnings(spring), *_working(case, spring, law))
+    return (*_renamed(case), *_estimated(case), *spring_warnings(spring), *_working(case, spring, law))
 
 
 def _renamed(case: Case) -> Iterator[Warning]:
     for notice in case.notices():
         yield Warning("earlier name", notice.partition(":")[0], notice)
+
+
+def _estimated(case: Case) -> Iterator[Warning]:
+    if not isinstance(case.material, str):
+        name = case.material.wire
+        yield Warning("estimate", "material.wire", f"the hardening of {name} is an estimate from its minimum tensile "
+                      "strength; a test of the wire gives its own (coilset material fit)")  # fmt: skip
 
 
 def _working(case: Case, spring: Spring, law: Law) -> list[Warning]:

@@ -5,11 +5,14 @@ import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TextIO, TypeVar
+from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 import numpy as np
 
 from coilset.meshes.errors import InputError
+
+if TYPE_CHECKING:
+    from xarray import Dataset
 
 MIDDLE = (0.25, 0.75)  # part of the turns that counts as the body, away from the ends
 
@@ -24,6 +27,7 @@ class Found:
         residual: shear stress about the wire's axis in the released spring, mean over the outermost ring of section
             points and over the middle half of the turns; negative if it opposes the load's stress.
         ring: radius of that ring over the wire's radius.
+        growth: of the mean diameter at the least height of a snapshot, over whole turns, about the middle half, mm.
     """
 
     summary: dict[str, Any]
@@ -31,6 +35,7 @@ class Found:
     forces: np.ndarray
     residual: float | None
     ring: float | None
+    growth: float | None = None
 
     def get(self, name: str) -> float | None:
         """An entry of the summary; None if it is missing."""
@@ -72,8 +77,7 @@ def read(folder: str | Path) -> Found:
         forces = [0.0, *(float(row["force_N"]) for row in rows)]
     except (KeyError, TypeError, ValueError) as error:
         raise InputError(f"is not a result of coilset solve ({error})", "--results", folder) from None
-    residual, ring = _residual(folder / "points.nc")
-    return Found(summary, np.array(heights), np.array(forces), residual, ring)
+    return Found(summary, np.array(heights), np.array(forces), *_points(folder / "points.nc"))
 
 
 Parsed = TypeVar("Parsed")
@@ -87,26 +91,41 @@ def _read(path: Path, parse: Callable[[TextIO], Parsed]) -> Parsed:
         raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", "--results", path) from None
 
 
-def _residual(path: Path) -> tuple[float | None, float | None]:
-    """Residual shear about the wire's axis, signed as the load's, and the radius of its ring over the wire's."""
+def _points(path: Path) -> tuple[float | None, float | None, float | None]:
+    """`Found.residual`, `ring` and `growth`; None for each without the file."""
     if not path.exists():
-        return None, None
+        return None, None, None
     import xarray as xr
 
     with xr.open_dataset(path, engine="h5netcdf") as data:
-        force = data["force"].values
-        loaded = int(np.argmax(np.abs(force)))
-        if not force[loaded] or abs(force[-1]) > 1e-6 * abs(force[loaded]):
-            return None, None
-        turn = data["turn"].values
-        middle = 0.5 * (turn[1:] + turn[:-1]) / turn[-1]
-        body = (middle > MIDDLE[0]) & (middle < MIDDLE[1])
-        y, z = data["y"].values, data["z"].values
-        distance = np.hypot(y, z)
-        round_one = distance[len(distance) // 2, 0]  # of mid height, which no grinding has touched
-        outer = round_one > (1 - 1e-6) * round_one.max()
-        state = data["history"].values[[loaded, -1]]
-        weight = data["weight"].values[len(distance) // 2, 0]
+        return *_residual(data), _growth(data)
+
+
+def _growth(data: "Dataset") -> float:
+    """Over whole turns, whose mean is their centre wherever the spring has moved."""
+    turn, position = data["turn"].values, data["position"].values[..., :2]
+    whole = max(1.0, np.floor((MIDDLE[1] - MIDDLE[0]) * turn[-1]))
+    first = 0.5 * (turn[-1] - whole)
+    body = position[:, (turn >= first) & (turn < first + whole)]
+    radius = np.linalg.norm(body - body.mean(axis=1, keepdims=True), axis=-1).mean(axis=1)
+    return 2.0 * float(radius[int(np.argmin(data["height"].values))] - radius[0])
+
+
+def _residual(data: "Dataset") -> tuple[float | None, float | None]:
+    """Residual shear about the wire's axis, signed as the load's, and the radius of its ring over the wire's."""
+    force = data["force"].values
+    loaded = int(np.argmax(np.abs(force)))
+    if not force[loaded] or abs(force[-1]) > 1e-6 * abs(force[loaded]):
+        return None, None
+    turn = data["turn"].values
+    middle = 0.5 * (turn[1:] + turn[:-1]) / turn[-1]
+    body = (middle > MIDDLE[0]) & (middle < MIDDLE[1])
+    y, z = data["y"].values, data["z"].values
+    distance = np.hypot(y, z)
+    round_one = distance[len(distance) // 2, 0]  # of mid height, which no grinding has touched
+    outer = round_one > (1 - 1e-6) * round_one.max()
+    state = data["history"].values[[loaded, -1]]
+    weight = data["weight"].values[len(distance) // 2, 0]
     across = (state[..., 2] * y - state[..., 1] * z) / np.maximum(distance, 1e-300)
     at_load, released = across[:, body][..., outer].mean(axis=(1, 2, 3))
     # the rule's points on the unit disk: Σ w r² = ½ for a wire of radius 1

@@ -65,7 +65,9 @@ def _dimensions(sheet: Sheet) -> Iterator[Row]:
     yield Row("wire length l", nominal, "mm", "π D n_t", DERIVED, helix, "the helix is longer by 1/cos α")
     yield Row("mass m", 1e3 * en13906.mass(ρ, s.d, nominal), "g", "ρ π d² l/4", DERIVED, mass, "as the wire length")
     growth = en13906.outer_diameter_growth(s.d, s.D, s.pitch)
-    yield Row("growth of D to block", growth, "mm", "0.1 (m² − 0.8 m d − 0.2 d²)/D", DERIVED)
+    grown = sheet.found.growth if sheet.found and _was_at_block(sheet) else None
+    yield Row("growth of D to block", growth, "mm", "(m² − 0.8 m d − 0.2 d²)/(π² D)", DERIVED, grown,
+              f"mean of the body; the formula is for ends that turn{', these are held' * sheet.clamped}")  # fmt: skip
 
 
 def _spring(sheet: Sheet) -> Iterator[Row]:
@@ -87,7 +89,10 @@ def _spring(sheet: Sheet) -> Iterator[Row]:
               _why_block(sheet))  # fmt: skip
     travel = critical_travel(s.length, s.D, e.shear_modulus / e.young_modulus)
     formula = f"Haringx, ν = 0.5; to block {s.length - solid:.4g} mm"
-    yield Row("travel to buckling", travel if isfinite(travel) else None, "mm", formula, DERIVED, why="never buckles")
+    never = "never buckles by the formula"
+    why = "with its pitch, end turns and coils that touch, which the formula neglects" if isfinite(travel) else never
+    yield Row("travel to buckling", travel if isfinite(travel) else None, "mm", formula, DERIVED,
+              sheet.at_run("buckling_travel_mm"), why)  # fmt: skip
 
 
 def _was_at_block(sheet: Sheet) -> bool:
@@ -107,7 +112,15 @@ def _stresses(sheet: Sheet) -> Iterator[Row]:
     s, wire = sheet.spring, sheet.wire
     k, τ = en13906.stress_correction(s.index), sheet.stress(s.solid)
     found = sheet.at_run("shear_max_MPa") if _was_at_block(sheet) else None
-    yield Row("stress τc", τ, "MPa", "8 D Fc/(π d³)", DERIVED, found, "maximum true shear stress at a section point")
+    yield Row(
+        "stress τc",
+        τ,
+        "MPa",
+        "8 D Fc/(π d³)",
+        DERIVED,
+        found,
+        "maximum true shear stress on the surface of the middle turns",
+    )
     yield Row("stress correction k", k, "", "(w + 0.5)/(w − 0.75)", TWO)
     yield Row("corrected stress τkc", k * τ, "MPa", "k τc", TWO)
     if wire is None:
@@ -115,7 +128,8 @@ def _stresses(sheet: Sheet) -> Iterator[Row]:
         return
     strength, share = wire.entry.strength, wire.entry.block_stress
     yield Row("minimum tensile strength Rm", wire.strength(s.d), "MPa", wire.name, SHORT[strength.sure])
-    yield Row("allowed at block", wire.block_stress(s.d), "MPa", f"{share.at(s.d):g} Rm", SHORT[share.sure])
+    yield Row("allowed at block", wire.block_stress(s.d), "MPa", f"{share.at(s.d):g} Rm, of the {share.of}",
+              SHORT[share.sure])  # fmt: skip
 
 
 def _working(sheet: Sheet) -> Iterator[Row]:
@@ -146,10 +160,18 @@ def _why_force(sheet: Sheet, length: float) -> str:
 def _dynamics(sheet: Sheet) -> Iterator[Row]:
     s, e = sheet.spring, sheet.elastic
     f = en13906.natural_frequency(e.shear_modulus, e.density, s.d, s.D, s.n)
-    yield Row("natural frequency", f, "Hz", "d/(2π n D²) √(G/(2ρ)), ends held", DERIVED)
+    yield Row("natural frequency", f, "Hz", "d/(2π n D²) √(G/(2ρ)), ends held", DERIVED, _frequency(sheet),
+              "½ √(R/m) with the rate found and the helix's mass")  # fmt: skip
     work = sheet.found.work_to(s.solid + AT_BLOCK * s.d) if sheet.found and _was_at_block(sheet) else None
     yield Row("work to block", 1e-3 * en13906.energy(sheet.rate, s.length - s.solid), "J", "R s²/2", DERIVED,
               None if work is None else 1e-3 * work, "∫ F ds of the first compression, plastic work in it")  # fmt: skip
+
+
+def _frequency(sheet: Sheet) -> float | None:
+    """Of a half wave along the active turns, Hz, with the rate of the run; None without one."""
+    s, rate = sheet.spring, sheet.at_run("rate_N_per_mm")
+    active = en13906.mass(sheet.elastic.density, s.d, sheet.helix * s.n / s.turns)
+    return None if rate is None else 0.5 * sqrt(1e3 * rate / active)  # 1 N/mm = 10³ kg/s²
 
 
 def _endurance(sheet: Sheet) -> Iterator[Row]:

@@ -23,16 +23,20 @@ def gap_warnings(spring: Cylinder, lengths: Sequence[float], dynamic: bool = Fal
 
 
 def stress_warnings(spring: Cylinder, shear_modulus: float, lengths: Sequence[float], wire: Wire) -> list[Warning]:
-    """Lengths, mm, at which the nominal uncorrected stress exceeds that allowed for the wire at block."""
-    allowed = wire.block_stress(spring.d)
+    """Lengths, mm, at which the nominal stress exceeds that allowed for the wire at block.
+
+    It is corrected for the wire's curvature where the allowed one is meant so.
+    """
+    allowed, of = wire.block_stress(spring.d), wire.entry.block_stress.of
     rate = en13906.rate(shear_modulus, spring.d, spring.D, spring.n)
+    factor = en13906.stress_correction(spring.index) if of == "corrected stress" else 1.0
     found = []
     for length in lengths:
-        stress = en13906.stress(rate * (spring.length - length), spring.d, spring.D)
+        stress = factor * en13906.stress(rate * (spring.length - length), spring.d, spring.D)
         if stress > allowed:
             found.append(
-                Warning("stress", "loading", f"at {length:.4g} mm the nominal shear stress is {stress:.4g} N/mm², "
-                        f"above the {allowed:.4g} N/mm² allowed for {wire.name}", stress, allowed, "MPa")
+                Warning("stress", "loading", f"at {length:.4g} mm the nominal {of} is {stress:.4g} N/mm², above the "
+                        f"{allowed:.4g} N/mm² allowed for {wire.name}", stress, allowed, "MPa")
             )  # fmt: skip
     return found
 

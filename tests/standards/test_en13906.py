@@ -3,13 +3,11 @@
 import numpy as np
 import pytest
 from catalogue import CATALOGUE, G
-from scipy.optimize import brentq
+from derivations import E, closed_helix, haringx, helix_compliance, ν
 
 from coilset.model.standards import en13906
 from coilset.model.standards.buckling import critical_travel
 from coilset.model.standards.rate import pitch_compliance
-
-E, ν = 206000.0, 206000.0 / 163000.0 - 1
 
 
 def test_printed_sheet_of_helispring():
@@ -56,22 +54,6 @@ def test_stress_correction_agrees_with_others(w):
     assert en13906.stress_correction(w) == pytest.approx(göhner, rel=0.02)
 
 
-def haringx(length, D, seating, d=1.0, n=10.0):
-    """Travel at which F (1 + F/S) = π² B/(ν L)², by its rigidities and a root of this equation alone."""
-    C = en13906.rate(G, d, D, n) * length
-    inertia, polar = np.pi * d**4 / 64, np.pi * d**4 / 32
-    per_length = length / (np.pi * D * n)  # height for a length of wire
-    B = per_length * 2 / (1 / (E * inertia) + 1 / (G * polar))  # half of the turns is bent, half is twisted
-    # a coil that is pushed sideways bends in its own plane: ∫ (r cos φ)² r dφ/(EI) = π r³/(EI) a turn
-    S = length / n / (np.pi * (D / 2) ** 3 / (E * inertia))
-
-    def excess(ξ):
-        F, b, s = C * ξ, B * (1 - ξ), S * (1 - ξ)
-        return F * (1 + F / s) - np.pi**2 * b / (seating * length * (1 - ξ)) ** 2
-
-    return length * brentq(excess, 1e-9, 0.5 / (1 - G / E))
-
-
 @pytest.mark.parametrize(("slenderness", "seating"), [(5.4, 0.5), (8.0, 0.5), (15.0, 0.5), (3.0, 1.0), (6.0, 2.0)])
 def test_buckling_is_haringx_with_the_square(slenderness, seating):
     found = critical_travel(slenderness * 10.0, 10.0, G / E, seating)
@@ -96,33 +78,11 @@ def test_natural_frequency_is_that_of_a_half_wave():
     )
 
 
-def test_growth_of_the_diameter_is_the_standards():
-    d, D, m = 4.0, 32.0, 10.0
-    assert en13906.outer_diameter_growth(d, D, m) == pytest.approx(
-        0.1 * (m**2 - 0.8 * m * d - 0.2 * d**2) / D, rel=0.014
-    )
-
-
-def helix_compliance(angle, held):
-    """Travel for a force of 1 of a helix of radius 1, by the moments of force and couple along the wire, as vectors."""
-    φ = np.linspace(0, 2 * np.pi, 2001)
-    zero = np.zeros_like(φ)
-    tangent = np.stack([-np.cos(angle) * np.sin(φ), np.cos(angle) * np.cos(φ), np.sin(angle) + zero], axis=1)
-    arm = np.stack([np.cos(φ), np.sin(φ), zero], axis=1)
-    axis = np.array([0.0, 0.0, 1.0])
-    ds = (φ[1] - φ[0]) / np.cos(angle)
-
-    def work(first, second):
-        """∫ (Mt Mt′/G Ip + Mb Mb′/EI) ds with G Ip = 1, EI = 1 + ν."""
-        t1, t2 = (first * tangent).sum(1), (second * tangent).sum(1)
-        integrand = t1 * t2 + ((first * second).sum(1) - t1 * t2) / (1 + ν)
-        return 0.5 * (integrand[1:] + integrand[:-1]).sum() * ds
-
-    by_force, by_couple = np.cross(arm, axis), np.broadcast_to(axis, arm.shape)
-    travel = work(by_force, by_force)
-    if held:
-        travel -= work(by_force, by_couple) ** 2 / work(by_couple, by_couple)
-    return travel
+@pytest.mark.parametrize(("D", "m"), [(32.0, 10.0), (28.0, 8.3), (60.0, 12.0)])
+def test_growth_of_the_diameter_is_the_standards_and_that_of_a_helix(D, m):
+    found = en13906.outer_diameter_growth(4.0, D, m)
+    assert found == pytest.approx(0.1 * (m**2 - 0.8 * m * 4.0 - 0.2 * 4.0**2) / D, rel=0.014)  # 0.1 for 1/π²
+    assert found == pytest.approx(closed_helix(4.0, D, m, 0.25) - D, rel=0.02)  # to second order of the pitch angle
 
 
 @pytest.mark.parametrize("ends", ["turning", "held"])

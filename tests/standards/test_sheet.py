@@ -2,6 +2,7 @@
 
 import json
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from coilset.model.standards import found, goodman
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.rows import sections
 from coilset.model.standards.sheet import Sheet
-from coilset.model.standards.wires import wire
+from coilset.model.standards.wires import names, wire
 from coilset.scripts.sheet import list_wires, sheet
 
 # HeliSpring, spring S.198: wire DM of 5 mm, De 39.6, n 9.5, n_t 11.5, L0 105.8, 280 N at 88.5 mm, 620 N at 67.5 mm
@@ -48,19 +49,24 @@ def run_folder(folder, residual=-60.0):
     (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     history = "seat_height_mm,force_N\n80,400\n60,700\n80,350\n100,0\n"
     (folder / "history.csv").write_text(history, encoding="utf-8")
-    # two snapshots, eight elements, one Gauss section, a ring of four points at 0.9 of a wire of radius 2.5
+    # two snapshots, 46 elements, one Gauss section, a ring of four points at 0.9 of a wire of radius 2.5
     angle = np.arange(4) * np.pi / 2
-    y, z = (np.broadcast_to(2.25 * one, (8, 1, 4)) for one in (np.cos(angle), np.sin(angle)))
+    y, z = (np.broadcast_to(2.25 * one, (46, 1, 4)) for one in (np.cos(angle), np.sin(angle)))
     of_points = ("element", "gauss", "point")
-    state = np.zeros((2, 8, 1, 4, 7))
+    state = np.zeros((2, 46, 1, 4, 7))
     for i, shear in enumerate((-400.0, -residual)):  # about the axis; the load's is negative here
         state[i, ..., 1], state[i, ..., 2] = -shear * np.sin(angle), shear * np.cos(angle)
     state[:, [0, -1]] = 1e3  # the ends do not count
+    turn = np.linspace(0, 11.5, 47)
+    radius = np.array([17.3, 17.4])[:, None] + np.where(np.abs(turn - 5.75) > 4, 1.0, 0.0) * [[0], [1]]
+    moved = np.array([0.0, 2.0])[:, None]  # sideways, as a whole
+    position = np.stack([moved + radius * np.cos(2 * np.pi * turn), radius * np.sin(2 * np.pi * turn), 0 * radius], -1)
     xr.Dataset(
         {"history": (("snapshot", "element", "gauss", "point", "component"), state),
          "y": (of_points, y), "z": (of_points, z), "force": ("snapshot", [700.0, 0.0]),
-         "weight": (of_points, np.full((8, 1, 4), 0.25 * 0.5 / 0.9**2))},
-        coords={"turn": ("station", np.linspace(0, 11.5, 9))},
+         "height": ("snapshot", [105.8, 60.0]), "position": (("snapshot", "station", "axis"), position),
+         "weight": (of_points, np.full((46, 1, 4), 0.25 * 0.5 / 0.9**2))},
+        coords={"turn": ("station", turn)},
     ).to_netcdf(folder / "points.nc", engine="h5netcdf")  # fmt: skip
     return folder
 
@@ -69,6 +75,7 @@ def test_what_a_run_found(tmp_path):
     run = found.read(run_folder(tmp_path / "run"))
     assert run.residual == pytest.approx(-60.0)
     assert run.ring == pytest.approx(0.9)
+    assert run.growth == pytest.approx(0.2)
     assert run.force_at(90.0) == pytest.approx(175.0)  # on release, the last time it passed
     assert run.force_at(103.0) == pytest.approx(400 * 2.8 / 25.8)  # only on the way down
     assert run.force_at(50.0) is None
@@ -85,11 +92,25 @@ def test_values_that_were_found_stand_beside_the_formulas(tmp_path):
     assert shown["force at 67.5 mm"].why == "after setting R (L0 − L) is 525.9 N"
     assert shown["wire length l"].found == 1260.0
     assert shown["force at block Fc"].found is None  # it was not pressed to block
+    assert shown["growth of D to block"].found is None
+    # ½ √(R/m), m of 9.5 of 11.5 turns of 1260 mm: 16 N/mm, 7.85e-6 · π 5²/4 · 1040.9 mm = 0.16044 kg
+    assert shown["natural frequency"].found == pytest.approx(0.5 * np.sqrt(16e3 / 0.16044), rel=1e-4)
+    assert shown["travel to buckling"].found is None
     endured = shown["range that is endured"]
     line = goodman.line(wire("EN 10270-1 DH").endurance(), 5.0)
     assert endured.value == pytest.approx(line.stress_range(shown["lower stress τk1"].value))
     assert endured.found == pytest.approx(line.stress_range(shown["lower stress τk1"].value - 60.0))
     assert endured.found > endured.value
+
+
+def test_what_a_run_found_at_block_and_when_it_buckled(tmp_path):
+    run = found.read(run_folder(tmp_path / "run"))
+    run = replace(run, heights=np.append(run.heights, 57.5), forces=np.append(run.forces, 800.0),
+                  summary=run.summary | {"buckling_travel_mm": 41.0})  # fmt: skip
+    shown = rows(Sheet(PRINTED, DM.elastic(5.0), 1260.0, found=run))
+    assert shown["force at block Fc"].found == 700.0  # of the summary
+    assert shown["growth of D to block"].found == pytest.approx(0.2)
+    assert shown["travel to buckling"].found == 41.0
 
 
 def test_line_of_the_goodman_diagram():
@@ -141,6 +162,19 @@ def test_command_draws_nothing_without_a_wire(case, tmp_path, capsys):
 def test_wires_are_listed(capsys):
     list_wires()
     assert "EN 10270-2 VDSiCr" in capsys.readouterr().out
+    for name in names():
+        list_wires(name)
+        printed = capsys.readouterr().out
+        for _, entry in wire(name).entry.sourced():
+            assert wire(name).citation(entry) in printed
+    list_wires("EN 10270-2 FDC")
+    printed = capsys.readouterr().out
+    assert "d = 0.5 to 17: 1834 − 488 lg d, at most 1900 N/mm²" in printed
+    assert "0.56 Rm, uncorrected stress" in printed
+    assert "1e+07 times: upper stress 375 − 117 lg d over 0, 889 − 263 lg d over 669 − 183 lg d N/mm²" in printed
+    assert "not found: endurance of all wires of CrV, SiCr and SiCrV" in printed
+    with pytest.raises(InputError, match="'copper' is not a known wire"):
+        list_wires("copper")
 
 
 def test_wrong_questions(case, tmp_path):

@@ -5,8 +5,10 @@ from itertools import pairwise
 import pytest
 
 from coilset.meshes.errors import InputError
+from coilset.model.entries.yaml import read_data
 from coilset.model.standards.wires import names, wire
 from coilset.model.standards.wires.file import WireFile, with_common
+from coilset.model.standards.wires.library import FOLDER
 
 # Least strengths of EN 10270-1, N/mm², some rows of the tables of springcalc 0.1.24, which are rounded to 10
 TABLES = {
@@ -69,6 +71,28 @@ def test_strength_falls_with_the_diameter_and_moduli_are_those_of_steel():
         assert 7.8e-6 < elastic.density < 8.01e-6
 
 
+def bare_numbers(data, path=""):
+    """Places of the numbers of a file that no source and certainty stand beside."""
+    if isinstance(data, dict) and {"sources", "sure"} <= set(data):
+        return []
+    if isinstance(data, (dict, list)):
+        parts = data.items() if isinstance(data, dict) else enumerate(data)
+        return [found for name, part in parts for found in bare_numbers(part, f"{path}.{name}")]
+    return [path] if isinstance(data, (int, float)) and not isinstance(data, bool) else []
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.glob("*.yaml")), ids=lambda path: path.stem)
+def test_no_number_stands_alone_and_estimates_say_how_they_were_made(path):
+    raw = with_common(read_data(path, ""))
+    assert bare_numbers(raw) == []
+    assert bare_numbers({"wires": [{"density": {"value": 1.0, "sure": "one source"}}]}) == [".wires.0.density.value"]
+    for entry in WireFile.model_validate(raw).wires:
+        for name, number in entry.sourced():
+            assert number.remark or number.sure != "estimate", f"{entry.grade}, {name}"
+        # no standard states them, so they are estimates of every wire
+        assert {entry.elastic_limit.sure, entry.proof_stress.sure} == {"estimate"}
+
+
 def test_each_number_says_how_sure_it_is():
     for name in names():
         found = wire(name)
@@ -110,8 +134,8 @@ def test_numbers_without_their_sources_are_refused():
     number = {"value": 1.0, "sources": ["a"], "sure": "one source"}
     strength = {"pieces": [{"form": "power", "diameters": [1, 2], "at_1_mm": 1, "exponent": 1}], **number}
     strength.pop("value")
-    common = {name: number for name in ("young_modulus", "shear_modulus", "density", "block_stress", "elastic_limit",
-                                        "proof_stress")}  # fmt: skip
+    common = {name: number for name in ("young_modulus", "shear_modulus", "density", "elastic_limit", "proof_stress")}
+    common["block_stress"] = number | {"of": "uncorrected stress"}
     file = {"standard": "S", "title": "T", "sources": {"a": "A"}, "common": common,
             "wires": [{"grade": "G", "strength": strength}]}  # fmt: skip
     assert WireFile.model_validate(with_common(file)).wires[0].strength.at(2.0) == 0.5

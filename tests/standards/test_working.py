@@ -61,6 +61,17 @@ def test_stress():
     assert "allowed for EN 10270-1 SH" in found.message
 
 
+def test_stress_of_american_wire_is_corrected():
+    """Shigley's table 10-6: 45 % of Rm for music wire, with the correction for curvature in the stress."""
+    known, spring = wire("ASTM A228"), cylinder(free_length=90.0)
+    # G = 80,000: τ = 18.086 s; k = 8.5/7.25; Rm of the table at 4 mm, between 1744 and 1717
+    bound = 0.45 * known.strength(4.0) / (18.086 * 8.5 / 7.25)
+    assert stress_warnings(spring, 80000.0, [90 - bound + 0.1], known) == []
+    (found,) = stress_warnings(spring, 80000.0, [90 - bound - 0.1], known)
+    assert "the nominal corrected stress is" in found.message
+    assert found.limit == pytest.approx(0.45 * 1726, rel=5e-3)
+
+
 def test_presetting():
     assert presetting_warning(3.3, 32.0) is None
     found = presetting_warning(1.6, 32.0)

@@ -40,12 +40,12 @@ STEPS = 8
 
 def run(study: Study) -> None:
     """Torsion, rates, and a plastic coil."""
-    half = Segment(0.0, (0.0, 1.0)).saint_venant
+    half = Segment(0.0, (0.0, 1.0)).warping()
     study.check("half a disk, J/r⁴", half.torsion, 0.5 * np.pi - 4.0 / np.pi, "Fourier series of the stress function",
                 2e-3)  # fmt: skip
     for level in LEVELS:
         lower = torsion_constant(section(level, 16.0)) / RADIUS**4
-        ours = Segment(level, (0.0, 1.0)).saint_venant.torsion
+        ours = Segment(level, (0.0, 1.0)).warping().torsion
         study.check(f"flat at {level:g} r, J/r⁴", ours, lower, "stress function, finite elements", 2e-3)
     law = library.load("elastic")
     for index, tolerance in ((8.0, 1.2e-2), (4.0, 5e-2)):

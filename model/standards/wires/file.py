@@ -54,6 +54,15 @@ class Number(Sourced):
         return self.values[min(bisect_left(self.up_to, diameter), len(self.values) - 1)]
 
 
+class Allowable(Number):
+    """A share of Rm that a shear stress may reach at block, and which stress that is.
+
+    EN 13906-1 limits the uncorrected stress 8 D F/(π d³), American handbooks that with the correction k.
+    """
+
+    of: Literal["uncorrected stress", "corrected stress"]
+
+
 class Tolerance(Sourced):
     """Tolerance of the wire's diameter, mm, by ranges of diameters."""
 
@@ -178,7 +187,7 @@ class WireEntry(Strict):
     density: Number
     shear_modulus_decrease: Number | None = None
     strength: Strength
-    block_stress: Number
+    block_stress: Allowable
     elastic_limit: Number
     proof_stress: Number
     diameter_tolerance: Tolerance | None = None

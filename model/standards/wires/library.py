@@ -47,7 +47,7 @@ def wire(name: str) -> Wire:
         raise InputError(f"'{shortened(name)}' is not a known wire; {known}", "material.wire")
     name = by_key[_key(name)]
     file, entry = _wires()[name]
-    return Wire(name, entry, file.sources)
+    return Wire(name, file.standard, entry, file.sources)
 
 
 def _key(name: object) -> str:

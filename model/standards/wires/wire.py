@@ -15,11 +15,13 @@ class Wire:
 
     Attributes:
         name: standard and grade, such as `EN 10270-1 SH`.
+        standard: the first of them, the name of its file.
         entry: its numbers with their sources.
         sources: the meaning of the keys of the sources.
     """
 
     name: str
+    standard: str
     entry: WireEntry
     sources: dict[str, str]
 
@@ -58,7 +60,7 @@ class Wire:
         return None if decrease is None else 1 - decrease.at(1.0) * (temperature - ROOM_TEMPERATURE)
 
     def block_stress(self, diameter: float) -> float:
-        """Uncorrected shear stress allowed at block, N/mm²."""
+        """Shear stress allowed at block, N/mm²: of the stress that `entry.block_stress.of` names."""
         return self.entry.block_stress.at(diameter) * self.strength(diameter)
 
     def diameter_tolerance(self, diameter: float) -> float | None:

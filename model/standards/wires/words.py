@@ -1,0 +1,82 @@
+"""The numbers of a wire in words, each with its certainty and its sources."""
+
+from collections.abc import Sequence
+
+from coilset.model.standards.wires.file import (
+    Endurance,
+    Logarithm,
+    Number,
+    Power,
+    Sourced,
+    Steps,
+    Strength,
+    Table,
+    Tolerance,
+)
+from coilset.model.standards.wires.wire import Wire
+
+LABELS = {
+    "young_modulus": ("Young's modulus E", "N/mm²"),
+    "shear_modulus": ("shear modulus G", "N/mm²"),
+    "density": ("density", "kg/mm³"),
+    "shear_modulus_decrease": ("decrease of G over its value", "1/K"),
+    "strength": ("minimum tensile strength Rm", "N/mm²"),
+    "block_stress": ("shear stress allowed at block", "Rm"),
+    "elastic_limit": ("elastic limit in tension", "Rm"),
+    "proof_stress": ("0.2 % proof stress", "Rm"),
+    "diameter_tolerance": ("tolerance of the diameter ±", "mm"),
+}
+
+
+def described(wire: Wire) -> list[tuple[str, str, str]]:
+    """What, the number over the diameter d in mm, and its certainty with sources, of all that is known of a wire."""
+    found = []
+    for name, entry in wire.entry.sourced():
+        label, unit = LABELS.get(name, (name, "N/mm²"))
+        found.append((label, f"{_number(entry)} {unit}{_which(entry)}", wire.citation(entry)))
+    return found
+
+
+def _which(entry: Sourced) -> str:
+    of = getattr(entry, "of", None)
+    return f", {of}" if of else ""
+
+
+def _number(entry: Sourced) -> str:
+    match entry:
+        case Number(value=None, up_to=tuple() as ends, values=tuple() as values):
+            return _over(ends, values)
+        case Number():
+            return f"{entry.value:g}"
+        case Tolerance():
+            return _over(entry.up_to, entry.plus_minus)
+        case Strength():
+            most = f", at most {entry.greatest:g}" if entry.greatest else ""
+            return "; ".join(_piece(piece) for piece in entry.pieces) + most
+        case Endurance():
+            points = {"0": entry.at_zero, _lg(entry.knee): entry.limit}
+            cycle = ", ".join(f"{_lg(upper)} over {lower}" for lower, upper in points.items())
+            return f"{entry.cycles:g} times: upper stress {cycle}"
+    raise TypeError(type(entry))
+
+
+def _piece(piece: Logarithm | Power | Table | Steps) -> str:
+    low, high = piece.diameters
+    match piece:
+        case Logarithm():
+            text = _lg((piece.at_1_mm, piece.per_decade))
+        case Power():
+            text = f"{piece.at_1_mm:g}/d^{piece.exponent:g}"
+        case Table():
+            text = f"table from {piece.values[0]:g} to {piece.values[-1]:g}"
+        case Steps():
+            text = f"steps from {piece.values[0]:g} to {piece.values[-1]:g}"
+    return f"d = {low:g} to {high:g}: {text}"
+
+
+def _lg(pair: tuple[float, float]) -> str:
+    return f"{pair[0]:g} − {pair[1]:g} lg d"
+
+
+def _over(ends: Sequence[float], values: Sequence[float]) -> str:
+    return ", ".join(f"to d = {end:g}: {value:g}" for end, value in zip(ends, values, strict=True))
