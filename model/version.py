@@ -14,11 +14,14 @@ def versions() -> str:
 
 
 def _first(packages: tuple[str, ...]) -> str:
-    from importlib import metadata
+    from importlib import import_module, metadata
 
     for package in packages:
         try:
             return metadata.version(package)
         except metadata.PackageNotFoundError:
             continue
-    return ""
+    try:  # as petsc4py within the wheel of DOLFINx, which has no metadata of its own
+        return str(import_module(packages[0]).__version__)
+    except (ImportError, AttributeError):
+        return ""

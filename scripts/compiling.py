@@ -12,27 +12,30 @@ import logging
 import os
 import subprocess
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 
 from coilset.model.caches import SOURCES, load_without_compiler
 from coilset.model.processes import end_with_parent, first_rank
 
-NOTICE = "coilset: compiling forms and kernels, once, about a minute ..."
+NOTICE = "coilset: compiling forms and kernels, once after an installation or a change, one to three minutes ..."
+NOTICE_OF_PART = "coilset: compiling what this command needs, once ..."
 COMPILE = [sys.executable, "-m", "coilset.scripts", "compile"]
 OF_A_RANK = ("OMPI_", "PMI", "PRTE_")  # variables by which mpirun tells a process that it is a rank
 
 
 class Announcement(logging.Handler):
-    """Prints NOTICE at the first sign of a compiler: a log record of FFCx, or an event of numba.
+    """Prints a notice at the first sign of a compiler: a log record of FFCx, or an event of numba.
 
     Args:
         say: prints a line.
+        notice: the line.
     """
 
-    def __init__(self, say: Callable[[str], None]):
+    def __init__(self, say: Callable[[str], None], notice: str = NOTICE_OF_PART):
         super().__init__(logging.INFO)
-        self.say, self.said = say, False
+        self.say, self.notice, self.said = say, notice, False
 
     def emit(self, record: logging.LogRecord) -> None:
         """FFCx reports its stages, for forms that are not in its cache; its warnings are the user's."""
@@ -45,7 +48,7 @@ class Announcement(logging.Handler):
         """Once."""
         if not self.said:
             self.said = True
-            self.say(NOTICE)
+            self.say(self.notice)
 
 
 def _to_stderr(line: str) -> None:
@@ -70,6 +73,7 @@ def compile_first(check: Callable[[], object] = bool, say: Callable[[str], None]
         return
     check()
     say(NOTICE)
+    begun = time.monotonic()
     environment = {name: value for name, value in os.environ.items() if not name.startswith(OF_A_RANK)}
     with contextlib.suppress(OSError):  # if nothing can be stored, each process compiles for itself
         done.parent.mkdir(parents=True, exist_ok=True)
@@ -78,6 +82,8 @@ def compile_first(check: Callable[[], object] = bool, say: Callable[[str], None]
             if not done.exists():
                 subprocess.run(COMPILE, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                                stderr=subprocess.DEVNULL, check=False, preexec_fn=end_with_parent)  # fmt: skip
+    if done.exists():
+        say(f"coilset: compiled in {time.monotonic() - begun:.0f} s")
 
 
 def compiled() -> Path:
@@ -86,12 +92,12 @@ def compiled() -> Path:
     return Path(os.environ["NUMBA_CACHE_DIR"]) / f"compiled-{kind.hexdigest()[:16]}"  # see coilset.model.caches
 
 
-def announce_compiling(say: Callable[[str], None] = _to_stderr) -> Announcement:
-    """Announce the first compilation of this process."""
+def announce_compiling(say: Callable[[str], None] = _to_stderr, notice: str = NOTICE_OF_PART) -> Announcement:
+    """Announce the first compilation of this process by a line."""
     load_without_compiler()
     from numba.core import event
 
-    announcement = Announcement(say)
+    announcement = Announcement(say, notice)
 
     class Compiling(event.Listener):
         """Functions that numba loads from its cache cause no such event."""

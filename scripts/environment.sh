@@ -6,7 +6,7 @@
 # COILSET_RELEASE=sid asks for the private Debian of that release, whatever else there is.
 # shellcheck shell=bash
 
-modules="dolfinx petsc4py mpi4py gmsh meshio pyvista numba scipy pydantic typer rich xarray h5netcdf h5py yaml matplotlib pytest"
+modules="dolfinx petsc4py mpi4py gmsh meshio pyvista numba scipy pydantic typer rich xarray h5netcdf h5py yaml matplotlib jinja2 plotly pytest hypothesis"
 ways="coilset needs DOLFINx >= 0.9, from conda or pip (no root needed) or as root from Debian; here is none. Ways to get one:
   conda, no root needed      conda env create -f environment.yml; conda activate coilset
   no conda, no root          install Miniforge into your home folder, then as above
@@ -32,7 +32,9 @@ find_environment() {
         return
     fi
     if ! ready; then
-        case " $* " in *' --help '* | *' -h '* | *' --version '* | '  ') printf '%s\n' "$ways"; exit 0 ;; esac
+        case " $* " in *' --help '* | *' -h '* | *' --version '* | '  ') printf '%s\n' "$ways" ${near:+"$near"}; exit 0 ;; esac
+        [ -z "${COILSET_PYTHON:-}" ] || [ -n "${COILSET_RELEASE:-}" ] ||
+            fail "COILSET_PYTHON: ${near:-$first is no Python with DOLFINx >= 0.9}"
         make_environment
         made=yes
     fi
@@ -62,16 +64,16 @@ remember() {
     printf '%s\n' "$kind" "$python" "${facts[@]}" > "$found.$$" && mv "$found.$$" "$found"
 }
 
-ready() { # is there an environment? Sets kind, python and the facts that this rests on
+ready() { # is there an environment? Sets kind, python and the facts that this rests on, or what is near to one
     local candidate
-    facts=()
+    facts=() near=''
     if [ -z "${COILSET_RELEASE:-}" ]; then
         for candidate in "$first" /usr/bin/python3; do
-            [ -x "$candidate" ] || continue
-            if complete "$candidate"; then
+            if [ -x "$candidate" ] && complete "$candidate"; then
                 kind=directly python=$candidate
                 return
             fi
+            [ -z "${COILSET_PYTHON:-}" ] || return 1 # no other in place of what the user names
         done
     fi
     private_root_complete && kind=private_root python=/usr/bin/python3
@@ -80,17 +82,23 @@ ready() { # is there an environment? Sets kind, python and the facts that this r
 complete() { # has this Python every module, and DOLFINx >= 0.9? Where it looks for them is added to the facts
     local line enough=''
     while read -r line; do
-        if [ "$line" = enough ]; then enough=yes; else facts+=("$line"); fi
+        case "$line" in
+            enough) enough=yes ;;
+            has\ *) near=${near:-$1 $line} ;;
+            *) facts+=("$line") ;;
+        esac
     done < <(PYTHONPATH='' exec "$1" - $modules 2> /dev/null << 'PYTHON'
 import importlib.metadata, importlib.util, os, sys
 print(os.path.realpath(sys.executable), *(path for path in sys.path if os.path.isdir(path)), sep="\n")
-missing = [name for name in sys.argv[1:] if importlib.util.find_spec(name) is None]
 try:
     version = importlib.metadata.version("fenics-dolfinx")
 except importlib.metadata.PackageNotFoundError:
     version = importlib.metadata.version("dolfinx-solver-real")  # its wheel on PyPI
-if not missing and tuple(map(int, version.split(".")[:2])) >= (0, 9):
-    print("enough")
+missing = [name for name in sys.argv[1:] if importlib.util.find_spec(name) is None]
+if tuple(map(int, version.split(".")[:2])) < (0, 9):
+    print(f"has DOLFINx {version}; 0.9 or later is needed")
+else:
+    print(f"has DOLFINx, but not {', '.join(missing)}" if missing else "enough")
 PYTHON
     )
     [ -n "$enough" ]
@@ -105,7 +113,7 @@ make_environment() {
     local id version
     read -r id version <<< "$(distribution)"
     if [ "$(id -u)" != 0 ] || { [ "$id" != debian ] && [ "$id" != ubuntu ]; }; then
-        printf '%s\n' "$ways" >&2
+        printf '%s\n' "$ways" ${near:+"$near"} >&2
         exit 2
     fi
     if [ -z "${COILSET_RELEASE:-}" ] && { { [ "$id" = debian ] && [ "$version" -ge 13 ]; } ||
@@ -119,6 +127,7 @@ make_environment() {
 
 install_here() {
     mkdir -p "$COILSET_CACHE"
+    log=$COILSET_CACHE/packages.log
     say "installing DOLFINx, PETSc, gmsh and the rest from the distribution's packages (once, some minutes) ..."
     export DEBIAN_FRONTEND=noninteractive
     quietly apt-get update
@@ -126,8 +135,7 @@ install_here() {
     quietly apt-get install -y --no-install-recommends $(packages)
 }
 
-quietly() { # run with the output in a log file, a dot every five seconds, and the log's end if it fails
-    local log=$COILSET_CACHE/environment.log
+quietly() { # run with the output in the file $log, a dot every five seconds, and the log's end if it fails
     "$@" > "$log" 2>&1 &
     local job=$! ticks=0
     trap 'kill "$job" 2> /dev/null' INT TERM

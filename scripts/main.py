@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from coilset.meshes.errors import CoilsetError, InputError, printable
 from coilset.model.processes import first_rank
 from coilset.scripts.beginning import announce_begin
-from coilset.scripts.compiling import announce_compiling, compile_first, compiled
+from coilset.scripts.compiling import NOTICE, announce_compiling, compile_first, compiled
 from coilset.scripts.material import app as material
 from coilset.scripts.output import Output, output_closed
 from coilset.scripts.plain import typer
@@ -289,8 +289,8 @@ def bench(
 
 @app.command(name="compile")
 def compile_() -> None:
-    """Compile forms and kernels now, about a minute, so that the first run need not wait."""
-    announce_compiling()
+    """Compile forms and kernels now, one to three minutes, so that the first run need not wait."""
+    announce_compiling(notice=NOTICE)
     from coilset.scripts.warm import warm
 
     warm()

@@ -15,6 +15,7 @@ private_root_complete() { # has the private root every package? It may have more
 
 make_private_root() {
     mkdir -p "$COILSET_CACHE"
+    log=$private_root.log
     exec 9> "$private_root.lock"
     flock -n 9 || { say "another coilset is making the environment; waiting for it ..."; flock 9; }
     private_root_complete || install_tools

@@ -11,8 +11,6 @@ from pathlib import Path
 
 import pytest
 
-from coilset.scripts.compiling import NOTICE
-
 LAUNCHER = Path(__file__).resolve().parents[2] / "scripts" / "coilset"
 CACHE = Path(os.environ.get("COILSET_CACHE", Path.home() / ".cache" / "coilset"))
 LONG = ["--no-pictures"] + [
@@ -25,9 +23,11 @@ LONG = ["--no-pictures"] + [
     for part in ("--set", setting)
 ]
 PATIENCE = 240.0  # seconds; a busy machine takes long to start Python
+RELEASE = os.environ.get("COILSET_RELEASE") or "trixie"  # another has kernels of its own, still to be compiled
+PRIVATE = {"COILSET_RELEASE": RELEASE}
 
 in_private_root = pytest.mark.skipif(
-    not (CACHE / "debian-13" / "usr").is_dir() or os.geteuid() != 0 or not any(
+    not (CACHE / f"debian-{RELEASE.replace('trixie', '13')}" / "usr").is_dir() or os.geteuid() != 0 or not any(
         os.access(Path(folder) / "bwrap", os.X_OK) for folder in os.environ["PATH"].split(":")),
     reason="no private Debian here",
 )  # fmt: skip
@@ -97,9 +97,6 @@ def coilset(*arguments):
     return [str(LAUNCHER), *map(str, arguments)]
 
 
-PRIVATE = {"COILSET_RELEASE": "trixie"}
-
-
 @in_private_root
 @pytest.mark.parametrize(
     ("ranks", "number"),
@@ -120,12 +117,18 @@ def test_ending_the_outer_process_ends_all(start, example, ranks, number):
         judge_gentle_end(running)
 
 
+def complaints_of(running):
+    """Lines of the error output, but for those on compiling, which a first run has."""
+    lines = running.complaints.read_text().strip().splitlines()
+    return [line for line in lines if not line.startswith("coilset: compil")]
+
+
 def judge_gentle_end(running):
-    said, complaints = running.said.read_text(), running.complaints.read_text().strip().splitlines()
+    said, complaints = running.said.read_text(), complaints_of(running)
     assert running.process.returncode == 130, (said, complaints)
     assert "finishing this step" in said
     assert "--resume" in said
-    assert [line for line in complaints if line != NOTICE] == ["coilset: interrupted"]
+    assert complaints == ["coilset: interrupted"]
     summary = json.loads((running.folder / "out" / "summary.json").read_text())
     assert summary["steps"] >= 3
     assert not summary["complete"]
@@ -210,8 +213,7 @@ def test_a_closed_output_is_a_gentle_end(start, example, ranks):
     solve = " ".join(coilset("-n", ranks, "solve", example, "--out", "out", *(f"'{word}'" for word in LONG)))
     running = start(["bash", "-c", f"{solve} | head -n 3; exit ${{PIPESTATUS[0]}}"])
     assert running.process.wait(PATIENCE) == 128 + signal.SIGPIPE
-    complaints = running.complaints.read_text().strip().splitlines()
-    assert set(complaints) <= {"coilset: interrupted", NOTICE}
+    assert set(complaints_of(running)) <= {"coilset: interrupted"}
     assert len(running.said.read_text().splitlines()) == 3
     assert not json.loads((running.folder / "out" / "summary.json").read_text())["complete"]
 

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from coilset.model.version import __version__, _first
+
 LAUNCHER = Path(__file__).resolve().parents[2] / "scripts" / "coilset"
 
 
@@ -78,6 +80,51 @@ def test_without_root_nothing_is_made_and_the_ways_are_told(tmp_path):
     assert not list(cache.glob("debian*"))
 
 
+def test_a_python_that_is_named_is_not_replaced_by_another(tmp_path):
+    named = tmp_path / "python3"
+    named.write_text(f'#!/bin/sh\nexec {sys.executable} -S "$@"\n')  # without the packages of its site
+    named.chmod(0o755)
+    done = launch("examples", COILSET_PYTHON=str(named), COILSET_RELEASE="", COILSET_CACHE=str(tmp_path / "cache"))
+    assert done.returncode == 2
+    assert done.stderr == f"coilset: COILSET_PYTHON: {named} is no Python with DOLFINx >= 0.9\n"
+
+
+def test_what_a_python_with_dolfinx_lacks_is_named(tmp_path):
+    """Its metadata is there, and nothing else."""
+    packages = tmp_path / "packages"
+    (packages / "fenics_dolfinx-0.10.0.dist-info").mkdir(parents=True)
+    (packages / "fenics_dolfinx-0.10.0.dist-info" / "METADATA").write_text("Name: fenics-dolfinx\nVersion: 0.10.0\n")
+    (packages / "dolfinx").mkdir()
+    named = tmp_path / "python3"
+    named.write_text(f"""#!/bin/sh
+exec {sys.executable} -S -c 'import sys; del sys.argv[0]; sys.path.append("{packages}"); exec(sys.stdin.read())' "$@"
+""")
+    named.chmod(0o755)
+    done = launch("examples", COILSET_PYTHON=str(named), COILSET_RELEASE="", COILSET_CACHE=str(tmp_path / "cache"))
+    assert done.returncode == 2
+    assert done.stderr.startswith(f"coilset: COILSET_PYTHON: {named} has DOLFINx, but not petsc4py, mpi4py, gmsh, ")
+
+
 def test_version_names_what_the_numbers_rest_on():
     words = launch("--version").stdout
-    assert all(f"{name} " in words for name in ("coilset", "DOLFINx", "numba", "Python"))
+    assert all(f"{name} " in words for name in ("coilset", "DOLFINx", "petsc4py", "numba", "Python"))
+
+
+def test_a_package_without_metadata_tells_its_version_itself():
+    assert _first(("coilset.model.version",)) == __version__
+    assert _first(("no-package", "of-this-name")) == ""
+
+
+def test_each_environment_has_a_log_of_its_own(tmp_path):
+    """As root of a Debian where the tool fails that makes a private root."""
+    for name, script in {"id": "echo 0", "mmdebstrap": "echo broken; exit 1", "bwrap": "exit 1"}.items():
+        (tmp_path / name).write_text(f"#!/bin/sh\n{script}\n")
+        (tmp_path / name).chmod(0o755)
+    cache = tmp_path / "cache"
+    done = launch("examples", COILSET_RELEASE="nowhere", COILSET_CACHE=str(cache), COILSET_PYTHON="",
+                  PATH=f"{tmp_path}{os.pathsep}{os.environ['PATH']}")  # fmt: skip
+    assert done.returncode == 2
+    if not done.stderr.startswith("coilset needs DOLFINx"):  # no Debian or Ubuntu
+        log = cache / "debian-nowhere.log"
+        assert done.stderr.endswith(f"broken\ncoilset: that failed; the whole log is {log}\n")
+        assert log.read_text() == "broken\n"
