@@ -53,8 +53,8 @@ class ContactParts:
         deepest = max((part.penetration.max(initial=0.0) for part in limiting), default=0.0)
         if self.comm.size == 1:
             return parts, deepest, sum(part.closed for part in parts)
-        parts = [part.only(self.layout.acts_here(part.dofs)) for part in parts]
-        closed = sum(part.only(self.layout.begins_here(part.dofs)).closed for part in parts)
+        parts = [_those(part, self.layout.acts_here(part.dofs)) for part in parts]
+        closed = sum(np.count_nonzero(part.bears & self.layout.begins_here(part.dofs)) for part in parts)
         found = np.empty((self.comm.size, 2))
         self.comm.Allgather(np.array([deepest, closed]), found)
         return parts, float(found[:, 0].max()), int(found[:, 1].sum())
@@ -95,3 +95,8 @@ class ContactParts:
             values = memory[name]
             values[~np.isin(stations, self.layout.own_stations)] = 0.0
             self.comm.Allreduce(MPI.IN_PLACE, values)
+
+
+def _those(part: Contribution, elements: np.ndarray) -> Contribution:
+    """`part.only` of booleans, without a copy where they are all true."""
+    return part if elements.all() else part.only(elements)

@@ -71,7 +71,8 @@ class TangentMatrix:
         entries[: layout.owned] = self._entries
         for part in contributions:
             assert isinstance(layout, LineLayout)
-            dofs = layout.contact_dofs[part.dofs].astype(np.int64)
+            _, once = np.unique(self._contact_places([part]), return_index=True)  # several may join the same unknowns
+            dofs = layout.contact_dofs[part.dofs[once]].astype(np.int64)
             element, k = np.nonzero((dofs >= layout.start) & (dofs < layout.stop))
             rows = dofs[element, k] - layout.start
             places = np.unique(rows[:, None] * layout.size + dofs[element])  # row by row, each once
