@@ -229,12 +229,18 @@ class Search:
                 y = (self.off(there.values) - self.surrogate(to)) - (off - base)
                 felt = np.abs(slopes[:, column]).max() >= FLAT
                 E[:, column] = np.where(blind, y, 0.0 if felt else y) / (to[column] - u[column])
-                if np.abs(slopes[:, column] + E[:, column]).max() < FLAT * 100.0:
+                unfelt = np.abs(slopes[:, column] + E[:, column]).max() < FLAT * 100.0
+                if unfelt and not self._felt_elsewhere(column):
                     raise InputError(
                         "no condition depends on it: the results do not change from "
                         f"{self.value(u)[column]:.6g} to {self.value(to)[column]:.6g}; leave it out, or give a "
                         "condition that depends on it", f"find.{self.evaluator.names[column]}")  # fmt: skip
         return E
+
+    def _felt_elsewhere(self, column: int) -> bool:
+        """Whether the uniform rod depends on an unknown anywhere: presetting does nothing where all is elastic."""
+        places = np.random.default_rng(0).random((START_GRID**2, len(self.width)))
+        return any(np.abs(self.slopes(self.surrogate, place)[:, column]).max() > FLAT * 100.0 for place in places)
 
     def mapped(
         self, about: np.ndarray, off: np.ndarray, base: np.ndarray, E: np.ndarray

@@ -11,7 +11,8 @@ from coilset.model.results.record import Step
 
 SIDEWAYS = 0.05  # of the mean diameter: an axis that has deflected this far has buckled, however gradually
 NEAR = 0.95  # of the critical travel: an earlier deflection is due to ends that are not a whole number of turns apart
-WELL_ABOVE = 0.15  # of the first eigenvalue
+FALLEN = 0.5  # of the first eigenvalue
+APART = 0.04  # of the first eigenvalue: values closer to each other say little about the next ones
 # Of force times mean diameter. Springs that snapped set 3e-6 and more free; coils that slide over each other set 2e-10
 # free and less where they pass from one cubic of the wire's curve to the next, whose curvature jumps there.
 SNAPPED = 1e-8
@@ -56,14 +57,18 @@ def buckling(steps: Sequence[Step], diameter: float) -> Buckling | None:
 def critical_travel(steps: Sequence[Step]) -> float:
     """Travel at which the lowest eigenvalue of the straight spring vanishes, mm; NaN if it cannot be determined.
 
-    A spring whose axis deflects gradually stays stable: its eigenvalue turns away from zero. So values are taken while
-    they are well above zero, where there are enough of these.
+    A spring whose axis deflects gradually stays stable: its eigenvalue turns away from zero, and every parabola from
+    there on leads too far. So the least travel is taken of those to which parabolas through three values in a row
+    lead, once the eigenvalue has fallen far enough for them to be short.
     """
     values = [(step.travel_mm, value) for step in steps if (value := step.least_eigenvalue) is not None and value > 0.0]
     first = values[0][1] if values else 0.0
-    falling = [point for point, last in zip(values, [(0.0, np.inf), *values], strict=False) if point[1] < last[1]]
-    well_above = [point for point in falling if point[1] > WELL_ABOVE * first]
-    return vanishing(well_above if len(well_above) >= 3 else falling)
+    apart: list[tuple[float, float]] = []
+    for travel, value in values:
+        if not apart or value < apart[-1][1] - APART * first:
+            apart.append((travel, value))
+    travels = [vanishing(apart[:k]) for k in range(3, len(apart) + 1) if apart[k - 1][1] < FALLEN * first]
+    return min((travel for travel in travels if isfinite(travel)), default=vanishing(apart))
 
 
 def _has_buckled(step: Step, diameter: float, critical: float) -> bool:

@@ -87,6 +87,13 @@ def test_a_wish_out_of_reach_is_refused_with_the_range(search):
         find(one)
 
 
+def test_a_wish_out_of_reach_where_presetting_does_nothing_has_its_range_too(search):
+    """The nearest springs to one of 40 mm do not yield: they keep the 35 mm that they are wound to."""
+    one = search({"loading.0.to.height": [18, 34]}, {"free_length_after_mm": 40.0})
+    with pytest.raises(InputError, match=r"40 mm is out of reach: .* from about 2\d\.\d+ to 35 mm, the greatest with"):
+        find(one)
+
+
 def test_past_the_fully_plastic_torque_winding_makes_no_longer_spring(search):
     one = search(
         {"spring.pitch": [11, 16]}, {"free_length_after_mm": 24.0}, loading=[{"to": "block"}, {"to": {"force": 0}}]

@@ -112,6 +112,18 @@ def test_an_axis_pushed_off_long_before_has_not_buckled():
     assert buckling([replace(late, least_eigenvalue=3.0)], 40.0).travel_mm == 9.8  # one eigenvalue tells no better
 
 
+@pytest.mark.parametrize("push", [0.0, 1e-4, 6e-4])
+@pytest.mark.parametrize("number", [12, 16, 40])
+def test_critical_travel_of_a_column_that_is_pushed_aside(push, number):
+    """Koiter's symmetric fork, λ w + β w³ = ε s: the eigenvalue λ + 3 β w² turns away from zero, λ does not."""
+    critical, β, steps = 64.4, 1.6e-6, []
+    for s in np.linspace(0.0, 1.08 * critical, number + 1)[1:]:
+        λ = 0.03 * (1.0 - s / critical) * (1.0 + 0.2 * s / critical)
+        w = max(root.real for root in np.roots([β, 0.0, λ, -push * s]) if abs(root.imag) < 1e-9)
+        steps.append(Step(1, 0, 1.0, 90.0, s, s, 3, 4, 0, 0, 2, 0.0, least_eigenvalue=λ + 3.0 * β * w**2))
+    assert critical_travel(steps) == pytest.approx(critical, rel=1e-6 if push == 0.0 else 6e-3)
+
+
 def test_a_stocky_spring_whose_ends_push_its_axis_off_has_not_buckled():
     """No eigenvalue was asked for, since the standard's formula says never: 1.35 mm of 25 mm is no buckling."""
     step = Step(1, 0, 1.0, 60.0, 24.7, 291.6, 8, 9, 0, 0, 70, 0.0)

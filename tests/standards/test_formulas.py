@@ -70,16 +70,16 @@ SOURCES = {
     "force at block Fc": Source(force(27.0), 5e-5),
     "travel to buckling": Source(haringx(150.0, D, 0.5, d, n), 1e-8),  # of a spring of 150 mm, this one never does
     "stress τc": Source(stress(27.0), 5e-5),
-    "stress correction k": Source(K, 5e-3),
-    "corrected stress τkc": Source(K * stress(27.0), 5e-3),
+    "stress correction k": Source(K, 1e-3),
+    "corrected stress τkc": Source(K * stress(27.0), 1e-3),
     "minimum tensile strength Rm": Source(RM, 5 / RM),
     "allowed at block": Source(0.56 * RM, 5 / RM, (ONE,)),  # SpringOne alone
     "least sum of gaps Sa": Source(LN - TURNS * d, 1e-3),  # printed least length less coils of 3.6 mm
     "smallest length Ln": Source(LN + TURNS * 0.03, 1e-3),  # the same with d_max
     "natural frequency": Source(half_wave(PRINTED.R, DENSITY * torus_volume(d, D, n)), 1e-4),
     "work to block": Source(1e-3 * np.trapezoid(force(WAY), L0 - WAY), 1e-4),
-    "lower stress τk1": Source(K * stress(LONG), 5e-3),
-    "range τkh": Source(K * (stress(LN) - stress(LONG)), 5e-3),
+    "lower stress τk1": Source(K * stress(LONG), 1e-3),
+    "range τkh": Source(K * (stress(LN) - stress(LONG)), 1e-3),
     "range that is endured": Source(float(np.interp(K * stress(LONG), LOWER, UPPER)) - K * stress(LONG), 1e-2, (ONE,)),
     "mean diameter ±": Source(PRINTED.De_tolerance, 1e-9),
     "free length ±": Source(PRINTED.L0_tolerance, 0.005 / 1.44),
@@ -93,7 +93,7 @@ for _length in (LN, LONG):
     SOURCES |= {
         f"force at {_length:g} mm": Source(force(_length), 1e-4),
         f"stress τ, {_length:g} mm": Source(stress(_length), 1e-4),
-        f"corrected stress τk, {_length:g} mm": Source(K * stress(_length), 5e-3),
+        f"corrected stress τk, {_length:g} mm": Source(K * stress(_length), 1e-3),
         f"sum of gaps, {_length:g} mm": Source(_length - TURNS * d, 1e-9),
     }
 
