@@ -19,7 +19,7 @@ from pathlib import Path
 from coilset.model.caches import SOURCES, load_without_compiler
 from coilset.model.processes import end_with_parent, first_rank
 
-NOTICE = "coilset: compiling forms and kernels, once after an installation or a change, one to three minutes ..."
+NOTICE = "coilset: compiling forms and kernels, once after an installation or a change; this takes some minutes ..."
 NOTICE_OF_PART = "coilset: compiling what this command needs, once ..."
 COMPILE = [sys.executable, "-m", "coilset.scripts", "compile"]
 OF_A_RANK = ("OMPI_", "PMI", "PRTE_")  # variables by which mpirun tells a process that it is a rank

@@ -12,7 +12,7 @@ ways="coilset needs DOLFINx >= 0.9, from conda or pip (no root needed) or as roo
   no conda, no root          install Miniforge into your home folder, then as above
   pip, no root needed        Linux on x86-64 with Python >= 3.12: wheels into a venv, see docs/install.md
   Debian 13, Ubuntu 25.04    or later, as root: run any command, it installs the distribution's packages
-  older Debian and Ubuntu    as root: run any command, it makes a private Debian 13 in $COILSET_CACHE (3 GB)
+  older Debian and Ubuntu    as root: run any command, it makes a private Debian 13 in $COILSET_CACHE (3.5 GB)
 COILSET_PYTHON names a Python that has it but is not the first on the PATH."
 
 say() { printf 'coilset: %s\n' "$*" >&2; }

@@ -289,7 +289,7 @@ def bench(
 
 @app.command(name="compile")
 def compile_() -> None:
-    """Compile forms and kernels now, one to three minutes, so that the first run need not wait."""
+    """Compile forms and kernels now, which takes some minutes, so that the first run need not wait."""
     announce_compiling(notice=NOTICE)
     from coilset.scripts.warm import warm
 

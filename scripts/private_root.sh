@@ -34,7 +34,7 @@ install_tools() {
 make_it_anew() {
     local release=${COILSET_RELEASE:-trixie} partial=$private_root.partial
     say "making a private Debian ($release) with DOLFINx and the rest in"
-    say "$private_root (once, 2 to 4 minutes, 3 GB; delete the folder to be rid of it) ..."
+    say "$private_root (once, some minutes, 3.5 GB; delete the folder to be rid of it) ..."
     rm -rf "$partial"
     quietly mmdebstrap --variant=minbase --aptopt="$may_be_old" --include="$(packages | tr ' ' ',')" "$release" "$partial"
     cp "$scripts/packages.txt" "$partial$record"

@@ -75,3 +75,9 @@ def test_every_table_and_figure_of_the_thesis_is_placed(kind):
         found |= {number: path for number in re.findall(r"\d\.\d+", words)}
     assert found
     assert {number: path for number, path in found.items() if number not in named} == {}
+
+
+def test_every_page_that_the_code_names_is_there():
+    named = cited(r"\bdocs/[\w/-]+\.(?:md|ipynb)\b", ("model", "meshes", "verification", "scripts"))
+    assert len(named) > 5
+    assert {page: path for page, path in named.items() if not (REPOSITORY / page).is_file()} == {}
