@@ -14,6 +14,7 @@ from coilset.meshes.errors import CoilsetError, InputError, printable
 from coilset.model.processes import first_rank
 from coilset.scripts.beginning import announce_begin
 from coilset.scripts.compiling import NOTICE, announce_compiling, compile_first, compiled
+from coilset.scripts.ending import Ending
 from coilset.scripts.material import app as material
 from coilset.scripts.output import Output, output_closed
 from coilset.scripts.plain import typer
@@ -351,7 +352,7 @@ def run() -> None:
     # PETSc would treat a closed pipe, which Output handles, as a crash.
     os.environ["PETSC_OPTIONS"] = f"{os.environ.get('PETSC_OPTIONS', '')} -no_signal_handler"
     _listen()
-    status = 1
+    ending, status = Ending(), 1
     try:
         status = app(prog_name="coilset", standalone_mode=False) or 0
     except CoilsetError as error:
@@ -366,6 +367,8 @@ def run() -> None:
         _complain(f"{error.filename or 'a file'}: cannot be written: {error.strerror}")
     except typer.Exit as error:
         status = error.exit_code
+    except SystemExit as error:  # of ranks that have reported why
+        status = error.code if isinstance(error.code, int) else 1
     except (typer.Abort, KeyboardInterrupt):
         status = INTERRUPTED
     except Exception as error:
@@ -378,7 +381,7 @@ def run() -> None:
         status = 128 + signal.SIGPIPE  # like any program whose reader has gone
     elif status == INTERRUPTED:  # typer may have converted the exception to an exit code
         _complain("interrupted")
-    sys.stdout.flush()
+    ending.status = status
     sys.exit(status)
 
 
