@@ -368,7 +368,8 @@ def run() -> None:
     except typer.Exit as error:
         status = error.exit_code
     except SystemExit as error:  # of ranks that have reported why
-        status = error.code if isinstance(error.code, int) else 1
+        ending.status = error.code if isinstance(error.code, int) else 1
+        raise
     except (typer.Abort, KeyboardInterrupt):
         status = INTERRUPTED
     except Exception as error:
