@@ -7,6 +7,7 @@ With the height ζ = cos φ above the axis along the normal and the place η = v
 """
 
 from dataclasses import dataclass
+from functools import cache, cached_property, lru_cache
 
 import numpy as np
 
@@ -48,11 +49,16 @@ class Segment:
             over: number of points over the height.
             across: number of points across it.
         """
-        (x, a), (v, b) = (np.polynomial.legendre.leggauss(n) for n in (over, across))
+        (x, a), (v, b) = (_gauss(n) for n in (over, across))
         φ = 0.5 * self._last * (x[:, None] + 1.0)
         weights = 0.5 * self._last * a[:, None] * np.sin(φ) ** 2 * b / np.pi
         places = self._turned((np.sin(φ) * v).ravel(), (np.cos(φ) + 0.0 * v).ravel())
         return places, weights.ravel()
+
+    @cached_property
+    def fine(self) -> tuple[np.ndarray, np.ndarray]:
+        """Points and weights for integrals of polynomials."""
+        return self.product(FINE, FINE)
 
     def rule(self, points: int) -> DiskRule:
         """As many points as the rule of the whole disk has; those that no product takes weigh nothing."""
@@ -78,11 +84,11 @@ class Segment:
         across = np.sin(min(self._last, 0.5 * np.pi))
         n = np.array(self.normal)
         axes = np.stack([np.array([n[1], -n[0]]) / across, n / half])
-        return Basis.over(degree, *self.product(FINE, FINE), (1.0 - half) * n, axes)
+        return Basis.over(degree, *self.fine, (1.0 - half) * n, axes)
 
     def warping(self, bend: float = 0.0) -> "Warping":
         """How it warps in a wire of curvature `bend`, κ r."""
-        return Warping(self, bend)
+        return _warping(self, bend)
 
 
 class Warping:
@@ -106,12 +112,12 @@ class Warping:
 
     def __init__(self, segment: Segment, bend: float = 0.0, degree: int = 6) -> None:
         self._basis, self._bend = segment.basis(degree), bend
-        places, weights = segment.product(FINE, FINE)
+        places, weights = segment.fine
         weights = weights / (1.0 - bend * places[:, 0])
         e, slopes = self._unwarped(places), self._slopes(places)
         stiffness = np.einsum("ipk,p,ipl->kl", slopes, weights, slopes)
         self._coefficients = -np.linalg.solve(stiffness, np.einsum("ipk,p,ijp->kj", slopes, weights, e))
-        strains = self.shear(places)
+        strains = e + np.einsum("ipk,kj->ijp", slopes, self._coefficients)
         self.stiffness = np.einsum("ikp,p,ilp->kl", strains, weights, strains)
 
     @staticmethod
@@ -136,3 +142,14 @@ class Warping:
     def shear(self, places: np.ndarray) -> np.ndarray:
         """g (γ12, γ13) for unit γ2, γ3 and φ′ at points (y, z), shape (points, 2) → (2, 3, points), in wire radii."""
         return self._unwarped(places) + np.einsum("ipk,kj->ijp", self._slopes(places), self._coefficients)
+
+
+@cache
+def _gauss(number: int) -> tuple[np.ndarray, np.ndarray]:
+    return np.polynomial.legendre.leggauss(number)
+
+
+@lru_cache(maxsize=512)
+def _warping(segment: Segment, bend: float) -> Warping:
+    """Points of the section and those on its surface ask for the same, and so do runs of springs with the same ends."""
+    return Warping(segment, bend)
