@@ -61,7 +61,8 @@ add_all() {
 
 # The private root brings its own system folders; every other folder of this machine is seen through. This shell stays
 # above bubblewrap, which ends with it however it ends (SIGKILL too) and takes the command along. Signals are for the
-# command: bubblewrap ignores them, and this shell passes them on.
+# command: bubblewrap ignores or blocks them, and this shell passes them on. An interrupt that comes before the command has
+# begun waits for it, being blocked.
 enter_private_root() {
     enter() {
         local binds=() folder child reset=TERM
@@ -74,9 +75,9 @@ enter_private_root() {
         ignores_interrupts || reset+=,INT # ignored from above, as in a script's background: stays so
         # In a shell's background, SIGINT is ignored and the input is empty: both are given back.
         (
-            trap '' INT TERM
-            exec bwrap --die-with-parent --bind "$private_root" / "${binds[@]}" --dev /dev --proc /proc \
-                --ro-bind /sys /sys --setenv PATH /usr/local/bin:/usr/bin:/bin --setenv LANG C.UTF-8 \
+            trap '' TERM
+            exec env --block-signal=INT bwrap --die-with-parent --bind "$private_root" / "${binds[@]}" \
+                --dev /dev --proc /proc --ro-bind /sys /sys --setenv PATH /usr/local/bin:/usr/bin:/bin --setenv LANG C.UTF-8 \
                 --setenv HOME "$HOME" --setenv COILSET_PRIVATE_ROOT 1 --chdir "$PWD" \
                 -- env --default-signal=$reset --block-signal=INT "$@"
         ) <&0 &
@@ -84,14 +85,14 @@ enter_private_root() {
         trap 'in_foreground || pass_on INT' INT
         trap 'pass_on TERM' TERM
         while kill -0 "$child" 2> /dev/null; do wait "$child" || true; done
-        wait "$child"
+        wait "$child" || exit "${interrupted:-$?}"
     }
 }
 
 pass_on() { # a signal to the command in bubblewrap; while there is none yet, nothing is lost with bubblewrap itself
     local command=''
     { read -r command < "/proc/$child/task/$child/children"; } 2> /dev/null || true
-    kill -s "$1" "$command" 2> /dev/null || kill -s KILL "$child" 2> /dev/null || true
+    kill -s "$1" "$command" 2> /dev/null || { interrupted=130; kill -s KILL "$child" 2> /dev/null || true; }
 }
 
 ignores_interrupts() {

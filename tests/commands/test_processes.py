@@ -48,7 +48,7 @@ class Running:
         with open(self.said, "wb") as out, open(self.complaints, "wb") as err:
             self.process = subprocess.Popen(
                 command, cwd=folder, stdout=out, stderr=err, stdin=stdin, start_new_session=True,
-                env=os.environ | {name: value} | environment, preexec_fn=hear_interrupts,
+                env=os.environ | {"COILSET_RELEASE": "", name: value} | environment, preexec_fn=hear_interrupts,
             )  # fmt: skip
 
     def wait_for(self, words):
@@ -76,6 +76,8 @@ class Running:
         for number in self.alive():
             os.kill(number, signal.SIGKILL)
         self.process.wait()
+        if self.process.stdin:
+            self.process.stdin.close()
 
 
 @pytest.fixture
@@ -166,7 +168,10 @@ def test_ctrl_c_while_it_starts(start, example, ranks, seconds):
     running.until(lambda: not running.alive())
 
 
-def test_the_launcher_forgets_no_signal(start, tmp_path):
+@pytest.mark.parametrize(
+    "environment", [{"COILSET_PYTHON": sys.executable}, pytest.param(PRIVATE, marks=in_private_root)]
+)
+def test_the_launcher_forgets_no_signal(start, tmp_path, environment):
     """It reaches the shell alone, or the Python that has taken its place; this one only waits for it."""
     (tmp_path / "sitecustomize.py").write_text(
         "import os, signal, sys, time\n"
@@ -176,7 +181,7 @@ def test_the_launcher_forgets_no_signal(start, tmp_path):
         "    time.sleep(1000)\n"
     )
     for milliseconds in range(4, 52, 2):
-        running = start(coilset("solve"), PYTHONPATH=str(tmp_path), COILSET_PYTHON=sys.executable)
+        running = start(coilset("solve"), PYTHONPATH=str(tmp_path), **environment)
         time.sleep(1e-3 * milliseconds)
         os.kill(running.process.pid, signal.SIGINT)
         assert running.process.wait(PATIENCE) in (130, -signal.SIGINT), milliseconds
@@ -193,7 +198,8 @@ def test_an_interrupt_that_python_cannot_pass_on_is_raised_again(swallow):
         "def wait():\n    os.kill(os.getpid(), signal.SIGINT)\n    time.sleep(0.01)\n"
         f"try:\n    exec({swallow!r})\n    time.sleep(100)\nexcept KeyboardInterrupt:\n    print('heard')\n"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=PATIENCE)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=PATIENCE,
+                          preexec_fn=hear_interrupts)  # fmt: skip
     assert (done.stdout, done.stderr) == ("heard\n", "")
 
 
