@@ -197,9 +197,8 @@ class Law:
 
     def moduli(self, temperature: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """E and G, N/mm², at temperatures of the table, K; shape as `temperature`."""
-        rows = self._rows
-        return (np.interp(temperature, self._temperatures, rows[:, fn.YOUNG]),
-                np.interp(temperature, self._temperatures, rows[:, fn.SHEAR]))  # fmt: skip
+        at, table = np.asarray(temperature, float), self._temperatures
+        return np.interp(at, table, self._rows[:, fn.YOUNG]), np.interp(at, table, self._rows[:, fn.SHEAR])
 
     def thermal_strain(self, start: float, end: float) -> float:
         """Thermal strain α ΔT (3.1.2) from one temperature to another, K, with the mean α of both."""
