@@ -213,7 +213,10 @@ class Analysis:
     def _flow_of_heat(self, number: int, progress: float) -> None:
         """Let heat flow for the part of the phase's time that the last step took."""
         phase = self.case.loading[number]
-        if self.heat is not None and isinstance(phase, Phase) and phase.seconds is not None:
+        if self.heat is not None and self.heat.creeps:
+            self.heat.catch_up()
+            self.program.settle()
+        elif self.heat is not None and isinstance(phase, Phase) and phase.seconds is not None:
             before = max((step.progress for step in self.result.steps if step.phase == number), default=0.0)
             self.heat.advance((progress - before) * phase.seconds)
 
@@ -265,7 +268,8 @@ class Analysis:
             time = phase.duration
             return Stage(time.keep, None, steps, phase.label, time.length, phase.temperature)
         to, free_length = phase.to, self.spring.free_length
-        hours = (phase.seconds or 0.0) / 3600.0 if self.heat is None else 0.0  # heat flows after each step
+        timeless = self.heat is not None and not self.heat.creeps  # heat flows after each step
+        hours = 0.0 if timeless else (phase.seconds or 0.0) / 3600.0
         if to == "block":
             kind, value = "height", self.spring.block_height
         elif to.force is not None:

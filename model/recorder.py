@@ -77,7 +77,6 @@ class Recorder:
         pulls = self.setup.ends == "seats" and force < -faint_force(self.rod, greatest)
         lift_off = max(clearance(self.system, x), 0.0) if pulls else 0.0
         bears = 0.0 if lift_off else force  # the pull of the tip springs is ignored
-        hours, temperature, _ = self.rod.clock
         weakest = self._weakest()
         step = Step(taken.number, phase, taken.progress, height, self.setup.spring.free_length - height, bears,
                     taken.outcome.iterations, taken.outcome.evaluations, taken.outcome.failed_solves, taken.cuts,
@@ -86,7 +85,7 @@ class Recorder:
                     axis_offset(x, self.rod.line.stations, turns), weakest.value if weakest else None,
                     self._greatest_plastic_work(), lift_off,
                     self._least_rise.of(x), *self._errors(taken.outcome),
-                    hours=float(hours), temperature_K=float(temperature),
+                    hours=float(self.rod.clock[0]), temperature_K=self.rod.hottest,
                     load_loss_percent=self._load_loss(phase, force, loading))  # fmt: skip
         seats = self._seat_reactions(step.number, greatest)
         if weakest and (self.result.mode is None or weakest.value < self.result.mode.eigenvalue):

@@ -276,12 +276,7 @@ class Case(Strict):
         if self.heat and self.mesh.section.kind == "warping":
             raise ValueError("heat needs sections of fibres; give mesh.section.kind: curved or plane")
         for number, phase in enumerate(self.loading):
-            timed = isinstance(phase, Phase) and phase.seconds is not None
-            if self.heat and not isinstance(phase, Phase):
-                raise ValueError(f"loading.{number}: hold and heat give the whole wire one temperature, but with the "
-                                 "entry heat each place has its own; give a target and seconds, as in "
-                                 "{to: {force: 0}, seconds: 600}")  # fmt: skip
-            if self.heat and not timed:
+            if self.heat and isinstance(phase, Phase) and phase.seconds is None:
                 raise ValueError(f"loading.{number} takes no time, but heat flows; give a target and seconds")
         return self
 

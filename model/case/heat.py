@@ -21,5 +21,5 @@ class HeatSpec(Strict):
     surroundings: Annotated[
         float | None,
         Unit("K"),
-        Field(gt=0, description="temperature of air and seats, K; default: that of the spring at the start"),
+        Field(gt=0, description="temperature of air and seats at the start, K; default: that of the spring"),
     ] = None

@@ -122,9 +122,13 @@ class Hold(Duration):
 
 
 class Heat(Duration):
-    """Heat or cool the whole spring; its temperature changes linearly in time."""
+    """Heat or cool the whole spring, or with the entry `heat` of the case air and seats; linearly in time."""
 
-    to: Annotated[float, Unit("K"), Field(gt=0, description="temperature at the end, K")]
+    to: Annotated[
+        float,
+        Unit("K"),
+        Field(gt=0, description="temperature at the end, K; with the entry heat of the case that of air and seats"),
+    ]
 
 
 class TimePhase(Stepped):

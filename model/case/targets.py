@@ -60,6 +60,12 @@ def check_times(case: Case, law: Law) -> None:
         if not isinstance(phase, TimePhase):
             continue
         word = "heat" if phase.heat else "hold"
+        if law.creep is None and case.heat:
+            raise InputError(f"'{law.name}' does not creep; to let heat flow give a target and seconds, as in "
+                             "{to: {force: 0}, seconds: 600}", f"loading.{number}.{word}")  # fmt: skip
+        if law.is_adiabatic and not case.heat:
+            raise InputError(f"plastic work heats '{law.name}', and in time this heat goes somewhere; give the entry "
+                             "heat, or a material without heating", f"loading.{number}.{word}")  # fmt: skip
         if law.creep is None and (phase.heat or law.data.rate is None):
             raise InputError(f"'{law.name}' does not creep, so that time changes nothing; give a material with creep",
                              f"loading.{number}.{word}")  # fmt: skip

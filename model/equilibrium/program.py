@@ -8,6 +8,7 @@ from typing import Literal
 
 import numpy as np
 
+from coilset.meshes.errors import SolveError
 from coilset.model.body import Moment, PassesTime
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.continuation import Continuation
@@ -128,6 +129,19 @@ class LoadProgram:
             done = continuation.steps.position.done
             progress = (done if path.length is None else path.length(done)) / regular
             yield StepTaken(continuation.number, progress, cuts, outcome)
+
+    def settle(self) -> None:
+        """Find equilibrium again at the same height or force, after something else has changed the body; collective.
+
+        Raises:
+            SolveError: if there is none near.
+        """
+        control = self.control
+        load = control.to_force(control.force) if self.stage.kind == "force" else control.to_height(control.height)
+        outcome = self.continuation.attempt(load)
+        if not outcome.converged:
+            number = self.continuation.number
+            raise SolveError(f"no equilibrium with the temperatures after step {number}: {outcome.reason}")
 
     def redirect(self, stage: Stage) -> None:
         """Go to another target from here on, in place of the stage in progress."""

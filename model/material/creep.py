@@ -30,7 +30,7 @@ from collections import namedtuple
 import numpy as np
 from numba import njit
 
-from coilset.model.material.creep_flow import POWER, TEMPERATURE, TIME, direction, equivalent, flow, rate
+from coilset.model.material.creep_flow import POWER, direction, equivalent, flow, passes, rate
 from coilset.model.material.functions import elasticity
 from coilset.model.material.kernel import KERNEL
 from coilset.model.material.rod import return_map as rod_return_map
@@ -68,17 +68,18 @@ def creep_map(law: Creeping, old: np.ndarray, de: np.ndarray, new: np.ndarray, C
     """
     n, q = de.shape[0], law.viscous
     columns = 2 * n + 2
-    if q[TIME] == 0.0 and q[TEMPERATURE] == old[columns - 1]:
+    h, after = passes(q, old[columns - 1])
+    if h == 0.0 and after == old[columns - 1]:
         new[columns] = old[columns]
         return elastoplastic(law.plastic, old[:columns], de, new[:columns], C)
-    h, power, c0 = q[TIME], q[POWER], old[columns]
+    power, c0 = q[POWER], old[columns]
     u0 = c0 ** (1.0 / power)
     start, strain = np.empty(columns), np.empty(n)
     first, C1, A = np.empty(n), np.empty((n, n)), np.empty((n, n))
     end = End(np.empty(n), new[:columns], C1, A)
 
     # ---- first stage: σ₁ at γ, and S = γ dσ₁/dε
-    _warmed(law, old, de, GAMMA, start, strain)
+    _warmed(law.plastic, old, de, (GAMMA, after), start, strain)
     count = _stage(law, Part(start, strain, u0, GAMMA * h), end)
     if count < 0:
         return count
@@ -90,7 +91,7 @@ def creep_map(law: Creeping, old: np.ndarray, de: np.ndarray, new: np.ndarray, C
     d_u *= (1.0 - GAMMA) * h * rate(q, equivalent(new[:n]))[1]
 
     # ---- second stage
-    _warmed(law, old, de, 1.0, start, strain)
+    _warmed(law.plastic, old, de, (1.0, after), start, strain)
     strain -= first
     more = _stage(law, Part(start, strain, middle, GAMMA * h), end)
     if more < 0:
@@ -116,15 +117,19 @@ def elastoplastic(p: np.ndarray, old: np.ndarray, de: np.ndarray, new: np.ndarra
 
 
 @njit(**KERNEL)
-def _warmed(law: Creeping, old: np.ndarray, de: np.ndarray, part: float, start: np.ndarray, strain: np.ndarray) -> None:
+def _warmed(
+    p: np.ndarray, old: np.ndarray, de: np.ndarray, to: tuple[float, float], start: np.ndarray, strain: np.ndarray
+) -> None:
     """Start of a stage: the elastic strains of `old` at the stage's temperature, and the mechanical strain.
+
+    `to` is the part of the increment at the stage's end, and the temperature at the increment's end.
 
     σ = C(T) : ε_el, so that on heating the stress follows the elastic constants at once, and recovers on cooling.
     """
-    n, p = de.shape[0], law.plastic
+    n, part = de.shape[0], to[0]
     columns = 2 * n + 2
     before = old[columns - 1]
-    after = before + part * (law.viscous[TEMPERATURE] - before)
+    after = before + part * (to[1] - before)
     E0, G0, alpha0 = elasticity(p, before)
     E1, G1, alpha1 = elasticity(p, after)
     thermal = 0.5 * (alpha0 + alpha1) * (after - before)

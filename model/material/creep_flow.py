@@ -8,8 +8,11 @@ from numba import njit
 from coilset.model.material.kernel import KERNEL
 
 # The array of creep. TIME: the increment of t, or of t^p for time hardening; POWER: p, or 1; FORM: 0 power law, 1 sinh;
-# STRAIN, STRESS, EXPONENT: c₀, σ₀ in N/mm², N; TEMPERATURE: at the increment's end, K.
-TIME, POWER, FORM, STRAIN, STRESS, EXPONENT, TEMPERATURE = range(7)
+# STRAIN, STRESS, EXPONENT: c₀, σ₀ in N/mm², N; TEMPERATURE: at the increment's end, K. ENERGY: Q/R in K where each
+# point has a temperature of its own, which stays during the increment, and TIME is hours, not yet scaled; else SCALED.
+# T0: of the constants, K.
+TIME, POWER, FORM, STRAIN, STRESS, EXPONENT, TEMPERATURE, ENERGY, T0 = range(9)
+SCALED = -1.0
 
 
 @njit(**KERNEL)
@@ -32,6 +35,14 @@ def direction(s: np.ndarray) -> np.ndarray:
     for i in range(s.shape[0]):
         d[i] = (s[i] if normals == 1 else 1.5 * (s[i] - mean)) / size if i < normals else 3.0 * s[i] / size
     return d
+
+
+@njit(**KERNEL)
+def passes(q: np.ndarray, before: float) -> tuple[float, float]:
+    """Increment of scaled time, and temperature at its end, of a point of the temperature `before`, K."""
+    if q[ENERGY] == SCALED:
+        return q[TIME], q[TEMPERATURE]
+    return q[TIME] * math.exp(-q[ENERGY] * (1.0 / before - 1.0 / q[T0])), before
 
 
 @njit(**KERNEL)

@@ -4,7 +4,8 @@ Time is scaled with temperature (Orr, Sherby and Dorn, Trans. ASM 46, 1954): an 
 
     exp(−Q/R (1/T − 1/T₀))
 
-hours at the temperature T₀ of the constants.
+hours at the temperature T₀ of the constants. Where plastic work heats the points, each scales its own hours with its
+own temperature, which changes between the steps (`rod/heat.py`).
 """
 
 import math
@@ -12,6 +13,7 @@ import math
 import numpy as np
 
 from coilset.model.material.creep import Creeping
+from coilset.model.material.creep_flow import SCALED
 from coilset.model.material.file import Creep
 from coilset.model.material.functions import B1, K0, N_ROWS, NODES, ROW_LENGTH, ROWS_START
 
@@ -27,10 +29,11 @@ class CreepLaw:
     Args:
         data: the checked entries.
         plastic: parameter array of the law, `Law.parameters()`.
+        own: has each point a temperature of its own? Otherwise all have the clock's.
     """
 
-    def __init__(self, data: Creep, plastic: np.ndarray) -> None:
-        self.data, self._plastic, self._elastic = data, plastic, without_yield(plastic)
+    def __init__(self, data: Creep, plastic: np.ndarray, own: bool = False) -> None:
+        self.data, self.own, self._plastic, self._elastic = data, own, plastic, without_yield(plastic)
         self._gauss, self._weights = np.polynomial.legendre.leggauss(12)
 
     def worth(self, hours: float, start: float, end: float) -> float:
@@ -45,7 +48,8 @@ class CreepLaw:
         """The clock, shape (3,), at a time and temperature; the temperature has changed linearly since `before`."""
         if before is None:
             return np.array([hours, temperature, 0.0])
-        worth = self.worth(hours - before[HOURS], float(before[TEMPERATURE]), temperature)
+        passed = float(hours - before[HOURS])
+        worth = passed if self.own else self.worth(passed, float(before[TEMPERATURE]), temperature)
         return np.array([hours, temperature, before[WORTH] + worth])
 
     def over(self, start: np.ndarray, end: np.ndarray) -> Creeping:
@@ -55,7 +59,9 @@ class CreepLaw:
         if data.hardening == "time":
             time, power = float(end[WORTH] ** power - start[WORTH] ** power), 1.0
         form = 0.0 if data.form == "norton_bailey" else 1.0
-        viscous = np.array([time, power, form, data.strain, data.stress, data.exponent, end[TEMPERATURE]])
+        energy = data.activation_energy / GAS_CONSTANT if self.own else SCALED
+        viscous = np.array([time, power, form, data.strain, data.stress, data.exponent, end[TEMPERATURE], energy,
+                            data.temperature])  # fmt: skip
         return Creeping(self._plastic, self._elastic, viscous)
 
     def strain(self, stress: float, hours: float, temperature: float) -> float:

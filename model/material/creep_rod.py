@@ -20,7 +20,7 @@ import numpy as np
 from numba import njit
 
 from coilset.model.material.creep import GAMMA, MAX_ITERATIONS, TOLERANCE, Creeping, creep_map
-from coilset.model.material.creep_flow import POWER, TEMPERATURE, TIME, rate
+from coilset.model.material.creep_flow import POWER, TIME, passes, rate
 from coilset.model.material.functions import elasticity, functions
 from coilset.model.material.kernel import INLINE, KERNEL
 from coilset.model.material.rod import active, inner
@@ -48,8 +48,9 @@ def rod_map(
 @njit(**KERNEL)
 def _without_yield(law: Creeping, old: np.ndarray, de: Vector, new: np.ndarray, C: np.ndarray) -> int:
     """One increment if no stage yields; else, or if a stage finds no end, -1, and nothing of what is written counts."""
-    q, h, power = law.viscous, law.viscous[TIME], law.viscous[POWER]
-    before, change, c0 = old[7], q[TEMPERATURE] - old[7], old[8]
+    q, power = law.viscous, law.viscous[POWER]
+    h, after = passes(q, old[7])
+    before, change, c0 = old[7], after - old[7], old[8]
     u0 = c0 ** (1.0 / power)
     c0 = u0**power  # with the rounding of all others
     E0, G0, alpha0 = elasticity(law.plastic, before)

@@ -43,8 +43,8 @@ class Law:
         if len({at.isotropic == "none" for at in data.temperatures}) == 2:
             self._fail("temperatures", "isotropic is 'none' at some temperatures only; give it at all or at none")
         self._terms = self._back_stresses()
-        if data.heating and data.creep:
-            self._fail("creep", "there is none where plastic work heats the points, which takes no time; leave one out")
+        if data.heating and data.creep and data.creep.hardening == "time":
+            self._fail("creep.hardening", "points that plastic work heats have no common time; give strain")
         if spin and data.creep:
             self._fail("creep", "there is none with spin; leave out creep, or the spin")
         if data.rate:
@@ -194,6 +194,11 @@ class Law:
             known = f"only for {low:g} K" if low == high else f"for {low:g} to {high:g} K"
             self._fail("temperature", f"{temperature:g} K is outside the table of '{self.name}', known {known}")
         return float(temperature)
+
+    def moduli(self, temperature: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+        """E and G, N/mm², at temperatures of the table, K; shape as `temperature`."""
+        at, table = np.asarray(temperature, float), self._temperatures
+        return np.interp(at, table, self._rows[:, fn.YOUNG]), np.interp(at, table, self._rows[:, fn.SHEAR])
 
     def thermal_strain(self, start: float, end: float) -> float:
         """Thermal strain α ΔT (3.1.2) from one temperature to another, K, with the mean α of both."""

@@ -35,5 +35,5 @@ class RateLaw:
 def law_in_time(law: Law, plastic: np.ndarray) -> CreepLaw | RateLaw | None:
     """What the material does in time: creep, rate-dependent yield, or nothing."""
     if law.creep:
-        return CreepLaw(law.creep, plastic)
+        return CreepLaw(law.creep, plastic, law.is_adiabatic)
     return RateLaw(law.data.rate, plastic) if law.data.rate else None

@@ -4,20 +4,25 @@ Within a step the law is adiabatic: each point warms as it flows. Then the heat 
 step took, with what the sections got as its source, and all points of a section follow its mean. Differences across the
 section even out as their slowest mode does, with the rate 3.39 a/r² (1.84², the first zero of J₁′), a = k/(ρ c). The
 section's thermal strain reaches the rod in its next step. Stress follows G(T), E(T) in increments, as within the law.
+
+In a material that creeps it follows them at once, as in `creep`. There the surroundings' temperature may be driven, and
+equilibrium is found again after the heat of each step.
 """
 
 import numpy as np
 from mpi4py import MPI
 
+from coilset.model.material.creep_law import HOURS, TEMPERATURE
 from coilset.model.material.law import Law
 from coilset.model.rod.heat_equation import HeatConstants, HeatEquation
 from coilset.model.rod.kinematics import GAUSS
-from coilset.model.rod.rod import Rod
+from coilset.model.rod.rod import CLOCKS, Rod
 from coilset.model.section.fibres import FibreSections
 from coilset.model.section.ground import section_points
 from coilset.model.state import Where
 
 SLOWEST = 1.8411837813406593**2
+COLUMN = 7  # of the points' temperature
 FIELDS = "point_state", "surface_state"  # those of a finer path end like this, too
 
 
@@ -39,6 +44,7 @@ class WireHeat:
     Attributes:
         equation: HeatEquation.
         start_content: heat in the wire at the start, ∫ ρ c (T − T∞) dV, N mm; the same on every rank.
+        creeps: does the material creep, too? Then the rod's clock has the surroundings' temperature.
     """
 
     def __init__(self, rod: Rod, constants: HeatConstants) -> None:
@@ -60,7 +66,10 @@ class WireHeat:
         self._nodes = rod.state.add("temperature", np.full(len(rod.x), rod.temperature), Where.STATION)
         self.start_content = self.equation.content
         self._totals = rod.state.add("heat", np.zeros(2), Where.SHARED)  # generated, given off
-        self._clock = rod.state.add("heat_clock", rod.clock, Where.SHARED)
+        self._clock = rod.state.add("heat_clock", np.array([0.0, rod.temperature, 0.0]), Where.SHARED)
+        self.creeps = rod.in_time is not None
+        for clock in (rod.state[name] for name in CLOCKS if self.creeps):
+            clock.equilibrium[TEMPERATURE] = clock.trial[TEMPERATURE] = constants.surroundings
 
     @property
     def generated(self) -> float:
@@ -72,11 +81,17 @@ class WireHeat:
         """Heat that air and seats got up to now, N mm."""
         return float(self._totals.equilibrium[1])
 
+    def catch_up(self) -> None:
+        """Let heat flow up to the time of the rod's clock, with the surroundings' temperature there; collective."""
+        clock = self.rod.clock
+        self.equation.surroundings.value = clock[TEMPERATURE]
+        self.advance(3600.0 * float(clock[HOURS] - self._clock.equilibrium[HOURS]))
+
     def advance(self, seconds: float) -> None:
         """Let a step have taken some seconds; changes the last equilibrium; collective."""
         rod, equation, cells = self.rod, self.equation, len(self.rod.radius)
         equation.temperature.x.array[equation.dofs] = self._nodes.equilibrium
-        mean = np.sum(self._weights * rod.state["point_state"].equilibrium[..., -1], axis=-1) / self._left
+        mean = np.sum(self._weights * rod.state["point_state"].equilibrium[..., COLUMN], axis=-1) / self._left
         got = np.pi * rod.radius[:, None] ** 2 * self._left * equation.constants.capacity
         equation.source[:] = 0.0
         equation.source[:cells] = got * (mean - equation.at_sections(GAUSS)[:cells])
@@ -106,12 +121,17 @@ class WireHeat:
         across = np.exp(-SLOWEST * rate * seconds / rod.radius**2)[:, None]
         along = np.exp(-(np.pi**2) * rate * seconds / rod.l0**2)[:, None]
         after = now + (mean - still) * along
-        low = rod.law.temperature_range[0]  # below it only by rounding
+        low, high = rod.law.temperature_range  # outside it only by rounding
         for name, field in rod.state.items():
             if name.endswith(FIELDS):
-                temperature = field.equilibrium[..., -1]
+                temperature = field.equilibrium[..., COLUMN]
                 left = (temperature - mean[..., None]) * across[..., None]
-                temperature[:] = np.maximum(low, after[..., None] + left)
+                reached = np.clip(after[..., None] + left, low, high)
+                if self.creeps:
+                    (E0, G0), (E1, G1) = rod.law.moduli(temperature), rod.law.moduli(reached)
+                    field.equilibrium[..., 0] *= E1 / E0
+                    field.equilibrium[..., 1:3] *= (G1 / G0)[..., None]
+                temperature[:] = reached
         if mean.size:
-            change = np.vectorize(rod.law.thermal_strain)(np.maximum(mean, low), np.maximum(after, low))
+            change = np.vectorize(rod.law.thermal_strain)(np.clip(mean, low, high), np.clip(after, low, high))
             rod.state["strain"].equilibrium[..., 0] += change  # of the chord; a wire that grows evenly turns nowhere

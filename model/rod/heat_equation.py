@@ -32,7 +32,7 @@ class HeatConstants:
         conductivity: k, N/(s K), which is W/(m K).
         convection: h, N/(mm s K), a thousandth of W/(m² K).
         tips: g of each tip, N mm/(s K), a thousand times W/K.
-        surroundings: T∞, K.
+        surroundings: T∞ at the start, K.
     """
 
     capacity: float
@@ -57,6 +57,7 @@ class HeatEquation:
     Attributes:
         temperature: function of the nodes, K.
         dofs: place of each local node in it, shape (local nodes,).
+        surroundings: T∞ now, a constant of the forms, K.
         source: heat that a length got over the step, at the two Gauss sections of the local cells, shape (cells, 2), N.
     """
 
@@ -84,10 +85,11 @@ class HeatEquation:
         self.source, self._before = heat.x.array.reshape(-1, 2), before
         self._seconds = fem.Constant(mesh, PETSc.ScalarType(1.0))
         area, around = np.pi * wire**2 * whole, 2.0 * np.pi * wire
-        capacity, conductivity, convection, air = (
+        capacity, conductivity, convection, air, first = (
             fem.Constant(mesh, PETSc.ScalarType(getattr(constants, name)))
-            for name in ("capacity", "conductivity", "convection", "surroundings")
+            for name in ("capacity", "conductivity", "convection", "surroundings", "surroundings")
         )
+        self.surroundings = air
         tips = self._at_tips(constants.tips)
         dx, tip = ufl.dx(metadata=forms.QUADRATURE), ufl.ds
         T, v = ufl.TrialFunction(self.temperature.function_space), ufl.TestFunction(self.temperature.function_space)
@@ -101,7 +103,7 @@ class HeatEquation:
         warm = (capacity * area * before + heat) * v * longer * dx
         self._right = fem.form(warm + t * outwards(air, v))
         self._loss = fem.form(outwards(now - air, fem.Constant(mesh, PETSc.ScalarType(1.0))))
-        self._content = fem.form(capacity * area * (now - air) * longer * dx)
+        self._content = fem.form(capacity * area * (now - first) * longer * dx)
 
     def _at_tips(self, value: float) -> fem.Function:
         """A function of the nodes, zero but at both tips: between two ranks, too, DOLFINx sees an end of a line."""
@@ -138,7 +140,7 @@ class HeatEquation:
 
     @property
     def content(self) -> float:
-        """∫ ρ c (T − T∞) dV, N mm; collective."""
+        """∫ ρ c (T − T∞) dV with T∞ at the start, N mm; collective."""
         return self._sum(self._content)
 
     def at_sections(self, abscissae: np.ndarray) -> np.ndarray:

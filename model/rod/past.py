@@ -12,7 +12,7 @@ from coilset.meshes.placement import STRAIGHT
 from coilset.meshes.spring import SpringSpec
 from coilset.model.material.creep import Creeping
 from coilset.model.material.creep_law import CreepLaw
-from coilset.model.material.functions import elasticity
+from coilset.model.material.functions import HEATING, elasticity
 from coilset.model.rod.rod import Rod
 from coilset.model.section.coiling import coil, grind
 from coilset.model.section.fibres import FibreSections
@@ -56,7 +56,9 @@ def give_past(rod: Rod, spring: object) -> float | None:
     sections = rod.sections
     assert isinstance(sections, FibreSections)
     state = {name: rod.state[name].equilibrium for name in START}
-    past = _Past(sections.law_over_time.over(state, state), bool(spring.made_by), _relief(rod, spring.relieved),
+    law = sections.law_over_time.over(state, state)
+    law = _cold(law) if isinstance(law, np.ndarray) else law
+    past = _Past(law, bool(spring.made_by), _relief(rod, spring.relieved),
                  None if spring.peening is None else _layer(rod, spring.peening))  # fmt: skip
     tight, problem = np.zeros((2, *rod.placement.curvature.shape)), None
     try:
@@ -103,8 +105,7 @@ def _relief(rod: Rod, relief: Relief | None) -> tuple[Creeping, ...]:
     """The law over the intervals of a stress relief; heating and cooling take no time."""
     if relief is None:
         return ()
-    creep = rod.in_time
-    if not isinstance(creep, CreepLaw):
+    if rod.law.creep is None:
         raise InputError(f"'{rod.law.name}' does not creep, so that time relieves nothing; give a material with creep",
                          "spring.relieved")  # fmt: skip
     try:
@@ -112,10 +113,18 @@ def _relief(rod: Rod, relief: Relief | None) -> tuple[Creeping, ...]:
     except InputError as error:
         raise InputError(error.problem, "spring.relieved.temperature") from None
     hours = relief.minutes / 60.0 * FIRST * np.expm1(np.linspace(0.0, 1.0, INTERVALS + 1) * np.log1p(1.0 / FIRST))
+    creep = CreepLaw(rod.law.creep, _cold(rod.parameters))
     clocks = [creep.clock(0.0, rod.temperature)]
     for time, temperature in (*((float(time), warm) for time in hours), (float(hours[-1]), rod.temperature)):
         clocks.append(creep.clock(time, temperature, clocks[-1]))
     return tuple(creep.over(before, after) for before, after in pairwise(clocks))
+
+
+def _cold(parameters: np.ndarray) -> np.ndarray:
+    """The law's parameters without heating by plastic work: the wire's past leaves it as warm as the spring."""
+    found = parameters.copy()
+    found[HEATING] = 0.0
+    return found
 
 
 def _through(rod: Rod, past: _Past, tight: np.ndarray) -> None:

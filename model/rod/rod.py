@@ -161,6 +161,11 @@ class Rod:
         clocks = (self.state[name].equilibrium for name in ("clock", "heat_clock") if name in self.state)
         return next(clocks, np.array([0.0, self.temperature, 0.0]))
 
+    @property
+    def hottest(self) -> float:
+        """Highest temperature along the wire at the last equilibrium, K."""
+        return float(self.state["heat_clock"].equilibrium[1]) if "heat_clock" in self.state else float(self.clock[1])
+
     def pass_time(self, middle: Moment, end: Moment) -> None:
         """Set the clocks of the state on trial; see PassesTime."""
         if self.in_time is None:

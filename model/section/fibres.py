@@ -15,6 +15,7 @@ from coilset.model.section.integration import FIBRES, section, update_points
 from coilset.model.section.law_over_time import LawOverTime
 from coilset.model.section.rules import DiskRule, rim
 from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
+from coilset.model.section.wire import BEND
 
 
 class FibreSections:
@@ -71,6 +72,24 @@ class FibreSections:
             "surface_state": np.tile(row, (*shape, len(self.rim_y), 1)),
         }
 
+    def _increment(
+        self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]
+    ) -> np.ndarray:
+        """Increments of the chords' strains, with growth by temperature as fibres take it.
+
+        A curved wire that grows evenly turns nowhere. The axis then has the strain α ΔT, the fibres, whose distance y
+        from it stays in `shape`, have α ΔT/g, and the law takes off α ΔT: the rest, α ΔT κ y/g, is that of the bend
+        −κ α ΔT, which is taken off here.
+        """
+        growth = self.law_over_time.growth(start, trial) if self.curved else 0.0
+        increment = strain - start["strain"]
+        if growth:
+            place = self.placement
+            bend = np.zeros((*place.curvature.shape, 6, 1))
+            bend[..., BEND, 0] = growth * place.curvature
+            increment += np.linalg.solve(place.matrices, bend)[..., 0]
+        return increment
+
     def update(
         self,
         strain: np.ndarray,
@@ -95,8 +114,8 @@ class FibreSections:
         place, law = self.placement, self.law_over_time.over(start, trial)
         return bool(update_sections(
             law, self.y, self.z, self.weights, self.ground, self.radius, place.curvature, self.curved,
-            strain - start["strain"], place.matrices, place.stretch, start["point_state"], trial["point_state"], s, D,
-            with_tangent,
+            self._increment(strain, start, trial), place.matrices, place.stretch, start["point_state"],
+            trial["point_state"], s, D, with_tangent,
         ))  # fmt: skip
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
@@ -107,7 +126,7 @@ class FibreSections:
         place, law = self.placement, self.law_over_time.over(start, trial)
         update_surface(
             law, self.rim_y, self.rim_z, self.ground_rim, self.radius, place.curvature, self.curved,
-            strain - start["strain"], place.matrices, start["surface_state"], trial["surface_state"],
+            self._increment(strain, start, trial), place.matrices, start["surface_state"], trial["surface_state"],
         )  # fmt: skip
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from coilset.model.material.back_stresses import BackStresses
 from coilset.model.material.creep import Creeping
-from coilset.model.material.creep_law import CREEP_COLUMNS, CreepLaw
+from coilset.model.material.creep_law import CREEP_COLUMNS, TEMPERATURE, CreepLaw
 from coilset.model.material.law import Law
 from coilset.model.material.points import initial_state
 from coilset.model.material.rate_law import RateLaw, law_in_time
@@ -40,7 +40,7 @@ class LawOverTime:
         if self._law.creep is None:
             return row
         start = self._law.reference_temperature if self._temperature is None else self._temperature
-        return np.append(row, [[start, 0.0]], axis=1)
+        return np.append(row[:, : 2 * components + 1], [[start, 0.0]], axis=1)
 
     def over(
         self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]
@@ -51,6 +51,13 @@ class LawOverTime:
         """
         law = self._while_time_passes(start, trial)
         return self._point_law if law is None else law.over(start["clock"], trial["clock"])
+
+    def growth(self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]) -> float:
+        """Thermal strain of all points from one state to the next, where the law itself takes it off their strains."""
+        law = self._while_time_passes(start, trial)
+        if not isinstance(law, CreepLaw) or law.own:
+            return 0.0
+        return self._law.thermal_strain(*(float(state["clock"][TEMPERATURE]) for state in (start, trial)))
 
     def order(self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]) -> int:
         """Order of the law's accuracy in the length of a step; the rate of plastic strain is its mean over the step."""

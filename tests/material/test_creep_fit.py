@@ -16,6 +16,7 @@ from coilset.model.material.identification import creep_fit
 from coilset.model.material.identification.relaxation_tests import Readings, read_relaxation
 from coilset.model.material.identification.relaxing import loss
 from coilset.scripts.material import app
+from coilset.verification.cases import creep_fit as studies
 
 TRUE = {"strain": 2e-4, "stress": 800.0, "exponent": 6.0, "time_exponent": 0.2, "activation_energy": 150000.0,
         "temperature": 373.15}  # fmt: skip
@@ -86,6 +87,19 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
     assert min(inside.values()) >= 34
     assert sum(inside.values()) < 4 * 40
     assert np.mean(scatter) == pytest.approx(NOISE, rel=0.03)
+
+
+@pytest.mark.parametrize("study", studies.STUDIES[:2])
+def test_constants_come_back_from_other_integrals(study):
+    """Torsion by the closed form ₂F₁, tension by scipy's DOP853; what follows uses the fit's own quadrature."""
+    kind, form, hardening, constants, stresses, _ = study
+    tests = studies.readings(kind, form, constants, stresses)
+    found = creep_fit.fit_creep(library.load("creeping"), (tests,), form, hardening)
+    true = studies.truth(constants, found)
+    assert found.scatter < 1e-3
+    assert [found.constants[name] for name in found.interval] == pytest.approx(
+        [true[name] for name in found.interval], rel=1e-4
+    )
 
 
 def test_garofalo_and_two_kinds_of_tests():

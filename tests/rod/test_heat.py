@@ -76,7 +76,7 @@ def test_expansion_of_a_free_wire_bears_no_stress(warming, tmp_path):
         ({"material": "ck15"}, "heat: plastic work does not warm 'ck15'"),
         ({"heat": None}, "loading.0.seconds: no heat flows, and 'warming' does not depend on the rate"),
         ({"loading": [{"to": {"travel": 5.0}}]}, "loading.0 takes no time, but heat flows"),
-        ({"loading": [{"hold": {"hours": 1}}]}, "loading.0: hold and heat give the whole wire one temperature"),
+        ({"loading": [{"hold": {"hours": 1}}]}, "loading.0.hold: 'warming' does not creep; to let heat"),
         ({"mesh": {"section": {"kind": "warping"}}}, "heat needs sections of fibres"),
         ({"heat": {"conductivity": 0.0}}, "heat.conductivity: 0.0: must be greater than 0"),
         ({"heat": {"conductivity": 50.0, "surroundings": 200.0}}, "heat.surroundings: 200 K is outside the table"),

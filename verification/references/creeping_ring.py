@@ -11,15 +11,8 @@ and ψ is such that ∫ τ : δγ r dr dz = 0 at all times. Of a straight wire, 
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from scipy.special import hyp2f1
 
 DEGREE = 10  # of the polynomials ψ
-
-
-def straight(exponent: float, z: np.ndarray) -> np.ndarray:
-    """F/F₀ of a straight wire in torsion, ₂F₁(1/(N−1), 4/(N−1); 1 + 4/(N−1); −z); shape as z."""
-    n = exponent - 1.0
-    return hyp2f1(1.0 / n, 4.0 / n, 1.0 + 4.0 / n, -np.asarray(z))
 
 
 def relaxation(index: float, exponent: float, z: np.ndarray, redistributed: bool = True) -> np.ndarray:
