@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from coilset.model.report.panel import COLOURS, LINE, Panel, axis
-from coilset.model.report.scale import round_end
 from coilset.model.results.opened import Run
+from coilset.model.style import round_end
 
 FAINT = 0.02  # of the maximum force: a smaller one passes anywhere
 REACH = 1.3  # of the figure, in coil radii

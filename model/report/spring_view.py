@@ -3,9 +3,9 @@
 import numpy as np
 
 from coilset.model.report.panel import DIVERGING, Panel
-from coilset.model.report.scale import round_end
 from coilset.model.results.opened import Run
 from coilset.model.results.wire import closed, moments, tubes
+from coilset.model.style import round_end
 
 RINGS = 6000  # of all moments of a page together
 MOST = 60  # moments

@@ -19,8 +19,8 @@ BESIDE = 4  # lines of a legend that fit beside a characteristic
 
 
 def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure as PNG."""
-    with whole(path) as partial:
+    """Write a figure as PNG; its colours `C0`, `C1`, … are looked up only now."""
+    with whole(path) as partial, mpl.rc_context(STYLE):
         figure.savefig(partial, dpi=STYLE["savefig.dpi"])
 
 
@@ -96,7 +96,7 @@ def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
             axes.plot(*radius * setup.rule.points.T, "k.", ms=2, alpha=0.5)
             axes.plot(radius * np.cos([*angle, 0.0]), radius * np.sin([*angle, 0.0]), "k-", lw=0.8)
             direction = "towards" if inwards else "away from"
-            axes.set(aspect="equal", xlabel=f"{direction} the coil's axis, mm", ylabel="across, mm", title=name)
+            axes.set(aspect="equal", xlabel=f"{direction} the coil's axis in mm", ylabel="across in mm", title=name)
             figure.colorbar(shown, ax=axes, label="MPa", shrink=0.85)
         low, high = (plain(value, 2).replace("-", "−") for value in (around.min(), around.max()))
         figure.suptitle(

@@ -14,7 +14,6 @@ import pytest
 from coilset.meshes.errors import InputError
 from coilset.model.report.glossary import GLOSSARY
 from coilset.model.report.page import CHAPTERS, write_report
-from coilset.model.report.scale import round_end
 from coilset.model.results.opened import open_run
 from coilset.model.results.wire import closed, moments, shear_around, tubes
 from coilset.scripts.report import report
@@ -124,11 +123,6 @@ def test_each_step_can_be_slid_to(folder, page):
     few = moments(run, 4)
     assert [label.split(":")[0] for label in few.labels] == ["start", "step 1, to block", "step 4, to block",
                                                              "step 6, to force 0 N"]  # fmt: skip
-
-
-@pytest.mark.parametrize(("value", "end"), [(0.0, 1.0), (1.0, 1.0), (101.0, 150.0), (0.037, 0.04), (9.9e5, 1e6)])
-def test_scales_end_round(value, end):
-    assert round_end(value) == pytest.approx(end)
 
 
 def test_a_folder_without_a_run_is_refused(tmp_path):
