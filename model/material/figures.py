@@ -90,8 +90,8 @@ def program(law: Law, run: Program, history: History) -> Figure:
 
 
 def _reach(stress: np.ndarray) -> str:
-    low, high = (f"{value:.3g}".replace("-", "−") for value in (min(stress.min(), 0.0), stress.max()))
-    return f"from {low} to {high}" if low != "0" else f"up to {high}"
+    low, high = (f"{value:.0f}".replace("-", "−") for value in (stress.min(), stress.max()))
+    return f"from {low} to {high}" if stress.min() < -0.5 else f"up to {high}"
 
 
 def _stress_plane(axes: Axes, law: Law, history: History) -> None:

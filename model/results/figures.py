@@ -1,5 +1,6 @@
 """Figures of a run: the characteristic, and the residual stress over the wire's cross-section."""
 
+import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from coilset.model.results.rings import ROUND, refined, rings
 from coilset.model.style import DIVERGING, STYLE, levels
 
 NAMED = 6  # targets in a legend, at most
+LETTERS = 14  # of a title, on an inch of a figure
 BESIDE = 4  # lines of a legend that fit beside a characteristic
 
 
@@ -22,6 +24,13 @@ def save(figure: Figure, path: str | Path) -> None:
     """Write a figure as PNG; its colours `C0`, `C1`, … are looked up only now."""
     with whole(path) as partial, mpl.rc_context(STYLE):
         figure.savefig(partial, dpi=STYLE["savefig.dpi"])
+
+
+def add_title(figure: Figure, text: str) -> None:
+    """Put a line below the title that a figure has, all of it broken to the figure's width."""
+    width = int(LETTERS * figure.get_figwidth())
+    lines = [part for line in f"{figure.get_suptitle()}\n{text}".split("\n") for part in textwrap.wrap(line, width)]
+    figure.suptitle("\n".join(lines), fontsize=9)
 
 
 def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapping[str, Any]) -> None:

@@ -11,7 +11,7 @@ import pyvista as pv
 from coilset.model.results.folder import whole
 from coilset.model.results.labels import plain
 from coilset.model.results.record import Snapshot
-from coilset.model.style import round_end
+from coilset.model.style import QUARTERED, round_end
 
 POINTS_PER_ELEMENT = 6
 WIDTH, LEAST_HEIGHT, MOST_HEIGHT = 1500, 620, 1500  # of the picture, pixels
@@ -67,7 +67,10 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.nda
     low, high = float(x[:, 2].min() - radius.max()), float(x[:, 2].max() + radius.max())
     across = float(np.ptp(x[:, :2], axis=0).max()) + 2.0 * float(radius.max())
     aside = 0.5 * float(x[:, 0].min() + x[:, 0].max())  # a buckled spring deflects to one side
-    frame, end = Frame.of(across, high - low, len(snapshots)), round_end(max(float(s.shear.max()) for s in snapshots))
+    frame, end = (
+        Frame.of(across, high - low, len(snapshots)),
+        round_end(max(float(s.shear.max()) for s in snapshots), QUARTERED),
+    )
     force = max(abs(shot.force) for shot in snapshots)
     middle = aside + 0.5 * frame.column * (len(snapshots) - 1)
     plotter = pv.Plotter(off_screen=True, window_size=(WIDTH, frame.height))

@@ -11,7 +11,7 @@ import pyvista
 from coilset.meshes.compat import geometry_dofs
 from coilset.model.results.folder import whole
 from coilset.model.solid.solid import Solid
-from coilset.model.style import round_end
+from coilset.model.style import QUARTERED, round_end
 
 BAR = {
     "color": "black", "n_labels": 5, "fmt": "%.3g", "title_font_size": 22, "label_font_size": 18,
@@ -95,7 +95,7 @@ def picture(path: str | Path, bodies: Mapping[str, pyvista.DataSet], field: str,
         bodies: name → grid of `grid`.
         field, unit: name of the field, and its unit for the colour bar.
     """
-    end = round_end(max(float(body.point_data[field].max()) for body in bodies.values()))
+    end = round_end(max(float(body.point_data[field].max()) for body in bodies.values()), QUARTERED)
     size = 720 * len(bodies), 470
     plotter = pyvista.Plotter(off_screen=True, shape=(1, len(bodies)), window_size=size, border=False)
     plotter.set_background("white")

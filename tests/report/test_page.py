@@ -7,11 +7,13 @@ import os
 import re
 import resource
 import signal
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from coilset.meshes.errors import InputError
+from coilset.model.report.characteristic import characteristic, phases
 from coilset.model.report.glossary import GLOSSARY
 from coilset.model.report.page import CHAPTERS, write_report
 from coilset.model.results.opened import open_run
@@ -123,6 +125,15 @@ def test_each_step_can_be_slid_to(folder, page):
     few = moments(run, 4)
     assert [label.split(":")[0] for label in few.labels] == ["start", "step 1, to block", "step 4, to block",
                                                              "step 6, to force 0 N"]  # fmt: skip
+
+
+def test_first_and_second_loading_are_told_apart(folder):
+    """Phases of one name are numbered; where there is no second loading, the page says how to get it."""
+    run = open_run(folder)
+    assert [name for name, _, _ in phases(run)] == ["to block", "to force 0 N"]
+    assert "second loading" in characteristic(run).note
+    same = replace(run, data=run.data.assign_coords(snapshot=["start", "block", "block"]))
+    assert [name for name, _, _ in phases(same)] == ["to block, first time", "to block, second time"]
 
 
 def test_a_folder_without_a_run_is_refused(tmp_path):
