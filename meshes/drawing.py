@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator
 from itertools import pairwise
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
@@ -15,8 +14,7 @@ from coilset.meshes.geometry import Spring
 
 PIECES_PER_TURN = 96
 OUTLINE = 1.0  # width of an outline, points
-INK, STEEL_FACE, DIMENSION = "0.15", "0.85", "tab:blue"
-STYLE = {"font.size": 9, "axes.spines.top": False, "axes.spines.right": False, "legend.frameon": False}
+INK, STEEL_FACE, DIMENSION = "0.15", "0.85", "C0"
 
 
 def drawing(spring: Spring, title: str = "") -> Figure:
@@ -26,22 +24,23 @@ def drawing(spring: Spring, title: str = "") -> Figure:
         spring: `Spring`.
         title: of the figure.
 
+    The look is that of matplotlib's parameters at the time; the colours are three of its cycle.
+
     Returns:
         A `matplotlib.figure.Figure`; its size must not change, so that the wire's thickness stays to scale.
     """
-    with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(9.6, 5.4))
-        view = figure.add_axes((0.01, 0.02, 0.5, 0.9))
-        _side_view(view, spring)
-        _over_turn(figure.add_axes((0.575, 0.58, 0.35, 0.34)), spring, spring.pitch, "pitch in mm", "tab:green")
-        below = figure.add_axes((0.575, 0.11, 0.35, 0.34))
-        _over_turn(below, spring, lambda t: 2 * spring.mean_radius(t), "mean diameter D in mm", "tab:blue")
-        below.set_xlabel("turn")
-        wire = below.twinx()
-        wire.spines["right"].set_visible(True)
-        _over_turn(wire, spring, spring.wire_diameter, "wire diameter d in mm", "tab:red", ls="--")
-        figure.text(0.02, 0.955, title, fontsize=12)
-        return figure
+    figure = Figure(figsize=(9.6, 5.4))
+    view = figure.add_axes((0.01, 0.02, 0.5, 0.9))
+    _side_view(view, spring)
+    _over_turn(figure.add_axes((0.575, 0.58, 0.35, 0.34)), spring, spring.pitch, "pitch in mm", "C2")
+    below = figure.add_axes((0.575, 0.11, 0.35, 0.34))
+    _over_turn(below, spring, lambda t: 2 * spring.mean_radius(t), "mean diameter D in mm", "C0")
+    below.set_xlabel("turns from the bottom tip")
+    wire = below.twinx()
+    wire.spines["right"].set_visible(True)
+    _over_turn(wire, spring, spring.wire_diameter, "wire diameter d in mm", "C1", ls="--")
+    figure.text(0.02, 0.955, title, fontsize=12)
+    return figure
 
 
 def _over_turn(

@@ -1,5 +1,8 @@
 """All errors that a user may see; the text of each is one line."""
 
+import contextlib
+from collections.abc import Iterator
+
 
 def printable(text: str) -> str:
     """A line with unprintable and control characters escaped; names of files may contain any."""
@@ -32,6 +35,15 @@ class InputError(CoilsetError):
 def unreadable(file: object, error: Exception) -> InputError:
     """The error for a file that cannot be read, with the first line of the reason."""
     return InputError(f"is not readable: {str(error).partition(chr(10))[0] or type(error).__name__}", "", file)
+
+
+@contextlib.contextmanager
+def reading(file: object) -> Iterator[None]:
+    """Context in which whatever a reader of a file raises becomes the error for a file that cannot be read."""
+    try:
+        yield
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise unreadable(file, error) from None
 
 
 class SolveError(CoilsetError):

@@ -1,5 +1,7 @@
-"""The look of all figures: the parameters of matplotlib in coilset.mplstyle."""
+"""The look of all figures: the parameters of matplotlib in coilset.mplstyle, and round scales."""
 
+import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib as mpl
@@ -10,6 +12,16 @@ FILE = Path(__file__).parent / "coilset.mplstyle"
 STYLE = mpl.rc_params_from_file(str(FILE), use_default_template=False)
 DIVERGING = "RdBu_r"
 """Map of values with a sign, red where positive."""
+ROUND = (1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)  # ends of a scale
+QUARTERED = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0)  # ends of a scale whose quarters have few digits
+
+
+def round_end(greatest: float, ends: Sequence[float] = ROUND) -> float:
+    """The smallest round number that is not below a value, for the end of a scale from zero; 1 for 0."""
+    if not greatest > 0.0:
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(greatest))
+    return next((end * power for end in ends if end * power >= greatest * (1.0 - 1e-9)), 10.0 * power)
 
 
 def levels(low: float, high: float) -> np.ndarray:

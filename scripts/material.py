@@ -197,12 +197,12 @@ def _refuse(paths: Iterable[Path], force: bool) -> None:
 
 
 def _save(figure: "Figure", path: Path, force: bool, console: "Console") -> None:
-    from coilset.model.results.folder import make, whole
+    from coilset.model.results.figures import save
+    from coilset.model.results.folder import make
 
     _refuse([path], force)
     make(path.parent)
-    with whole(path) as partial:
-        figure.savefig(partial, dpi=160)
+    save(figure, path)
     console.print(f"picture in {path.parent}{os.sep}{path.name}")
 
 

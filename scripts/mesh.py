@@ -92,11 +92,17 @@ def _table(data: SpringData, turns: np.ndarray) -> Table:
 
 
 def _draw(spring: Spring, out: Path, name: str, console: Console) -> None:
+    import matplotlib as mpl
+
     from coilset.meshes import drawing, view
     from coilset.model.results import display
+    from coilset.model.results.figures import save
+    from coilset.model.results.labels import plain
+    from coilset.model.style import STYLE
 
-    with whole(out / FILES[0]) as path:
-        drawing.drawing(spring, name).savefig(path, dpi=160)
+    size = f"{plain(spring.turns)} turns, {plain(spring.free_length)} mm long"
+    with mpl.rc_context(STYLE):
+        save(drawing.drawing(spring, f"{name}: {size}"), out / FILES[0])
     if not display.ensure():
         console.print(f"[yellow]warning:[/] {FILES[1]} is not drawn: there is no display and no Xvfb")
         return

@@ -19,7 +19,7 @@ from coilset.model.results.contact_state import contact_words
 from coilset.model.results.record import Step
 
 SOON = 5.0  # seconds; with less elapsed or left, the remaining time is not printed
-HEAD = "   step   seat height/mm      force/N   iterations   contacts"
+HEAD = f"{'step':>5}{'height/mm':>10}{'force/N':>12}{'iter.':>6}{'points':>7}  touching"  # a row fits in 80 columns
 
 
 class Lines:
@@ -56,19 +56,19 @@ class Lines:
 
     def step(self, step: Step) -> None:
         """A step has been found."""
-        cuts = f"   cut {step.cuts} {'time' if step.cuts == 1 else 'times'}" if step.cuts else ""
+        cuts = f"  {step.cuts} cut{'s' * (step.cuts > 1)}" if step.cuts else ""
         if step.left_branch:
-            cuts += "   [yellow]snapped[/]" if step.released_energy_Nmm else "   [yellow]left its path[/]"
+            cuts += "  [yellow]snapped[/]" if step.released_energy_Nmm else "  [yellow]left its path[/]"
         force = round(step.force_N, 3) + 0.0  # no -0.000
         touching = contact_words(self.analysis.setup.contacts, self.analysis.result.seats[-1])
-        row = f"{step.number:7d}{step.seat_height_mm:17.4f}{force:13.3f}{step.iterations:13d}{step.contacts:11d}"
+        row = f"{step.number:5d}{step.seat_height_mm:10.4f}{force:12.3f}{step.iterations:6d}{step.contacts:7d}"
         self.console.print(f"{row}  {touching}{cuts}{self._left(step)}", soft_wrap=True)
 
     def _left(self, step: Step) -> str:
         """Remaining time at the speed so far; empty if it is short, or too early to tell."""
         spent, done = time.monotonic() - self._began, _done(self.analysis, step)
         left = spent * (1.0 - done) / max(done - self._from, 1e-9)
-        return "" if spent < SOON or left < SOON else f"   [dim]{duration(left)} left[/]"
+        return "" if spent < SOON or left < SOON else f"  [dim]{duration(left)} left[/]"
 
     @contextlib.contextmanager
     def iterations(self) -> Iterator[None]:

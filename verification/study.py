@@ -2,7 +2,6 @@
 
 import json
 import math
-import textwrap
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -11,11 +10,10 @@ from typing import Any, SupportsFloat
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.results.figures import save
+from coilset.model.results.figures import add_title, save
 from coilset.model.results.folder import make, whole
 
 KINDS = ("relative", "absolute", "at_most")
-LETTERS = 14  # of a title, on an inch of a figure
 
 
 @dataclass(frozen=True)
@@ -149,8 +147,7 @@ class Study:
     def write(self, name: str) -> None:
         """The figures, and record.json."""
         for file, figure in self._drawn.items():
-            lines = textwrap.wrap(self.finding, int(LETTERS * figure.get_figwidth()))
-            figure.suptitle("\n".join(filter(None, (figure.get_suptitle(), *lines))), fontsize=9)
+            add_title(figure, self.finding)
             save(figure, self.folder / file)
         checks = [asdict(check) | {"deviation": check.deviation, "verdict": check.verdict} for check in self.checks]
         record = {"case": name, "passed": self.passed, "checks": checks, "tables": self.tables, "notes": self.notes,

@@ -1,7 +1,7 @@
-"""Make the pictures of runs that the pages show: solve each case as it stands, and keep what it draws.
+"""Make the pictures of runs and commands that the pages show: run each as it stands, and keep what it draws.
 
-    scripts/coilset python docs/generators/gallery.py            # two minutes of the processor; look at the pictures
-    scripts/coilset python docs/generators/gallery.py cone       # one of the cases
+    scripts/coilset python docs/generators/gallery.py            # three minutes of the processor; look at the pictures
+    scripts/coilset python docs/generators/gallery.py cone       # one of the cases or commands
 
 Not part of building the site.
 """
@@ -24,6 +24,18 @@ CASES = {
         for name in ("closed_and_ground", "cone")
     },
 }
+MATERIAL = EXAMPLES / "material"
+# of another command: its words, and of what it draws the pictures that are kept, with their names in docs/pictures
+COMMANDS: dict[str, tuple[list[str], dict[str, str]]] = {
+    "drawing": (["mesh", str(EXAMPLES / "springs/closed_and_ground.yaml")], {"drawing": "spring_drawing"}),
+    "functions": (["material", "show", "ck15"], {"functions": "material_functions"}),
+    "fit": (["material", "fit", *map(str, sorted((MATERIAL / "fit").glob("*.csv"))), "--G", "84000", "--nu", "0.28989"],
+            {"fit": "material_fit_example"}),
+    **{
+        name: (["material", "test", "ck15", str(MATERIAL / f"{name}.yaml")], {name: f"material_{name}"})
+        for name in ("tension_torsion", "torsion_reversal", "torsion_tension")
+    },
+}  # fmt: skip
 
 
 def draw(name: str) -> None:
@@ -43,6 +55,17 @@ def draw(name: str) -> None:
     print(name)
 
 
+def draw_command(name: str) -> None:
+    """Run a command into a folder of its own, and keep its pictures."""
+    words, kept = COMMANDS[name]
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sys.executable, "-m", "coilset.scripts", *words, "--out", folder, "--force"]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
+        for picture, place in kept.items():
+            shutil.copyfile(Path(folder, f"{picture}.png"), DOCS / "pictures" / f"{place}.png")
+    print(name)
+
+
 if __name__ == "__main__":
-    for case in sys.argv[1:] or CASES:
-        draw(case)
+    for one in sys.argv[1:] or [*CASES, *COMMANDS]:
+        (draw if one in CASES else draw_command)(one)

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from coilset.meshes.errors import InputError
+from coilset.meshes.errors import reading
 from coilset.model.case import Case
 from coilset.model.case.reference import entry_unit
 from coilset.model.results.labelled import add_summary
@@ -35,16 +35,25 @@ def open_design(folder: str | Path) -> xr.Dataset:
         InputError: if a file cannot be read.
     """
     folder = Path(folder)
-    try:
-        design = json.loads((folder / FILE).read_text(encoding="utf-8"))
-        data = _searched(design, list(read_records(folder / "evaluations.jsonl")))
+    with reading(folder / FILE):
+        design, records = read_design(folder)
+        data = _searched(design, records)
         _add_trade_offs(data, design)
         add_summary(data, design["summary"])
         data.attrs |= {"case": json.dumps(design["origin"]["case"]), "versions": design["origin"]["versions"],
                        "met": int(design["met"]), "method": design["method"]}  # fmt: skip
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise InputError(f"is not readable: {str(error).partition(chr(10))[0]}", "", folder / FILE) from None
     return data
+
+
+def read_design(folder: Path) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """The content of design.json, and the record of each evaluation.
+
+    Raises:
+        InputError: if a file cannot be read.
+    """
+    with reading(folder / FILE):
+        design = json.loads((folder / FILE).read_text(encoding="utf-8"))
+    return design, list(read_records(folder / "evaluations.jsonl"))
 
 
 def _searched(design: dict[str, Any], records: list[dict[str, Any]]) -> xr.Dataset:

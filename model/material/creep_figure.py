@@ -26,7 +26,7 @@ def creep_figure(result: CreepFit) -> Figure:
                 values = loss(result.form, result.hardening, result.constants, line, modulus(result.law, line))
                 place.semilogx(fine, values, color=f"C{k}")
                 place.plot(tests.hours[here], tests.loss[here], "o", ms=4, color=f"C{k}", label=f"{stress:g} N/mm²")
-            place.set(xlabel="time / h", title=f"{tests.kind}, {T:g} K")
+            place.set(xlabel="time in h", title=f"{tests.kind}, {T:g} K")
             place.legend(title="line: fitted")
-        axes[0].set(ylabel="loss of load / %")
+        axes[0].set(ylabel="loss of load in %")
     return figure

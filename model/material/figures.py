@@ -43,8 +43,17 @@ def material_functions(law: Law) -> Figure:
             place.set_xlim(0, work[-1])
             place.grid(lw=0.3)
         axes[0].legend(title=law.name if np.isfinite(k2).all() else f"{law.name}: never yields")
-        figure.suptitle("\n".join(textwrap.wrap(f"{law.name}; constants: {law.source}", 150)), fontsize=8)
+        figure.suptitle("\n".join([_grown(law, work[-1]), *textwrap.wrap(f"constants: {law.source}", 150)]), fontsize=9)
     return figure
+
+
+def _grown(law: Law, work: float) -> str:
+    """How far the yield surface grows, as the stress of a tension test without back stress: σF = √(3/2) k."""
+    first, last = (np.sqrt(1.5 * law.functions(np.array([b]), law.temperatures[0])[0][0]) for b in (0.0, work))
+    if not np.isfinite(first):
+        return f"{law.name} never yields"
+    change = f"grows from {first:.4g} to {last:.4g}" if last > first * (1.0 + 1e-9) else f"stays at {first:.4g}"
+    return f"The yield stress of {law.name} in tension {change} N/mm²"
 
 
 def program(law: Law, run: Program, history: History) -> Figure:
@@ -73,9 +82,16 @@ def program(law: Law, run: Program, history: History) -> Figure:
             place.grid(lw=0.3)
             if moved:
                 place.legend(fontsize=8)
-        source = f"; after {run.source}" if run.source else ""
-        figure.suptitle(f"{run.name}, {law.name}{source}", fontsize=10)
+        after = f"after {run.source}" if run.source else ""
+        peaks = (f"{SYMBOLS[stresses[i]]} {_reach(history.stress[:, i])}" for i in moved)
+        found = f"{run.name} of {law.name}: {', '.join(peaks)} N/mm²"
+        figure.suptitle("\n".join(filter(None, (found, after))), fontsize=10)
     return figure
+
+
+def _reach(stress: np.ndarray) -> str:
+    low, high = (f"{value:.0f}".replace("-", "−") for value in (stress.min(), stress.max()))
+    return f"from {low} to {high}" if stress.min() < -0.5 else f"up to {high}"
 
 
 def _stress_plane(axes: Axes, law: Law, history: History) -> None:
@@ -118,7 +134,7 @@ def fit(result: Fit, name: str) -> Figure:
             column[1].set_title(f"rms {scatter:.3g} N/mm²", fontsize=8)
             for place in column:
                 place.grid(lw=0.3)
-        figure.suptitle(
-            f"{name}: constants fitted to {len(result.tests)} test{'s' * (len(result.tests) > 1)}", fontsize=10
-        )
+        tests = f"{len(result.tests)} test{'s' * (len(result.tests) > 1)}"
+        found = f"{name} follows {tests} to within {max(result.scatter):.2g} N/mm² (root mean square)"
+        figure.suptitle(found, fontsize=10)
     return figure

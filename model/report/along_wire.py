@@ -41,8 +41,9 @@ def moments_along_wire(run: Run) -> Panel:
         for place, (key, name) in enumerate(SHOWN.items()):
             values = run.data["resultants"].sel(resultant=key).values[number].ravel()
             traces.append({**_line(name, turns, values, place, "solid"), "meta": {"choice": number}})
-    greatest = np.abs(run.data["resultants"].sel(resultant="Mt").values).max()
-    finding = f"The wire carries a torque of up to {greatest:.4g} N mm"
+    torque = np.abs(run.data["resultants"].sel(resultant="Mt").values).reshape(len(run.snapshots), -1).max(axis=1)
+    most = int(torque.argmax())
+    finding = f"At {run.snapshots[most]} the wire carries a torque of up to {torque[most]:.4g} N mm"
     return Panel(
         "moments",
         finding,

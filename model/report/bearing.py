@@ -5,11 +5,12 @@ from typing import Any
 import numpy as np
 
 from coilset.model.report.panel import COLOURS, LINE, Panel, axis
-from coilset.model.report.scale import round_end
 from coilset.model.results.opened import Run
+from coilset.model.style import round_end
 
 FAINT = 0.02  # of the maximum force: a smaller one passes anywhere
 REACH = 1.3  # of the figure, in coil radii
+TOLD = 8  # steps whose travel is told at the axis, about
 
 
 def force_centre(run: Run) -> Panel | None:
@@ -58,8 +59,16 @@ def _coil(radius: float) -> dict[str, Any]:
     return {"type": "circle", "x0": -radius, "x1": radius, "y0": -radius, "y1": radius, "line": line}
 
 
+def _travels(run: Run) -> dict[str, Any]:
+    """The steps, as far from each other as their travels are named: press and release do not cover each other."""
+    steps, travel = run.data["step"].values, run.data["travel_mm"].values
+    told = slice(None, None, max(len(steps) // TOLD, 1))
+    names = [f"{value:.3g}" for value in travel[told]]
+    return axis("travel step by step, mm", tickvals=steps[told].tolist(), ticktext=names)
+
+
 def contact(run: Run) -> Panel | None:
-    """Pressure of each kind of contact along the wire in each step; None without any contact."""
+    """Pressure of each kind of contact along the wire over the travel of each step; None without any contact."""
     if "pressure" not in run.data:
         return None
     pressure, traces = run.data["pressure"], []
@@ -96,9 +105,9 @@ def contact(run: Run) -> Panel | None:
     return Panel(
         "contact",
         finding,
-        f"{finding}. Force per length of wire over the turns and the steps.",
+        f"{finding}. Force per length of wire over the turns and, step by step, over the travel.",
         traces,
-        {"xaxis": axis("turn from the bottom tip", range=[ends[0] - 0.1, ends[1] + 0.1]), "yaxis": axis("step")},
+        {"xaxis": axis("turn from the bottom tip", range=[ends[0] - 0.1, ends[1] + 0.1]), "yaxis": _travels(run)},
         tuple(bears),
         choice="contact of",
     )

@@ -6,6 +6,7 @@ from coilset.model.report.panel import COLOURS, LINE, Panel, Trace, axis
 from coilset.model.results.opened import Run
 
 HEIGHT = 440  # pixels, the same for both, which stand side by side
+AGAIN = "For the second loading, add a phase to the load program, such as “- to: block”, and solve again."
 
 
 def phases(run: Run) -> list[tuple[str, np.ndarray, np.ndarray]]:
@@ -20,16 +21,24 @@ def phases(run: Run) -> list[tuple[str, np.ndarray, np.ndarray]]:
             for start, name in zip(last, ("travel_mm", "force_N"), strict=True)
         )
         label = labels[number] if number < len(labels) else "last equilibrium"
-        found.append((label, travel, force))
+        found.append((f"to {label}", travel, force))
         last = float(travel[-1]), float(force[-1])
-    return found
+    names = [name for name, _, _ in found]
+    again = {name for name in names if names.count(name) > 1}
+    return [(f"{name}, {_times(names[: k + 1].count(name))}" if name in again else name, travel, force)
+            for k, (name, travel, force) in enumerate(found)]  # fmt: skip
+
+
+def _times(number: int) -> str:
+    """Of equal phases, such as first and second loading."""
+    return {1: "first time", 2: "second time", 3: "third time"}.get(number, f"{number}th time")
 
 
 def characteristic(run: Run) -> Panel:
     """Force over travel, one line per phase, with the initial rate, block and set."""
     summary, traces = run.summary, []
     for number, (label, travel, force) in enumerate(phases(run)):
-        traces.append(_line(f"to {label}", travel, force, number))
+        traces.append(_line(label, travel, force, number))
     greatest, rate = summary["force_max_N"], summary["rate_N_per_mm"]
     if rate:
         x = np.array([0.0, greatest / rate])
@@ -86,6 +95,7 @@ def characteristic(run: Run) -> Panel:
         traces,
         {"xaxis": axis("travel, mm"), "yaxis": axis("axial force, N"), "shapes": shapes, "annotations": notes},
         height=HEIGHT,
+        note="" if set_mm is None or len(phases(run)) > 2 else AGAIN,
     )
 
 
@@ -95,7 +105,7 @@ def rate_curve(run: Run) -> Panel | None:
     for number, (label, travel, force) in enumerate(phases(run)):
         apart = np.append(True, np.abs(np.diff(travel)) > 1e-9 * np.ptp(travel))
         if apart.sum() > 2:
-            traces.append(_line(f"to {label}", travel[apart], np.gradient(force[apart], travel[apart]), number))
+            traces.append(_line(label, travel[apart], np.gradient(force[apart], travel[apart]), number))
     if not traces:
         return None
     rate = run.summary["rate_N_per_mm"]

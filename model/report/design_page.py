@@ -1,24 +1,22 @@
 """The page of a design: what to wind, how well it meets the wish, and what else could be had."""
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from coilset.meshes.errors import unreadable
+from coilset.meshes.errors import reading
 from coilset.model.case import Case
 from coilset.model.case.reference import entry_unit, entry_words
+from coilset.model.design.opened import FILE, read_design
 from coilset.model.report.answer import Number, answer
 from coilset.model.report.page import made_with
 from coilset.model.report.panel import COLOURS, LINE, Panel, axis
 from coilset.model.report.render import write_page
 from coilset.model.results.labels import plain
 from coilset.model.sweep.dataset import quantity
-from coilset.model.sweep.journal import read_records
 
-FILE = "design.json"
 LEAST_OFF = 1e-12  # relative, to which the figure goes down
 
 
@@ -32,13 +30,10 @@ def write_design_report(folder: str | Path) -> Path:
         InputError: if a file cannot be read. CoilsetError: if the page cannot be written.
     """
     folder = Path(folder)
-    try:
-        design = json.loads((folder / FILE).read_text(encoding="utf-8"))
+    design, records = read_design(folder)
+    with reading(folder / FILE):
         case = (folder / "found.yaml").read_text(encoding="utf-8")
         design["summary"]["set_mm"], design["origin"]["case"], design["trade_offs"]
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise unreadable(folder / FILE, error) from None
-    records = list(read_records(folder / "evaluations.jsonl"))
     names = list(design["found"])
     found = [
         Number(entry_words(name), f"{plain(value, 6)} {_unit(name)}".strip()) for name, value in design["found"].items()
@@ -130,7 +125,7 @@ def _condition(one: Mapping[str, Any]) -> dict[str, Any]:
 
 def _slopes(design: Mapping[str, Any], names: list[str]) -> list[tuple[str, list[str]]]:
     """Each condition, and its change with each unknown."""
-    rows = ((_named(one), design["slopes"][one["name"]]) for one in design["conditions"])
+    rows = ((f"{_named(one)}, {one['unit']}", design["slopes"][one["name"]]) for one in design["conditions"])
     return [(words, [plain(row[name]).replace("-", "−") for name in names]) for words, row in rows]
 
 

@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.tri import LinearTriInterpolator, Triangulation
 
 from coilset.model.report.panel import DIVERGING, Panel, Trace, axis, said
-from coilset.model.report.scale import round_end
 from coilset.model.results.opened import Run
 from coilset.model.results.rings import ROUND, refined, rings
 from coilset.model.results.wire import inside
+from coilset.model.style import round_end
 
 PIXELS = 121  # of a map, across the wire
 BEYOND = 1.04  # wire radii up to which colours go: the rim is drawn over them

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from coilset.model.report.panel import DIVERGING, Panel
-from coilset.model.report.scale import round_end
+from coilset.model.report.panel import DIVERGING, Panel, axis, said
 from coilset.model.results.opened import Run
 from coilset.model.results.wire import closed, moments, tubes
+from coilset.model.style import round_end
 
 RINGS = 6000  # of all moments of a page together
 MOST = 60  # moments
@@ -33,20 +33,21 @@ def spring_view(run: Run) -> Panel:
         "lighting": {"ambient": 0.75, "diffuse": 0.5, "specular": 0.1},
         "hovertemplate": "%{surfacecolor:.0f} MPa<br>height %{z:.1f} mm<extra></extra>",
     }
-    low, high = places.reshape(-1, 3).min(axis=0), places.reshape(-1, 3).max(axis=0)
-    ranges = {name: {"range": [low[k], high[k]], "title": {"text": f"{name}, mm"}} for k, name in enumerate("xyz")}
-    scene = {f"{name}axis": value for name, value in ranges.items()}
+    corners = np.stack([places.reshape(-1, 3).min(axis=0), places.reshape(-1, 3).max(axis=0)])
+    low, high = (said(value, "MPa") for value in (stress[-1].min(), stress[-1].max()))
+    scene = {f"{name}axis": axis(f"{name}, mm", range=corners[:, k].tolist()) for k, name in enumerate("xyz")}
     eye = {"x": 1.3, "y": -1.3, "z": 0.5}
     return Panel(
         "spring",
-        "Red is sheared with the load, blue against it",
+        f"At {run.snapshots[-1]} the shear on the surface runs from {low} to {high}",
         f"The spring in three dimensions at {len(shown.labels)} moments of its load program, coloured by the shear "
         f"stress about the wire's axis on its surface from {-end:g} to {end:g} MPa. "
-        f"At the end it is {stress[-1].min():.0f} to {stress[-1].max():.0f} MPa.",
+        f"At the end it is {low} to {high}.",
         [trace],
         {"scene": {**scene, "aspectmode": "data", "camera": {"eye": eye}}, "margin": {"l": 0, "r": 0, "t": 0, "b": 0}},
         frames=frames,
         moments=shown.labels,
         height=520,
-        note="Drag to rotate, scroll or pinch to zoom; the slider steps through the load program.",
+        note="Red is sheared with the load, blue against it. Drag to rotate, scroll or pinch to zoom; the slider steps "
+        "through the load program.",
     )

@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from coilset.meshes.errors import unreadable
+from coilset.meshes.errors import reading
 from coilset.model.report.answer import Number
 from coilset.model.report.panel import COLOURS, Panel, axis
 from coilset.model.report.render import write_page
+from coilset.model.results.labelled import labelled
 from coilset.model.sweep import findings
 from coilset.model.sweep.sensitivity import rank_correlation
 
@@ -32,13 +33,10 @@ def write_sweep_report(folder: str | Path) -> Path:
         InputError: if the data cannot be read. CoilsetError: if the page cannot be written.
     """
     folder = Path(folder)
-    try:
-        with xr.open_dataset(folder / FILE, engine="h5netcdf") as file:
-            data = file.load()
+    with reading(folder / FILE):
+        data = labelled(folder)
         of = next((name for name in ANSWERS if name in data), "seconds")
         columns = _columns(data, of)
-    except (OSError, ValueError, KeyError) as error:
-        raise unreadable(folder / FILE, error) from None
     panels = [panel for panel in (_deciding(data, of), _spread(data, of)) if panel is not None]
     counts = {status: int((data["status"] == status).sum()) for status in ("done", "failed", "missing")}
     names = [data[name].attrs["long_name"] for name in _list(data.attrs["inputs"])]

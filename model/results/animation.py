@@ -10,9 +10,9 @@ from coilset.meshes.errors import CoilsetError
 from coilset.model.results.display import ensure
 from coilset.model.results.folder import whole
 from coilset.model.results.opened import Run
-from coilset.model.results.scene import ABOVE, scale_end
+from coilset.model.results.scene import ABOVE
 from coilset.model.results.wire import closed, moments, tubes
-from coilset.model.style import DIVERGING
+from coilset.model.style import DIVERGING, QUARTERED, round_end
 
 NAME = "animation.gif"
 SIZE = (720, 540)  # pixels
@@ -46,7 +46,7 @@ def animate(run: Run) -> Path:
 
 def _draw(labels: tuple[str, ...], places: np.ndarray, stress: np.ndarray) -> list[np.ndarray]:
     """A picture for each moment."""
-    end = scale_end(float(np.abs(stress).max()))
+    end = round_end(float(np.abs(stress).max()), QUARTERED)
     plotter = pv.Plotter(off_screen=True, window_size=SIZE)
     try:
         plotter.set_background("white")

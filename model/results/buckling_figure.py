@@ -40,15 +40,13 @@ def buckling_mode(path: str | Path, setup: Setup, result: Result, summary: Mappi
         for displaced, style in ((0.0, {"color": "0.75", "lw": 1.2}), (scale, {"color": "C0", "lw": 1.8})):
             wire = x + displaced * moved
             view.plot(wire[:, :2] @ across, wire[:, 2], **style)
-        view.plot(scale * aside, height, "C3--", lw=1.0)
-        view.set(aspect="equal", xlabel="in the plane of the mode, mm", ylabel="height in mm",
+        view.plot(scale * aside, height, "C1--", lw=1.0)
+        view.set(aspect="equal", xlabel="in the plane of the mode in mm", ylabel="height in mm",
                  title=f"travel {plain(mode.travel_mm)} mm, {plain(mode.force_N)} N")  # fmt: skip
         _axis(line, height, aside, mode)
         buckled = summary["buckling_travel_mm"]
-        found = (
-            "the spring did not buckle in this run" if buckled is None else f"the spring buckled at {plain(buckled)} mm"
-        )
-        figure.suptitle(f"Weakest mode of the tangent; {found}")
+        found = "did not buckle in this run" if buckled is None else f"buckled at {plain(buckled)} mm of travel"
+        figure.suptitle(f"The spring {found}; the weakest mode of the tangent")
         save(figure, path)
 
 
@@ -56,9 +54,9 @@ def _axis(axes: Axes, height: np.ndarray, aside: np.ndarray, mode: BucklingMode)
     """The axis over the height, and a clamped column's mode."""
     bottom, top = float(mode.x[0, 2]), float(mode.x[-1, 2])
     z = np.linspace(bottom, top, 101)
-    axes.plot(aside / np.abs(aside).max(), height, "C3", label="mean of a turn")
+    axes.plot(aside / np.abs(aside).max(), height, "C1", label="mean of a turn")
     axes.plot(column(z, bottom, top), z, "k:", lw=0.9, label="clamped column")
-    axes.set(xlabel="displacement over its greatest", ylim=(min(bottom, height[0]), max(top, height[-1])))
+    axes.set(xlabel="displacement over its maximum", ylim=(min(bottom, height[0]), max(top, height[-1])))
     axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=2)
     axes.grid(lw=0.3)
 

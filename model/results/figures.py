@@ -1,5 +1,6 @@
 """Figures of a run: the characteristic, and the residual stress over the wire's cross-section."""
 
+import textwrap
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -15,13 +16,21 @@ from coilset.model.results.rings import ROUND, refined, rings
 from coilset.model.style import DIVERGING, STYLE, levels
 
 NAMED = 6  # targets in a legend, at most
+LETTERS = 14  # of a title, on an inch of a figure
 BESIDE = 4  # lines of a legend that fit beside a characteristic
 
 
 def save(figure: Figure, path: str | Path) -> None:
-    """Write a figure as PNG."""
-    with whole(path) as partial:
+    """Write a figure as PNG; its colours `C0`, `C1`, … are looked up only now."""
+    with whole(path) as partial, mpl.rc_context(STYLE):
         figure.savefig(partial, dpi=STYLE["savefig.dpi"])
+
+
+def add_title(figure: Figure, text: str) -> None:
+    """Put a line below the title that a figure has, all of it broken to the figure's width."""
+    width = int(LETTERS * figure.get_figwidth())
+    lines = [part for line in f"{figure.get_suptitle()}\n{text}".split("\n") for part in textwrap.wrap(line, width)]
+    figure.suptitle("\n".join(lines), fontsize=9)
 
 
 def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapping[str, Any]) -> None:
@@ -96,7 +105,7 @@ def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
             axes.plot(*radius * setup.rule.points.T, "k.", ms=2, alpha=0.5)
             axes.plot(radius * np.cos([*angle, 0.0]), radius * np.sin([*angle, 0.0]), "k-", lw=0.8)
             direction = "towards" if inwards else "away from"
-            axes.set(aspect="equal", xlabel=f"{direction} the coil's axis, mm", ylabel="across, mm", title=name)
+            axes.set(aspect="equal", xlabel=f"{direction} the coil's axis in mm", ylabel="across in mm", title=name)
             figure.colorbar(shown, ax=axes, label="MPa", shrink=0.85)
         low, high = (plain(value, 2).replace("-", "−") for value in (around.min(), around.max()))
         figure.suptitle(

@@ -12,8 +12,8 @@ from coilset.model.standards.goodman import Cycle, Line
 from coilset.model.style import STYLE
 
 
-def draw(path: Path, title: str, endured: Line, cycle: Cycle, residual: float | None) -> None:
-    """Goodman diagram with the working cycle, and with the residual stress added to it if there is one."""
+def draw(path: Path, wire: str, endured: Line, cycle: Cycle, residual: float | None) -> None:
+    """Goodman diagram of a wire with the working cycle, and with the residual stress added to it if there is one."""
     low = min(0.0, cycle.lower + (residual or 0.0))
     lower = np.array(sorted({low, 0.0, endured.knee, endured.limit}))
     with mpl.rc_context(STYLE):
@@ -24,11 +24,21 @@ def draw(path: Path, title: str, endured: Line, cycle: Cycle, residual: float | 
         axes.plot([low, endured.limit], [low, endured.limit], "k:", lw=0.9, label="at rest, τk2 = τk1")
         _mark(axes, cycle, "C0", "working cycle, nominal")
         if residual is not None:
-            _mark(axes, cycle.shifted(residual), "C3", f"with the residual {residual:.0f} MPa that was found")
-        axes.set(xlabel="lower corrected stress τk1 in MPa", ylabel="upper corrected stress τk2 in MPa", title=title)
+            text = f"{residual:.0f}".replace("-", "−")
+            _mark(axes, cycle.shifted(residual), "C1", f"with the residual {text} MPa that was found")
+        axes.set(xlabel="lower corrected stress τk1 in MPa", ylabel="upper corrected stress τk2 in MPa",
+                 title=_found(wire, endured, cycle))  # fmt: skip
         axes.legend(fontsize=8, loc="lower right")
         axes.grid(lw=0.3)
         save(figure, path)
+
+
+def _found(wire: str, endured: Line, cycle: Cycle) -> str:
+    """How much of the endured range the cycle uses."""
+    endures = endured.stress_range(cycle.lower)
+    span = cycle.upper - cycle.lower
+    used = f"{100.0 * span / endures:.0f} % of what is endured" if endures else "above what is endured"
+    return f"{wire}: the cycle of {span:.0f} MPa is {used}"
 
 
 def _mark(axes: Axes, cycle: Cycle, colour: str, label: str) -> None:

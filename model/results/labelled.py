@@ -7,7 +7,7 @@ from typing import Any
 
 import xarray as xr
 
-from coilset.meshes.errors import unreadable
+from coilset.meshes.errors import reading
 from coilset.model.results.opened import open_run, unit_of
 
 
@@ -26,11 +26,8 @@ def labelled(folder: str | Path) -> xr.Dataset:
     """
     folder = Path(folder)
     if (folder / "sweep.nc").is_file():
-        try:
-            with xr.open_dataset(folder / "sweep.nc", engine="h5netcdf") as file:
-                return file.load()
-        except (OSError, ValueError) as error:
-            raise unreadable(folder / "sweep.nc", error) from None
+        with reading(folder / "sweep.nc"), xr.open_dataset(folder / "sweep.nc", engine="h5netcdf") as file:
+            return file.load()
     run = open_run(folder)
     data = run.data.copy()
     add_summary(data, run.summary)

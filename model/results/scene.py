@@ -1,6 +1,5 @@
 """The spring in 3D: its wire as a tube at several moments, coloured by the stress in it."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,13 +11,13 @@ import pyvista as pv
 from coilset.model.results.folder import whole
 from coilset.model.results.labels import plain
 from coilset.model.results.record import Snapshot
+from coilset.model.style import QUARTERED, round_end
 
 POINTS_PER_ELEMENT = 6
 WIDTH, LEAST_HEIGHT, MOST_HEIGHT = 1500, 620, 1500  # of the picture, pixels
 LABELS, BAR = 100, 130  # pixels above the springs and below them
 COLUMN = 320  # pixels per label
 ABOVE = 0.22  # tangent of the angle of view above the horizontal
-NICE = (1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0)  # ends of a scale whose quarters have few digits
 
 
 @dataclass(frozen=True)
@@ -44,14 +43,6 @@ class Frame:
         return cls(max(LEAST_HEIGHT, round(seen * scale) + LABELS + BAR), scale, column)
 
 
-def scale_end(greatest: float) -> float:
-    """End of a scale from zero that has room for the maximum value."""
-    if greatest <= 0.0:
-        return 1.0
-    power = 10.0 ** math.floor(math.log10(greatest))
-    return next(end * power for end in NICE if end * power >= greatest * (1.0 - 1e-9))
-
-
 def tube(x: np.ndarray, radius: np.ndarray, values: np.ndarray, name: str) -> pv.PolyData:
     """A smooth tube through the stations; `radius` and `values` per station, shape (n + 1,)."""
     line = pv.Spline(x, POINTS_PER_ELEMENT * (len(x) - 1) + 1)
@@ -70,13 +61,16 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.nda
         snapshots: Snapshots from left to right.
         wire_radius: of the elements, shape (n,), mm.
     """
-    name = "maximum shear stress in the section, MPa"
+    name = "maximum shear stress in the section in MPa"
     radius = 0.5 * (np.append(wire_radius, wire_radius[-1]) + np.append(wire_radius[0], wire_radius))
     x = np.concatenate([shot.x for shot in snapshots])
     low, high = float(x[:, 2].min() - radius.max()), float(x[:, 2].max() + radius.max())
     across = float(np.ptp(x[:, :2], axis=0).max()) + 2.0 * float(radius.max())
     aside = 0.5 * float(x[:, 0].min() + x[:, 0].max())  # a buckled spring deflects to one side
-    frame, end = Frame.of(across, high - low, len(snapshots)), scale_end(max(float(s.shear.max()) for s in snapshots))
+    frame, end = (
+        Frame.of(across, high - low, len(snapshots)),
+        round_end(max(float(s.shear.max()) for s in snapshots), QUARTERED),
+    )
     force = max(abs(shot.force) for shot in snapshots)
     middle = aside + 0.5 * frame.column * (len(snapshots) - 1)
     plotter = pv.Plotter(off_screen=True, window_size=(WIDTH, frame.height))

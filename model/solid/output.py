@@ -11,6 +11,7 @@ import pyvista
 from coilset.meshes.compat import geometry_dofs
 from coilset.model.results.folder import whole
 from coilset.model.solid.solid import Solid
+from coilset.model.style import QUARTERED, round_end
 
 BAR = {
     "color": "black", "n_labels": 5, "fmt": "%.3g", "title_font_size": 22, "label_font_size": 18,
@@ -94,7 +95,7 @@ def picture(path: str | Path, bodies: Mapping[str, pyvista.DataSet], field: str,
         bodies: name → grid of `grid`.
         field, unit: name of the field, and its unit for the colour bar.
     """
-    greatest = max(float(body.point_data[field].max()) for body in bodies.values())
+    end = round_end(max(float(body.point_data[field].max()) for body in bodies.values()), QUARTERED)
     size = 720 * len(bodies), 470
     plotter = pyvista.Plotter(off_screen=True, shape=(1, len(bodies)), window_size=size, border=False)
     plotter.set_background("white")
@@ -103,7 +104,7 @@ def picture(path: str | Path, bodies: Mapping[str, pyvista.DataSet], field: str,
         half = body.tessellate(max_n_subdivide=2).clip(normal=(0, -1, 0), origin=(0, 1e-3, 0))
         half = half.connectivity("largest")  # without the part of the turn's other end on this side
         bar = {"title": f"{field} in {unit}\n", **BAR}
-        plotter.add_mesh(half, scalars=field, clim=(0.0, greatest), cmap="viridis", ambient=0.3, scalar_bar_args=bar)
+        plotter.add_mesh(half, scalars=field, clim=(0.0, end), cmap="viridis", ambient=0.3, scalar_bar_args=bar)
         plotter.add_text(name, position=(0.42, 0.9), viewport=True, font_size=13, color="black")
         plotter.camera.parallel_projection = True
         plotter.view_vector((0.1, -1.0, 0.6), viewup=(0, 0, 1))

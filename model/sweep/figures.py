@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from coilset.meshes.errors import InputError
-from coilset.model.results.figures import save
+from coilset.model.results.figures import add_title, save
 from coilset.model.style import STYLE
 from coilset.model.sweep import findings
 from coilset.model.sweep import spec as sp
@@ -59,7 +59,7 @@ def draw(folder: Path, plan: Plan, data: xr.Dataset) -> tuple[list[str], list[In
             if drawn is None:
                 continue
             cases = f"{plan.path.stem}: {int((data.status == 'done').sum())} of {len(plan)} cases"
-            drawn.suptitle("\n".join(filter(None, (drawn.get_suptitle(), cases))), fontsize=10)
+            add_title(drawn, cases)
             files.append(f"{number + 1:02d}_{figure.kind}.png")
             save(drawn, folder / files[-1])
     return files, problems

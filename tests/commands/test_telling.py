@@ -59,7 +59,7 @@ def test_verbose_tells_each_iteration(said):
     lines, _ = said(verbose=True)
     assert not any("\x1b" in line for line in lines)
     told, steps = [], 0
-    for line in lines[1 + next(k for k, one in enumerate(lines) if one.startswith("   step")) :]:
+    for line in lines[1 + next(k for k, one in enumerate(lines) if one.startswith(" step")) :]:
         if found := re.match(
             r" +iteration (\d+): residual \S+ N(?:, out of balance ([^ ,]+))?(, step length \S+)?", line
         ):
@@ -68,6 +68,7 @@ def test_verbose_tells_each_iteration(said):
             told = [] if number == 0 else [*told, float(balance)]
         elif found := re.match(r" +\d+ +\S+ +\S+ +(\d+) ", line):
             steps += 1
+            assert len(f"{line}  2 cuts  40 min left") <= 80  # columns of a terminal
             assert 0 < len(told) <= int(found[1])  # of the last solve, where contacts are augmented
             assert told[-1] < 1e-6 <= max(told)
     assert steps == 5

@@ -13,12 +13,14 @@ import pytest
 import yaml
 from browser import ENTER, TAB, chromium, missing
 
+from coilset.model.report.design_page import write_design_report
 from coilset.model.report.page import write_report
 from coilset.model.report.sweep_page import write_sweep_report
 from coilset.model.results.opened import open_run
 from coilset.model.sweep import dataset
 from coilset.model.sweep.journal import Journal
 from coilset.model.sweep.plan import Plan
+from coilset.scripts.design import design
 
 DRIVER, AXE = os.environ.get("COILSET_WEBDRIVER", ""), os.environ.get("COILSET_AXE", "")
 pytestmark = pytest.mark.skipif(not DRIVER and bool(missing()), reason=missing())
@@ -60,6 +62,19 @@ def sweep_page(tmp_path_factory):
     return write_sweep_report(out)
 
 
+@pytest.fixture(scope="module")
+def design_page(tmp_path_factory):
+    """The height to which a spring must be pressed for its length, and what else could be had."""
+    folder = tmp_path_factory.mktemp("design")
+    loading = [{"to": {"height": 16.0}, "steps": 3}, {"to": {"force": 0}, "steps": 2}]
+    wish = {**CASE, "ends": "clamped", "mesh": {"elements_per_turn": 6, "section": {"radial": 2, "angular": 4}},
+            "loading": loading, "find": {"loading.0.to.height": [14.0, 19.0]},
+            "such_that": {"free_length_after_mm": 18.0}, "trade_offs": {"spring.pitch": [11.0, 13.0]}}  # fmt: skip
+    (folder / "wish.yaml").write_text(yaml.safe_dump(wish))
+    design(folder / "wish.yaml", str(folder / "out"), False, False)
+    return write_design_report(folder / "out")
+
+
 def until(browser, script):
     """A script's answer, asked for until it is true."""
     for _ in range(200):
@@ -77,8 +92,9 @@ def drawn(browser):
 
 
 @pytest.mark.skipif(not Path(AXE).is_file(), reason="COILSET_AXE names no axe.min.js")
-@pytest.mark.parametrize(("width", "dark"), [(390, True), (1280, False)], ids=["phone, dark", "desk, light"])
-@pytest.mark.parametrize("page", ["run_page", "sweep_page"])
+@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+@pytest.mark.parametrize("width", [390, 1280], ids=["phone", "desk"])
+@pytest.mark.parametrize("page", ["run_page", "sweep_page", "design_page"])
 def test_no_serious_finding_of_axe(request, browser, page, width, dark):
     browser.look(width, dark=dark)
     browser.open(request.getfixturevalue(page))

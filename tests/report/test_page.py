@@ -7,14 +7,15 @@ import os
 import re
 import resource
 import signal
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from coilset.meshes.errors import InputError
+from coilset.model.report.characteristic import characteristic, phases
 from coilset.model.report.glossary import GLOSSARY
 from coilset.model.report.page import CHAPTERS, write_report
-from coilset.model.report.scale import round_end
 from coilset.model.results.opened import open_run
 from coilset.model.results.wire import closed, moments, shear_around, tubes
 from coilset.scripts.report import report
@@ -126,9 +127,13 @@ def test_each_step_can_be_slid_to(folder, page):
                                                              "step 6, to force 0 N"]  # fmt: skip
 
 
-@pytest.mark.parametrize(("value", "end"), [(0.0, 1.0), (1.0, 1.0), (101.0, 150.0), (0.037, 0.04), (9.9e5, 1e6)])
-def test_scales_end_round(value, end):
-    assert round_end(value) == pytest.approx(end)
+def test_first_and_second_loading_are_told_apart(folder):
+    """Phases of one name are numbered; where there is no second loading, the page says how to get it."""
+    run = open_run(folder)
+    assert [name for name, _, _ in phases(run)] == ["to block", "to force 0 N"]
+    assert "second loading" in characteristic(run).note
+    same = replace(run, data=run.data.assign_coords(snapshot=["start", "block", "block"]))
+    assert [name for name, _, _ in phases(same)] == ["to block, first time", "to block, second time"]
 
 
 def test_a_folder_without_a_run_is_refused(tmp_path):

@@ -19,8 +19,9 @@ from coilset.model.results.display import ensure
 from coilset.model.results.labels import plain
 from coilset.model.results.record import BucklingMode, Step
 from coilset.model.results.rings import ROUND
-from coilset.model.results.scene import ABOVE, BAR, COLUMN, LABELS, MOST_HEIGHT, WIDTH, Frame, scale_end, springs
+from coilset.model.results.scene import ABOVE, BAR, COLUMN, LABELS, MOST_HEIGHT, WIDTH, Frame, springs
 from coilset.model.results.summary import summarise
+from coilset.model.style import QUARTERED, round_end
 
 
 @pytest.mark.parametrize("springs", [1, 2, 4])
@@ -34,10 +35,12 @@ def test_springs_are_whole_in_their_picture(across, tall, springs):
     assert frame.column > across
 
 
-@pytest.mark.parametrize(("greatest", "end"), [(197.3, 200.0), (65.8, 80.0), (2.0, 2.0), (0.0, 1.0), (3.1e-7, 4e-7)])
+@pytest.mark.parametrize(
+    ("greatest", "end"), [(197.3, 200.0), (65.8, 80.0), (2.0, 2.0), (0.0, 1.0), (3.1e-7, 4e-7), (9.9e5, 1e6)]
+)
 def test_scales_end_on_few_digits(greatest, end):
-    assert scale_end(greatest) == pytest.approx(end)
-    labels = np.linspace(0.0, scale_end(greatest), 5)  # as many as the colour bar has, of three digits each
+    assert round_end(greatest, QUARTERED) == pytest.approx(end)
+    labels = np.linspace(0.0, round_end(greatest, QUARTERED), 5)  # as many as the colour bar has, of three digits each
     assert [float(f"{label:.3g}") for label in labels] == pytest.approx(labels, rel=1e-9)
 
 

@@ -13,7 +13,8 @@ from coilset.model.style import STYLE
 from coilset.verification.benchmarks.measure import STAGES
 from coilset.verification.benchmarks.target import FLAT, ITERATION, LARGE, per_element, seconds
 
-COLOURS = dict(zip(STAGES, mpl.colormaps["tab10"].colors, strict=False))
+YELLOW = "#f0e442"  # Okabe and Ito's seventh colour
+COLOURS = dict(zip(STAGES, [*(f"C{k}" for k in range(6)), YELLOW, "0.6"], strict=True))
 
 
 def draw(path: Path, record: dict[str, Any]) -> None:
@@ -25,8 +26,10 @@ def draw(path: Path, record: dict[str, Any]) -> None:
         _elements(elements, record["elements"])
         _ranks(ranks, record["ranks"])
         machine = record["machine"]
-        figure.suptitle(f"coilset bench, {machine['processor']}, {machine['cores']} cores, load {machine['load']:.1f} "
-                        "at the start")  # fmt: skip
+        large = [per_element(run) for run in record["elements"] if run["elements"] >= LARGE]
+        found = f"An iteration takes {min(large):.0f} to {max(large):.0f} µs an element" if large else "coilset bench"
+        figure.suptitle(f"{found}; {machine['processor']}, {machine['cores']} cores, "
+                        f"load {machine['load']:.1f} at the start")  # fmt: skip
         save(figure, path)
 
 
@@ -36,7 +39,7 @@ def _stages(axes: Axes, example: dict[str, Any]) -> None:
     for place, value in enumerate(spent):
         axes.annotate(f" {value:.1f}", (value, place), va="center", fontsize=8)
     axes.invert_yaxis()
-    axes.set(xlabel="processor time, ms", title=f"Example, {example['elements']} elements, {example['steps']} steps, "
+    axes.set(xlabel="processor time in ms", title=f"Example, {example['elements']} elements, {example['steps']} steps, "
              f"{example['iterations']} iterations: {1e3 * example['analysis'][1]:.0f} ms")  # fmt: skip
     axes.title.set_fontsize(9)
     axes.margins(x=0.15)
@@ -69,5 +72,6 @@ def _ranks(axes: Axes, runs: list[dict[str, Any]]) -> None:
         bottom += height
     axes.set_xticks(place, [f"{run['ranks']} rank{'s' if run['ranks'] > 1 else ''}" for run in runs])
     speed = seconds(runs[0]["stages"], 0) / seconds(runs[-1]["stages"], 0)
-    axes.set(ylabel="time, s (colours as on the left)", title=f"{runs[0]['elements']:,} elements: × {speed:.2f}")
+    axes.set(ylabel="time in s (colours as on the left)",
+             title=f"{runs[0]['elements']:,} elements: {speed:.2f} times as fast")  # fmt: skip
     axes.title.set_fontsize(9)

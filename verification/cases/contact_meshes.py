@@ -112,7 +112,8 @@ def draw(study: Study, curves: dict[tuple[str, int, bool], Run]) -> None:
                 automatic, _ = curves[name, mesh, True]
                 place.plot(*np.insert(characteristic(automatic), 0, 0.0, axis=1), "-", color=colour, lw=0.8,
                            label=f"{mesh} per turn, automatic")  # fmt: skip
-            place.set(xlabel="travel in mm", ylabel="axial force in N", title=f"{name}, Ck 15, to block and back")
+            place.set(xlabel="travel in mm", ylabel="axial force in N", title=name)
             place.grid(lw=0.3)
         place.legend(fontsize=7)
+        figure.suptitle("16, 32 and 64 elements per turn give the same curves (springs of Ck 15, to block and back)")
     study.figure("contact_meshes", figure)

@@ -43,7 +43,7 @@ GROOVE = {"hold": "groove", "groove": 0.1}
 TRAVEL, STEPS = 18.0, 18
 PRESSED, DOWN, LOW, UP = 16.0, 12, 20.0, (12, 24)  # mm, steps, N, steps
 PLANE = {"section": {"kind": "plane"}}  # as the formulas here, which are those of straight wire
-COLOURS = {"open": "C0", "closed": "C3"}
+COLOURS = {"open": "C0", "closed": "C1"}
 
 
 def press(
@@ -170,11 +170,12 @@ def draw_paths(study: Study, elastic: dict[str, Analysis]) -> None:
             figure.colorbar(shown, ax=axes, label="force per length of wire in N/mm")
         plan.set(aspect="equal", xlabel="x/r", ylabel="y/r", title="bottom seat, seen along the axis")
         over.set(xlabel="travel in mm", ylabel="distance from the axis over r", ylim=(0, 1.1),
-                 title="at first at the tip, then inwards")  # fmt: skip
+                 title="over the travel")  # fmt: skip
         for axes in (plan, over):
             axes.grid(lw=0.3)
             axes.legend(fontsize=7)
-        figure.suptitle("Elastic springs between flat guided seats, tips held sideways by short grooves")
+        figure.suptitle("The force acts at the wire's tip first, then moves inwards\n"
+                        "(elastic springs between flat guided seats, tips held sideways by short grooves)")  # fmt: skip
     study.figure("force_centre", figure)
 
 
@@ -193,7 +194,9 @@ def draw_release(study: Study, plastic: dict[str, Analysis], tips: float) -> Non
             axes.set(xlabel="travel in mm", ylabel=words)
             axes.grid(lw=0.3)
             if name == "rate":
-                axes.axhline(tips, color="k", lw=0.9, ls=":", label="open ends on their tips, Castigliano")
-            axes.legend(fontsize=7)
-        figure.suptitle("Springs of Ck 15, pressed 16 mm and released: lift-off from the seats")
+                line = axes.axhline(tips, color="k", lw=0.9, ls=":", label="open ends on their tips, Castigliano")
+                axes.legend(handles=[line], fontsize=8, loc="lower right")
+        figure.legend(*figure.axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=8)
+        figure.suptitle("Once the ends lift off, the rate of release falls\n"
+                        "(springs of Ck 15, pressed 16 mm and released)")  # fmt: skip
     study.figure("release", figure)

@@ -31,7 +31,7 @@ LOAD, NODES, RADIUS, LENGTH = 10.0, 11, 2.0, 100.0  # N at each node, mm
 MU, STEPS, TRAVEL = 0.3, 10, 15.0
 SPRING = {"wire_diameter": 4.0, "mean_diameter": 32.0, "turns": 7.5, "free_length": 75.0,
           "end_coils": {"form": "closed and ground"}}  # fmt: skip
-COLOURS = {0.0: "0.5", 0.1: "C0", 0.3: "C3"}  # by coefficient
+COLOURS = {0.0: "0.5", 0.1: "C0", 0.3: "C1"}  # by coefficient
 
 
 def pressed_rod(free: tuple[int, ...]) -> tuple[Frame, dict[int, float]]:
@@ -107,9 +107,11 @@ def draw(study: Study, curves: dict[float, np.ndarray]) -> None:
             left.plot(travel, force, "-", color=colour, lw=1.0, label=f"μ = {mu:g}")
             if mu:
                 right.plot(travel, force - curves[0.0][1], ".-", color=colour, lw=0.8, ms=3, label=f"μ = {mu:g}")
-        left.set(xlabel="travel in mm", ylabel="axial force in N", title="Closed and ground, two cycles")
+        left.set(xlabel="travel in mm", ylabel="axial force in N", title="closed and ground, two cycles")
         right.set(xlabel="travel in mm", ylabel="force minus that without friction in N")
         for axes in (left, right):
             axes.grid(lw=0.3)
             axes.legend(fontsize=8)
+        most = 100.0 * max(np.abs(force - curves[0.0][1]).max() for _, force in curves.values()) / curves[0.0][1].max()
+        figure.suptitle(f"Friction changes the force by {most:.2g} % of its maximum at most")
         study.figure("friction", figure)

@@ -72,5 +72,8 @@ def run(study: Study) -> None:
             axes.grid(lw=0.3, which="both")
         figure.axes[0].set_ylabel("error of the stress over the flow stress")
         figure.axes[0].legend(fontsize=8)
-        figure.suptitle("Ck 15, against Heun's method with tolerance 1e-8", fontsize=10)
+        less = min(np.divide(errors[name, "Heun, one step"], errors[name, "return mapping"]).min() for name in PATHS)
+        figure.suptitle("Half the increment quarters the error; one step of Heun's method errs "
+                        f"at least {less:.2g} times as much as\nthe return mapping "
+                        "(Ck 15; reference: Heun's method with tolerance 1e-8)")  # fmt: skip
     study.figure("law_accuracy", figure)

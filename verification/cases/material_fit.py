@@ -85,6 +85,7 @@ def run(study: Study) -> None:
 
 
 def _draw(study: Study, names: list[str], value: np.ndarray, stated: np.ndarray) -> None:
+    inside = int((np.abs(value - 1.0) <= stated).sum())
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.6, 4.2), layout="constrained")
         axes = figure.add_subplot()
@@ -94,7 +95,8 @@ def _draw(study: Study, names: list[str], value: np.ndarray, stated: np.ndarray)
         axes.plot([], [], "o-", color="C0", label=f"{len(value)} series of tests with 1 % noise, ± stated uncertainty")
         axes.axhline(1.0, color="k", lw=0.8, label="constants of the thesis, 6.2.2, with which the tests were made")
         axes.set_xticks(np.arange(len(names)), names, rotation=30)
-        axes.set(ylabel="identified over true constant", title="Identification of Ck 15", ylim=(-0.5, 3))
+        found = f"{inside} of {value.size} constants lie within their stated uncertainty"
+        axes.set(ylabel="identified over true constant", title=found, ylim=(-0.5, 3))
         axes.grid(lw=0.3)
         axes.legend(fontsize=8)
     study.figure("material_fit", figure)

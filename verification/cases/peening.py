@@ -91,7 +91,7 @@ def figure(found: dict[str, tuple[Analysis, np.ndarray, np.ndarray]]) -> Figure:
             axes.plot(np.append(0.0, depth[order]), np.append(rim[0, 0], stress[order]), "o-", ms=3, label=word)
         for axes, title in ((left, "Coiled, relieved and peened"), (right, "Peened, free of stress before")):
             axes.axhline(0.0, color="0.7", lw=0.8)
-            axes.set(xlabel="depth below the surface / mm", title=title, xlim=(0.0, 1.5), ylim=(-550.0, 850.0))
+            axes.set(xlabel="depth below the surface in mm", title=title, xlim=(0.0, 1.5), ylim=(-550.0, 850.0))
             axes.legend()
-        left.set(ylabel="stress along the wire / MPa")
+        left.set(ylabel="stress along the wire in MPa")
     return picture

@@ -89,7 +89,7 @@ def convergence(linear_law: Law, law: Law) -> Figure:
             found = [HelixSection(linear_law, "warping", index, 0.0, polar(8, 24), d).factors()[0] for d in DEGREES]
             left.semilogy(DEGREES, np.abs(np.array(found) / exact - 1), "o-", ms=4, lw=1, label=f"D/d = {index:g}")
         left.set(xlabel="degree of the warping", ylabel="error of the shear factor inside",
-                 title="warping, elastic, against Göhner")  # fmt: skip
+                 title="elastic: each degree of the warping\nbrings a digit (Göhner's equation, solved)")  # fmt: skip
         reference = twisted(law, 9, (16, 48))
         by_degree = np.array([twisted(law, d, (16, 48)) for d in DEGREES])
         by_points = np.array([twisted(law, 3, rule) for rule in RULES])
@@ -98,8 +98,9 @@ def convergence(linear_law: Law, law: Law) -> Figure:
             middle.semilogy(DEGREES, np.abs(by_degree[:, k] / reference[k] - 1), "o-", ms=4, lw=1, label=name)
             right.loglog([a * b for a, b in RULES], np.abs(by_points[:, k] / fine[k] - 1), "o-", ms=4, lw=1, label=name)
         middle.set(xlabel="degree of the warping", ylabel="change to degree 9",
-                   title="warping, Ck 15, 8 × yield, D/d = 5")  # fmt: skip
-        right.set(xlabel="section points", ylabel="change to 16 × 48 points", title="the same, degree 3")
+                   title="plastic: Ck 15 at 8 times the twist\nof first yield, D/d = 5")  # fmt: skip
+        right.set(xlabel="section points", ylabel="change to 16 × 48 points",
+                  title="the same at degree 3, over the points")  # fmt: skip
         slice_meshes(mesh, linear_law)
         for axes in (left, middle, right, mesh):
             axes.grid(lw=0.3)
@@ -124,6 +125,6 @@ def slice_meshes(axes: Axes, law: Law) -> None:
         (back[:-1] / back[-1] - 1, "C1s--", "set"),
     ):
         axes.loglog(unknowns, np.abs(values), style, ms=4, lw=1, label=name)
-    axes.set(xlabel="unknowns of the slice", ylabel="error", title="slice")
+    axes.set(xlabel="unknowns of the slice", ylabel="error", title="the slice, over its mesh")
     axes.set_xticks([200, 500, 1000, 2000], ["200", "500", "1000", "2000"])
     axes.minorticks_off()

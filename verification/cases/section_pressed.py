@@ -31,7 +31,7 @@ QUANTITIES = ("force at full travel, N", "set, mm", "residual shear inside at 0.
 TOLERANCES = {"curved": (1.5e-3, 1.5e-3, 4e-2), "warping": (1.5e-3, 1.5e-3, 3e-2), "slice": (1e-3, 1e-3, 1.5e-2)}
 RATE = {"curved": 1e-3, "warping": 1e-3}
 SURFACE_TOLERANCE = 1e-2
-COLOURS = {"plane": "C7", "curved": "C0", "warping": "C3", "slice": "C2"}
+COLOURS = {"plane": "0.5", "curved": "C0", "warping": "C1", "slice": "C2"}
 REFINED = 3e-4  # what the solid's last refinement changes in force
 
 
@@ -95,7 +95,10 @@ def draw(off: dict[tuple[Solid, str], np.ndarray]) -> Figure:
                 axes[k].grid(lw=0.3)
             axes[0].set_ylabel("|deviation from the solid| in %")
         figure.legend(*panels[0][0].get_legend_handles_labels(), loc="outside lower center", ncols=5, fontsize=8)
-        figure.suptitle("One clamped turn of Ck 15, pressed nearly to block and released")
+        worst = {kind: np.max([np.abs(off[solid, kind]) for solid in solids], axis=0) for kind in ("plane", "curved")}
+        figure.suptitle(f"Curved sections find the solid's force within {worst['curved'][0]:.2g} % and its set within "
+                        f"{worst['curved'][1]:.2g} %; plane ones miss up to {worst['plane'][1]:.2g} % of the set\n"
+                        "(one clamped turn of Ck 15, pressed nearly to block and released)")  # fmt: skip
     return figure
 
 

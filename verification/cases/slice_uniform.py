@@ -80,13 +80,14 @@ def _figure(slices: dict[float, Pressed], rods: dict[float, tuple[np.ndarray, fl
             left.plot(np.append(ours.travel, ours.set_mm) / reach, np.append(ours.force, 0.0) / full, f"C{k}o", ms=4,
                       mfc="none", label=f"D/d = {index:g}")  # fmt: skip
             left.plot(np.array([*ours.travel, back]) / reach, np.array([0.0, *forces, 0.0]) / full, f"C{k}-", lw=1)
-        left.set(xlabel="travel over full travel", ylabel="force over that of the slice", title="Slice (o) and rod (–)")
+        left.set(xlabel="travel over full travel", ylabel="force over that of the slice",
+                 title="Ck 15: slice (o) and rod (–)")  # fmt: skip
         deviation = lambda ours, theirs: 100 * (ours / theirs - 1)  # noqa: E731
         right.plot(INDICES, [deviation(rods[i][0][-1], slices[i].force[-1]) for i in INDICES], "C0o-", ms=5, lw=1,
                    label="force at full travel")  # fmt: skip
         right.plot(INDICES, [deviation(rods[i][1], slices[i].set_mm) for i in INDICES], "C1s-", ms=5, lw=1, label="set")
         right.axhline(0, color="k", lw=0.6)
-        right.set(xlabel="spring index D/d", ylabel="rod over slice − 1, in %", title="What the rod misses")
+        right.set(xlabel="spring index D/d", ylabel="rod over slice − 1, in %", title="what the rod misses")
         for axes in (left, right):
             axes.grid(lw=0.3)
             axes.legend(fontsize=8)

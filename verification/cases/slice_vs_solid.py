@@ -70,7 +70,7 @@ def _figure(slices: dict[float, Pressed], ends: dict[float, np.ndarray], solid: 
         left.plot(
             solid["travel"], solid["force"], "C1o", ms=4, mfc="none", label=f"solid, {solid['unknowns']} unknowns"
         )
-        left.set(xlabel="travel in mm", ylabel="axial force in N", title="One turn, D/d = 8")
+        left.set(xlabel="travel in mm", ylabel="axial force in N", title="one clamped turn of Ck 15, D/d = 8")
         indices = list(RECORDED)
         for k, name in enumerate(("force", "set")):
             raw = [100 * (RECORDED[i][1 + k] / (slices[i].force[-1], slices[i].set_mm)[k] - 1) for i in indices]
@@ -78,7 +78,7 @@ def _figure(slices: dict[float, Pressed], ends: dict[float, np.ndarray], solid: 
             right.plot(indices, raw, f"C{k}o:", ms=4, lw=1, mfc="none", label=f"{name}, clamped turn")
             right.plot(indices, clean, f"C{k}s-", ms=4, lw=1, label=f"{name}, effect of the ends removed")
         right.axhline(0, color="k", lw=0.6)
-        right.set(xlabel="spring index D/d", ylabel="solid over slice − 1, in %", title="Fine solids")
+        right.set(xlabel="spring index D/d", ylabel="solid over slice − 1, in %", title="fine solids")
         for axes in (left, right):
             axes.grid(lw=0.3)
             axes.legend(fontsize=8)

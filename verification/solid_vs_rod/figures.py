@@ -35,7 +35,7 @@ def factors(results: list[study.Numbers]) -> Figure:
     figure = Figure(figsize=(8.6, 3.8), layout="constrained")
     left, right = figure.subplots(1, 2)
     C = np.linspace(3.5, 13, 60)
-    exact = np.array([references.goehner_exact(c) for c in C])
+    exact, off = np.array([references.goehner_exact(c) for c in C]), []
     left.plot(C, exact, "k-", lw=1, label=["Göhner's equation, solved", None])
     left.plot(C, references.goehner_series(C), "C2:", lw=1.6, label="Göhner 1930, series")
     left.plot(C, references.wahl_factor(C), "C1--", lw=1, label="Wahl 1963")
@@ -43,13 +43,17 @@ def factors(results: list[study.Numbers]) -> Figure:
         meshes = sorted((r for r in results if r["index"] == index), key=lambda r: r["unknowns"])
         best = meshes[-1]
         left.plot([index] * 2, [best["inside"], best["outside"]], "C0o", label=None if i else "solid, finest mesh")
+        off.append(abs(best["inside"] / references.goehner_exact(index)[0] - 1))
         error = [abs(r["inside"] / references.goehner_exact(index)[0] - 1) for r in meshes]
         right.loglog([r["unknowns"] for r in meshes], error, "o-", ms=4, lw=1, label=f"D/d = {index:g}")
+    figure.suptitle(
+        f"The finest solids are within {100 * max(off):.2g} % of Göhner's shear stress at the inside of the coil"
+    )
     left.text(9, 1.22, "inside of the coil")
     left.text(7, 0.80, "outside")
-    left.set(xlabel="spring index D/d", ylabel="shear stress over 8 F D / (π d³)", title="Elastic coil")
+    left.set(xlabel="spring index D/d", ylabel="shear stress over 8 F D / (π d³)", title="elastic coil")
     right.axhline(0.02, color="0.5", lw=0.8, ls="--")
-    right.set(xlabel="unknowns", ylabel="error of the factor inside", title="Against Göhner's equation (dashed: 2 %)")
+    right.set(xlabel="unknowns", ylabel="error of the factor inside", title="against Göhner's equation (dashed: 2 %)")
     for axes in (left, right):
         axes.grid(lw=0.3)
         axes.legend(fontsize=8)
@@ -67,8 +71,8 @@ def characteristic(case: PressedSection, solid: study.Numbers, rod: study.Number
         axes.set(xlabel="travel in mm", ylabel=unit)
         axes.grid(lw=0.3)
         axes.legend(fontsize=8)
-    sets = f"set {solid['set']:.3f} mm (solid), {rod['set']:.3f} mm (rod)"
-    figure.suptitle(f"One turn of Ck 15 between clamped heads, D/d = {case.index:g}: {sets}")
+    figure.suptitle(f"The rod sets {rod['set']:.3f} mm, the solid {solid['set']:.3f} mm "
+                    f"(one turn of Ck 15 between clamped heads, D/d = {case.index:g})")  # fmt: skip
     return figure
 
 
@@ -87,7 +91,9 @@ def sections(case: PressedSection, solid: study.Numbers, rod: study.Numbers) -> 
         axes[row, 2].set(xlabel="outward from the wire's centre in mm", ylabel="τ in MPa", title=when)
         axes[row, 2].grid(lw=0.3)
         axes[row, 2].legend(fontsize=8)
-    figure.suptitle(f"Shear stress in mid-section, Ck 15, D/d = {case.index:g}; left is the inside of the coil")
+    inside, beside = (f"{study.diameter(r, 'end')[1][0]:.0f}".replace("-", "−") for r in (solid, rod))
+    figure.suptitle(f"{inside} MPa of shear remain at the inside of the coil (left) in the solid, {beside} MPa in "
+                    f"the plane rod\n(mid-section of a clamped turn of Ck 15, D/d = {case.index:g})")  # fmt: skip
     return figure
 
 
@@ -113,7 +119,7 @@ def deviations(pressed: list[study.Pressed]) -> Figure:
         values = [100 * (by_index[C][name][1] / by_index[C][name][0] - 1) for C in sorted(by_index)]
         left.plot(sorted(by_index), values, style, ms=5, lw=1, label=name)
     left.axhline(0, color="k", lw=0.6)
-    left.set(xlabel="spring index D/d", ylabel="rod over solid − 1, in %", title="What the rod misses")
+    left.set(xlabel="spring index D/d", ylabel="rod over solid − 1, in %", title="what the rod misses")
     meshes = sorted((f for f in pressed if f[0].index == 8 and f[0].steps == 12), key=lambda f: f[1]["unknowns"])
     best = meshes[-1][1]
     i = meshes[-1][0].steps
@@ -122,8 +128,14 @@ def deviations(pressed: list[study.Pressed]) -> Figure:
     sets = [abs(solid["set"] / best["set"] - 1) for _, solid, _ in meshes[:-1]]
     right.loglog(unknowns, forces, "C0o-", ms=5, lw=1, label="force at full travel")
     right.loglog(unknowns, sets, "C1s-", ms=5, lw=1, label="set")
-    right.set(xlabel="unknowns of the solid", ylabel="change to the finest mesh", title="Solid, D/d = 8")
+    right.set(xlabel="unknowns of the solid", ylabel="relative change to the finest mesh",
+              title="the solid's own change, D/d = 8")  # fmt: skip
     for axes in (left, right):
         axes.grid(lw=0.3)
         axes.legend(fontsize=8)
+    least = min(by_index)
+    force, back = (
+        100 * abs(by_index[least][k][1] / by_index[least][k][0] - 1) for k in ("force at full travel", "set")
+    )
+    figure.suptitle(f"At D/d = {least:g} the plane rod misses {force:.2g} % of the force and {back:.2g} % of the set")
     return figure

@@ -105,5 +105,9 @@ def figure(errors: Mapping[str, Mapping[str, np.ndarray]], path: str | Path) -> 
             axes.minorticks_off()
             axes.grid(lw=0.3)
         drawn.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8)
-        drawn.suptitle("Rate of clamped springs against the curved rod by Castigliano", fontsize=10)
+        at = ELEMENTS.index(16)
+        worst, ours = (100.0 * max(abs(one[key][at]) for one in errors.values()) for key in ("points", "curved"))
+        drawn.suptitle(f"16 elements per turn: the rate is {ours:.1g} % off with sections on the curved axis, "
+                       f"{worst:.2g} % with a polygon\n(clamped springs; reference: the curved rod by Castigliano)",
+                       fontsize=10)  # fmt: skip
         save(drawn, Path(path))
