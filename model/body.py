@@ -108,7 +108,13 @@ class Foresees(Protocol):
 
 @runtime_checkable
 class EstimatesErrors(Protocol):
-    """A body that can estimate the error of its internal forces due to the step size."""
+    """A body that can estimate the error of its internal forces due to the step size.
+
+    Attributes:
+        axial_force: E A, the size of forces against which others are rounding, N.
+    """
+
+    axial_force: float
 
     def estimate_errors(self) -> None:
         """Prepare for estimates from now on; adds fields to the state, so call it before anything is saved."""

@@ -28,6 +28,7 @@ GREATEST, FIRST, CLOSED = range(3)
 # A spring is held where its height, over its free length, or its force, over the maximum, changes by no more; it
 # is held to the accuracy of the equilibrium only.
 STILL, STILL_FORCE = 1e-12, 1e-6
+ROUNDING = 1e-12  # of E A: forces up to there are none, as those of a free spring that is heated
 
 
 @dataclass(frozen=True)
@@ -81,8 +82,8 @@ class StepError:
         before, force = control.force, control.trial_force
         travel = control.height - control.trial_height
         memory[GREATEST] = greatest = max(float(last[GREATEST]), abs(force))
-        still = abs(travel) <= STILL * control.free_length
-        if still or greatest == 0.0 or (self._takes_time() and abs(force - before) <= STILL_FORCE * greatest):
+        still, none = abs(travel) <= STILL * control.free_length, greatest <= ROUNDING * self._body.axial_force
+        if still or none or (self._takes_time() and abs(force - before) <= STILL_FORCE * greatest):
             return self._in_time(works, greatest, float(last[FIRST]))
         memory[FIRST] = last[FIRST] or travel
         error, new, left = (float(work) for work in works[:3] / (travel, travel, memory[FIRST]))
@@ -99,7 +100,7 @@ class StepError:
 
     def _in_time(self, works: np.ndarray, greatest: float, first: float) -> Estimate:
         """A held spring is deformed by no travel of its own; the first step of all shows what a travel does."""
-        if greatest == 0.0 or first == 0.0 or not self._takes_time():
+        if greatest <= ROUNDING * self._body.axial_force or first == 0.0 or not self._takes_time():
             return Estimate(math.nan, math.nan, 0.0, self.steps.growth)
         share = abs(float(works[2]) / first) / (self.steps.step_share * self.accuracy * greatest)
         if math.isnan(share):
