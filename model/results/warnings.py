@@ -33,13 +33,19 @@ def step_warnings(setup: Setup, result: Result) -> list[Warning]:
     return [warning for check in SEEN for warning in check(setup, result)]
 
 
-def accuracy_warning(error: float, asked: float, place: str) -> Warning | None:
-    """A step whose estimated error is above the accuracy that was asked for; both are relative."""
+def accuracy_warning(error: float, asked: float, place: str, of: str = "the force", size: str = "") -> Warning | None:
+    """A step whose estimated error is above the accuracy that was asked for; both are relative.
+
+    Args:
+        error, asked: parts of 1.
+        place: where the error is.
+        of: what is wrong by it; size: how much that is, in words.
+    """
     if error <= asked:
         return None
     message = (
-        f"the error due to the step size is about {100 * error:.2g} %, more than the {100 * asked:.2g} % requested; "
-        "use smaller steps"
+        f"{of} is uncertain by about {100 * error:.2g} %{size and f', {size},'} because of the step size, more than "
+        f"the {100 * asked:.2g} % requested; use smaller steps"
     )
     return Warning("step error", place, message, error, asked)
 
@@ -182,12 +188,12 @@ def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
     asked = setup.limits.accuracy
     top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
     if top is not None and top.estimated_force_error_N is not None and top.force_N:
-        worst, place = abs(top.estimated_force_error_N / top.force_N), _place(top)
+        worst, place, of = abs(top.estimated_force_error_N / top.force_N), _place(top), ("the force", "")
         error = set_error(result)
         set_mm = setup.spring.free_length - setup.outer_length(result.snapshots[-1].x)
         if error is not None and set_mm > 0.0 and abs(error) > worst * set_mm:
-            worst, place = abs(error) / set_mm, "set"
-        warning = accuracy_warning(worst, asked, place)
+            worst, place, of = abs(error) / set_mm, "set", ("the set", f"{abs(error):.2g} mm")
+        warning = accuracy_warning(worst, asked, place, *of)
         if warning is not None:
             yield warning
 

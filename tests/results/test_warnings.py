@@ -101,6 +101,8 @@ def test_a_force_on_a_wall_is_told(lifted):
 def test_the_steps_error_is_held_against_the_accuracy_asked_for():
     assert accuracy_warning(0.01, 0.01, "block") is None
     assert accuracy_warning(0.02, 0.01, "block").value == 0.02
+    of_set = accuracy_warning(0.02, 0.01, "set", "the set", "0.01 mm").message
+    assert "the set is uncertain by about 2 %, 0.01 mm, because" in of_set  # a small set may be good enough
 
 
 def test_stress_above_the_wires_strength(example):
