@@ -108,7 +108,7 @@ def test_ending_the_outer_process_ends_all(start, example, ranks, number):
     """SIGTERM and SIGINT gently: after the step, with results and exit code 130."""
     command = coilset("-n", ranks, "solve", example, "--out", "out", *LONG)
     running = start(command, **PRIVATE)
-    running.wait_for("\n      3  ")
+    running.wait_for("\n    3 ")
     assert len(running.alive()) > 2 * ranks
     os.kill(running.process.pid, number)
     running.process.wait(PATIENCE)
@@ -150,7 +150,7 @@ def test_tests_end_with_the_command_that_runs_them(start, tmp_path, number):
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_stopped_in_an_environment_without_a_root(start, example, ranks):
     running = start(coilset("-n", ranks, "solve", example, "--out", "out", *LONG))
-    running.wait_for("\n      3  ")
+    running.wait_for("\n    3 ")
     os.kill(running.process.pid, signal.SIGINT)
     running.process.wait(PATIENCE)
     judge_gentle_end(running)
