@@ -118,9 +118,11 @@ class Quiet(Lines):
         """Nothing."""
 
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
-        """The warnings."""
+        """The warnings that were not told at the beginning."""
+        told = {warning.message for warning in self.analysis.setup.warnings}
         for warning in summary["warnings"]:
-            self.warn(warning["message"])
+            if warning["message"] not in told:
+                self.warn(warning["message"])
 
 
 class JsonLines(Lines):
