@@ -48,8 +48,7 @@ class Coils:
         first = points.stations[:, 0]
         self.memory = Memory({"multiplier_offset": first}, multiplier_offset=np.zeros_like(self.overlap))
         self._amplification, self._skin = points.line.amplification(), SKIN * self._widest
-        # where all points were asked for pairs, how near, and which points had some
-        self._last: tuple[TrialPositions, float, np.ndarray] | None = None
+        self._clear: tuple[TrialPositions, float] | None = None  # where all gaps were greater than a distance
 
     @property
     def multiplier_offset(self) -> np.ndarray:
@@ -61,16 +60,10 @@ class Coils:
         i = pair[:, 0]
         return i, (self.points.line.turns[pair[:, 1]] > self.points.turns[i]).astype(int)
 
-    def near(
-        self, trial: TrialPositions, margin: float = 0.0, active: np.ndarray | None = None
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Pairs of points and locations nearer than `margin`, see `near_locations`, and the points' positions.
-
-        They are sought for the points `active`, by their numbers, ascending; for all that are known if None.
-        """
+    def near(self, trial: TrialPositions, margin: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Pairs of points and locations nearer than `margin`, see `near_locations`, and the points' positions."""
         points, line, known = self.points, self.points.line, trial.known
-        active = trial.points(points) if active is None else active
-        p, capacity = np.empty((len(points), 3)), LOCATIONS_PER_POINT * len(points)
+        p, capacity, active = np.empty((len(points), 3)), LOCATIONS_PER_POINT * len(points), trial.points(points)
         self._y[:, :3] = trial.x
         at_points(active, points.weights, points.stations, trial.x, p)
         elements = np.array([[0, len(line.lengths)]]) if known is None else known.elements
@@ -86,10 +79,16 @@ class Coils:
     def pressed(self, trial: TrialPositions) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Pairs in contact, with ξ and gaps, their offsets, and the points' positions; these only if there are pairs.
 
-        Pairs that have no station of this rank are left to the others.
+        Nothing is sought while the stations have moved by less than the gap that was found clear. Pairs that have no
+        station of this rank are left to the others.
         """
         margin = self.multiplier_offset.max()
-        pair, where, p = self._sought(trial, margin)
+        if self._clear is not None:
+            there, clearance = self._clear
+            if 2.0 * self._amplification * moved(there, trial) * np.sqrt(3.0) < clearance - margin:
+                return NO_PAIR
+        pair, where, p = self.near(trial, margin + self._skin)
+        self._clear = None if len(pair) else (replace(trial, x=trial.x.copy()), margin + self._skin)
         near = where[:, 1] < margin
         if trial.known is not None:
             own, points = trial.known.own, self.points
@@ -100,24 +99,6 @@ class Coils:
         offset = self.multiplier_offset[self.sides(pair)]
         bears = where[:, 1] < offset
         return pair[bears], where[bears], offset[bears], p
-
-    def _sought(self, trial: TrialPositions, margin: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """As `near`, with all pairs nearer than `margin` among them.
-
-        While the stations have moved by less than the skin, only points are asked for that were nearer to a coil than
-        margin and skin when all were. They are asked in the same way, so that what is found does not depend on this.
-        """
-        near = None
-        if self._last is not None:
-            there, reach, candidates = self._last
-            if 2.0 * self._amplification * moved(there, trial) * np.sqrt(3.0) < reach - margin:
-                near = candidates
-                if not len(near):
-                    return *NO_PAIR[:2], NO_PAIR[3]
-        found = self.near(trial, margin + self._skin, near)
-        if near is None:
-            self._last = replace(trial, x=trial.x.copy()), margin + self._skin, np.unique(found[0][:, 0])
-        return found
 
     def max_penetration(self, trial: TrialPositions) -> float:
         """Maximum penetration, mm."""

@@ -112,15 +112,8 @@ def _stresses(sheet: Sheet) -> Iterator[Row]:
     s, wire = sheet.spring, sheet.wire
     k, τ = en13906.stress_correction(s.index), sheet.stress(s.solid)
     found = sheet.at_run("shear_max_MPa") if _was_at_block(sheet) else None
-    yield Row(
-        "stress τc",
-        τ,
-        "MPa",
-        "8 D Fc/(π d³)",
-        DERIVED,
-        found,
-        "maximum true shear stress on the surface of the middle turns",
-    )
+    yield Row("stress τc", τ, "MPa", "8 D Fc/(π d³)", DERIVED, found,
+              "maximum true shear stress on the surface of the middle turns")  # fmt: skip
     yield Row("stress correction k", k, "", "(w + 0.5)/(w − 0.75)", TWO)
     yield Row("corrected stress τkc", k * τ, "MPa", "k τc", TWO)
     if wire is None:
