@@ -87,6 +87,10 @@ class Placement(NamedTuple):
     torsion: np.ndarray
     flat: np.ndarray
 
+    def part(self, elements: slice | np.ndarray) -> "Placement":
+        """Of some of the elements, or of all in another order."""
+        return Placement(*(np.ascontiguousarray(values[elements]) for values in self))
+
 
 def straight(elements: int) -> Placement:
     """The placement of sections on their straight rods, two for each."""

@@ -12,12 +12,10 @@ four times as much. This divides the law's error and the area between path and c
 is the error of the section forces. Errors that plastic flow erases are erased here, too.
 """
 
-import copy
 from collections.abc import Iterable
 
 import numpy as np
 
-from coilset.meshes.placement import Placement
 from coilset.model.section.kinds import Sections
 from coilset.model.state import State, Where
 
@@ -47,7 +45,7 @@ class FinerPath:
         cells = len(self._strain.trial)
         self._half = {name: field.trial[:BLOCK].copy() for name, field in self._fields.items()}
         self._D = np.empty((min(BLOCK, cells), 2, 6, 6))
-        self._parts = [(part, _part(sections, part)) for part in
+        self._parts = [(part, sections.part(part)) for part in
                        (slice(first, min(first + BLOCK, cells)) for first in range(0, cells, BLOCK))]  # fmt: skip
 
     def follow(self, s: np.ndarray, ratio: float, kinked: bool = False) -> bool:
@@ -110,11 +108,3 @@ class FinerPath:
         pairs = (error, now), (new, now), (new, first), (error, first)
         own, new_own, left, error_left = (float(np.sum(force * strain)) for force, strain in pairs)
         return own, new_own, left, error_left
-
-
-def _part(sections: Sections, cells: slice) -> Sections:
-    """The sections of some of the cells."""
-    part = copy.copy(sections)
-    part.radius = sections.radius[cells]
-    part.placement = Placement(*(values[cells] for values in sections.placement))
-    return part

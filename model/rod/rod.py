@@ -83,7 +83,7 @@ class Rod:
         self.radius = np.ascontiguousarray(np.asarray(radius, float)[element])
         self.placement = straight(n)
         if placement is not None:
-            self.placement = Placement(*(np.ascontiguousarray(part[element]) for part in placement))
+            self.placement = placement.part(element)
         self.sections = make_sections(
             kind, law, self.parameters, rule, self.radius, self.placement, temperature, degree
         )

@@ -1,5 +1,6 @@
 """Sections of fibres with three stresses: plane ones of a straight wire, and those that include its curvature."""
 
+import copy
 import math
 from collections.abc import Mapping
 
@@ -54,6 +55,13 @@ class FibreSections:
         self.rim_y, self.rim_z = np.ascontiguousarray(rim().T)
         self.ground = ground_sections(placement, radius, curved, lambda segment: segment.rule(len(rule)))
         self.ground_rim = ground_sections(placement, radius, curved, rim_rule)
+
+    def part(self, cells: slice) -> "FibreSections":
+        """The sections of some of the cells."""
+        part = copy.copy(self)
+        part.radius, part.placement = self.radius[cells], self.placement.part(cells)
+        part.ground, part.ground_rim = self.ground.part(cells), self.ground_rim.part(cells)
+        return part
 
     def cut_points(self, cell: int, g: int) -> tuple[np.ndarray, np.ndarray] | None:
         """`fibres` and `shape` (see `Ground`) of a ground section's points and of those on its surface; None: whole."""

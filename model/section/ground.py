@@ -26,6 +26,10 @@ class Ground(NamedTuple):
     fibres: np.ndarray
     shape: np.ndarray
 
+    def part(self, cells: slice) -> "Ground":
+        """Those of some of the cells; the numbers, and what they stand for, stay."""
+        return self._replace(which=self.which[cells])
+
 
 def segments(placement: Placement) -> tuple[np.ndarray, list[Segment]]:
     """`Ground.which`, and what is left of the sections that are cut."""

@@ -6,7 +6,7 @@
 """
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any, Protocol, Self
 
 import numpy as np
 
@@ -35,6 +35,10 @@ class Sections(Protocol):
     @property
     def components(self) -> tuple[str, ...]:
         """Names of the columns of a point's state."""
+        ...
+
+    def part(self, cells: slice) -> Self:
+        """The sections of some of the cells."""
         ...
 
     @property

@@ -15,6 +15,7 @@ The iteration begins where the slope da/de of the last equilibrium leads, so tha
 of the state at the last equilibrium and of the strains, whatever was tried in between.
 """
 
+import copy
 import math
 from collections.abc import Mapping, Sequence
 
@@ -68,6 +69,12 @@ class WarpingSections:
         self.rim = _with_polynomials([rim(), *(one.rim() for one in cut)], [basis, *bases])
         self.unknowns = 3 + 3 * self.points[2].shape[3]
         self.iterations = np.zeros(2, dtype=np.int64)  # sections brought up to date, local iterations on the way
+
+    def part(self, cells: slice) -> "WarpingSections":
+        """The sections of some of the cells."""
+        part = copy.copy(self)
+        part.radius, part.placement, part.which = self.radius[cells], self.placement.part(cells), self.which[cells]
+        return part
 
     def initial_state(self) -> dict[str, np.ndarray]:
         """Unstressed points, `point_state` and `surface_state` as in `FibreSections`, and the warping.

@@ -24,15 +24,17 @@ def strains(time):
 class Path:
     """Sections of elements with these radii, brought along a path of strains."""
 
-    def __init__(self, radii=(2.5,)):
-        law, n = library.load("ck15", spin=False), len(radii)
-        self.sections = make_sections("plane", law, law.parameters(), polar(), np.array(radii), straight(n))
+    def __init__(self, radii=(2.5,), kind="plane", ground=()):
+        law, place = library.load("ck15", spin=False), straight(len(radii))
+        for cell in ground:
+            place.flat[cell] = (0.2, 1.0, 0.0)
+        self.sections = make_sections(kind, law, law.parameters(), polar(), np.array(radii), place, degree=2)
         self.state = State()
-        self.strain = self.state.add("strain", np.zeros((n, 2, 6)), Where.ELEMENT)
+        self.strain = self.state.add("strain", np.zeros((len(radii), 2, 6)), Where.ELEMENT)
         self.points = {
             name: self.state.add(name, rows, Where.ELEMENT) for name, rows in self.sections.initial_state().items()
         }
-        self.s, self.D = np.zeros((n, 2, 6)), np.zeros((n, 2, 6, 6))
+        self.s, self.D = np.zeros((len(radii), 2, 6)), np.zeros((len(radii), 2, 6, 6))
 
     def to(self, strain):
         """On trial."""
@@ -71,12 +73,14 @@ def test_what_stays_elastic_has_no_error():
     assert finer.works(np.array([1.0])) == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=1e-8)
 
 
-def test_many_elements_are_followed_block_by_block(monkeypatch):
+@pytest.mark.parametrize("kind", ["plane", "warping"])
+def test_many_elements_are_followed_block_by_block(monkeypatch, kind):
+    """Also where grinding has cut the last sections, which no block begins with."""
     radii, errors = np.linspace(2.0, 3.0, 5), []
     for block in (2, 64):
         monkeypatch.setattr(finer_path, "BLOCK", block)
-        path = Path(radii)
-        finer = FinerPath(path.sections, path.state, ["point_state"])
+        path = Path(radii, kind, ground=(3, 4))
+        finer = FinerPath(path.sections, path.state, list(path.points))
         for k in (1, 2):
             path.to(strains(0.5 * k))
             assert finer.follow(path.s, k - 1.0)
