@@ -19,6 +19,8 @@ from coilset.model.slice.summary import summarise, write_history
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.scripts.target import results_folder
 
+HEAD = f"{'step':>5}{'height/mm':>10}{'force/N':>12}{'iter.':>6}  touching"
+
 
 def slice_case(
     case_file: str | Path,
@@ -59,7 +61,7 @@ def slice_case(
         console.print(f"[yellow]warning:[/] {warning.message}")
     targets = ", ".join(phase.label for phase in case.loading)
     console.print(f"{Path(case_file).name}: slice with {analysis.body.u.size + 2} unknowns, to {targets}")
-    console.print("   step   seat height/mm      force/N   iterations")
+    console.print(HEAD)
     failure = None
     try:
         analysis.run(lambda step: console.print(_row(step)))
@@ -73,9 +75,9 @@ def slice_case(
 
 
 def _row(step: SliceStep) -> str:
-    touching = "   coils touch" if step.contacts else ""
     force = round(step.force_N, 3) + 0.0  # no -0.000
-    return f"{step.number:7d}{step.seat_height_mm:17.4f}{force:13.3f}{step.iterations:13d}{touching}"
+    touching = "  coils" if step.contacts else ""
+    return f"{step.number:5d}{step.seat_height_mm:10.4f}{force:12.3f}{step.iterations:6d}{touching}"
 
 
 def _write(out: Path, analysis: SliceAnalysis, summary: dict[str, Any], pictures: bool) -> None:
