@@ -157,8 +157,8 @@ def rod_method(name: str, ranks: int, extra: Mapping[str, Any] | None = None, ar
         InputError: if there is no such method.
     """
     check_method(name)
-    # a failed line search must not count as a small step: stol = 0
-    chosen = {"snes_stol": 0.0} | UNLIMITED | METHODS[name]
+    # a failed line search must not count as a small step: stol = 0; arcs have none, and PETSc names options in vain
+    chosen = {"snes_stol": 0.0} | ({} if name == "arc-length" else UNLIMITED) | METHODS[name]
     prefix = "npc_" if "npc_pc_type" in chosen else ""
     if ranks > 1:
         chosen |= {f"{prefix}pc_type": "python", f"{prefix}pc_python_type": ON_RANKS}

@@ -1,5 +1,7 @@
 """Every iteration method as SNES options: same state, failures in words, options of the user's."""
 
+import subprocess
+import sys
 from typing import get_args
 
 import numpy as np
@@ -41,6 +43,27 @@ def test_every_method_passes_the_reversal_to_the_same_state(example, newtons, me
     ends, expected = newtons
     for values, reference in zip(final(example, ends, method), expected, strict=True):
         np.testing.assert_allclose(values, reference, rtol=0, atol=1e-6 * np.abs(reference).max())
+
+
+ALL_METHODS = f"""
+from mpi4py import MPI
+from coilset.model.analysis import Analysis
+from coilset.model.case import read_case
+from coilset.model.equilibrium.methods import METHODS
+
+kept = []  # until PETSc ends: what is gone has taken its options along
+for method in METHODS:
+    kept.append(Analysis(read_case("EXAMPLE", [*{COARSE}, f"solver.method={{method}}"]), MPI.COMM_SELF))
+    height = kept[-1].control.height
+    assert kept[-1].newton.solve(kept[-1].control.to_height(height - 0.5)).converged
+"""
+
+
+def test_no_option_is_set_in_vain(example):
+    """When a command ends, PETSc names the options that nothing has read."""
+    program = ALL_METHODS.replace("EXAMPLE", str(example))
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout + done.stderr == ""
 
 
 def test_an_unknown_method_names_the_near_one():

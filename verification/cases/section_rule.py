@@ -42,15 +42,16 @@ AXES = np.radians(np.arange(0.0, 180.0, 3.0))
 BENDING_STEPS = 40  # from one curvature to the next
 
 
-def press(file: str, kind: str, rule: Rule) -> tuple[float, float, int, float]:
-    """Maximum force, N, set, mm, states evaluated, and seconds of the processor."""
+def press(file: str, kind: str, rule: Rule) -> tuple[float, float, int, float, bool]:
+    """Maximum force, N, set, mm, states evaluated, seconds of the processor, and whether coils slipped past others."""
     names = ("radial", "angular", "staggered")
     settings = [f"mesh.section.{name}={value}".lower() for name, value in zip(names, rule, strict=True)]
     settings += [f"mesh.section.kind={kind}", *(f"loading.{k}.steps={STEPS}" for k in (0, 1))]
     analysis = Analysis(read_case(EXAMPLES / file, settings), MPI.COMM_SELF)
     begin = time.process_time()
     found = summarise(analysis.setup, analysis.run())
-    return found["force_max_N"], found["set_mm"], found["evaluations"], time.process_time() - begin
+    slipped = any(warning["name"] == "coils slipped" for warning in found["warnings"])
+    return found["force_max_N"], found["set_mm"], found["evaluations"], time.process_time() - begin, slipped
 
 
 def label(rule: Rule) -> str:
@@ -85,13 +86,16 @@ def run(study: Study) -> None:
             for rule in rules:
                 found = press(file, kind, rule)
                 off = np.array(found[:2]) / limit[:2] - 1.0
-                rows.append([file[8:-5], kind, label(rule), *found[:2], *(100.0 * off), *found[2:], *limit[2:]])
+                rows.append([file[8:-5], kind, label(rule), *found[:2], *(100.0 * off), *found[2:4], *limit[2:4]])
                 if kind == "curved":
                     errors[rule].append(off)
                 if rule == DEFAULT:
                     for k, name in enumerate(("force at block, N", "set, mm")):
-                        study.check(f"{file[8:-5]}, {kind}, {name}", found[k], limit[k], f"{label(LIMIT)} points",
-                                    TOLERANCE)  # fmt: skip
+                        numbers = f"{file[8:-5]}, {kind}, {name}", found[k], limit[k], f"{label(LIMIT)} points"
+                        if limit[-1]:
+                            study.shown(*numbers, "coils slip past each other, sooner or later by the least difference")
+                        else:
+                            study.check(*numbers, TOLERANCE)
     columns = ["spring", "kind", "rule", "force, N", "set, mm", "force off, %", "set off, %", "states", "s", "states "
                "of the limit", "s of the limit"]  # fmt: skip
     study.table("to block and back", columns, rows)
