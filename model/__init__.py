@@ -1,7 +1,8 @@
 """The mechanics of coilset: material, section, rod, contact, solid, problem, solvers, loading and results."""
 
 from coilset.model.caches import keep_by_content
-from coilset.model.libraries import load_in_order
+from coilset.model.libraries import load_in_order, load_when_used
 
+load_when_used()
 load_in_order()
 keep_by_content()

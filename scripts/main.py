@@ -1,6 +1,7 @@
 """The command `coilset`: its sub-commands, and the handling of errors."""
 
 import errno
+import gc
 import os
 import re
 import signal
@@ -31,6 +32,7 @@ docs/install.md."""
 NO_ROOM = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT, errno.EROFS)
 TOGETHER = 10.0  # seconds within which all ranks meet an error that concerns them all
 HEARD = 0.5  # seconds for mpirun to pass on the output of a rank, before it ends the ranks and drops the rest
+GARBAGE = 100_000  # objects after which Python looks for circular ones
 LONGEST_MESSAGE = 400  # characters of a wrong command line that a message repeats
 INTERRUPTED = 128 + signal.SIGINT
 ONE_SIGNAL = 0.5  # seconds within which several signals count as one: `timeout` signals a process and its group
@@ -90,7 +92,6 @@ def solve(
     method: str = typer.Option(None, help="iteration method: newton, modified-newton, bfgs, broyden, arc-length, ..."),
 ) -> None:
     """Take a spring through its load program and write the results."""
-    from coilset.model.case import read_case
     from coilset.scripts.drawing import Drawings
 
     if quiet + json + verbose > 1:
@@ -98,16 +99,24 @@ def solve(
     if not (quiet or json):
         announce_begin("solves", case, out)
     settings = [*settings, f"solver.method={method}"] if method else settings
-    compile_first(lambda: read_case(case, settings))
+    compile_first(lambda: _check_case(case, settings))
     with Drawings(os.environ) as drawings:
-        if pictures:
+        if pictures and os.path.isfile(case):
             drawings.start_if_free()
         announce_compiling()
         from coilset.scripts.solve import solve as run_case
 
+        gc.freeze()  # what libraries have made is no garbage
+        gc.set_threshold(GARBAGE)
         voice = "quiet" if quiet else "json" if json else "lines"
         run_case(case, out, force, settings, pictures, resume, interactive, drawings=drawings, voice=voice,
                  verbose=verbose)  # fmt: skip
+
+
+def _check_case(case: str, settings: list[str]) -> None:
+    from coilset.model.case import read_case
+
+    read_case(case, settings)
 
 
 @app.command(name="slice")
