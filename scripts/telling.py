@@ -11,10 +11,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from rich.console import Console
+from rich.table import Table
+
 from coilset.model.analysis import Analysis
 from coilset.model.results.contact_state import contact_words
 from coilset.model.results.record import Step
-from coilset.scripts.terminal import broken, columns, say, styled
 
 SOON = 5.0  # seconds; with less elapsed or left, the remaining time is not printed
 HEAD = f"{'step':>5}{'height/mm':>10}{'force/N':>12}{'iter.':>6}{'points':>7}  touching"  # a row fits in 80 columns
@@ -29,18 +31,16 @@ class Lines:
     """
 
     def __init__(self, talks: bool = True, verbose: bool = False) -> None:
-        self.talks, self.verbose = talks, verbose
+        self.console, self.verbose = Console(quiet=not talks, highlight=False), verbose
         self._began, self._from = time.monotonic(), 0.0
 
     def say(self, text: str) -> None:
         """A line about the run."""
-        if self.talks:
-            say(broken(text))
+        self.console.print(text)
 
     def warn(self, text: str) -> None:
         """A warning."""
-        if self.talks:
-            say(broken(f"warning: {text}").replace("warning:", styled("warning:", "yellow"), 1))
+        self.console.print(f"[yellow]warning:[/] {text}")
 
     def begin(self, analysis: Analysis, case_file: str | Path, resumed: bool) -> None:
         """The run begins or continues."""
@@ -58,26 +58,25 @@ class Lines:
         """A step has been found."""
         cuts = f"  {step.cuts} cut{'s' * (step.cuts > 1)}" if step.cuts else ""
         if step.left_branch:
-            cuts += f"  {styled('snapped' if step.released_energy_Nmm else 'left its path', 'yellow')}"
+            cuts += "  [yellow]snapped[/]" if step.released_energy_Nmm else "  [yellow]left its path[/]"
         force = round(step.force_N, 3) + 0.0  # no -0.000
         touching = contact_words(self.analysis.setup.contacts, self.analysis.result.seats[-1])
         row = f"{step.number:5d}{step.seat_height_mm:10.4f}{force:12.3f}{step.iterations:6d}{step.contacts:7d}"
-        if self.talks:
-            say(f"{row}  {touching}{cuts}{self._left(step)}")
+        self.console.print(f"{row}  {touching}{cuts}{self._left(step)}", soft_wrap=True)
 
     def _left(self, step: Step) -> str:
         """Remaining time at the speed so far; empty if it is short, or too early to tell."""
         spent, done = time.monotonic() - self._began, _done(self.analysis, step)
         left = spent * (1.0 - done) / max(done - self._from, 1e-9)
-        return "" if spent < SOON or left < SOON else f"  {styled(f'{duration(left)} left', 'dim')}"
+        return "" if spent < SOON or left < SOON else f"  [dim]{duration(left)} left[/]"
 
     @contextlib.contextmanager
     def iterations(self) -> Iterator[None]:
         """Context in which each iteration is printed, if requested."""
-        if not (self.verbose and self.talks):
+        if not self.verbose or self.console.quiet:
             yield
             return
-        log, handler = logging.getLogger("coilset.iterations"), _Handler()
+        log, handler = logging.getLogger("coilset.iterations"), _Handler(self.console)
         log.setLevel(logging.DEBUG)
         log.addHandler(handler)
         try:
@@ -88,8 +87,23 @@ class Lines:
 
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
         """What was found."""
-        if self.talks:
-            say(columns(_found(summary, out), "set"))
+        table = Table(show_header=False, box=None, padding=(0, 2))
+        table.add_row("free length before", _number(summary["free_length_before_mm"], "mm"))
+        table.add_row("free length after", _number(summary["free_length_after_mm"], "mm"))
+        table.add_row("[bold]set[/]", f"[bold]{_number(summary['set_mm'], 'mm')}[/]")
+        table.add_row("initial rate", _number(summary["rate_N_per_mm"], "N/mm"))
+        table.add_row("rate between 30 and 70 % of the travel", _number(summary["rate_30_70_N_per_mm"], "N/mm"))
+        for rate in summary["rates"]:
+            table.add_row(f"rate at {rate['travel_mm']:g} mm", _number(rate["rate_N_per_mm"], "N/mm"))
+        table.add_row("maximum force", _number(summary["force_max_N"], "N", 2))
+        if summary["load_loss_percent"] is not None:
+            table.add_row("load lost in time", _number(summary["load_loss_percent"], "%", 2))
+        table.add_row("block height", _number(summary["block_height_mm"], "mm"))
+        table.add_row("maximum residual shear stress", _number(summary["residual_shear_max_MPa"], "MPa", 2))
+        inside = _number(summary["residual_shear_inside_MPa"], "MPa", 2)
+        table.add_row("residual shear stress, inside of coil", inside)
+        table.add_row("results in", f"{out}{os.sep}")
+        self.console.print(table)
         for warning in summary["warnings"]:
             self.warn(warning["message"])
 
@@ -115,7 +129,7 @@ class JsonLines(Lines):
     """A line of JSON for each event, named by its `event`: begin, step, warning, end."""
 
     def _put(self, event: str, **entries: Any) -> None:
-        if self.talks:
+        if not self.console.quiet:
             print(json.dumps({"event": event, **entries}, ensure_ascii=False), flush=True, file=sys.stdout)
 
     def say(self, text: str) -> None:
@@ -158,31 +172,15 @@ def _done(analysis: Analysis, step: Step | None = None) -> float:
     return 0.0 if step is None else (step.phase + step.progress) / len(analysis.case.loading)
 
 
-def _found(summary: Mapping[str, Any], out: Path) -> list[tuple[str, str]]:
-    """Rows of the table at the end: what, and its number."""
-    rates = [(f"rate at {rate['travel_mm']:g} mm", _number(rate["rate_N_per_mm"], "N/mm")) for rate in summary["rates"]]
-    loss = summary["load_loss_percent"]
-    return [
-        ("free length before", _number(summary["free_length_before_mm"], "mm")),
-        ("free length after", _number(summary["free_length_after_mm"], "mm")),
-        ("set", _number(summary["set_mm"], "mm")),
-        ("initial rate", _number(summary["rate_N_per_mm"], "N/mm")),
-        ("rate between 30 and 70 % of the travel", _number(summary["rate_30_70_N_per_mm"], "N/mm")),
-        *rates,
-        ("maximum force", _number(summary["force_max_N"], "N", 2)),
-        *([] if loss is None else [("load lost in time", _number(loss, "%", 2))]),
-        ("block height", _number(summary["block_height_mm"], "mm")),
-        ("maximum residual shear stress", _number(summary["residual_shear_max_MPa"], "MPa", 2)),
-        ("residual shear stress, inside of coil", _number(summary["residual_shear_inside_MPa"], "MPa", 2)),
-        ("results in", f"{out}{os.sep}"),
-    ]
-
-
 def _number(value: float | None, unit: str, digits: int = 4) -> str:
     return "not reached" if value is None else f"{round(value, digits) + 0.0:.{digits}f} {unit}"  # no -0.0
 
 
 class _Handler(logging.Handler):
+    def __init__(self, console: Console) -> None:
+        super().__init__()
+        self.console = console
+
     def emit(self, record: logging.LogRecord) -> None:
         """Print it, fainter than the steps."""
-        say(styled(record.getMessage(), "dim"))
+        self.console.print(f"[dim]{record.getMessage()}[/]", soft_wrap=True)
