@@ -120,12 +120,13 @@ class EstimatesErrors(Protocol):
         """Prepare for estimates from now on; adds fields to the state, so call it before anything is saved."""
         ...
 
-    def error_works(self, ratio: float, kinked: bool) -> tuple[float, float, float, float]:
+    def error_works(self, ratio: float, kinked: bool, stands: bool) -> tuple[float, float, float, float]:
         """Works of the errors; call it once at the end of a step, before the commit.
 
         Args:
             ratio: size of the step over that of the previous one on the same path, 0 if there is none.
             kinked: whether the path of strains has a kink within the step, in the worst case in its middle.
+            stands: whether the step is committed in any case; else the next `restore` of the state may give it up.
 
         Returns:
             Four works: of the error of the internal forces on the step's deformation; of the share of the error that

@@ -26,7 +26,8 @@ class Field:
 
     Attributes:
         trial: written by evaluations; always the same array object, so that others may hold a reference.
-        equilibrium: its values when the last equilibrium was committed, in the same shape.
+        equilibrium: its values when the last equilibrium was committed, in the same shape; the same array as `trial`
+            where it lies in place.
         where: what the first axis counts.
     """
 
@@ -40,16 +41,25 @@ class State:
 
     def __init__(self) -> None:
         self._fields: dict[str, Field] = {}
+        self._before: dict[str, np.ndarray] = {}
+        self._overwritten: set[str] = set()
 
-    def add(self, name: str, trial: np.ndarray, where: Where) -> Field:
+    def add(self, name: str, trial: np.ndarray, where: Where, in_place: bool = False) -> Field:
         """Register an array: it becomes the field's trial array itself, and a copy of it the equilibrium.
+
+        Args:
+            name: of the field.
+            trial: the array.
+            where: what its first axis counts.
+            in_place: whether it is written only when a step ends, so that it needs no copy; `overwrite` comes before
+                where the step may yet be given up.
 
         Raises:
             ValueError: if the name is taken.
         """
         if name in self._fields:
             raise ValueError(f"the state has a field '{name}' already")
-        self._fields[name] = field = Field(trial, trial.copy(), where)
+        self._fields[name] = field = Field(trial, trial if in_place else trial.copy(), where)
         return field
 
     def include(self, prefix: str, part: "State") -> None:
@@ -67,15 +77,27 @@ class State:
         """Names and fields in order of registration."""
         return iter(self._fields.items())
 
+    def overwrite(self, name: str) -> None:
+        """Keep what a field in place holds: until the next `commit`, `restore` brings it back."""
+        values = self._fields[name].equilibrium
+        np.copyto(self._before.setdefault(name, np.empty_like(values)), values)
+        self._overwritten.add(name)
+
     def commit(self) -> None:
         """Make the trial arrays the new equilibrium."""
+        self._overwritten.clear()
         for field in self._fields.values():
-            np.copyto(field.equilibrium, field.trial)
+            if field.trial is not field.equilibrium:
+                np.copyto(field.equilibrium, field.trial)
 
     def restore(self) -> None:
         """Reset the trial arrays to the last equilibrium."""
+        for name in self._overwritten:
+            np.copyto(self._fields[name].equilibrium, self._before[name])
+        self._overwritten.clear()
         for field in self._fields.values():
-            np.copyto(field.trial, field.equilibrium)
+            if field.trial is not field.equilibrium:
+                np.copyto(field.trial, field.equilibrium)
 
     def copy(self) -> dict[str, np.ndarray]:
         """A copy of the last equilibrium, to be restored later."""

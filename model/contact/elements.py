@@ -37,67 +37,6 @@ def at_points(
 
 
 @njit(**COMPILED)
-def gap_derivatives(
-    p: np.ndarray,
-    weights: np.ndarray,
-    y: np.ndarray,
-    first: np.ndarray,
-    cubic: np.ndarray,
-    pair: np.ndarray,
-    xi: np.ndarray,
-    grad: np.ndarray,
-    hessian: np.ndarray,
-) -> None:
-    """Gradient and second derivative of the gaps by the eight stations of each pair.
-
-    With q = Σ a_m x_m from the other coil to the point, d = |q|, n = q/d, P = (1 − n nᵀ)/d and a′ = ∂a/∂ξ the gap
-    g(u, ξ) = d − r_p − r(ξ) has
-
-        g_u = a n,   g_uξ = a′ n − a P c′,   g_ξξ = c′ P c′ − n c″ − r″,   g_uu = a aᵀ P − g_uξ g_uξᵀ / g_ξξ,
-
-    the last with ξ eliminated by g_ξ = 0; at the wire's end ξ stays and the last term falls away.
-
-    Args:
-        p, weights: points and the weights of their four stations, shapes (m, 3) and (m, 4).
-        y, first, cubic, pair, xi: as in `near_locations`.
-        grad, hessian: written, shapes (pairs, 24) and (pairs, 24, 24).
-    """
-    c, dc, ddc = np.empty(4), np.empty(4), np.empty(4)
-    n, a, da, P, Pc, mixed = np.empty(3), np.zeros(8), np.zeros(8), np.empty((3, 3)), np.empty(3), np.empty(24)
-    for m in range(len(pair)):
-        i, e, t = pair[m, 0], pair[m, 1], xi[m]
-        point_on_curve(y, first, cubic, e, t, c, 0)
-        point_on_curve(y, first, cubic, e, t, dc, 1)
-        point_on_curve(y, first, cubic, e, t, ddc, 2)
-        d = np.sqrt((p[i, 0] - c[0]) ** 2 + (p[i, 1] - c[1]) ** 2 + (p[i, 2] - c[2]) ** 2)
-        for k in range(3):
-            n[k] = (p[i, k] - c[k]) / d
-        for k in range(4):
-            a[k] = weights[i, k]
-            a[4 + k] = -station_weight(cubic[e, k], t, 0)
-            da[4 + k] = -station_weight(cubic[e, k], t, 1)
-        second = -ddc[3]
-        for k in range(3):
-            Pc[k] = 0.0
-            for l in range(3):
-                P[k, l] = ((1.0 if k == l else 0.0) - n[k] * n[l]) / d
-                Pc[k] += P[k, l] * dc[l]
-            second += dc[k] * Pc[k] - n[k] * ddc[k]
-        eliminated = 1.0 / second if pair[m, 2] and second > 0.0 else 0.0
-        for s in range(8):
-            for k in range(3):
-                grad[m, 3 * s + k] = a[s] * n[k]
-                mixed[3 * s + k] = da[s] * n[k] - a[s] * Pc[k]
-        for s in range(8):
-            for k in range(3):
-                for v in range(8):
-                    for l in range(3):
-                        hessian[m, 3 * s + k, 3 * v + l] = (
-                            a[s] * a[v] * P[k, l] - eliminated * mixed[3 * s + k] * mixed[3 * v + l]
-                        )
-
-
-@njit(**COMPILED)
 def coil_elements(
     p: np.ndarray,
     weights: np.ndarray,
@@ -112,22 +51,60 @@ def coil_elements(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Forces, stiffness and pressure of the pairs, shapes (m, 24), (m, 24, 24) and (m,).
 
+    With q = Σ a_m x_m from the other coil to the point, d = |q|, n = q/d, P = (1 − n nᵀ)/d and a′ = ∂a/∂ξ the gap
+    g(u, ξ) = d − r_p − r(ξ) has
+
+        g_u = a n,   g_uξ = a′ n − a P c′,   g_ξξ = c′ P c′ − n c″ − r″,   g_uu = a aᵀ P − g_uξ g_uξᵀ / g_ξξ,
+
+    the last with ξ eliminated by g_ξ = 0; at the wire's end ξ stays and the last term falls away. A pressure f with the
+    stiffness c gives the forces −f g_u and the stiffness
+
+        c g_u g_uᵀ − f g_uu = a aᵀ (c n nᵀ − f P) + f g_uξ g_uξᵀ / g_ξξ.
+
     Args:
-        p, weights, y, first, cubic, pair: as in `gap_derivatives`.
+        p, weights: points and the weights of their four stations, shapes (points, 3) and (points, 4).
+        y, first, cubic, pair: as in `near_locations`.
         where: ξ and gap of the pairs, offset: by which they are pressed beyond their penetration, shape (m,), mm.
         stiffness: of the points, N/mm.
         onset: distance over which contact sets in, mm.
     """
-    m = len(pair)
-    forces, k, pressure = np.empty((m, PAIR)), np.empty((m, PAIR, PAIR)), np.empty(m)
-    gap_derivatives(p, weights, y, first, cubic, pair, where[:, 0], forces, k)
-    for e in range(m):
-        pressure[e], c = one_sided_at(where[e, 1] - offset[e], stiffness[pair[e, 0]], onset)
-        for i in range(PAIR):
-            for j in range(PAIR):
-                k[e, i, j] = c * forces[e, i] * forces[e, j] - pressure[e] * k[e, i, j]
-        for i in range(PAIR):
-            forces[e, i] *= -pressure[e]
+    count, size = len(pair), 2 * STENCIL
+    forces, k, pressure = np.empty((count, PAIR)), np.empty((count, PAIR, PAIR)), np.empty(count)
+    c, dc, ddc = np.empty(4), np.empty(4), np.empty(4)
+    n, a, da, P, Pc, mixed = np.empty(3), np.zeros(size), np.zeros(size), np.empty((3, 3)), np.empty(3), np.empty(PAIR)
+    spread = np.empty((3, PAIR))  # rows of aᵀ (c n nᵀ − f P)
+    for m in range(count):
+        i, e, t = pair[m, 0], pair[m, 1], where[m, 0]
+        pressure[m], hardness = one_sided_at(where[m, 1] - offset[m], stiffness[i], onset)
+        point_on_curve(y, first, cubic, e, t, c, 0)
+        point_on_curve(y, first, cubic, e, t, dc, 1)
+        point_on_curve(y, first, cubic, e, t, ddc, 2)
+        d = np.sqrt((p[i, 0] - c[0]) ** 2 + (p[i, 1] - c[1]) ** 2 + (p[i, 2] - c[2]) ** 2)
+        for l in range(3):
+            n[l] = (p[i, l] - c[l]) / d
+        for s in range(STENCIL):
+            a[s] = weights[i, s]
+            a[STENCIL + s] = -station_weight(cubic[e, s], t, 0)
+            da[STENCIL + s] = -station_weight(cubic[e, s], t, 1)
+        second = -ddc[3]
+        for l in range(3):
+            Pc[l] = 0.0
+            for o in range(3):
+                P[l, o] = ((1.0 if l == o else 0.0) - n[l] * n[o]) / d
+                Pc[l] += P[l, o] * dc[o]
+            second += dc[l] * Pc[l] - n[l] * ddc[l]
+        eliminated = pressure[m] / second if pair[m, 2] and second > 0.0 else 0.0
+        for s in range(size):
+            for l in range(3):
+                forces[m, 3 * s + l] = -pressure[m] * a[s] * n[l]
+                mixed[3 * s + l] = da[s] * n[l] - a[s] * Pc[l]
+                for o in range(3):
+                    spread[o, 3 * s + l] = a[s] * (hardness * n[o] * n[l] - pressure[m] * P[o, l])
+        for s in range(size):
+            for o in range(3):
+                row, from_spread, from_mixed = k[m, 3 * s + o], spread[o], eliminated * mixed[3 * s + o]
+                for j in range(PAIR):
+                    row[j] = a[s] * from_spread[j] + from_mixed * mixed[j]
     return forces, k, pressure
 
 

@@ -15,8 +15,10 @@ than they save. All unknowns then belong to the interface, and each rank elimina
 
 import numpy as np
 from mpi4py import MPI
+from numba import njit
 from petsc4py import PETSc
 
+from coilset.model.equilibrium.aij import AijEntries
 from coilset.model.equilibrium.elimination import Plan, plan_elimination
 from coilset.model.equilibrium.multifrontal import PartialLU
 
@@ -38,50 +40,79 @@ class ChainLU:
     """
 
     def __init__(self, mat: PETSc.Mat) -> None:
-        self.mat, self.comm, self.negative_pivots = mat, mat.getComm().tompi4py(), 0
-        self.start, self.stop = mat.getOwnershipRange()
-        indptr, indices, _ = mat.getValuesCSR()
-        self._indptr, self._indices = indptr, indices
-        rows = np.repeat(np.arange(self.start, self.stop), np.diff(indptr))
-        coupled = np.unique(rows[indices < self.start])
+        self.comm, self.negative_pivots = mat.getComm().tompi4py(), 0
+        self.size, (self.start, self.stop) = mat.getSize()[0], mat.getOwnershipRange()
+        self._starts, self._entries = mat.getOwnershipRanges(), AijEntries(mat)
+        self._lengths = np.diff(self._entries.pattern[0])
+        self._row = np.repeat(np.arange(self.start, self.stop), self._lengths)
+        coupled = np.unique(self._row[self._entries.pattern[1] < self.start])
         self.interface = np.concatenate(self.comm.allgather(coupled))
-        mine = ~np.isin(rows, coupled)  # entries of the rows outside the interface
-        self._numbers = np.union1d(rows[mine], indices[mine])  # of the rank's own matrix
         self._divide()
         if len(self.interface) > FEW and self._whole_is_cheaper():
-            self.interface, self._numbers = np.arange(mat.getSize()[0]), self._numbers[:0]
+            self.interface = np.arange(self.size)
             self._divide()
         self._local, self._shared = PartialLU(self._local_plan), PartialLU(self._shared_plan)
         self._blocks = np.empty(self._block_starts[-1])
         self._gathered = [self.comm.allgather(places) for places in (self._rows, self._at)]
+        del self._row
 
     # ---- plan ------------------------------------------------------------------------------------------------------
 
     def _divide(self) -> None:
-        """Plan the rank's own elimination and that of S."""
-        self._set = PETSc.IS().createGeneral(self._numbers.astype(PETSc.IntType), comm=PETSc.COMM_SELF)
-        self._part = self.mat.createSubMatrices([self._set], [self._set])
-        indptr, indices, self._local_order = ascending_pattern(self._part[0])
-        keep = np.isin(self._numbers, self.interface)
-        rows = np.repeat(np.arange(len(keep)), np.diff(indptr))
-        self._among_kept = np.flatnonzero(keep[rows] & keep[indices])
-        self._local_plan = plan_elimination(indptr, indices, keep)
-        inner = self._local_plan.order[: len(keep) - self._local_plan.kept]
-        self._inner, self._kept = inner, self._numbers[self._local_plan.order[len(inner) :]]
-        self._shared_plan = self._plan_shared()
+        """Plan the rank's own elimination, of its rows outside the interface, and that of S."""
+        indptr, indices = self._entries.pattern
+        of_interface = np.zeros(self.size, dtype=bool)
+        of_interface[self.interface] = True
+        is_interface = of_interface[self.start : self.stop]
+        in_row, in_column = np.repeat(is_interface, self._lengths), of_interface[indices]
+        mine, across = np.flatnonzero(in_row), np.flatnonzero(in_column & ~in_row)  # A_s, A_is
+        own = in_row | in_column | ((indices >= self.start) & (indices < self.stop))
+        fetched = self._plan_fetching(indices[across].astype(np.int64), self._row[across], mine, bool(own.all()))
+        kept = np.unique(indices[across])
+        self._numbers = np.union1d(self.start + np.flatnonzero(~is_interface), kept)
+        at = np.zeros(self.size, np.int64)
+        at[self._numbers] = np.arange(len(self._numbers))
+        keep = of_interface[self._numbers]
+        own_indptr, own_indices, entries = own_pattern(indptr, indices, self.start, self._numbers, at, keep, across)
+        known = len(indices)
+        self._local_entries = np.concatenate([np.arange(known), known + fetched, [known + len(fetched)]])[entries]
+        self._local_plan = plan_elimination(own_indptr, own_indices, keep)
+        self._inner, last = np.split(self._local_plan.order, [len(keep) - self._local_plan.kept])
+        self._kept = self._numbers[last]
+        self._shared_plan = self._plan_shared(mine[of_interface[indices[mine]]])
 
-    def _plan_shared(self) -> Plan:
-        """Plan for S, whose entries are those of A_ss and a dense block of each rank."""
-        size = len(self.interface)
+    def _plan_fetching(self, rows: np.ndarray, columns: np.ndarray, mine: np.ndarray, complete: bool) -> np.ndarray:
+        """Plan to fetch entries of interface rows of any ranks; their places in what comes; collective.
+
+        Args:
+            rows, columns: of the entries.
+            mine: numbers of the entries of this rank's own interface rows.
+            complete: is the interface all that couples this rank's other rows with other ranks?
+
+        Raises:
+            ValueError: if there are no such entries.
+        """
+        owner = np.searchsorted(self._starts, rows, side="right") - 1
+        asked = [rows[owner == rank] * self.size + columns[owner == rank] for rank in range(self.comm.size)]
+        keys = self._row[mine] * self.size + self._entries.pattern[1][mine]
+        wanted = self.comm.alltoall(asked)
+        at = [np.searchsorted(keys, each) for each in wanted]
+        complete = complete and all(np.isin(each, keys).all() for each in wanted)
+        if not self.comm.allreduce(int(complete), op=MPI.MIN):
+            raise ValueError("the pattern of the matrix is not symmetric")
+        self._sent, self._give = mine[np.concatenate(at)], np.array([len(each) for each in at])
+        self._take = np.bincount(owner, minlength=self.comm.size)
+        places = np.empty(len(rows), np.int64)
+        places[np.argsort(owner, kind="stable")] = np.arange(len(rows))
+        return places
+
+    def _plan_shared(self, entries: np.ndarray) -> Plan:
+        """Plan for S, whose entries are those of A_ss, of which this rank has some, and a dense block of each rank."""
+        size, self._shared_entries = len(self.interface), entries
         self._rows = np.flatnonzero((self.interface >= self.start) & (self.interface < self.stop))
-        mine = self.interface[self._rows] - self.start
-        lengths = np.diff(self._indptr)[mine]
-        columns = np.concatenate(
-            [self._indices[:0], *(self._indices[self._indptr[i] : self._indptr[i + 1]] for i in mine)]
-        )
-        self._shared_entries = np.flatnonzero(np.isin(columns, self.interface))
-        entries = np.repeat(self._rows, lengths) * size + np.searchsorted(self.interface, columns)
-        gathered = self.comm.allgather(entries[self._shared_entries])
+        of = self._row[entries], self._entries.pattern[1][entries]
+        rows, columns = (np.searchsorted(self.interface, unknowns) for unknowns in of)
+        gathered = self.comm.allgather(rows * size + columns)
         self._counts, entries = [len(each) for each in gathered], np.concatenate(gathered)
         at = np.searchsorted(self.interface, self._kept)  # of the rank's own block
         blocks = [(each[:, None] * size + each).ravel() for each in self.comm.allgather(at)]
@@ -95,8 +126,9 @@ class ChainLU:
 
     def _whole_is_cheaper(self) -> bool:
         """Whether eliminating the whole matrix takes fewer multiplications than the two plans; collective."""
-        lengths = np.concatenate(self.comm.allgather(np.diff(self._indptr)))
-        indptr, indices = np.append(0, np.cumsum(lengths)), np.concatenate(self.comm.allgather(self._indices))
+        mine = self._lengths, self._entries.pattern[1]
+        lengths, indices = (np.concatenate(self.comm.allgather(each)) for each in mine)
+        indptr = np.append(0, np.cumsum(lengths))
         plan = plan_elimination(indptr, indices, np.zeros(len(indptr) - 1, dtype=bool))
         local = self.comm.allreduce(self._local_plan.multiplications, op=MPI.MAX)
         return plan.multiplications < local + self._shared_plan.multiplications
@@ -105,15 +137,13 @@ class ChainLU:
 
     def factorise(self) -> bool:
         """Factorise the current matrix; False on every rank if a pivot is zero or NaN; collective."""
-        self._part = self.mat.createSubMatrices([self._set], [self._set], self._part)
-        own = self._part[0].getValuesCSR()[2][self._local_order]
-        own[self._among_kept] = 0.0  # couplings between interface unknowns are in A_ss
-        found = self._local.factorise(own)
+        values = self._entries.values()
+        found = self._local.factorise(self._with_fetched(values)[self._local_entries])
         starts = self._block_starts
         self.comm.Allgatherv(self._local.schur.ravel(), (self._blocks, np.diff(starts)))
         self._values[:] = 0.0
         shared = np.empty(sum(self._counts))
-        self.comm.Allgatherv(self._interface_rows()[self._shared_entries], (shared, self._counts))
+        self.comm.Allgatherv(values[self._shared_entries], (shared, self._counts))
         self._values[self._shared_places] = shared
         for rank, places in enumerate(self._block_places):
             self._values[places] += self._blocks[starts[rank] : starts[rank + 1]]
@@ -122,12 +152,12 @@ class ChainLU:
         self.negative_pivots = int(negative) + self._shared.negative_pivots
         return failed == 0
 
-    def _interface_rows(self) -> np.ndarray:
-        """Entries of this rank's rows of interface unknowns."""
-        if len(self._rows) == self.stop - self.start:
-            return self.mat.getValuesCSR()[2]
-        rows = self.interface[self._rows].tolist()
-        return np.concatenate([np.empty(0), *(self.mat.getRow(row)[1] for row in rows)])
+    def _with_fetched(self, values: np.ndarray) -> np.ndarray:
+        """This rank's entries, those that are fetched, and a zero; collective."""
+        own, out = len(values), np.zeros(len(values) + self._take.sum() + 1)
+        out[:own] = values
+        self.comm.Alltoallv((values[self._sent], self._give), (out[own:-1], self._take))
+        return out
 
     def solve(self, right: np.ndarray, out: np.ndarray) -> None:
         """Write this rank's part of the solution into `out`, given that of the right side; collective."""
@@ -145,15 +175,52 @@ class ChainLU:
         out[self.interface[self._rows] - self.start] = x[self._rows]
 
 
-def ascending_pattern(mat: PETSc.Mat) -> tuple[np.ndarray, np.ndarray, np.ndarray | slice]:
-    """CSR pattern of a matrix with ascending columns, and the permutation of PETSc's entries to it."""
-    indptr, indices, _ = mat.getValuesCSR()
-    rows = np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
-    entries = rows * mat.getSize()[1] + indices
-    if (np.diff(entries) > 0).all():
-        return indptr, indices, slice(None)
-    order = np.argsort(entries)
-    return indptr, indices[order], order
+@njit(cache=True)
+def own_pattern(
+    indptr: np.ndarray,
+    indices: np.ndarray,
+    start: int,
+    numbers: np.ndarray,
+    at: np.ndarray,
+    keep: np.ndarray,
+    across: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Pattern of a rank's own matrix, without couplings between interface unknowns, which are in A_ss.
+
+    Args:
+        indptr, indices, start: pattern of the rank's rows.
+        numbers: unknowns of its own matrix, ascending; at: the reverse.
+        keep: which of them are interface unknowns.
+        across: entries of A_is, ascending.
+
+    Returns:
+        The pattern, CSR with ascending columns and a full diagonal, and where its entries come from: numbers of the
+        rank's entries, followed by those of A_si in the order of `across`, and by a zero.
+    """
+    n, zero = len(numbers), len(indices) + len(across)
+    out = np.zeros(n + 1, np.int64)
+    for i in range(n):
+        row = numbers[i] - start
+        out[i + 1] += 1 if keep[i] else indptr[row + 1] - indptr[row]
+    for e in across:
+        out[at[indices[e]] + 1] += 1
+    out = np.cumsum(out)
+    columns, entries, filled, mirrored = np.empty(out[n], np.int64), np.empty(out[n], np.int64), out[:-1].copy(), 0
+    for i in range(n):  # in this order, columns ascend in the rows of A_si, too
+        if keep[i]:
+            columns[filled[i]], entries[filled[i]] = i, zero
+            filled[i] += 1
+            continue
+        row = numbers[i] - start
+        for e in range(indptr[row], indptr[row + 1]):
+            j = at[indices[e]]
+            columns[filled[i]], entries[filled[i]] = j, e
+            filled[i] += 1
+            if keep[j]:
+                columns[filled[j]], entries[filled[j]] = i, len(indices) + mirrored
+                filled[j] += 1
+                mirrored += 1
+    return out, columns, entries
 
 
 class ChainPC:

@@ -12,6 +12,8 @@ from petsc4py import PETSc
 
 from coilset.model.body import Body
 from coilset.model.contact.base import Contribution
+from coilset.model.equilibrium.aij import AijEntries
+from coilset.model.equilibrium.joined import add_matrices, join_patterns
 from coilset.model.equilibrium.layout import Layout, LineLayout
 
 # Contacts add entries outside the band of a line. Up to SMALL unknowns the fill of the natural order costs less than
@@ -34,11 +36,13 @@ class TangentMatrix:
     """
 
     def __init__(self, body: Body, layout: Layout) -> None:
-        self.layout, self._entries = layout, body.row_entries
+        self.body, self.layout = body, layout
         self.mat, self.version = body.create_matrix(layout.size_local), 0
         self._places = np.empty(0, dtype=np.int64)
-        if self._entries is not None:
-            self._make_room([])
+        self._bare: tuple[np.ndarray, np.ndarray] | None = None  # the pattern without contacts, once it is needed
+        self._entries: AijEntries | None = None
+        if body.row_entries is not None:
+            self._allocate(body.row_entries)
 
     @property
     def ordering(self) -> str:
@@ -55,35 +59,52 @@ class TangentMatrix:
             self.mat.zeroEntries()
         else:
             self._make_room(contributions)
+            self._places = places
 
     def add(self, contributions: Sequence[Contribution]) -> None:
-        """Add the stiffness of contacts; values stay unassembled."""
-        layout = self.layout
+        """Add the stiffness of contacts; to be assembled as what the body has added."""
+        layout, entries = self.layout, self._entries
+        if entries is None:
+            return
+        assert isinstance(layout, LineLayout)
+        room = entries.room()
         for part in contributions:
-            assert isinstance(layout, LineLayout)
-            add_blocks(self.mat, layout.contact_dofs[part.dofs], part.stiffness, layout.start, layout.stop)
+            add_matrices(entries.pattern, layout.contact_dofs[part.dofs], part.stiffness, layout.start, room)
+        entries.add(room)
 
-    def _make_room(self, contributions: Sequence[Contribution]) -> None:
-        """Reallocate the rows: a node couples with its neighbours, shear angles, and contacts."""
+    def _allocate(self, row_entries: np.ndarray) -> None:
+        """Room for the body alone, in a new matrix."""
         layout = self.layout
-        assert self._entries is not None
-        entries = np.full(layout.size_local, self._entries.max(), dtype=PETSc.IntType)
-        entries[: layout.owned] = self._entries
-        for part in contributions:
-            assert isinstance(layout, LineLayout)
-            _, once = np.unique(self._contact_places([part]), return_index=True)  # several may join the same unknowns
-            dofs = layout.contact_dofs[part.dofs[once]].astype(np.int64)
-            element, k = np.nonzero((dofs >= layout.start) & (dofs < layout.stop))
-            rows = dofs[element, k] - layout.start
-            places = np.unique(rows[:, None] * layout.size + dofs[element])  # row by row, each once
-            entries += np.bincount(places // layout.size, minlength=layout.size_local).astype(PETSc.IntType)
+        entries = np.full(layout.size_local, row_entries.max(), dtype=PETSc.IntType)
+        entries[: layout.owned] = row_entries
         here = np.minimum(entries, layout.size_local)  # in columns of this rank
         there = np.minimum(entries, layout.size - layout.size_local)
         self.mat.setPreallocationNNZ((here, there) if layout.comm.size > 1 else here)
-        self.mat.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)
         self.mat.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)  # lost in a parallel allocation
-        self._places = self._contact_places(contributions)
+
+    def _make_room(self, contributions: Sequence[Contribution]) -> None:
+        """Allocate the rows anew: those of the body, and what the contacts join."""
+        layout = self.layout
+        assert isinstance(layout, LineLayout)
+        if self._bare is None:
+            self.body.tangent(self.mat)
+            self.add_seats()
+            self.mat.assemble()
+            self._bare = self.mat.getValuesCSR()[:2]
+        # several contacts may join the same unknowns
+        once = [np.unique(self._contact_places([part]), return_index=True)[1] for part in contributions]
+        tables = [layout.contact_dofs[part.dofs[rows]] for part, rows in zip(contributions, once, strict=True)]
+        pattern = join_patterns(self._bare, tables, layout.start, layout.size)
+        self.mat.setPreallocationCSR(pattern)
+        self.mat.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
+        self._entries = AijEntries(self.mat, pattern) if tables else None
         self.version += 1
+
+    def add_seats(self) -> None:
+        """Zeros on the diagonal of the seats' rows, which must exist for a fixed or untouched seat."""
+        if isinstance(self.layout, LineLayout) and self.layout.has_extra:
+            seats = self.layout.seat_dofs[:, None]
+            self.mat.setValuesRCV(seats, seats, np.zeros((len(seats), 1, 1)), addv=PETSc.InsertMode.ADD_VALUES)
 
     def _contact_places(self, contributions: Sequence[Contribution]) -> np.ndarray:
         """A number for each contact element from its first and last dof, which identify the bodies in contact."""
@@ -92,11 +113,3 @@ class TangentMatrix:
         assert isinstance(self.layout, LineLayout)
         count = len(self.layout.contact_dofs)
         return np.concatenate([part.dofs[:, 0] * count + part.dofs[:, -1] for part in contributions])
-
-
-def add_blocks(mat: PETSc.Mat, dofs: np.ndarray, blocks: np.ndarray, start: int, stop: int) -> None:
-    """Add element matrices, shape (m, k, k), to the rows start ≤ row < stop of a PETSc matrix."""
-    if not len(dofs):
-        return
-    rows = np.where((dofs >= start) & (dofs < stop), dofs, -1).astype(PETSc.IntType)  # PETSc skips negative rows
-    mat.setValuesRCV(rows, np.ascontiguousarray(dofs, dtype=PETSc.IntType), blocks, addv=PETSc.InsertMode.ADD_VALUES)

@@ -76,7 +76,7 @@ class StepError:
         memory, last = self._memory.trial, self._memory.equilibrium
         memory[CLOSED] = control.system.last.closed
         kinked = controls and memory[CLOSED] != last[CLOSED]
-        works = np.array(self._body.error_works(ratio, bool(kinked)))
+        works = np.array(self._body.error_works(ratio, bool(kinked), stands=not controls))
         if comm.size > 1:
             works = comm.allreduce(works)
         before, force = control.force, control.trial_force

@@ -10,6 +10,7 @@ from petsc4py import PETSc
 from coilset.model.body import Body, Foresees, HasRotations, Moment, PassesTime
 from coilset.model.contact.base import BearsOnWire, Contact, Contribution, HasMemory
 from coilset.model.equilibrium.contact_parts import ContactParts
+from coilset.model.equilibrium.joined import add_vectors
 from coilset.model.equilibrium.layout import Layout, LineLayout
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import TangentMatrix
@@ -147,13 +148,8 @@ class System:
                 add(local.array)
                 local.scatter_reverse(la.InsertMode.add)
                 values[:owned] = local.array[:owned]
-        if self.last.contributions:
-            parts, start, stop = self.last.contributions, self.layout.start, self.layout.stop
-            rows = np.concatenate([self.line.contact_dofs[part.dofs].ravel() for part in parts])
-            forces = np.concatenate([part.forces.ravel() for part in parts])
-            mine = (rows >= start) & (rows < stop)
-            with self.internal as values:
-                np.add.at(values, rows[mine] - start, forces[mine])
+            for part in self.last.contributions:
+                add_vectors(self.line.contact_dofs[part.dofs], part.forces, self.layout.start, values)
 
     def with_ghosts(self, values: np.ndarray) -> np.ndarray:
         """The body's unknowns of this rank's part `values` of a vector, and after them the ghosts'; collective.
@@ -294,10 +290,7 @@ class System:
         matrix.clear(self.last.contributions, at_step_start)
         self.body.tangent(matrix.mat)
         matrix.add(self.last.contributions)
-        if isinstance(self.layout, LineLayout) and self.layout.has_extra:
-            # the diagonal must exist for a fixed or untouched seat
-            seats = self.layout.seat_dofs[:, None]
-            matrix.mat.setValuesRCV(seats, seats, np.zeros((len(seats), 1, 1)), addv=PETSc.InsertMode.ADD_VALUES)
+        matrix.add_seats()
         matrix.mat.assemble()
         if load.drag is not None:
             matrix.mat.setDiagonal(self.layout.vector(load.drag.stiffness.copy()), addv=PETSc.InsertMode.ADD_VALUES)

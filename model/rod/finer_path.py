@@ -12,14 +12,14 @@ four times as much. This divides the law's error and the area between path and c
 is the error of the section forces. Errors that plastic flow erases are erased here, too.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from coilset.model.section.kinds import Sections
 from coilset.model.state import State, Where
 
-BLOCK = 256  # cells that are followed together: only for these the state in the middle of a step is kept
+BLOCK = 256  # cells that are followed together: only for these the state on the way is kept
 KINK = 4.0  # of the parabola's height over the chord: after steps of one size, that of a kink in the middle of this one
 
 
@@ -40,21 +40,21 @@ class FinerPath:
         self._increment = state.add("strain_increment", np.zeros(shape), Where.ELEMENT)
         self._first = state.add("first_strain_increment", np.zeros(shape), Where.ELEMENT)
         self._error = state.add("section_force_error", np.zeros(shape), Where.ELEMENT)
-        self._fields = {name: state.add(f"finer_{name}", state[name].equilibrium.copy(), Where.ELEMENT)
+        self._fields = {name: state.add(f"finer_{name}", state[name].equilibrium.copy(), Where.ELEMENT, in_place=True)
                         for name in names}  # fmt: skip
         cells = len(self._strain.trial)
-        self._half = {name: field.trial[:BLOCK].copy() for name, field in self._fields.items()}
+        self._half = {name: field.equilibrium[:BLOCK].copy() for name, field in self._fields.items()}
         self._D = np.empty((min(BLOCK, cells), 2, 6, 6))
-        self._parts = [(part, sections.part(part)) for part in
-                       (slice(first, min(first + BLOCK, cells)) for first in range(0, cells, BLOCK))]  # fmt: skip
+        self._parts = list(in_blocks(sections))
 
-    def follow(self, s: np.ndarray, ratio: float, kinked: bool = False) -> bool:
+    def follow(self, s: np.ndarray, ratio: float, kinked: bool = False, stands: bool = True) -> bool:
         """Advance the finer path to the trial strains.
 
         Args:
             s: trial section forces, shape (cells, 2, 6), N and N mm.
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
             kinked: whether the path has a kink within the step, at worst in its middle.
+            stands: whether the step is not given up any more.
 
         Returns:
             False if the law found no solution on this rank: the finer path then continues from the step's own end, and
@@ -67,20 +67,23 @@ class FinerPath:
         if not self._first.equilibrium.any():
             self._first.trial[:] = change
         middle = strain.equilibrium + 0.5 * change + bend
+        if not stands:
+            for name in self._fields:
+                self._state.overwrite(f"finer_{name}")
         good = all(self._follow(cells, sections, middle, s) for cells, sections in self._parts)
         if not good:
             self._error.trial[:] = self._error.equilibrium
             for name, field in self._fields.items():
-                field.trial[:] = self._state[name].trial
+                field.equilibrium[:] = self._state[name].trial
         return good
 
     def _follow(self, cells: slice, sections: Sections, middle: np.ndarray, s: np.ndarray) -> bool:
         """Advance some of the cells over `middle`, all cells' strains there, and write their errors."""
         strain, size, forces = self._strain, cells.stop - cells.start, np.empty((cells.stop - cells.start, 2, 6))
         start = {name: field.equilibrium[cells] for name, field in self._fields.items()}
-        start["strain"] = strain.equilibrium[cells]
         half = {name: values[:size] for name, values in self._half.items()}
-        end = {name: field.trial[cells] for name, field in self._fields.items()}
+        end = dict(start)  # in the place of the start, which is not needed any more then
+        start["strain"] = strain.equilibrium[cells]
         if "clock" in self._state:
             start["clock"], end["clock"] = self._state["clock"].equilibrium, self._state["clock"].trial
             half["clock"] = self._state["halfway_clock"].trial
@@ -94,7 +97,7 @@ class FinerPath:
     def rejoin(self) -> None:
         """Continue from the sections' own last equilibrium; the error so far is not changed."""
         for name, field in self._fields.items():
-            field.equilibrium[:] = field.trial[:] = self._state[name].equilibrium
+            field.equilibrium[:] = self._state[name].equilibrium
 
     def works(self, length: np.ndarray) -> tuple[float, float, float, float]:
         """Works of the error of the section forces, N mm; see EstimatesErrors.
@@ -108,3 +111,11 @@ class FinerPath:
         pairs = (error, now), (new, now), (new, first), (error, first)
         own, new_own, left, error_left = (float(np.sum(force * strain)) for force, strain in pairs)
         return own, new_own, left, error_left
+
+
+def in_blocks(sections: Sections) -> Iterator[tuple[slice, Sections]]:
+    """Cells that are followed together, and their sections."""
+    cells = len(sections.radius)
+    for first in range(0, cells, BLOCK):
+        part = slice(first, min(first + BLOCK, cells))
+        yield part, sections.part(part)

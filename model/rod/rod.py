@@ -14,7 +14,7 @@ from coilset.model.material.rate_law import law_in_time
 from coilset.model.rod import forms
 from coilset.model.rod.assembly import add_element_vectors
 from coilset.model.rod.compiled import compiled_forms
-from coilset.model.rod.finer_path import FinerPath
+from coilset.model.rod.finer_path import FinerPath, in_blocks
 from coilset.model.rod.kinematics import GAUSS, chord_triads, displace_nodes, section_strains
 from coilset.model.rod.prediction import Frames, Prediction, linear_strains
 from coilset.model.section.kinds import make_sections
@@ -22,6 +22,7 @@ from coilset.model.section.rules import DiskRule
 from coilset.model.state import State, Where
 
 CLOCKS = "clock", "halfway_clock"  # at the end of a step, and half way along its path
+SURFACE = "surface_state"  # carries no load: it is brought to the end of a step when this is committed
 NODAL_ENTRIES = 22  # per row of the tangent: three nodes with 6 unknowns each, and two elements with 2
 SHEAR_ENTRIES = 14  # two nodes and the element's own 2
 
@@ -142,7 +143,8 @@ class Rod:
         self._chord = state.add("chord", x[self.cells[:, 1]] - x[self.cells[:, 0]], Where.ELEMENT)
         self._shear = state.add("shear", np.zeros((n, 2)), Where.ELEMENT)
         self._strain = state.add("strain", self.e.values, Where.ELEMENT)
-        points = {name: state.add(name, rows, Where.ELEMENT) for name, rows in self.sections.initial_state().items()}
+        points = {name: state.add(name, rows, Where.ELEMENT, in_place=name == SURFACE)
+                  for name, rows in self.sections.initial_state().items()}  # fmt: skip
         self._section_start = {name: field.equilibrium for name, field in points.items()}
         self._section_trial = {name: field.trial for name, field in points.items()}
         self._section_start["strain"] = self._strain.equilibrium
@@ -189,7 +191,7 @@ class Rod:
     @property
     def surface_state(self) -> np.ndarray:
         """State of the points on the wire's surface, shape (cells, 2, surface points, n_state), MPa."""
-        return self._section_trial["surface_state"]
+        return self._section_trial[SURFACE]
 
     # ---- Body ------------------------------------------------------------------------------------------------------
 
@@ -212,17 +214,22 @@ class Rod:
 
     def follow(self) -> None:
         """Update the points on the wire's surface to the end of the increment; see Body."""
-        self.sections.update_surface(self._strain.trial, self._section_start, self._section_trial)
+        for cells, sections in in_blocks(self.sections):
+            start, trial = ({name: values if name in CLOCKS else values[cells] for name, values in arrays.items()}
+                            for arrays in (self._section_start, self._section_trial))  # fmt: skip
+            reached = trial | {SURFACE: np.empty_like(start[SURFACE])}
+            sections.update_surface(self._strain.trial[cells], start, reached)
+            start[SURFACE][:] = reached[SURFACE]
 
     def estimate_errors(self) -> None:
         """Follow every step on a finer path from now on; see EstimatesErrors."""
-        names = [name for name in self._section_trial if name not in ("surface_state", *CLOCKS)]
+        names = [name for name in self._section_trial if name not in (SURFACE, *CLOCKS)]
         self._finer = FinerPath(self.sections, self.state, names)
 
-    def error_works(self, ratio: float, kinked: bool) -> tuple[float, float, float, float]:
+    def error_works(self, ratio: float, kinked: bool, stands: bool) -> tuple[float, float, float, float]:
         """Works of the errors of all steps so far and of the last one; see EstimatesErrors."""
         assert self._finer is not None, "estimate_errors comes before"
-        if not self._finer.follow(self.s.values, ratio, kinked):
+        if not self._finer.follow(self.s.values, ratio, kinked, stands):
             return np.nan, np.nan, np.nan, np.nan
         return self._finer.works(np.linalg.norm(self._chord.trial, axis=1))
 

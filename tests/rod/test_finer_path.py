@@ -89,3 +89,25 @@ def test_many_elements_are_followed_block_by_block(monkeypatch, kind):
     assert np.abs(errors[0]).max() > 1.0
     assert np.array_equal(*errors)
     assert len(finer._half["point_state"]) == 5
+
+
+def test_step_that_is_given_up_leaves_no_trace():
+    """The finer path lies where its start was: a step after one that was given up ends as if it were the first."""
+    found = []
+    for given_up in (False, True):
+        path = Path()
+        finer = FinerPath(path.sections, path.state, ["point_state"])
+        if given_up:
+            path.to(strains(1.0))
+            assert finer.follow(path.s, 0.0, stands=False)
+            assert path.state["finer_point_state"].equilibrium.any()
+            path.state.restore()
+            assert not path.state["finer_point_state"].equilibrium.any()
+        for k in (1, 2):
+            path.to(strains(0.5 * k))
+            assert finer.follow(path.s, k - 1.0, stands=False)
+            path.state.commit()
+            path.state.restore()  # of a later step: what is committed stays
+        found.append(path.state.copy())
+    assert np.abs(found[0]["finer_point_state"]).max() > 1.0
+    assert all(np.array_equal(found[0][name], found[1][name]) for name in found[0])

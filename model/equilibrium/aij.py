@@ -1,0 +1,76 @@
+"""The entries of PETSc's AIJ matrices as arrays.
+
+On several ranks PETSc keeps a rank's rows in two matrices: one of the columns that belong to the rank, one of the
+others. In both, entries lie row by row with ascending columns, as they do on one rank.
+"""
+
+import ctypes
+
+import numpy as np
+from petsc4py import PETSc
+
+_PETSC = ctypes.PyDLL(PETSc.__file__)  # finds what this module is linked with, so that it is the same PETSc
+
+
+class AijEntries:
+    """This rank's entries of an assembled matrix whose pattern stays.
+
+    Args:
+        mat: of PETSc's type `seqaij` or `mpiaij`.
+        pattern: indptr and indices, if they are known.
+
+    Attributes:
+        pattern: of this rank's rows, CSR with global, ascending columns: indptr and indices.
+    """
+
+    def __init__(self, mat: PETSc.Mat, pattern: tuple[np.ndarray, np.ndarray] | None = None) -> None:
+        self._mat, self.pattern = mat, pattern or mat.getValuesCSR()[:2]
+        self._one = mat.getComm().size == 1
+        self._size = self._own_size = len(self.pattern[1])
+        if not self._one:
+            start, stop = mat.getOwnershipRange()
+            own = (self.pattern[1] >= start) & (self.pattern[1] < stop)
+            self._own, self._others = np.flatnonzero(own), np.flatnonzero(~own)
+            self._own_size = len(self._own)
+
+    def values(self) -> np.ndarray:
+        """In the order of the pattern; on one rank PETSc's own array, else a copy."""
+        own, others = self._arrays()
+        if self._one:
+            return own
+        values = np.empty(self._size)
+        values[self._own], values[self._others] = own, others
+        return values
+
+    def room(self) -> np.ndarray:
+        """Where values in the order of the pattern can be added up: PETSc's own array, or zeros for `add`."""
+        return self._arrays()[0] if self._one else np.zeros(self._size)
+
+    def add(self, room: np.ndarray) -> None:
+        """Add what is in the `room`."""
+        if not self._one:
+            own, others = self._arrays()
+            own += room[self._own]
+            others += room[self._others]
+
+    def _arrays(self) -> tuple[np.ndarray, np.ndarray]:
+        """Where PETSc keeps the entries now."""
+        if self._one:
+            return _array(ctypes.c_void_p(self._mat.handle), self._size), np.empty(0)
+        own, others, columns = ctypes.c_void_p(), ctypes.c_void_p(), ctypes.c_void_p()
+        parts = (ctypes.byref(part) for part in (own, others, columns))
+        _check(_PETSC.MatMPIAIJGetSeqAIJ(ctypes.c_void_p(self._mat.handle), *parts))
+        return _array(own, self._own_size), _array(others, self._size - self._own_size)
+
+
+def _array(part: ctypes.c_void_p, size: int) -> np.ndarray:
+    values = ctypes.POINTER(ctypes.c_double)()
+    _check(_PETSC.MatSeqAIJGetArray(part, ctypes.byref(values)))
+    found = np.ctypeslib.as_array(values, (size,)) if size else np.empty(0)
+    _check(_PETSC.MatSeqAIJRestoreArray(part, ctypes.byref(values)))
+    return found
+
+
+def _check(error: int) -> None:
+    if error:
+        raise PETSc.Error(error)

@@ -1,0 +1,165 @@
+"""Matrices that are joined from small ones, each on some unknowns: the pattern of all of them, and their sum.
+
+PETSc's own insertion seeks every entry of every small matrix in its row. Here runs of neighbouring unknowns, such as
+the displacements of a station, are sought once, and first of all where they lay in the row before: the unknowns of a
+station mostly have the same neighbours.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numba import njit
+
+
+def join_patterns(
+    pattern: tuple[np.ndarray, np.ndarray], tables: Sequence[np.ndarray], start: int, size: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Indptr and indices of a range of a matrix's rows, columns ascending, with room for further small matrices.
+
+    Args:
+        pattern: indptr and indices without them.
+        tables: unknowns of the small matrices, shapes (m, k), (m', k') …
+        start: number of the first row; size: number of all columns.
+    """
+    sizes = [np.full(len(unknowns), unknowns.shape[1]) for unknowns in tables]
+    first = np.concatenate([np.zeros(1, np.int64), *sizes]).cumsum()
+    unknowns = np.concatenate([pattern[1][:0], *(table.ravel() for table in tables)])
+    return _join(*pattern, first, unknowns, start, size)
+
+
+def add_matrices(
+    pattern: tuple[np.ndarray, np.ndarray], unknowns: np.ndarray, matrices: np.ndarray, start: int, values: np.ndarray
+) -> None:
+    """Add small matrices to a range of rows.
+
+    Args:
+        pattern: indptr and indices of the rows, which have room for them.
+        unknowns: of the small matrices, shape (m, k).
+        matrices: shape (m, k, k).
+        start: number of the first row.
+        values: of the rows' entries.
+
+    Raises:
+        ValueError: if there is no room for them.
+    """
+    if not _add(*pattern, unknowns, matrices, start, values):
+        raise ValueError("the matrix has no entries for some of the contacts")
+
+
+@njit(cache=True)
+def _matrices_of_rows(first: np.ndarray, unknowns: np.ndarray, start: int, n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Which of the small matrices have each of n rows, in ranges."""
+    begin = np.zeros(n + 1, np.int64)
+    for unknown in unknowns:
+        if start <= unknown < start + n:
+            begin[unknown - start + 1] += 1
+    begin = np.cumsum(begin)
+    holders, at = np.empty(begin[n], np.int64), begin[:-1].copy()
+    for matrix in range(len(first) - 1):
+        for unknown in unknowns[first[matrix] : first[matrix + 1]]:
+            row = unknown - start
+            if 0 <= row < n:
+                holders[at[row]] = matrix
+                at[row] += 1
+    return begin, holders
+
+
+@njit(cache=True)
+def _same(a: np.ndarray, b: np.ndarray) -> bool:
+    return len(a) == len(b) and bool(np.all(a == b))
+
+
+@njit(cache=True)
+def _join(
+    indptr: np.ndarray, indices: np.ndarray, first: np.ndarray, unknowns: np.ndarray, start: int, size: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """As `join_patterns`, of small matrices whose unknowns lie one after the other, from `first` on."""
+    n, count = len(indptr) - 1, 0
+    begin, holders = _matrices_of_rows(first, unknowns, start, n)
+    out, found, seen = np.zeros_like(indptr), np.empty(2 * len(indices) + 64, indices.dtype), np.full(size, -1)
+    for row in range(n):
+        own, of_row = indices[indptr[row] : indptr[row + 1]], holders[begin[row] : begin[row + 1]]
+        most = len(own)
+        for matrix in of_row:
+            most += first[matrix + 1] - first[matrix]
+        if count + most > len(found):
+            grown = np.empty(2 * (count + most), indices.dtype)
+            grown[:count] = found[:count]
+            found = grown
+        if (row > 0 and _same(of_row, holders[begin[row - 1] : begin[row]])
+                and _same(own, indices[indptr[row - 1] : indptr[row]])):  # fmt: skip
+            before = found[out[row - 1] : count]
+            found[count : count + len(before)] = before
+            count += len(before)
+            out[row + 1] = count
+            continue
+        found[count : count + len(own)] = own
+        seen[own] = row
+        end = count + len(own)
+        for matrix in of_row:
+            for unknown in unknowns[first[matrix] : first[matrix + 1]]:
+                if seen[unknown] != row:
+                    seen[unknown] = row
+                    found[end] = unknown
+                    end += 1
+        found[count:end].sort()
+        count = end
+        out[row + 1] = count
+    return out, found[:count].copy()
+
+
+@njit(cache=True)
+def _find_runs(columns: np.ndarray, length: np.ndarray) -> None:
+    """Write how many neighbouring columns begin at each place that is not in such a run already."""
+    b = 0
+    while b < len(columns):
+        stop = b + 1
+        while stop < len(columns) and columns[stop] == columns[stop - 1] + 1:
+            stop += 1
+        length[b] = stop - b
+        b = stop
+
+
+@njit(cache=True)
+def _add(
+    indptr: np.ndarray, indices: np.ndarray, unknowns: np.ndarray, matrices: np.ndarray, start: int, values: np.ndarray
+) -> bool:
+    """As `add_matrices`; False if some entry has no place."""
+    n, k = len(indptr) - 1, unknowns.shape[1]
+    offset, length = np.zeros(k, np.int64), np.empty(k, np.int64)  # of each run: its place in a row, and its columns
+    for m in range(len(unknowns)):
+        columns = unknowns[m]
+        _find_runs(columns, length)
+        for a in range(k):
+            row, b = columns[a] - start, 0
+            if row < 0 or row >= n:
+                continue
+            low, high, of_row = indptr[row], indptr[row + 1], matrices[m, a]
+            while b < k:
+                p, many = low + offset[b], length[b]
+                if p + many > high or indices[p] != columns[b]:
+                    p = low + np.searchsorted(indices[low:high], columns[b])
+                    if p + many > high or indices[p] != columns[b]:
+                        return False
+                    offset[b] = p - low
+                if indices[p + many - 1] != columns[b + many - 1]:  # columns ascend: those between are right, too
+                    return False
+                if many == 3:  # a station's displacements
+                    values[p] += of_row[b]
+                    values[p + 1] += of_row[b + 1]
+                    values[p + 2] += of_row[b + 2]
+                else:
+                    for j in range(many):
+                        values[p + j] += of_row[b + j]
+                b += many
+    return True
+
+
+@njit(cache=True)
+def add_vectors(unknowns: np.ndarray, vectors: np.ndarray, start: int, out: np.ndarray) -> None:
+    """Add small vectors, shape (m, k), at their `unknowns` to the `out` of a range of rows from `start` on."""
+    for m in range(len(unknowns)):
+        for a in range(unknowns.shape[1]):
+            row = unknowns[m, a] - start
+            if 0 <= row < len(out):
+                out[row] += vectors[m, a]
