@@ -33,14 +33,16 @@ class AijEntries:
             self._own, self._others = np.flatnonzero(own), np.flatnonzero(~own)
             self._own_size = len(self._own)
 
-    def values(self) -> np.ndarray:
-        """In the order of the pattern; on one rank PETSc's own array, else a copy."""
-        own, others = self._arrays()
-        if self._one:
-            return own
-        values = np.empty(self._size)
-        values[self._own], values[self._others] = own, others
-        return values
+    def places(self) -> np.ndarray:
+        """Where `read` writes each entry of the pattern."""
+        places = np.arange(self._size, dtype=np.int32)
+        if not self._one:
+            places[np.concatenate([self._own, self._others])] = np.arange(self._size)
+        return places
+
+    def read(self, out: np.ndarray) -> None:
+        """Write the entries as PETSc keeps them: those of the rank's own columns, then the others, shape (entries,)."""
+        out[: self._own_size], out[self._own_size :] = self._arrays()
 
     def room(self) -> np.ndarray:
         """Where values in the order of the pattern can be added up: PETSc's own array, or zeros for `add`."""

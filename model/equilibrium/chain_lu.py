@@ -13,6 +13,8 @@ If most unknowns couple ranks, as in short springs of many elements whose coils 
 than they save. All unknowns then belong to the interface, and each rank eliminates the whole matrix.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from mpi4py import MPI
 from numba import njit
@@ -43,9 +45,7 @@ class ChainLU:
         self.comm, self.negative_pivots = mat.getComm().tompi4py(), 0
         self.size, (self.start, self.stop) = mat.getSize()[0], mat.getOwnershipRange()
         self._starts, self._entries = mat.getOwnershipRanges(), AijEntries(mat)
-        self._lengths = np.diff(self._entries.pattern[0])
-        self._row = np.repeat(np.arange(self.start, self.stop), self._lengths)
-        coupled = np.unique(self._row[self._entries.pattern[1] < self.start])
+        coupled = self.start + coupled_rows(*self._entries.pattern, self.start)
         self.interface = np.concatenate(self.comm.allgather(coupled))
         self._divide()
         if len(self.interface) > FEW and self._whole_is_cheaper():
@@ -54,79 +54,86 @@ class ChainLU:
         self._local, self._shared = PartialLU(self._local_plan), PartialLU(self._shared_plan)
         self._blocks = np.empty(self._block_starts[-1])
         self._gathered = [self.comm.allgather(places) for places in (self._rows, self._at)]
-        del self._row
+        # this rank's entries, what is fetched, and a zero
+        self._matrix = np.zeros(len(self._entries.pattern[1]) + self._take.sum() + 1)
 
     # ---- plan ------------------------------------------------------------------------------------------------------
 
     def _divide(self) -> None:
         """Plan the rank's own elimination, of its rows outside the interface, and that of S."""
         indptr, indices = self._entries.pattern
-        of_interface = np.zeros(self.size, dtype=bool)
+        of_interface, places = np.zeros(self.size, dtype=bool), self._entries.places()
         of_interface[self.interface] = True
-        is_interface = of_interface[self.start : self.stop]
-        in_row, in_column = np.repeat(is_interface, self._lengths), of_interface[indices]
-        mine, across = np.flatnonzero(in_row), np.flatnonzero(in_column & ~in_row)  # A_s, A_is
-        own = in_row | in_column | ((indices >= self.start) & (indices < self.stop))
-        fetched = self._plan_fetching(indices[across].astype(np.int64), self._row[across], mine, bool(own.all()))
+        mine, across, complete = split_entries(indptr, indices, self.start, of_interface)
+        fetched = self._plan_fetching(across, mine, complete, places)
         kept = np.unique(indices[across])
-        self._numbers = np.union1d(self.start + np.flatnonzero(~is_interface), kept)
-        at = np.zeros(self.size, np.int64)
+        self._numbers = np.union1d(self.start + np.flatnonzero(~of_interface[self.start : self.stop]), kept)
+        at, keep = np.zeros(self.size, np.int64), of_interface[self._numbers]
         at[self._numbers] = np.arange(len(self._numbers))
-        keep = of_interface[self._numbers]
-        own_indptr, own_indices, entries = own_pattern(indptr, indices, self.start, self._numbers, at, keep, across)
-        known = len(indices)
-        self._local_entries = np.concatenate([np.arange(known), known + fetched, [known + len(fetched)]])[entries]
-        self._local_plan = plan_elimination(own_indptr, own_indices, keep)
-        self._inner, last = np.split(self._local_plan.order, [len(keep) - self._local_plan.kept])
+        own_indptr, own_indices, entries = own_pattern(
+            indptr, indices, self.start, self._numbers, at, keep, places, fetched
+        )
+        plan = plan_elimination(own_indptr, own_indices, keep)
+        self._local_plan = replace(plan, entry=entries[plan.entry])
+        self._inner, last = np.split(plan.order, [len(keep) - plan.kept])
         self._kept = self._numbers[last]
-        self._shared_plan = self._plan_shared(mine[of_interface[indices[mine]]])
+        self._shared_plan = self._plan_shared(mine[of_interface[indices[mine]]], places)
 
-    def _plan_fetching(self, rows: np.ndarray, columns: np.ndarray, mine: np.ndarray, complete: bool) -> np.ndarray:
-        """Plan to fetch entries of interface rows of any ranks; their places in what comes; collective.
+    def _unknowns(self, entries: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Rows and columns of some of this rank's entries."""
+        indptr, indices = self._entries.pattern
+        return self.start + np.searchsorted(indptr, entries, side="right") - 1, indices[entries].astype(np.int64)
+
+    def _plan_fetching(self, across: np.ndarray, mine: np.ndarray, complete: bool, places: np.ndarray) -> np.ndarray:
+        """Plan to fetch A_si, whose pattern is that of A_is, from the ranks of its rows; collective.
 
         Args:
-            rows, columns: of the entries.
-            mine: numbers of the entries of this rank's own interface rows.
+            across: entries of A_is.
+            mine: entries of this rank's own interface rows.
             complete: is the interface all that couples this rank's other rows with other ranks?
+            places: of this rank's entries.
+
+        Returns:
+            Places of the entries of A_si behind this rank's own, in the order of A_is.
 
         Raises:
             ValueError: if there are no such entries.
         """
+        columns, rows = self._unknowns(across)
         owner = np.searchsorted(self._starts, rows, side="right") - 1
-        asked = [rows[owner == rank] * self.size + columns[owner == rank] for rank in range(self.comm.size)]
-        keys = self._row[mine] * self.size + self._entries.pattern[1][mine]
-        wanted = self.comm.alltoall(asked)
-        at = [np.searchsorted(keys, each) for each in wanted]
+        wanted = self.comm.alltoall([(rows * self.size + columns)[owner == rank] for rank in range(self.comm.size)])
+        own_rows, own_columns = self._unknowns(mine)
+        keys = own_rows * self.size + own_columns
         complete = complete and all(np.isin(each, keys).all() for each in wanted)
         if not self.comm.allreduce(int(complete), op=MPI.MIN):
             raise ValueError("the pattern of the matrix is not symmetric")
-        self._sent, self._give = mine[np.concatenate(at)], np.array([len(each) for each in at])
+        at = [mine[np.searchsorted(keys, each)] for each in wanted]
+        self._sent, self._give = places[np.concatenate(at)], np.array([len(each) for each in at])
         self._take = np.bincount(owner, minlength=self.comm.size)
-        places = np.empty(len(rows), np.int64)
-        places[np.argsort(owner, kind="stable")] = np.arange(len(rows))
-        return places
+        fetched = np.empty(len(rows), np.int64)
+        fetched[np.argsort(owner, kind="stable")] = len(places) + np.arange(len(rows))
+        return fetched
 
-    def _plan_shared(self, entries: np.ndarray) -> Plan:
+    def _plan_shared(self, entries: np.ndarray, places: np.ndarray) -> Plan:
         """Plan for S, whose entries are those of A_ss, of which this rank has some, and a dense block of each rank."""
-        size, self._shared_entries = len(self.interface), entries
+        size, self._shared_entries = len(self.interface), places[entries]
         self._rows = np.flatnonzero((self.interface >= self.start) & (self.interface < self.stop))
-        of = self._row[entries], self._entries.pattern[1][entries]
-        rows, columns = (np.searchsorted(self.interface, unknowns) for unknowns in of)
+        rows, columns = (np.searchsorted(self.interface, unknowns) for unknowns in self._unknowns(entries))
         gathered = self.comm.allgather(rows * size + columns)
         self._counts, entries = [len(each) for each in gathered], np.concatenate(gathered)
         at = np.searchsorted(self.interface, self._kept)  # of the rank's own block
         blocks = [(each[:, None] * size + each).ravel() for each in self.comm.allgather(at)]
-        places = np.unique(np.concatenate([entries, np.arange(size) * (size + 1), *blocks]))
-        self._shared_places = np.searchsorted(places, entries)
-        self._block_places = [np.searchsorted(places, block) for block in blocks]
-        self._at, self._values = at, np.empty(len(places))
+        pattern = np.unique(np.concatenate([entries, np.arange(size) * (size + 1), *blocks]))
+        self._shared_places = np.searchsorted(pattern, entries)
+        self._block_places = [np.searchsorted(pattern, block) for block in blocks]
+        self._at, self._values = at, np.empty(len(pattern))
         self._block_starts = np.append(0, np.cumsum([len(block) for block in blocks]))
-        counts = np.bincount(places // max(size, 1), minlength=size)
-        return plan_elimination(np.append(0, np.cumsum(counts)), places % max(size, 1), np.zeros(size, dtype=bool))
+        counts = np.bincount(pattern // max(size, 1), minlength=size)
+        return plan_elimination(np.append(0, np.cumsum(counts)), pattern % max(size, 1), np.zeros(size, dtype=bool))
 
     def _whole_is_cheaper(self) -> bool:
         """Whether eliminating the whole matrix takes fewer multiplications than the two plans; collective."""
-        mine = self._lengths, self._entries.pattern[1]
+        mine = np.diff(self._entries.pattern[0]), self._entries.pattern[1]
         lengths, indices = (np.concatenate(self.comm.allgather(each)) for each in mine)
         indptr = np.append(0, np.cumsum(lengths))
         plan = plan_elimination(indptr, indices, np.zeros(len(indptr) - 1, dtype=bool))
@@ -137,8 +144,10 @@ class ChainLU:
 
     def factorise(self) -> bool:
         """Factorise the current matrix; False on every rank if a pivot is zero or NaN; collective."""
-        values = self._entries.values()
-        found = self._local.factorise(self._with_fetched(values)[self._local_entries])
+        values, own = self._matrix, len(self._entries.pattern[1])
+        self._entries.read(values[:own])
+        self.comm.Alltoallv((values[self._sent], self._give), (values[own:-1], self._take))
+        found = self._local.factorise(values)
         starts = self._block_starts
         self.comm.Allgatherv(self._local.schur.ravel(), (self._blocks, np.diff(starts)))
         self._values[:] = 0.0
@@ -151,13 +160,6 @@ class ChainLU:
         failed, negative = self.comm.allreduce(np.array([not found, self._local.negative_pivots]))
         self.negative_pivots = int(negative) + self._shared.negative_pivots
         return failed == 0
-
-    def _with_fetched(self, values: np.ndarray) -> np.ndarray:
-        """This rank's entries, those that are fetched, and a zero; collective."""
-        own, out = len(values), np.zeros(len(values) + self._take.sum() + 1)
-        out[:own] = values
-        self.comm.Alltoallv((values[self._sent], self._give), (out[own:-1], self._take))
-        return out
 
     def solve(self, right: np.ndarray, out: np.ndarray) -> None:
         """Write this rank's part of the solution into `out`, given that of the right side; collective."""
@@ -176,6 +178,37 @@ class ChainLU:
 
 
 @njit(cache=True)
+def coupled_rows(indptr: np.ndarray, indices: np.ndarray, start: int) -> np.ndarray:
+    """Which of a rank's rows, from `start` on, have columns of lower ranks."""
+    coupled = np.zeros(len(indptr) - 1, np.bool_)
+    for row in range(len(coupled)):
+        for e in range(indptr[row], indptr[row + 1]):
+            coupled[row] |= indices[e] < start
+    return np.flatnonzero(coupled)
+
+
+@njit(cache=True)
+def split_entries(
+    indptr: np.ndarray, indices: np.ndarray, start: int, of_interface: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, bool]:
+    """Entries of a rank's rows of interface unknowns; those of A_is; do these couple it with other ranks alone?"""
+    mine, across, complete = np.empty(len(indices), np.int64), np.empty(len(indices), np.int64), True
+    many_mine = many_across = 0
+    for row in range(len(indptr) - 1):
+        for e in range(indptr[row], indptr[row + 1]):
+            column = indices[e]
+            if of_interface[start + row]:
+                mine[many_mine] = e
+                many_mine += 1
+            elif of_interface[column]:
+                across[many_across] = e
+                many_across += 1
+            else:
+                complete &= start <= column < start + len(indptr) - 1
+    return mine[:many_mine].copy(), across[:many_across].copy(), complete
+
+
+@njit(cache=True)
 def own_pattern(
     indptr: np.ndarray,
     indices: np.ndarray,
@@ -183,7 +216,8 @@ def own_pattern(
     numbers: np.ndarray,
     at: np.ndarray,
     keep: np.ndarray,
-    across: np.ndarray,
+    places: np.ndarray,
+    fetched: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Pattern of a rank's own matrix, without couplings between interface unknowns, which are in A_ss.
 
@@ -191,21 +225,24 @@ def own_pattern(
         indptr, indices, start: pattern of the rank's rows.
         numbers: unknowns of its own matrix, ascending; at: the reverse.
         keep: which of them are interface unknowns.
-        across: entries of A_is, ascending.
+        places: of the rank's entries in an array; fetched: of those of A_si in the order of A_is, behind them, where a
+            zero follows.
 
     Returns:
-        The pattern, CSR with ascending columns and a full diagonal, and where its entries come from: numbers of the
-        rank's entries, followed by those of A_si in the order of `across`, and by a zero.
+        The pattern, CSR with ascending columns and a full diagonal, and the places of its entries.
     """
-    n, zero = len(numbers), len(indices) + len(across)
+    n, zero = len(numbers), len(places) + len(fetched)
     out = np.zeros(n + 1, np.int64)
     for i in range(n):
+        if keep[i]:
+            out[i + 1] += 1
+            continue
         row = numbers[i] - start
-        out[i + 1] += 1 if keep[i] else indptr[row + 1] - indptr[row]
-    for e in across:
-        out[at[indices[e]] + 1] += 1
+        out[i + 1] += indptr[row + 1] - indptr[row]
+        for e in range(indptr[row], indptr[row + 1]):
+            out[at[indices[e]] + 1] += keep[at[indices[e]]]
     out = np.cumsum(out)
-    columns, entries, filled, mirrored = np.empty(out[n], np.int64), np.empty(out[n], np.int64), out[:-1].copy(), 0
+    columns, entries, filled, mirrored = np.empty(out[n], np.int64), np.empty(out[n], np.int32), out[:-1].copy(), 0
     for i in range(n):  # in this order, columns ascend in the rows of A_si, too
         if keep[i]:
             columns[filled[i]], entries[filled[i]] = i, zero
@@ -214,10 +251,10 @@ def own_pattern(
         row = numbers[i] - start
         for e in range(indptr[row], indptr[row + 1]):
             j = at[indices[e]]
-            columns[filled[i]], entries[filled[i]] = j, e
+            columns[filled[i]], entries[filled[i]] = j, places[e]
             filled[i] += 1
             if keep[j]:
-                columns[filled[j]], entries[filled[j]] = i, len(indices) + mirrored
+                columns[filled[j]], entries[filled[j]] = i, fetched[mirrored]
                 filled[j] += 1
                 mirrored += 1
     return out, columns, entries

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from petsc4py import PETSc
 
-ORDERING = "qmd"  # PETSc's quotient minimum degree; along a chain it finds an order without fill
+from coilset.model.equilibrium.ordering import fill_reducing_order
+
 # Fraction of zeros accepted for larger fronts: small fronts cost more to move than to eliminate.
 ZEROS = 0.15
 
@@ -65,7 +65,7 @@ def plan_elimination(indptr: np.ndarray, indices: np.ndarray, keep: np.ndarray) 
     graph = group_graph(indptr, indices, group, members, size)
     kept = np.zeros(len(size), dtype=bool)
     kept[group[keep]] = True
-    order = _order(graph[0], graph[1], np.flatnonzero(kept))
+    order = fill_reducing_order(graph[0], graph[1], np.flatnonzero(kept))
     sequence, eliminated = np.concatenate([order[~kept[order]], order[kept[order]]]), int((~kept).sum())
     fronts = find_fronts(*graph, sequence, eliminated, size)
     order, first, rest_start, rest, child_start, child, stack, multiplications = number_places(*fronts, size, members)
@@ -74,29 +74,6 @@ def plan_elimination(indptr: np.ndarray, indices: np.ndarray, keep: np.ndarray) 
     )
     return Plan(order, int(keep.sum()), first, rest_start, rest, into, child_start, child, entry_start, entry, position,
                 stack, multiplications)  # fmt: skip
-
-
-def _order(indptr: np.ndarray, indices: np.ndarray, kept: np.ndarray) -> np.ndarray:
-    """Fill-reducing order of the vertices of a graph, with the kept ones moved to its end.
-
-    The kept ones are coupled with each other, so that the elimination reaches the interface last: starting there would
-    carry the interface along.
-    """
-    from scipy import sparse  # takes a fifth of a second, and one rank with few contacts never comes here
-
-    n = len(indptr) - 1
-    if n == 0:
-        return np.empty(0, np.int64)
-    edges = np.ones(len(indices)), indices, indptr
-    graph = sparse.csr_array(edges, (n, n))
-    if len(kept):
-        pairs = np.repeat(kept, len(kept)), np.tile(kept, len(kept))
-        graph = sparse.csr_array(graph + sparse.coo_array((np.ones(len(pairs[0])), pairs), (n, n)))
-    pattern = graph.indptr.astype(PETSc.IntType), graph.indices.astype(PETSc.IntType)
-    matrix = PETSc.Mat().createAIJ((n, n), csr=(*pattern, graph.data), comm=PETSc.COMM_SELF)
-    order = matrix.getOrdering(ORDERING)[0].getIndices().astype(np.int64)
-    matrix.destroy()
-    return order
 
 
 @njit(cache=True)

@@ -37,6 +37,7 @@ class Surroundings:
         self._along = np.argsort(self._own)
         self._aside = max((contact.aside for contact in self._nearby), default=0)
         self._x, self._rotations = np.zeros((n, 3)), np.zeros((n, 3))
+        self._last, self._way = np.zeros((len(self._own), 3)), 0.0  # own stations of the last call; see Known
 
     def trial(self, x: np.ndarray, seats: np.ndarray, rotations: np.ndarray | None = None) -> TrialPositions:
         """TrialPositions from those of the local nodes; the next call overwrites them; collective.
@@ -58,7 +59,7 @@ class Surroundings:
         self._x[stations] = found[:, PLACE]
         if rotations is not None:
             self._rotations[stations] = found[:, ROTATION]
-        known = Known(whole_elements(np.sort(stations), len(self._x)), longest, self._is_own)
+        known = Known(whole_elements(np.sort(stations), len(self._x)), longest, self._way, self._is_own)
         return TrialPositions(self._x, seats, None if rotations is None else self._rotations, known)
 
     def _boxes(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
@@ -69,11 +70,14 @@ class Surroundings:
             axis at most, shape (3,); the longest distance of neighbouring stations; mm.
         """
         own, cells = x[: len(self._own)][self._along], self.layout.rod.cells
-        mine, boxes = np.zeros(10), np.empty((self.comm.size, 10))
+        mine, boxes = np.zeros(11), np.empty((self.comm.size, 11))
         mine[:3], mine[3:6] = own.min(axis=0, initial=np.inf), own.max(axis=0, initial=-np.inf)
         mine[6:9] = span_along(own, self._aside)
         mine[9] = np.linalg.norm(x[cells[:, 1]] - x[cells[:, 0]], axis=1).max(initial=0.0)
+        mine[10] = np.abs(own - self._last).max(initial=0.0)
+        self._last = own
         self.comm.Allgather(mine, boxes)
+        self._way += float(boxes[:, 10].max())
         return boxes[:, :6].reshape(-1, 2, 3), boxes[:, 6:9].max(axis=0), float(boxes[:, 9].max())
 
     def _near(self, rank: int, boxes: np.ndarray, rows: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
