@@ -1,0 +1,53 @@
+"""Small matrices put into a large one, against a sum of dense matrices."""
+
+import numpy as np
+import pytest
+
+from coilset.model.equilibrium.joined import add_matrices, add_vectors, join_patterns
+
+SIZE, RANGE = 40, slice(9, 33)  # unknowns, and those whose rows are here
+
+
+def tables():
+    """Unknowns of chains of three neighbouring ones, as those of a station, and of single ones, in any order."""
+    rng = np.random.default_rng(4)
+    stations = rng.permuted(np.tile(np.arange(13), (7, 1)), axis=1)[:, :4]
+    singles = rng.permuted(np.tile(np.arange(SIZE), (5, 1)), axis=1)[:, :6]
+    return [(3 * stations[:, :, None] + np.arange(3)).reshape(7, 12).astype(np.int32), singles.astype(np.int32)]
+
+
+def bare():
+    """Pattern of the rows without the small matrices: neighbours."""
+    rows, columns = np.indices((SIZE, SIZE))
+    return np.abs(rows - columns) <= 1
+
+
+def csr(pattern):
+    """Of the rows that are here."""
+    rows = pattern[RANGE]
+    return np.append(0, np.cumsum(rows.sum(axis=1))).astype(np.int32), np.nonzero(rows)[1].astype(np.int32)
+
+
+def test_pattern_and_sum_are_those_of_dense_matrices():
+    rng, pattern, total, forces = np.random.default_rng(5), bare(), np.zeros((SIZE, SIZE)), np.zeros(SIZE)
+    matrices = [rng.normal(size=(*table.shape, table.shape[1])) for table in tables()]
+    vectors = [rng.normal(size=table.shape) for table in tables()]
+    for table, of_table, loads in zip(tables(), matrices, vectors, strict=True):
+        for unknowns, matrix, load in zip(table, of_table, loads, strict=True):
+            pattern[np.ix_(unknowns, unknowns)] = True
+            total[np.ix_(unknowns, unknowns)] += matrix
+            forces[unknowns] += load
+    found = join_patterns(csr(bare()), tables(), RANGE.start, SIZE)
+    assert all(np.array_equal(*pair) for pair in zip(found, csr(pattern), strict=True))
+    values, added = np.zeros(len(found[1])), np.zeros(RANGE.stop - RANGE.start)
+    for table, of_table, loads in zip(tables(), matrices, vectors, strict=True):
+        add_matrices(found, table, of_table, RANGE.start, values)
+        add_vectors(table, loads, RANGE.start, added)
+    np.testing.assert_allclose(values, total[RANGE][pattern[RANGE]], rtol=0, atol=1e-13)
+    np.testing.assert_allclose(added, forces[RANGE], rtol=0, atol=1e-13)
+
+
+def test_matrix_without_room_is_refused():
+    """The pattern has no entries for what is added: nothing is written beside it."""
+    with pytest.raises(ValueError, match="no entries"):
+        add_matrices(csr(bare()), tables()[1], np.ones((5, 6, 6)), RANGE.start, np.zeros(csr(bare())[0][-1]))
