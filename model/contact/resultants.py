@@ -1,11 +1,14 @@
 """External actions on the wire: forces of the contacts, their resultant wrenches and lines of action."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from coilset.model.contact.base import SEAT_DOFS, Contribution
+from coilset.model.contact.bearing import add_force, add_resultant
+
+NONE = np.zeros(3)
 
 
 def station_forces(parts: Iterable[Contribution], stations: int) -> np.ndarray:
@@ -64,12 +67,27 @@ class Wrench:
         turning = np.broadcast_to(moments, np.shape(forces))
         return cls(np.sum(forces, axis=0), levers(x, forces) + np.sum(turning, axis=0))
 
+    @classmethod
+    def of_contacts(cls, parts: Sequence[Contribution], x: np.ndarray, charts: np.ndarray) -> "Wrench":
+        """The resultant of contacts on the wire, with the stations at `x`, shape (n, 3), mm; `charts`: T of these."""
+        sums, rotations = np.zeros(6), 3 * len(x) + 2 * SEAT_DOFS
+        turn = [part for part in parts if add_resultant(part.dofs, part.forces, x, rotations, sums)]
+        if turn:
+            sums[3:] += station_moments(turn, charts).sum(axis=0)
+        return cls(sums[:3], sums[3:])
+
+    def with_force(self, point: np.ndarray, force: np.ndarray, moment: np.ndarray) -> "Wrench":
+        """Together with a force and a moment at a point, shape (3,) each."""
+        sums = np.concatenate([self.force, self.moment])
+        add_force(point, force, moment, sums)
+        return Wrench(sums[:3], sums[3:])
+
     def __add__(self, other: "Wrench") -> "Wrench":
         return Wrench(self.force + other.force, self.moment + other.moment)
 
     def about(self, point: np.ndarray) -> np.ndarray:
         """Moment about another point, shape (3,), N mm."""
-        return self.moment - levers(point[None], self.force[None])
+        return self.with_force(-point, self.force, NONE).moment
 
     def crossing(self, point: np.ndarray) -> np.ndarray:
         """Where the resultant crosses the plane z = const through `point`, relative to it.
