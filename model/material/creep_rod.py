@@ -23,7 +23,7 @@ from coilset.model.material.creep import GAMMA, MAX_ITERATIONS, TOLERANCE, Creep
 from coilset.model.material.creep_flow import POWER, TIME, passes, rate
 from coilset.model.material.functions import elasticity, functions
 from coilset.model.material.kernel import INLINE, KERNEL
-from coilset.model.material.rod import active, inner
+from coilset.model.material.rod_plastic import active, inner
 from coilset.model.material.spin import Vector
 
 WEIGHTS = (1.0, 3.0, 3.0)  # of σ11, τ12, τ13 in σ²

@@ -92,13 +92,10 @@ def hardening(p: np.ndarray, o: int, b: float) -> tuple[float, float]:
 def with_deviation(p: np.ndarray, o: int, b: float, k2: float, dk2: float) -> Functions:
     """All functions, from k² and its slope."""
     a5, a6, a7 = p[o + A5], p[o + A6], p[o + A7]
-    zeta = 0.0
-    dzeta = 0.0
-    if a5 != 0.0:
-        e = a7 * exp(-a7 * b)
-        root = math.sqrt(6.0 * k2)
-        zeta = a5 * (a6 + e) * root
-        dzeta = a5 * (3.0 * (a6 + e) * dk2 / root - a7 * e * root)
+    e = a7 * exp(-a7 * b)
+    scale = a5 * math.sqrt(6.0 * k2) if a5 != 0.0 else 0.0  # k² may be infinite
+    zeta = (a6 + e) * scale
+    dzeta = zeta * (0.5 * dk2 / k2) - a7 * e * scale
     kappa = p[o + KAPPA] * b * b * b
     return k2, dk2, zeta, dzeta, kappa, 3.0 * p[o + KAPPA] * b * b
 

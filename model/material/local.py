@@ -41,14 +41,13 @@ from collections import namedtuple
 import numpy as np
 from numba import njit
 
-from coilset.model.material.exponential import expm1
+from coilset.model.material.exponential import decay
 from coilset.model.material.functions import CHANGE, Functions, functions, inside_table
 from coilset.model.material.kernel import INLINE, KERNEL
 
 MAX_ITERATIONS = 60
 FAILED, TOO_HOT = -1, -2  # instead of a number of iterations; TOO_HOT: heated out of the material's table
 FINE = 1e-6  # relative residual below which one more Newton step ends the iteration
-SMALL = 0.02  # sΛ below which ψ and its slope are summed up as series; the next terms are below 1e-14
 COARSE = 1e-3  # relative error of |n| to which Λ is brought before the two equations are solved together
 
 Products = tuple[float, float, float]
@@ -63,9 +62,10 @@ Turn = namedtuple("Turn", "phi y phi_b y_b phi_l y_l")
 Equations = namedtuple("Equations", "r1 r2 r1b r1l r2b r2l work")
 # Newton's correction of b* and Λ, one over the Jacobian's determinant, and r2 where r1 is made zero by Λ alone.
 Correction = namedtuple("Correction", "b multiplier inverse g")
-# The solution, and the Jacobian of the two equations (r1: n:n − k², r2: b* − b*₀ − ½ (n₀ + n):p) in (b*, Λ), or in
-# (b*, κ) if neutral, divided by its determinant; ζ at half of the increment's plastic work, dζ/db* of its end.
-Local = namedtuple("Local", "iterations neutral b multiplier zeta dzeta a c r1b r1l r2b r2l")
+# The solution: b*, ζ at half of the increment's plastic work, dζ/db* of its end, the Turns of both groups, and the
+# Jacobian of the two equations (r1: n:n − k², r2: b* − b*₀ − ½ (n₀ + n):p) in (b*, Λ), or in (b*, κ) if neutral,
+# divided by its determinant.
+Local = namedtuple("Local", "iterations neutral b zeta dzeta a c r1b r1l r2b r2l")
 
 
 @njit(**INLINE)
@@ -104,34 +104,20 @@ def group(c: float, zeta: float, dzeta: float, kappa: float, dkappa: float) -> G
 
 
 @njit(**INLINE)
-def _decay(z: float) -> tuple[float, float, float]:
-    """φ = exp(−z), ψ = (1 − φ)/z and dψ/dz."""
-    rest = expm1(-z)
-    phi = 1.0 + rest
-    # Σ (−z)ᵏ/(k + 1)! and its derivative
-    near = 1.0 - z * (1 / 4) * (1.0 - z * (1 / 5) * (1.0 - z * (1 / 6) * (1.0 - z * (1 / 7))))
-    near = 1.0 - z * (1 / 2) * (1.0 - z * (1 / 3) * near)
-    slope = 1.0 - z * (4 / 15) * (1.0 - z * (5 / 24) * (1.0 - z * (6 / 35)))
-    slope = -0.5 + z * (1 / 3) - z * z * (1 / 8) * slope
-    inverse = 1.0 / z
-    psi = near if abs(z) < SMALL else -rest * inverse
-    return phi, psi, slope if abs(z) < SMALL else (phi - psi) * inverse
-
-
-@njit(**INLINE)
-def turn(g: Group, multiplier: float, neutral: bool = False) -> Turn:
-    """A group's n from n₀ and e at Λ = `multiplier`; `neutral`: with κ as the unknown instead."""
-    if neutral:
-        return Turn(1.0, g.x, 0.0, 0.0, 0.0, -g.x * g.s)
-    phi, psi, slope = _decay(g.s * multiplier)
+def turn(g: Group, multiplier: float) -> Turn:
+    """A group's n from n₀ and e at Λ = `multiplier`."""
+    phi, psi, slope = decay(g.s * multiplier)
     phi_b, y_b = -phi * g.ds * multiplier, slope * g.ds * multiplier * g.x + psi * g.dx
     return Turn(phi, psi * g.x, phi_b, y_b, -phi * g.s, slope * g.s * g.x)
 
 
 @njit(**INLINE)
-def turn_at_rest(g: Group) -> Turn:
-    """`turn` at Λ = 0."""
-    return Turn(1.0, g.x, 0.0, g.dx, -g.s, -0.5 * g.s * g.x)
+def rough_turn(g: Group, multiplier: float) -> Turn:
+    """`turn` with Padé's approximant of second degree of φ, without the derivatives in b*: z⁵/720 wrong for small z."""
+    z = g.s * multiplier
+    psi = 1.0 / (1.0 + z * (0.5 + z * (1 / 12)))
+    phi, slope = 1.0 - z * psi, -(0.5 + z * (1 / 6)) * psi * psi
+    return Turn(phi, psi * g.x, 0.0, 0.0, -phi * g.s, slope * g.s * g.x)
 
 
 @njit(**INLINE)
@@ -167,34 +153,35 @@ def nearer(
 
 
 @njit(**INLINE)
-def _group_terms(
-    t: Turn, c: float, zeta: float, dzeta: float, products: Products, slopes: tuple[float, float]
-) -> Functions:
-    """A group's n:n and ½ (n₀ + n):p, each with its derivatives in b* and Λ.
-
-    Args:
-        products: n₀:n₀, n₀:e, e:e.
-        slopes: derivatives of the last two in b*, from thermal strain.
-    """
+def _group_terms(t: Turn, c: float, zeta: float, dzeta: float, products: Products) -> Functions:
+    """A group's n:n and ½ (n₀ + n):p, each with its derivatives in b* and Λ; `products` are n₀:n₀, n₀:e, e:e."""
     nn, ne, ee = products
     phi, y, m = t.phi, t.y, 1.0 / (c + zeta)
     left, right = phi * nn + y * ne, phi * ne + y * ee  # n:n₀, n:e
     square = phi * left + y * right
-    square_b = 2.0 * (left * t.phi_b + right * t.y_b) + y * (2.0 * phi * slopes[0] + y * slopes[1])
-    mixed, along = 1.0 + phi - 2.0 * phi * y, y * (1.0 - y)
+    square_b, square_l = 2.0 * (left * t.phi_b + right * t.y_b), 2.0 * (left * t.phi_l + right * t.y_l)
     half = 0.5 * m
-    work = half * ((1.0 - phi * phi) * nn + mixed * ne + along * ee)
-    by_phi = half * ((1.0 - 2.0 * y) * ne - 2.0 * phi * nn)
-    by_y = half * ((1.0 - 2.0 * y) * ee - 2.0 * phi * ne)
-    work_b = by_phi * t.phi_b + by_y * t.y_b - work * dzeta * m + half * (mixed * slopes[0] + along * slopes[1])
-    work_l = by_phi * t.phi_l + by_y * t.y_l
-    return square, square_b, 2.0 * (left * t.phi_l + right * t.y_l), work, work_b, work_l
+    work = half * (nn + ne + right - square)  # (n₀ + n):(n₀ + e − n)
+    work_b = half * (t.phi_b * ne + t.y_b * ee - square_b) - work * dzeta * m
+    work_l = half * (t.phi_l * ne + t.y_l * ee - square_l)
+    return square, square_b, square_l, work, work_b, work_l
+
+
+@njit(**INLINE)
+def _by_expansion(start: Start, t: Turn, zeta: float, b: float) -> tuple[float, float]:
+    """What thermal strain adds to the derivatives of group a's n:n and ½ (n₀ + n):p in b*: through e, n ∂e/∂b* = y."""
+    e, half = start.ea + start.dea * (b - start.b), 0.5 / (start.ca + zeta)
+    n = t.phi * start.na + t.y * e
+    by_e = start.na + n + t.y * (e - 2.0 * n)  # (n₀ + n):(n₀ + e − n) by e
+    return 3.0 * n * t.y * start.dea, 1.5 * half * by_e * start.dea
 
 
 @njit(**INLINE)
 def axial_products(start: Start, b: float) -> Products:
     """n₀:n₀, n₀:e, e:e of group a."""
-    ea = start.ea + start.dea * (b - start.b)
+    ea = start.ea
+    if start.dea != 0.0:
+        ea += start.dea * (b - start.b)
     return 1.5 * start.na * start.na, 1.5 * start.na * ea, 1.5 * ea * ea
 
 
@@ -206,9 +193,11 @@ def equations(start: Start, values: Functions, middle: Functions, ta: Turn, tc: 
     """
     zeta, dzeta = middle[2], middle[3]
     a, c = axial_products(start, b), (start.nn, start.ne, start.ee)
-    slopes = (1.5 * start.na * start.dea, 3.0 * (start.ea + start.dea * (b - start.b)) * start.dea)
-    nna, nnab, nnal, wa, wab, wal = _group_terms(ta, start.ca, zeta, dzeta, a, slopes)
-    nnc, nncb, nncl, wc, wcb, wcl = _group_terms(tc, start.cc, zeta, dzeta, c, (0.0, 0.0))
+    nna, nnab, nnal, wa, wab, wal = _group_terms(ta, start.ca, zeta, dzeta, a)
+    nnc, nncb, nncl, wc, wcb, wcl = _group_terms(tc, start.cc, zeta, dzeta, c)
+    if start.dea != 0.0:
+        more, work = _by_expansion(start, ta, zeta, b)
+        nnab, wab = nnab + more, wab + work
     r1, r2 = nna + nnc - values[0], b - start.b - wa - wc
     return Equations(r1, r2, nnab + nncb - values[1], nnal + nncl, 1.0 - wab - wcb, -wal - wcl, wa + wc)
 
@@ -225,15 +214,17 @@ def correction(at: Equations) -> Correction:
 @njit(**INLINE)
 def is_last(start: Start, k2: float, at: Equations, newton: Correction, b: float) -> bool:
     """Whether this correction ends the iteration; the remaining error is of the order FINE²."""
-    # the second term is the rounding of b* and of n:(n_trial − n)
-    small = abs(newton.g) <= FINE * at.work + 1e-15 * (b + k2 / start.cc)
+    # the second term is the rounding of b* and of n:(n_trial − n), all times c
+    small = abs(newton.g) * start.cc <= FINE * at.work * start.cc + 1e-15 * (b * start.cc + k2)
     return small & (abs(at.r1) <= FINE * k2) & (newton.inverse > 0.0)
 
 
 @njit(**INLINE)
-def corrected(g: Group, step: float) -> Group:
-    """A group after b* has changed by the last correction."""
-    return Group(g.s + g.ds * step, g.ds, g.x + g.dx * step, g.dx)
+def corrected(t: Turn, newton: Correction) -> Turn:
+    """A turn after the last correction of b* and Λ."""
+    phi = t.phi + t.phi_b * newton.b + t.phi_l * newton.multiplier
+    y = t.y + t.y_b * newton.b + t.y_l * newton.multiplier
+    return Turn(phi, y, t.phi_b, t.y_b, t.phi_l, t.y_l)
 
 
 @njit(**INLINE)
@@ -274,12 +265,10 @@ def _neutral(p: np.ndarray, start: Start, values: Functions) -> Local:
         db = dwork if work > 0.0 else 0.0
         slope = 2.0 * ndxe - dk2 * db
         if abs(r1) <= 1e-14 * k2_start or high - low <= 1e-15 * high:
-            a, c = Group((start.ca + zeta) * xa, 0.0, xa, 0.0), Group((start.cc + zeta) * xc, 0.0, xc, 0.0)
+            a, c = Turn(1.0, xa, 0.0, 0.0, 0.0, dxa), Turn(1.0, xc, 0.0, 0.0, 0.0, dxc)
             inverse = 1.0 / (dk2 * db - 2.0 * ndxe)
             moves = inverse if work > 0.0 else 0.0  # else b* is kept
-            return Local(
-                iteration, True, b, 0.0, zeta, 0.0, a, c, -dk2 * moves, 2.0 * ndxe * moves, inverse, -db * inverse
-            )
+            return Local(iteration, True, b, zeta, 0.0, a, c, -dk2 * moves, 2.0 * ndxe * moves, inverse, -db * inverse)
         if r1 > 0.0:
             low = kappa
         else:
@@ -299,15 +288,15 @@ def _frozen(start: Start, values: Functions, ga: Group, gc: Group) -> Local:
     """At the edge of the cone spin can make the work slightly negative: b* is kept, and only n:n = k² is solved."""
     a, c = axial_products(start, start.b), (start.nn, start.ne, start.ee)
     multiplier = _multiplier(ga, gc, a, c, values[0], 0.0, 1e-15)
-    slope = _square(turn(ga, multiplier), *a)[1] + _square(turn(gc, multiplier), *c)[1]
-    ga, gc = Group(ga.s, 0.0, ga.x, 0.0), Group(gc.s, 0.0, gc.x, 0.0)
-    return Local(1, False, start.b, multiplier, values[2], 0.0, ga, gc, 0.0, 0.0, -1.0 / slope, 0.0)
+    ta, tc = turn(Group(ga.s, 0.0, ga.x, 0.0), multiplier), turn(Group(gc.s, 0.0, gc.x, 0.0), multiplier)
+    slope = _square(ta, *a)[1] + _square(tc, *c)[1]
+    return Local(1, False, start.b, values[2], 0.0, ta, tc, 0.0, 0.0, -1.0 / slope, 0.0)
 
 
 @njit(**INLINE)
 def _failed(start: Start, why: int = FAILED) -> Local:
-    nothing = Group(0.0, 0.0, 0.0, 0.0)
-    return Local(why, False, start.b, 0.0, 0.0, 0.0, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
+    nothing = Turn(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return Local(why, False, start.b, 0.0, 0.0, nothing, nothing, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit(**INLINE)
@@ -344,7 +333,8 @@ def solve(p: np.ndarray, start: Start, static: Functions, factor: float) -> Loca
         if b > start.b:
             c = (start.nn, start.ne, start.ee)
             multiplier = _multiplier(ga, gc, axial_products(start, b), c, values[0], multiplier, COARSE)
-        at = equations(start, values, middle, turn(ga, multiplier), turn(gc, multiplier), b)
+        ta, tc = turn(ga, multiplier), turn(gc, multiplier)
+        at = equations(start, values, middle, ta, tc, b)
         newton = correction(at)
         step, inverse = newton.b, newton.inverse
         if iteration == 1 and at.r1 < 0.0:
@@ -356,8 +346,8 @@ def solve(p: np.ndarray, start: Start, static: Functions, factor: float) -> Loca
                 return _failed(start, TOO_HOT)
             # The last Newton step is taken in everything.
             return Local(
-                iteration, False, b + step, multiplier + newton.multiplier, middle[2] + middle[3] * step, middle[3],
-                corrected(ga, step), corrected(gc, step),
+                iteration, False, b + step, middle[2] + middle[3] * step, middle[3],
+                corrected(ta, newton), corrected(tc, newton),
                 at.r1b * inverse, at.r1l * inverse, at.r2b * inverse, at.r2l * inverse,
             )  # fmt: skip
         # else Λ is not accurate enough for a reliable sign

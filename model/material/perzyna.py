@@ -68,7 +68,7 @@ def solve_at_rate(p: np.ndarray, start: Start, values: Functions) -> Local:
         z -= off / (slope * above * rest / (1.0 + rest))
         if not low < z < high:
             z = 0.5 * (low + high)
-    return Local(FAILED, False, start.b, 0.0, 0.0, 0.0, static.a, static.c, 0.0, 0.0, 0.0, 0.0)
+    return Local(FAILED, False, start.b, 0.0, 0.0, static.a, static.c, 0.0, 0.0, 0.0, 0.0)
 
 
 @njit(**KERNEL)
@@ -78,6 +78,6 @@ def _with_slope(at: Local, slope: float) -> Local:
     r1b, r1l, r2b, r2l = at.r1b * determinant - slope, at.r1l * determinant, at.r2b * determinant, at.r2l * determinant
     inverse = 1.0 / (r1b * r2l - r1l * r2b)
     return Local(
-        at.iterations, at.neutral, at.b, at.multiplier, at.zeta, at.dzeta, at.a, at.c,
+        at.iterations, at.neutral, at.b, at.zeta, at.dzeta, at.a, at.c,
         r1b * inverse, r1l * inverse, r2b * inverse, r2l * inverse,
     )  # fmt: skip

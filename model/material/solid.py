@@ -14,7 +14,7 @@ from numba import njit
 
 from coilset.model.material.functions import CHANGE, EXPONENT, HEATING, TEMPERATURE, elasticity, functions
 from coilset.model.material.kernel import INLINE, KERNEL
-from coilset.model.material.local import Local, Start, Turn, surface, turn, yield_crossing
+from coilset.model.material.local import Local, Start, Turn, surface, yield_crossing
 from coilset.model.material.perzyna import solve_at_rate
 
 Six = tuple[float, float, float, float, float, float]  # components 11, 22, 33, 12, 13, 23
@@ -117,7 +117,7 @@ def return_map(p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, 
         return local.iterations
     if local.neutral:
         heating = 0.0
-    t, m = turn(local.c, local.multiplier, local.neutral), 1.0 / (c + local.zeta)
+    t, m = local.c, 1.0 / (c + local.zeta)
     pl = _combined(m * (1.0 - t.phi), n0, m * rest * (1.0 - t.y), e)
     expansion = E * G / (3.0 * G - E) * alpha * heating  # of the stress by thermal strain, per b*: 3Kα dT/db*
     pressure = expansion * (local.b - old[12])
