@@ -4,13 +4,14 @@ The gap is the distance from the point to the other coil's centre line less both
 onto the other with half of the bedding, so that neither is the master.
 """
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from coilset.model.contact.base import Contribution, TrialPositions
 from coilset.model.contact.curve import WirePoints
-from coilset.model.contact.elements import at_points, coil_elements
+from coilset.model.contact.elements import PAIR, at_points, coil_elements
 from coilset.model.contact.memory import Memory
 from coilset.model.contact.search import longest_element, near_locations, post_stride
 
@@ -18,6 +19,7 @@ LOCATIONS_PER_POINT = 4  # initial capacity: locations on other coils, average p
 SKIN = 0.5  # in wire radii: how far beyond what touches pairs are sought
 # Along the wire, a pair depends on three more stations of the cubic, and the search oversteps by two and by two posts.
 STATIONS_ASIDE, POSTS_ASIDE = 5, 2
+SQRT3 = math.sqrt(3.0)
 NO_PAIR = np.empty((0, 3), np.int64), np.empty((0, 2)), np.empty(0), np.empty((0, 3))
 
 
@@ -48,6 +50,9 @@ class Coils:
         first = points.stations[:, 0]
         self.memory = Memory({"multiplier_offset": first}, multiplier_offset=np.zeros_like(self.overlap))
         self._amplification, self._skin = points.line.amplification(), SKIN * self._widest
+        none = np.empty(0)
+        self._nothing = Contribution(np.empty((0, PAIR), np.int64), np.empty((0, PAIR)),
+                                     np.empty((0, PAIR, PAIR)), none, none, np.empty(0, np.int64), none)  # fmt: skip
         self._clear: tuple[TrialPositions, float] | None = None  # where all gaps were greater than a distance
 
     @property
@@ -82,13 +87,14 @@ class Coils:
         Nothing is sought while the stations have moved by less than the gap that was found clear. Pairs that have no
         station of this rank are left to the others.
         """
-        margin = self.multiplier_offset.max()
+        margin = float(self.multiplier_offset.max())
         if self._clear is not None:
             there, clearance = self._clear
-            if 2.0 * self._amplification * moved(there, trial) * np.sqrt(3.0) < clearance - margin:
+            if 2.0 * self._amplification * moved(there, trial) * SQRT3 < clearance - margin:
                 return NO_PAIR
         pair, where, p = self.near(trial, margin + self._skin)
-        self._clear = None if len(pair) else (replace(trial, x=trial.x.copy()), margin + self._skin)
+        clearance = where[:, 1].min(initial=margin + self._skin)
+        self._clear = (replace(trial, x=trial.x.copy()), clearance) if clearance > margin else None
         near = where[:, 1] < margin
         if trial.known is not None:
             own, points = trial.known.own, self.points
@@ -108,6 +114,8 @@ class Coils:
         """Forces along the connection of closest points, where these touch."""
         points, line = self.points, self.points.line
         pair, where, offset, p = self.pressed(trial)
+        if not len(pair):
+            return self._nothing
         forces, k, pressure = coil_elements(p, points.weights, self._y, line.first, line.cubic, pair, where, offset,
                                             self.stiffness, self.onset)  # fmt: skip
         i = pair[:, 0]

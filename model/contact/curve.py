@@ -9,6 +9,8 @@ The four weights are cubics in ξ. They are evaluated in two ways: `station_weig
 `curve_weights` for many points at once, also at complex ξ.
 """
 
+from functools import cached_property
+
 import numpy as np
 from numba import njit
 
@@ -43,6 +45,28 @@ def point_on_curve(
         w = station_weight(cubic[e, m], xi, order)
         for k in range(4):
             c[k] += w * y[first[e] + m, k]
+
+
+@njit(cache=True)
+def element_polynomials(y: np.ndarray, first: np.ndarray, cubic: np.ndarray, elements: np.ndarray) -> np.ndarray:
+    """Coefficients of 1, ξ, ξ², ξ³ of the curve's point and radius on elements.
+
+    Args:
+        y, first, cubic: as in `point_on_curve`.
+        elements: ranges of those that are asked for, shape (k, 2).
+
+    Returns:
+        Shape (n − 1, 4, 4), by element, power and component, mm; only those that are asked for have a meaning.
+    """
+    out = np.empty((len(first), 4, 4))
+    for part in range(len(elements)):
+        for e in range(elements[part, 0], elements[part, 1]):
+            for power in range(4):
+                for k in range(4):
+                    out[e, power, k] = 0.0
+                    for m in range(min(STENCIL, len(y))):
+                        out[e, power, k] += cubic[e, m, power] * y[first[e] + m, k]
+    return out
 
 
 def curve_weights(cubic: np.ndarray, xi: np.ndarray, order: int = 0) -> np.ndarray:
@@ -161,6 +185,12 @@ class WirePoints:
 
     def __len__(self) -> int:
         return len(self.xi)
+
+    @cached_property
+    def share_of_turns(self) -> np.ndarray:
+        """Turns of wire assigned to each point, shape (m,)."""
+        half = 0.5 * np.diff(self.turns)
+        return np.append(half, 0.0) + np.append(0.0, half)
 
     def of(self, elements: np.ndarray) -> np.ndarray:
         """Numbers of the points of ranges of elements, shape (k, 2), ascending; at the wire's end with its last one."""

@@ -5,11 +5,13 @@ import math
 import numpy as np
 from numba import njit
 
-from coilset.model.contact.curve import point_on_curve
+from coilset.model.contact.curve import element_polynomials
 
 LEAST_TURNS_BETWEEN = 0.5  # turns between two points of the wire that may touch
 MOST_CELLS_PER_STATION = 16  # cells of the grid
 LEAST_POST_DISTANCE = 0.5  # distance between the sorted stations, in wire radii
+# Of ξ. A step of Newton's method squares the error, so that after one as short as this only rounding is left.
+LAST_STEP, ROUNDING = 1e-8, 1e-14
 
 
 @njit(cache=True)
@@ -50,82 +52,88 @@ def distance2(p: np.ndarray, x: np.ndarray, j: int) -> float:
 
 
 @njit(cache=True, error_model="numpy")
-def slope_and_curvature(
-    p: np.ndarray, y: np.ndarray, first: np.ndarray, cubic: np.ndarray, e: int, xi: float, work: np.ndarray
-) -> tuple[float, float]:
-    """First and second derivative by ξ of the gap |p − c(ξ)| − r(ξ) on element `e`."""
-    c, dc, ddc = work[0], work[1], work[2]
-    point_on_curve(y, first, cubic, e, xi, c, 0)
-    point_on_curve(y, first, cubic, e, xi, dc, 1)
-    point_on_curve(y, first, cubic, e, xi, ddc, 2)
-    d = math.sqrt((p[0] - c[0]) ** 2 + (p[1] - c[1]) ** 2 + (p[2] - c[2]) ** 2)
-    along = speed2 = bend = 0.0
+def slope_and_curvature(p: np.ndarray, curve: np.ndarray, xi: float) -> tuple[float, float]:
+    """First and second derivative by ξ of the gap |p − c(ξ)| − r(ξ) on an element with the polynomials `curve`."""
+    distance2 = along = speed2 = bend = 0.0
     for k in range(3):
-        n = (p[k] - c[k]) / d
-        along += n * dc[k]
-        speed2 += dc[k] ** 2
-        bend += n * ddc[k]
-    return -along - dc[3], (speed2 - along**2) / d - bend - ddc[3]
+        a, b, c, d = curve[0, k], curve[1, k], curve[2, k], curve[3, k]
+        q = p[k] - (a + xi * (b + xi * (c + xi * d)))
+        slope, curvature = b + xi * (2.0 * c + xi * 3.0 * d), 2.0 * c + 6.0 * d * xi
+        distance2 += q * q
+        along += q * slope
+        speed2 += slope * slope
+        bend += q * curvature
+    inverse = 1.0 / math.sqrt(distance2)
+    along, bend = along * inverse, bend * inverse
+    thinner, faster = curve[1, 3] + xi * (2.0 * curve[2, 3] + xi * 3.0 * curve[3, 3]), 2.0 * curve[2, 3]
+    return -along - thinner, (speed2 - along**2) * inverse - bend - (faster + 6.0 * curve[3, 3] * xi)
 
 
 @njit(cache=True, error_model="numpy")
-def station_slope(
-    p: np.ndarray, y: np.ndarray, first: np.ndarray, cubic: np.ndarray, j: int, work: np.ndarray
-) -> float:
-    """First derivative by ξ of the gap at station `j`."""
-    e = min(j, len(first) - 1)
-    return slope_and_curvature(p, y, first, cubic, e, float(j - e), work)[0]
+def gap_at(p: np.ndarray, curve: np.ndarray, xi: float) -> float:
+    """|p − c(ξ)| − r(ξ) on an element."""
+    square = 0.0
+    for k in range(3):
+        square += (p[k] - (curve[0, k] + xi * (curve[1, k] + xi * (curve[2, k] + xi * curve[3, k])))) ** 2
+    return math.sqrt(square) - (curve[0, 3] + xi * (curve[1, 3] + xi * (curve[2, 3] + xi * curve[3, 3])))
 
 
 @njit(cache=True, error_model="numpy")
-def closest(
-    p: np.ndarray,
-    y: np.ndarray,
-    first: np.ndarray,
-    cubic: np.ndarray,
-    j: int,
-    begin: int,
-    end: int,
-    work: np.ndarray,
-) -> tuple[int, float, bool]:
+def station_slope(p: np.ndarray, curves: np.ndarray, j: int) -> float:
+    """First derivative by ξ of the gap at station `j`; `curves` are the polynomials of all elements."""
+    e = min(j, len(curves) - 1)
+    return slope_and_curvature(p, curves[e], float(j - e))[0]
+
+
+@njit(cache=True, error_model="numpy")
+def closest(p: np.ndarray, curves: np.ndarray, j: int, begin: int, end: int) -> tuple[int, float, bool]:
     """Closest point to `p` along the wire, sought from station `j` between the stations `begin` and `end`.
 
     Returns:
         Element, ξ, and whether it is inside the wire; element −1 if it is beyond `begin` or `end`, inside the wire.
     """
-    last = len(first)
-    direction = -1 if station_slope(p, y, first, cubic, j, work) > 0.0 else 1
-    near, stride = j, 1
+    last, slope = len(curves), station_slope(p, curves, j)
+    direction = -1 if slope > 0.0 else 1
+    near, stride, ahead = j, 1, slope
     while True:  # in growing steps until the gap no longer decreases
         far = min(max(near + direction * stride, begin), end)
         if far == near:
             if 0 < near < last:
                 return -1, 0.0, False
             return (0, 0.0, False) if near == 0 else (last - 1, 1.0, False)
-        if station_slope(p, y, first, cubic, far, work) * direction >= 0.0:
+        ahead = station_slope(p, curves, far)
+        if ahead * direction >= 0.0:
             break
-        near, stride = far, 2 * stride
+        near, slope, stride = far, ahead, 2 * stride
     while abs(far - near) > 1:
         middle = (near + far) // 2
-        if station_slope(p, y, first, cubic, middle, work) * direction < 0.0:
-            near = middle
+        found = station_slope(p, curves, middle)
+        if found * direction < 0.0:
+            near, slope = middle, found
         else:
-            far = middle
-    e, xi, low, high = min(near, far), 0.5, 0.0, 1.0
-    for _ in range(60):  # Newton's method, bracketed by the change of sign of the slope
-        slope, curvature = slope_and_curvature(p, y, first, cubic, e, xi, work)
+            far, ahead = middle, found
+    # from where a straight line through both stations' slopes vanishes
+    share = slope / (slope - ahead) if slope != ahead else 0.5
+    return min(near, far), root(p, curves[min(near, far)], share if near < far else 1.0 - share), True
+
+
+@njit(cache=True, error_model="numpy")
+def root(p: np.ndarray, curve: np.ndarray, xi: float) -> float:
+    """Where the slope of the gap changes its sign on an element: Newton's method from `xi`, within a bracket."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        slope, curvature = slope_and_curvature(p, curve, xi)
         if slope > 0.0:
             high = xi
         else:
             low = xi
-        step = -slope / curvature if curvature > 0.0 else math.inf
-        new = xi + step
-        if not low <= new <= high:
-            new = 0.5 * (low + high)
+        newton = xi - slope / curvature if curvature > 0.0 else math.inf
+        inside = low <= newton <= high
+        new = newton if inside else 0.5 * (low + high)
         moved, xi = abs(new - xi), new
-        if moved < 1e-14:
+        if moved < (LAST_STEP if inside else ROUNDING):
             break
-    return e, xi, True
+    return xi
 
 
 @njit(cache=True)
@@ -209,7 +217,7 @@ def near_locations(
     # the post nearest to a location is at most half a stride from it
     reach = 2.0 * widest + margin + 0.6 * stride * longest
     low, count, size, head, after = grid(x[:, :3], reach)
-    work, cube, found = np.empty((3, 4)), np.empty(3, np.int64), 0
+    curves, cube, found = element_polynomials(y, first, cubic, elements), np.empty(3, np.int64), 0
     for i in active:
         for k in range(3):
             cube[k] = math.floor((p[i, k] - low[k]) / size)
@@ -227,17 +235,13 @@ def near_locations(
                             continue
                         if now + 1 < len(posts) and posts[now + 1] <= end and distance2(p[i], x, now + 1) <= here:
                             continue
-                        e, xi, inside = closest(p[i], y, first, cubic, posts[now], begin, end, work)
+                        e, xi, inside = closest(p[i], curves, posts[now], begin, end)
                         if e < 0:
                             continue
                         turn = station_turns[e] + xi * (station_turns[e + 1] - station_turns[e])
                         if abs(turn - turns[i]) < LEAST_TURNS_BETWEEN:
                             continue
-                        point_on_curve(y, first, cubic, e, xi, work[0], 0)
-                        gap = 0.0
-                        for k in range(3):
-                            gap += (p[i, k] - work[0, k]) ** 2
-                        gap = math.sqrt(gap) - radius[i] - work[0, 3] - overlap[i, 1 if turn > turns[i] else 0]
+                        gap = gap_at(p[i], curves[e], xi) - radius[i] - overlap[i, 1 if turn > turns[i] else 0]
                         if gap >= margin:
                             continue
                         if found < len(pair):
