@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from mpi4py import MPI
 
 from coilset.model.case.phases import AnyPhase, TimePhase
 from coilset.model.equilibrium.axial_control import AxialControl
@@ -20,7 +19,7 @@ from coilset.model.results.record import BucklingMode, Frame, Result, SeatReacti
 from coilset.model.results.seat_reactions import faint_force, mean_torque, seat_reactions
 from coilset.model.results.shape import LeastRise, clearance
 from coilset.model.results.warnings import step_warnings
-from coilset.model.rod.rod import Rod
+from coilset.model.rod.rod import Rod, comm_max
 from coilset.model.section import surface
 from coilset.model.state import Where
 from coilset.model.warning import Warning
@@ -104,22 +103,21 @@ class Recorder:
     def _frame(self, x: np.ndarray) -> Frame:
         """The wire at the last equilibrium, stations at `x`; collective."""
         around = self.setup.inside.shear_around(self.rod.surface_state, self.rod.sections.components)
-        return Frame(x, self.rod.line.in_order(around.mean(axis=1).astype(np.float32)))
+        mean = 0.5 * (around[:, 0] + around[:, 1])
+        return Frame(x, self.rod.line.in_order(mean.astype(np.float32)))
 
     def _seat_reactions(self, step: int, greatest_force: float) -> SeatReactions:
         """The seats' reactions at the last equilibrium; keeps its torque and force for the next step's active turns."""
         before = float(self.torque_force.equilibrium[0]), self.torque.equilibrium
         reactions = seat_reactions(self.system, self.control, self.setup.turns, step, greatest_force, before)
-        for kept in (self.torque.trial, self.torque.equilibrium):
-            np.copyto(kept, mean_torque(self.rod))
-        for kept in (self.torque_force.trial, self.torque_force.equilibrium):
-            kept[0] = self.control.force
+        self.torque.trial[:] = self.torque.equilibrium[:] = mean_torque(self.rod)
+        self.torque_force.trial[0] = self.torque_force.equilibrium[0] = self.control.force
         return reactions
 
     def _greatest_plastic_work(self) -> float:
         """Maximum b* on the wire's surface at the last equilibrium, N/mm²; collective."""
         work = surface.component(self.rod.surface_state, self.rod.sections.components, "b")
-        return float(self.rod.line.mesh.comm.allreduce(work.max(initial=0.0), op=MPI.MAX))
+        return comm_max(self.system.comm, work.max(initial=0.0))
 
     def _load_loss(self, phase: int, force: float, loading: Sequence[AnyPhase]) -> float | None:
         """Percentage of the force lost since time began to pass at constant height; None if it does not."""

@@ -12,6 +12,7 @@ Every kind is a `Contact`. What only some of them do has a protocol of its own, 
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Protocol, runtime_checkable
 
 import numpy as np
@@ -102,12 +103,12 @@ class Contribution:
         names = [field.name for field in fields(cls)]
         return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
 
-    @property
+    @cached_property
     def bears(self) -> np.ndarray:
         """Which elements are closed, shape (m,)."""
         return self.pressure > CLOSED_OF_ONSET_FORCE * self.onset_force
 
-    @property
+    @cached_property
     def closed(self) -> int:
         """Number of closed elements."""
         return int(np.count_nonzero(self.bears))

@@ -1,11 +1,12 @@
 """External actions on the wire: forces of the contacts, their resultant wrenches and lines of action."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from coilset.model.contact.base import SEAT_DOFS, Contribution
+from coilset.model.contact.bearing import add_resultant
 
 
 def station_forces(parts: Iterable[Contribution], stations: int) -> np.ndarray:
@@ -38,6 +39,8 @@ def station_moments(parts: Iterable[Contribution], charts: np.ndarray) -> np.nda
     n = len(charts)
     moment, first = np.zeros(3 * n), 3 * n + 2 * SEAT_DOFS
     for part in parts:
+        if part.dofs.max(initial=0) < first:
+            continue
         on_rotations = part.dofs >= first
         np.subtract.at(moment, part.dofs[on_rotations] - first, part.forces[on_rotations])
     if not moment.any():
@@ -51,6 +54,12 @@ def levers(x: np.ndarray, forces: np.ndarray) -> np.ndarray:
     return np.array([C[1, 2] - C[2, 1], C[2, 0] - C[0, 2], C[0, 1] - C[1, 0]])
 
 
+def lever(point: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """x × f of one force, shapes (3,) each."""
+    (x, y, z), (fx, fy, fz) = point.tolist(), force.tolist()
+    return np.array([y * fz - z * fy, z * fx - x * fz, x * fy - y * fx])
+
+
 @dataclass(frozen=True)
 class Wrench:
     """Force, shape (3,), N, and its moment about the origin, shape (3,), N mm."""
@@ -59,17 +68,30 @@ class Wrench:
     moment: np.ndarray
 
     @classmethod
+    def at(cls, point: np.ndarray, force: np.ndarray, moment: np.ndarray) -> "Wrench":
+        """That of a force and a moment at a point, shape (3,) each."""
+        return cls(force, moment + lever(point, force))
+
+    @classmethod
     def of(cls, forces: np.ndarray, x: np.ndarray, moments: np.ndarray | float = 0.0) -> "Wrench":
         """The resultant of `forces` and `moments`, shape (n, 3), at the points `x`, shape (n, 3), mm."""
         turning = np.broadcast_to(moments, np.shape(forces))
         return cls(np.sum(forces, axis=0), levers(x, forces) + np.sum(turning, axis=0))
+
+    @classmethod
+    def of_contacts(cls, parts: Sequence[Contribution], x: np.ndarray, charts: np.ndarray) -> "Wrench":
+        """The resultant of contacts on the wire, with the stations at `x`, shape (n, 3), mm; `charts`: T of these."""
+        sums = np.zeros(6)
+        for part in parts:
+            add_resultant(part.dofs, part.forces, x, sums)
+        return cls(sums[:3], sums[3:] + station_moments(parts, charts).sum(axis=0))
 
     def __add__(self, other: "Wrench") -> "Wrench":
         return Wrench(self.force + other.force, self.moment + other.moment)
 
     def about(self, point: np.ndarray) -> np.ndarray:
         """Moment about another point, shape (3,), N mm."""
-        return self.moment - levers(point[None], self.force[None])
+        return self.moment - lever(point, self.force)
 
     def crossing(self, point: np.ndarray) -> np.ndarray:
         """Where the resultant crosses the plane z = const through `point`, relative to it.

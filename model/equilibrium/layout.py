@@ -52,9 +52,11 @@ class Layout:
     def values(self, vector: PETSc.Vec, dofs: np.ndarray) -> np.ndarray:
         """Entries of a vector at `dofs`, in their shape, on every rank."""
         dofs = np.asarray(dofs)
+        if self.comm.size == 1:
+            return vector.getArray(readonly=True)[dofs]
         mine, out = (dofs >= self.start) & (dofs < self.stop), np.zeros(dofs.shape)
         out[mine] = vector.getArray(readonly=True)[dofs[mine] - self.start]
-        return self.comm.allreduce(out) if self.comm.size > 1 else out
+        return self.comm.allreduce(out)
 
 
 class LineLayout(Layout):
@@ -79,6 +81,7 @@ class LineLayout(Layout):
         mine = index_map.local_to_global(mine.ravel().astype(np.int32)).reshape(-1, 6)
         self.own_stations = line.node[: self._nodes]
         self._order = np.concatenate(comm.allgather(self.own_stations))
+        self._place = np.argsort(self._order)
         self.station_dofs = np.empty((len(line.stations), 6), dtype=PETSc.IntType)
         self.station_dofs[self._order] = np.concatenate(comm.allgather(mine))
         self.seat_dofs = self.body_size + np.arange(SEATS, dtype=PETSc.IntType)
@@ -96,9 +99,7 @@ class LineLayout(Layout):
         gathered = values[: self._nodes]
         if self.comm.size > 1:
             gathered = np.concatenate(self.comm.allgather(gathered))
-        out = np.empty_like(gathered)
-        out[self._order] = gathered
-        return out
+        return gathered[self._place]
 
     def at_station(self, values: np.ndarray, station: int) -> np.ndarray:
         """Values of the local nodes, shape (nodes, …), at one station, on every rank, shape (…); collective."""

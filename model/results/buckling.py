@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from math import inf, isfinite
 
 import numpy as np
+from numba import njit
 
 from coilset.model.equilibrium.stability import vanishing
 from coilset.model.results.record import Step
@@ -94,6 +95,7 @@ def axis_offset(x: np.ndarray, start: np.ndarray, turns: np.ndarray) -> float:
     return float(np.hypot(*turn_means((x - start)[:, :2], turns).T).max())
 
 
+@njit(cache=True)
 def turn_means(values: np.ndarray, turns: np.ndarray) -> np.ndarray:
     """Means of values over the whole turn that begins at each station, as far as there is one, shape (m, columns).
 
@@ -101,7 +103,10 @@ def turn_means(values: np.ndarray, turns: np.ndarray) -> np.ndarray:
         values: at the stations, shape (n, columns).
         turns: of the stations, shape (n,), more than one.
     """
-    steps = 0.5 * np.diff(turns)[:, None] * (values[1:] + values[:-1])
-    total = np.concatenate([np.zeros((1, values.shape[1])), np.cumsum(steps, axis=0)])
     first = turns[turns <= turns[-1] - 1.0]
-    return np.stack([np.interp(first + 1.0, turns, part) - np.interp(first, turns, part) for part in total.T], axis=1)
+    means, total = np.empty((len(first), values.shape[1])), np.zeros(len(turns))
+    for k in range(values.shape[1]):
+        for i in range(1, len(turns)):
+            total[i] = total[i - 1] + 0.5 * (turns[i] - turns[i - 1]) * (values[i, k] + values[i - 1, k])
+        means[:, k] = np.interp(first + 1.0, turns, total) - np.interp(first, turns, total)
+    return means

@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from coilset.model.contact.base import ENDS, SEAT_DOFS, Contact, Contribution
-from coilset.model.contact.resultants import Wrench, station_forces, station_moments
+from coilset.model.contact.bearing import bearing_on_seat, pressures_on
+from coilset.model.contact.resultants import Wrench
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.system import System
@@ -75,26 +76,24 @@ class _Observer:
         """Resultant of all that an end's seat, or its prescribed unknowns, exert on the wire."""
         own = [part for contact, part in self.parts if contact.end == end]
         station, components = self.control.tips[end]
-        reaction = np.zeros(6)
-        reaction[components] = self.layout.values(self.system.internal, self.layout.station_dofs[station, components])
-        held = Wrench.of(reaction[None, :3], self.x[[station]], reaction[None, 3:])
-        return Wrench.of(station_forces(own, len(self.x)), self.x, station_moments(own, self.chart)) + held
+        held = np.zeros(6)
+        held[components] = self.layout.values(self.system.internal, self.layout.station_dofs[station, components])
+        return Wrench.of_contacts(own, self.x, self.chart) + Wrench.at(self.x[station], held[:3], held[3:])
 
     def reaction(self, end: str, faint: float) -> SeatReaction:
         """The SeatReaction of an end."""
         wrench, centre = self.wrench(end), self.control.centre(end, self.x)
         side = 1.0 if end == "bottom" else -1.0  # the bottom pushes up
         crossing = wrench.crossing(centre) if abs(wrench.force[2]) > faint else np.full(2, np.nan)
-        spot, length, down = np.full(2, np.nan), 0.0, 0.0
+        spot, length, down = (np.nan, np.nan), 0.0, 0.0
         for _, contact, part in self.on_wire:
             if contact.end == end:
-                bears = part.bears
-                number, wire = part.point[bears], contact.points
-                points = wire.at(self.x, number)
-                length += float(wire.length[number].sum())
-                down = float(np.abs(wire.turns[number] - wire.turns[wire.tip(end)]).max(initial=down))
+                wire = contact.points
+                bears, reach, *at = bearing_on_seat(part.point, part.pressure, part.bears, wire.weights, wire.stations,
+                                                    self.x, wire.length, wire.turns, wire.tip(end))  # fmt: skip
+                length, down = length + bears, max(down, reach)
                 if part.pressure.sum() > faint:
-                    spot = part.pressure[bears] @ points[:, :2] / part.pressure[bears].sum()
+                    spot = at
         axial = side * wrench.force[2]
         if not self.control.clamped and axial < -faint:
             axial = 0.0  # a seat cannot pull: tension comes from the spring that holds a lifted tip
@@ -124,21 +123,18 @@ def active_turns(rod: Rod, turns: np.ndarray, change: float, before: np.ndarray)
         before: `mean_torque` before the change.
     """
     line = rod.line
-    r = np.hypot(*rod.x[rod.cells].mean(axis=1)[:, :2].T)
-    active = ((mean_torque(rod) - before) / (change * r)) ** 2 @ np.diff(turns)[line.element[: line.owned_cells]]
-    return float(line.mesh.comm.allreduce(active))
+    middle = 0.5 * (rod.x[rod.cells[:, 0]] + rod.x[rod.cells[:, 1]])
+    lever = change * np.hypot(middle[:, 0], middle[:, 1])
+    active = float(((mean_torque(rod) - before) / lever) ** 2 @ np.diff(turns)[line.element[: line.owned_cells]])
+    return line.mesh.comm.allreduce(active) if line.mesh.comm.size > 1 else active
 
 
 def pressures(parts: OnWire) -> np.ndarray:
     """Rows of SeatReactions.pressure: forces of each kind of contact, summed at each point."""
     rows: list[np.ndarray] = [np.empty((0, 3))]
     for kind, contact, part in parts:
-        if not len(part.point):
-            continue
-        force = np.bincount(part.point, np.where(part.bears, part.pressure, 0.0), len(contact.points))
-        bears = np.flatnonzero(force)
         halves = 1.0 if contact.end else 2.0
-        rows.append(np.stack([np.full(len(bears), kind), bears, halves * force[bears] / contact.lengths[bears]], 1))
+        rows.append(pressures_on(kind, part.point, part.pressure, part.bears, contact.lengths, halves))
     return np.concatenate(rows)
 
 
@@ -146,7 +142,7 @@ def free_turns(parts: OnWire, pressure: np.ndarray) -> float:
     """Turns of wire that touch nothing, weighted by the turns assigned to each point."""
     if not parts:
         return float("nan")
-    points = parts[0][1].points
-    step = 0.5 * np.diff(points.turns)
-    bedding_length = np.append(step, 0.0) + np.append(0.0, step)
-    return float(bedding_length.sum() - bedding_length[np.unique(pressure[:, 1].astype(int))].sum())
+    share = parts[0][1].points.share_of_turns
+    touched = np.zeros(len(share), dtype=bool)
+    touched[pressure[:, 1].astype(int)] = True
+    return float(share.sum() - share[touched].sum())

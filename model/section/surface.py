@@ -11,6 +11,7 @@ points to the centre of curvature, the inside of the coil, and z along the binor
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -18,6 +19,13 @@ import numpy as np
 def component(state: np.ndarray, components: tuple[str, ...], name: str) -> np.ndarray:
     """One column of a state, such as `t13`; `components` names the columns."""
     return state[..., components.index(name)]
+
+
+@lru_cache
+def directions(points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Cosines and sines of the angles at which so many points on the surface lie, shape (points,) each."""
+    angle = 2.0 * math.pi * np.arange(points) / points
+    return np.cos(angle), np.sin(angle)
 
 
 def shear(state: np.ndarray, components: tuple[str, ...]) -> np.ndarray:
@@ -72,9 +80,9 @@ class Inside:
         Returns:
             Shape (..., surface points), MPa.
         """
-        angle = 2.0 * math.pi * np.arange(state.shape[-2]) / state.shape[-2]
+        cosine, sine = directions(state.shape[-2])
         t12, t13 = (component(state, components, name) for name in ("t12", "t13"))
-        return self.sign * math.cos(self.angle) * (t13 * np.cos(angle) - t12 * np.sin(angle))
+        return self.sign * math.cos(self.angle) * (t13 * cosine - t12 * sine)
 
     def shear(self, state: np.ndarray, components: tuple[str, ...]) -> np.ndarray:
         """Shear stress at the inside, positive as in a compressed spring, shape of `state` without its last two."""

@@ -1,0 +1,87 @@
+"""Where the wire bears: compiled sums over the elements of a contact, for the records of a step."""
+
+import numpy as np
+from numba import njit
+
+from coilset.model.contact.curve import STENCIL
+
+
+@njit(cache=True)
+def add_resultant(dofs: np.ndarray, forces: np.ndarray, x: np.ndarray, out: np.ndarray) -> None:
+    """Add to `out` the force on the wire and its moment about the origin, shape (6,), N and N mm.
+
+    Args:
+        dofs, forces: of contact elements, see Contribution; forces on rotations are left out.
+        x: positions of the stations, shape (n, 3), mm.
+    """
+    for e in range(len(dofs)):
+        for a in range(dofs.shape[1]):
+            station, k = dofs[e, a] // 3, dofs[e, a] % 3
+            if station < len(x):
+                i, j, force = (k + 1) % 3, (k + 2) % 3, -forces[e, a]
+                out[k] += force
+                out[3 + i] += x[station, j] * force
+                out[3 + j] -= x[station, i] * force
+
+
+@njit(cache=True)
+def bearing_on_seat(
+    point: np.ndarray,
+    pressure: np.ndarray,
+    bears: np.ndarray,
+    weights: np.ndarray,
+    stations: np.ndarray,
+    x: np.ndarray,
+    lengths: np.ndarray,
+    turns: np.ndarray,
+    tip: int,
+) -> tuple[float, float, float, float]:
+    """Where a seat bears on the wire.
+
+    Args:
+        point, pressure, bears: of a Contribution.
+        weights, stations, lengths, turns: of the WirePoints.
+        x: positions of the stations, shape (n, 3), mm.
+        tip: number of the point at the wire's tip.
+
+    Returns:
+        Length of the wire that bears, mm, how far it reaches from the tip, turns, and x and y of the centre of
+        pressure, mm, not numbers where nothing presses.
+    """
+    length = reach = total = px = py = 0.0
+    for e in range(len(point)):
+        if bears[e]:
+            i = point[e]
+            length, reach = length + lengths[i], max(reach, abs(turns[i] - turns[tip]))
+            total += pressure[e]
+            for a in range(STENCIL):
+                px += pressure[e] * weights[i, a] * x[stations[i, a], 0]
+                py += pressure[e] * weights[i, a] * x[stations[i, a], 1]
+    return (length, reach, px / total, py / total) if total > 0.0 else (length, reach, np.nan, np.nan)
+
+
+@njit(cache=True)
+def pressures_on(
+    kind: int, point: np.ndarray, pressure: np.ndarray, bears: np.ndarray, lengths: np.ndarray, factor: float
+) -> np.ndarray:
+    """The points of the wire on which a kind of contact bears.
+
+    Args:
+        kind: its number.
+        point, pressure, bears: of its Contribution.
+        lengths: of wire assigned to each point, shape (m,), mm.
+        factor: of the forces.
+
+    Returns:
+        Rows of `kind`, the point's number and force per length of wire, N/mm, by the points' numbers.
+    """
+    force = np.zeros(len(lengths))
+    for e in range(len(point)):
+        if bears[e]:
+            force[point[e]] += pressure[e]
+    rows, count = np.empty((np.count_nonzero(force), 3)), 0
+    for i in range(len(force)):
+        if force[i] != 0.0:
+            rows[count, 0], rows[count, 1], rows[count, 2] = kind, i, factor * force[i] / lengths[i]
+            count += 1
+    return rows
