@@ -141,6 +141,21 @@ class EstimatesErrors(Protocol):
 
 
 @runtime_checkable
+class OfElements(Protocol):
+    """A body whose tangent is a sum over elements with equally many unknowns.
+
+    Attributes:
+        element_dofs: local numbers of the owned elements' unknowns, shape (cells, k).
+    """
+
+    element_dofs: np.ndarray
+
+    def element_tangents(self) -> np.ndarray:
+        """As Body.tangent, of the owned elements, shape (cells, k, k); the next call may write over them."""
+        ...
+
+
+@runtime_checkable
 class HasRotations(Protocol):
     """A body with rotations among its unknowns.
 

@@ -10,6 +10,9 @@ import numpy as np
 from petsc4py import PETSc
 
 _PETSC = ctypes.PyDLL(PETSc.__file__)  # finds what this module is linked with, so that it is the same PETSc
+for _function in (_PETSC.MatSeqAIJGetArray, _PETSC.MatSeqAIJRestoreArray):
+    _function.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
+NONE = np.empty(0)
 
 
 class AijEntries:
@@ -27,6 +30,7 @@ class AijEntries:
         self._mat, self.pattern = mat, pattern or mat.getValuesCSR()[:2]
         self._one = mat.getComm().size == 1
         self._size = self._own_size = len(self.pattern[1])
+        self._address, self._values = 0, np.empty(0)  # of the last time, on one rank
         if not self._one:
             start, stop = mat.getOwnershipRange()
             own = (self.pattern[1] >= start) & (self.pattern[1] < stop)
@@ -58,19 +62,26 @@ class AijEntries:
     def _arrays(self) -> tuple[np.ndarray, np.ndarray]:
         """Where PETSc keeps the entries now."""
         if self._one:
-            return _array(ctypes.c_void_p(self._mat.handle), self._size), np.empty(0)
+            if self._address != (address := _address(self._mat.handle)):
+                self._address, self._values = address, _at(address, self._size)
+            return self._values, NONE
         own, others, columns = ctypes.c_void_p(), ctypes.c_void_p(), ctypes.c_void_p()
         parts = (ctypes.byref(part) for part in (own, others, columns))
         _check(_PETSC.MatMPIAIJGetSeqAIJ(ctypes.c_void_p(self._mat.handle), *parts))
-        return _array(own, self._own_size), _array(others, self._size - self._own_size)
+        return _at(_address(own), self._own_size), _at(_address(others), self._size - self._own_size)
 
 
-def _array(part: ctypes.c_void_p, size: int) -> np.ndarray:
-    values = ctypes.POINTER(ctypes.c_double)()
+def _address(part: int | ctypes.c_void_p) -> int:
+    """Where a matrix of PETSc's type `seqaij` keeps its entries; PETSc takes them for changed from now on."""
+    values = ctypes.c_void_p()
     _check(_PETSC.MatSeqAIJGetArray(part, ctypes.byref(values)))
-    found = np.ctypeslib.as_array(values, (size,)) if size else np.empty(0)
+    address = values.value or 0
     _check(_PETSC.MatSeqAIJRestoreArray(part, ctypes.byref(values)))
-    return found
+    return address
+
+
+def _at(address: int, size: int) -> np.ndarray:
+    return np.ctypeslib.as_array((ctypes.c_double * size).from_address(address)) if size else NONE
 
 
 def _check(error: int) -> None:

@@ -10,9 +10,10 @@ from collections.abc import Sequence
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.model.body import Body
+from coilset.model.body import Body, OfElements
 from coilset.model.contact.base import Contribution
 from coilset.model.equilibrium.aij import AijEntries
+from coilset.model.equilibrium.element_entries import add_elements, find_places, set_rows
 from coilset.model.equilibrium.joined import add_matrices, join_patterns
 from coilset.model.equilibrium.layout import Layout, LineLayout
 
@@ -38,9 +39,12 @@ class TangentMatrix:
     def __init__(self, body: Body, layout: Layout) -> None:
         self.body, self.layout = body, layout
         self.mat, self.version = body.create_matrix(layout.size_local), 0
-        self._places = np.empty(0, dtype=np.int64)
+        self._places, self._known = np.empty(0, dtype=np.int64), set[int]()
         self._bare: tuple[np.ndarray, np.ndarray] | None = None  # the pattern without contacts, once it is needed
         self._entries: AijEntries | None = None
+        one = isinstance(body, OfElements) and layout.comm.size == 1
+        self._elements = body if one else None  # if they are added in place
+        self._places_of_elements: np.ndarray | None = None
         if body.row_entries is not None:
             self._allocate(body.row_entries)
 
@@ -49,27 +53,57 @@ class TangentMatrix:
         """PETSc's name of the order in which its LU should eliminate, on one rank."""
         return MINIMUM_DEGREE if len(self._places) and self.layout.size > SMALL else NATURAL
 
-    def clear(self, contributions: Sequence[Contribution], exactly: bool) -> None:
-        """Zero the matrix, with room for the closed contacts; with `exactly`, for no others."""
+    def fill(self, contributions: Sequence[Contribution], exactly: bool = False) -> None:
+        """Set it to the body's tangent and the stiffness of contacts; collective.
+
+        Args:
+            contributions: of the contacts; the matrix gets room for those that are closed.
+            exactly: whether it is to have room for no others.
+        """
+        self._clear(contributions, exactly)
+        entries, elements = self._entries, self._elements
+        if entries is None or elements is None:
+            self.body.tangent(self.mat)
+            self._add_contacts(contributions)
+            self._add_seats()
+            self.mat.assemble()
+            if elements is not None:
+                self._entries = AijEntries(self.mat)
+            return
+        if self._places_of_elements is None:
+            self._places_of_elements = find_places(*entries.pattern, elements.element_dofs)
+        add_elements(self._places_of_elements, elements.element_tangents(), entries.room())
+        self._add_contacts(contributions)
+
+    def hold(self, held: np.ndarray) -> None:
+        """Set the rows of prescribed increments, given by their places on this rank, see Body; collective."""
+        if self._entries is None or self._elements is None:
+            self.body.hold(self.mat, held + self.layout.start)
+        else:
+            set_rows(*self._entries.pattern, held, self.body.constraint_weight, self._entries.room())
+
+    def _clear(self, contributions: Sequence[Contribution], exactly: bool) -> None:
+        """Zero it, with room for the closed contacts; with `exactly`, for no others."""
         places = self._contact_places(contributions)
-        fits = np.array_equal(places, self._places) or (not exactly and bool(np.isin(places, self._places).all()))
+        fits = np.array_equal(places, self._places) or (not exactly and self._known.issuperset(places.tolist()))
         if self.layout.comm.size > 1:
             fits = self.layout.comm.allreduce(int(fits)) == self.layout.comm.size
         if fits:
             self.mat.zeroEntries()
         else:
             self._make_room(contributions)
-            self._places = places
+            self._places, self._known = places, set(places.tolist())
 
-    def add(self, contributions: Sequence[Contribution]) -> None:
+    def _add_contacts(self, contributions: Sequence[Contribution]) -> None:
         """Add the stiffness of contacts; to be assembled as what the body has added."""
         layout, entries = self.layout, self._entries
-        if entries is None:
+        if entries is None or not contributions:
             return
         assert isinstance(layout, LineLayout)
         room = entries.room()
         for part in contributions:
-            add_matrices(entries.pattern, layout.contact_dofs[part.dofs], part.stiffness, layout.start, room)
+            if len(part.dofs):
+                add_matrices(entries.pattern, layout.contact_dofs[part.dofs], part.stiffness, layout.start, room)
         entries.add(room)
 
     def _allocate(self, row_entries: np.ndarray) -> None:
@@ -88,7 +122,7 @@ class TangentMatrix:
         assert isinstance(layout, LineLayout)
         if self._bare is None:
             self.body.tangent(self.mat)
-            self.add_seats()
+            self._add_seats()
             self.mat.assemble()
             self._bare = self.mat.getValuesCSR()[:2]
         # several contacts may join the same unknowns
@@ -97,10 +131,10 @@ class TangentMatrix:
         pattern = join_patterns(self._bare, tables, layout.start, layout.size)
         self.mat.setPreallocationCSR(pattern)
         self.mat.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
-        self._entries = AijEntries(self.mat, pattern) if tables else None
+        self._entries, self._places_of_elements = AijEntries(self.mat, pattern) if tables else None, None
         self.version += 1
 
-    def add_seats(self) -> None:
+    def _add_seats(self) -> None:
         """Zeros on the diagonal of the seats' rows, which must exist for a fixed or untouched seat."""
         if isinstance(self.layout, LineLayout) and self.layout.has_extra:
             seats = self.layout.seat_dofs[:, None]

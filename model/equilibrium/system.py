@@ -1,7 +1,7 @@
 """Residual and tangent of a body and what touches it, as functions of one vector of increments."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from dolfinx import la
@@ -16,13 +16,15 @@ from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import TangentMatrix
 from coilset.model.state import Where
 
+EXPIRED = b""  # in the place of the increments of an evaluation
+
 
 @dataclass(frozen=True)
 class Evaluation:
     """What the last evaluation found.
 
     Attributes:
-        increments: this rank's part of the vector that it was made at.
+        increments: this rank's part of the vector that it was made at; they may not be those of the state any more.
         has_stress: on every rank and at every point?
         contributions: of the contacts, in their order, those of their elements that act on this rank's unknowns; empty
             where there is no stress.
@@ -84,6 +86,7 @@ class System:
             body = self._rotating
             self._is_rotation[body.rotation_dofs[body.rotation_dofs < layout.owned]] = True
         self.last, self.evaluations = Evaluation(np.full(layout.size_local, np.nan), True, []), 0
+        self._evaluated = EXPIRED
 
     # ---- evaluation ------------------------------------------------------------------------------------------------
 
@@ -102,17 +105,19 @@ class System:
     def evaluate(self, increments: PETSc.Vec) -> bool:
         """Bring the trial state to increments, unless it is there; False if some point has no stress; collective."""
         values = increments.getArray(readonly=True)
-        # bytes are compared several times as fast as numbers; not a number is no place, so that nothing expired is
-        same = self.last.increments.tobytes() == values.tobytes() and not np.isnan(values[:1]).any()
+        content = values.tobytes()  # bytes are compared several times as fast as numbers
+        same = content == self._evaluated
         if self.comm.size > 1:
             same = self.comm.allreduce(int(same)) == self.comm.size
         if not same:
             function = self.body.increment
             function.x.array[: self.layout.owned] = values[: self.layout.owned]
-            function.x.scatter_forward()
+            if self.comm.size > 1:
+                function.x.scatter_forward()
             if self._seats is not None:
                 np.add(self._seats.equilibrium, self.layout.extra(values), out=self._seats.trial)
             self._evaluate_trial(values.copy())
+            self._evaluated = content
         return self.last.has_stress
 
     def _evaluate_trial(self, values: np.ndarray) -> None:
@@ -138,18 +143,19 @@ class System:
 
     def _assemble_internal(self, add_forces: Callable[[np.ndarray], None] | None = None) -> None:
         """Into `internal`; `add_forces` in place of the body's own `internal_forces`."""
-        local, owned, add = self._local, self.layout.owned, add_forces or self.body.internal_forces
-        with self.internal as values:
-            values[:] = 0.0
-            if self.comm.size == 1:
-                add(values)
-            else:
-                local.array[:] = 0.0
-                add(local.array)
-                local.scatter_reverse(la.InsertMode.add)
-                values[:owned] = local.array[:owned]
-            for part in self.last.contributions:
+        local, add, values = self._local, add_forces or self.body.internal_forces, self._reactions.trial
+        values[:] = 0.0
+        if self.comm.size == 1:
+            add(values)
+        else:
+            local.array[:] = 0.0
+            add(local.array)
+            local.scatter_reverse(la.InsertMode.add)
+            values[: self.layout.owned] = local.array[: self.layout.owned]
+        for part in self.last.contributions:
+            if len(part.dofs):
                 add_vectors(self.line.contact_dofs[part.dofs], part.forces, self.layout.start, values)
+        self.internal.stateIncrease()  # its entries have changed behind PETSc's back
 
     def with_ghosts(self, values: np.ndarray) -> np.ndarray:
         """The body's unknowns of this rank's part `values` of a vector, and after them the ghosts'; collective.
@@ -162,7 +168,7 @@ class System:
 
     def expire(self) -> None:
         """The next evaluation is to be made, wherever it is: something else than the increments has changed."""
-        self.last = replace(self.last, increments=np.full(self.layout.size_local, np.nan))
+        self._evaluated = EXPIRED
 
     def pass_time(self, middle: Moment, end: Moment) -> None:
         """Let the step that begins take time; see PassesTime."""
@@ -199,7 +205,8 @@ class System:
         """Go back to the last equilibrium; collective."""
         self.state.restore()
         self.body.increment.x.array[:] = 0.0
-        self._evaluate_trial(np.full(self.layout.size_local, np.nan))
+        self._evaluate_trial(np.zeros(self.layout.size_local))
+        self.expire()
 
     def reset_contacts(self) -> None:
         """Let contacts remember the last equilibrium and nothing of what was tried since."""
@@ -230,7 +237,7 @@ class System:
         self.internal.copy(F)
         target, force = load.at(load_factor, self._reactions.equilibrium)
         values, x = F.getArray(), self.last.increments
-        if self._rotating is not None and self._is_rotation[load.loaded].any():
+        if self._rotating is not None and len(load.loaded) and self._is_rotation[load.loaded].any():
             outer = np.zeros(len(values))
             outer[load.loaded] = force
             self._rotating.to_charts(outer)
@@ -255,11 +262,12 @@ class System:
 
     def residual_without_turning(self, load: Load, load_factor: float, length: float, F: PETSc.Vec) -> None:
         """As `residual` at the last evaluation, `length` of the predicted correction away, for a body that Foresees."""
-        internal, body = self.internal.copy(), self._foreseeing
+        internal, body = self._reactions.trial.copy(), self._foreseeing
         assert body is not None
         self._assemble_internal(lambda vector: body.forces_without_turning(vector, length))
         self._out_of_balance(load, load_factor, F)
-        internal.copy(self.internal)
+        self._reactions.trial[:] = internal
+        self.internal.stateIncrease()
 
     def tangent(
         self,
@@ -287,11 +295,7 @@ class System:
 
     def last_tangent(self, load: Load, matrix: TangentMatrix, at_step_start: bool = False) -> None:
         """As `tangent`, with the moduli of the last evaluation, at the state as it is now; collective."""
-        matrix.clear(self.last.contributions, at_step_start)
-        self.body.tangent(matrix.mat)
-        matrix.add(self.last.contributions)
-        matrix.add_seats()
-        matrix.mat.assemble()
+        matrix.fill(self.last.contributions, at_step_start)
         if load.drag is not None:
             matrix.mat.setDiagonal(self.layout.vector(load.drag.stiffness.copy()), addv=PETSc.InsertMode.ADD_VALUES)
-        self.body.hold(matrix.mat, load.held + self.layout.start)
+        matrix.hold(load.held)

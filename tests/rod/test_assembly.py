@@ -6,6 +6,9 @@ from dolfinx import fem
 from dolfinx.fem.petsc import assemble_matrix
 from petsc4py import PETSc
 
+from coilset.model.contact.base import Contribution
+from coilset.model.equilibrium.layout import LineLayout
+from coilset.model.equilibrium.matrix import TangentMatrix
 from coilset.model.rod import forms
 
 ELEMENTS = 11  # no multiple of the elements that go through together
@@ -57,3 +60,44 @@ def test_an_element_does_not_depend_on_those_beside_it(bent):
     for field in (bent.triads, bent.T, bent.P, bent.W, bent.e, bent.s, bent.foreseen, bent.D):
         field.values[1:] = 1e3
     np.testing.assert_array_equal(bent._tangent()[0], whole[0])
+
+
+def by_petsc(rod, layout, part):
+    """Tangent and contacts as PETSc inserts them, dense."""
+    matrix = rod.create_matrix(layout.size)
+    matrix.setPreallocationNNZ(layout.size)
+    rod.tangent(matrix)
+    dofs = layout.contact_dofs[part.dofs]
+    matrix.setValuesRCV(dofs, dofs, part.stiffness, addv=PETSc.InsertMode.ADD_VALUES)
+    matrix.assemble()
+    return dense(matrix, layout.size)
+
+
+def dense(matrix, n):
+    """Entries of the first unknowns."""
+    return matrix.getValues(range(n), range(n))
+
+
+def test_entries_are_added_where_they_lie_as_petsc_inserts_them(bent):
+    """Elements as DOLFINx assembles them, contacts as PETSc inserts them, also where they open; where they close at new
+    places the rows are allocated anew. Rows that are held are those of the identity."""
+    layout, random, held = LineLayout(bent), np.random.default_rng(1), np.array([4, 11])
+    matrix, n, size = TangentMatrix(bent, layout), len(bent.increment.x.array), layout.size
+    free = np.setdiff1d(np.arange(size), held)
+    dofs = np.array([[0, 1, 2, 27, 28, 29], [3, 4, 5, 30, 31, 32], [6, 7, 8, 33, 34, 35]])
+    none = np.empty(3)
+    contacts = Contribution(dofs, none, random.normal(scale=1e5, size=(3, 6, 6)), none, none, none, none)
+    for closed, version in (([], 0), ([0, 1], 1), ([1, 0], 1), ([1], 1), ([0, 1, 2], 2), ([], 2)):
+        part = contacts.only(np.array(closed, dtype=int))
+        matrix.fill([part])
+        found, right = dense(matrix.mat, size), by_petsc(bent, layout, part)
+        np.testing.assert_allclose(found, right, rtol=0.0, atol=1e-13 * np.abs(right).max())
+        assert matrix.version == version
+        matrix.hold(held)
+        by_row = dense(matrix.mat, size)
+        np.testing.assert_array_equal(by_row[held], bent.constraint_weight * np.eye(size)[held])
+        np.testing.assert_array_equal(by_row[free], found[free])
+        bent.foreseen.values[:] *= 1.1
+    matrix.fill([])
+    right = dense(by_dolfinx(bent)[1], n)
+    np.testing.assert_allclose(dense(matrix.mat, n), right, rtol=0.0, atol=1e-13 * np.abs(right).max())
