@@ -67,6 +67,13 @@ class Load:
         return replace(self, drag=drag)
 
     @cached_property
+    def is_held(self) -> np.ndarray:
+        """Which places of this rank's part are held, shape (size_local,)."""
+        held = np.zeros(self.layout.size_local, dtype=bool)
+        held[self.held] = True
+        return held
+
+    @cached_property
     def supports(self) -> np.ndarray:
         """Places that are held or loaded, each once, ascending."""
         return np.union1d(self.held, self.loaded)

@@ -8,6 +8,7 @@ Newton method in geometrically non-linear structural problem discretized via dis
 Methods Appl. Mech. Engrg. 313 (2017). At equilibrium both are the same.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,7 +23,7 @@ class Frames:
 
     Attributes:
         cells: node numbers, shape (cells, 2).
-        length: of the chords, shape (cells,), mm.
+        chord: from node to node, shape (cells, 3), mm.
         E: triads (columns), shape (cells, 3, 3).
         T: charts' tangents of both nodes, P: rates of their turns, shape (cells, 2, 3, 3).
         W: what makes the triad's spin about its chord, shape (cells, 3, 3).
@@ -31,7 +32,7 @@ class Frames:
     """
 
     cells: np.ndarray
-    length: np.ndarray
+    chord: np.ndarray
     E: np.ndarray
     T: np.ndarray
     P: np.ndarray
@@ -40,21 +41,35 @@ class Frames:
     strain: np.ndarray
 
 
-def linear_strains(frames: Frames, u: np.ndarray, turns: np.ndarray, shear: np.ndarray) -> np.ndarray:
+@dataclass(frozen=True)
+class Unknowns:
+    """Numbers of the local unknowns.
+
+    Attributes:
+        u, turns: displacements and rotation charts of the nodes, shape (nodes, 3).
+        shear: excess shear angles, shape (cells, 2).
+    """
+
+    u: np.ndarray
+    turns: np.ndarray
+    shear: np.ndarray
+
+
+def linear_strains(frames: Frames, unknowns: Unknowns, increments: np.ndarray) -> np.ndarray:
     """B δ, the change of the section strains by increments of first order.
 
     Args:
         frames: Frames.
-        u, turns: increments of the nodes' displacements and of their rotation charts, shape (nodes, 3).
-        shear: of the excess shear angles, shape (cells, 2).
+        unknowns: Unknowns.
+        increments: of the local unknowns, mm and rad.
 
     Returns:
         ε, γ12, γ13, φ′, −w″, v″ at the two Gauss sections, shape (cells, 2, 6).
     """
     e = np.empty((len(frames.cells), 2, 6))
     _linear_strains(
-        frames.cells, frames.length, frames.E, frames.T, frames.P, frames.W, frames.shear_fraction, frames.strain, u,
-        turns, shear, GAUSS, e,
+        frames.cells, frames.chord, frames.E, frames.T, frames.P, frames.W, frames.shear_fraction, frames.strain,
+        unknowns.u, unknowns.turns, unknowns.shear, increments, GAUSS, e,
     )  # fmt: skip
     return e
 
@@ -62,7 +77,7 @@ def linear_strains(frames: Frames, u: np.ndarray, turns: np.ndarray, shear: np.n
 @njit(cache=True)
 def _linear_strains(
     cells: np.ndarray,
-    length: np.ndarray,
+    chords: np.ndarray,
     E: np.ndarray,
     T: np.ndarray,
     P: np.ndarray,
@@ -72,23 +87,24 @@ def _linear_strains(
     u: np.ndarray,
     turns: np.ndarray,
     shear: np.ndarray,
+    increments: np.ndarray,
     xi: np.ndarray,
     e: np.ndarray,
 ) -> None:
     """As `linear_strains`, into `e`; `xi` are the abscissae of the Gauss sections."""
     spins, t, frame, d = np.empty((2, 3)), np.empty((2, 3)), np.empty(3), np.empty(3)
     for c in range(len(cells)):
-        first, l = cells[c, 0], length[c]
-        second = cells[c, 1]
+        first, second = cells[c, 0], cells[c, 1]
+        l = math.sqrt(chords[c, 0] ** 2 + chords[c, 1] ** 2 + chords[c, 2] ** 2)
         frame[0] = 0.0
         for i in range(3):
             d[i] = 0.0
             for a in range(2):
                 spins[a, i] = 0.0
                 for j in range(3):
-                    spins[a, i] += T[c, a, i, j] * turns[cells[c, a], j]
+                    spins[a, i] += T[c, a, i, j] * increments[turns[cells[c, a], j]]
         for i in range(3):
-            chord = u[second, i] - u[first, i]
+            chord = increments[u[second, i]] - increments[u[first, i]]
             frame[0] += W[c, 0, i] * chord + W[c, 1, i] * spins[0, i] + W[c, 2, i] * spins[1, i]
             for j in range(3):
                 d[j] += E[c, i, j] * chord
@@ -109,7 +125,7 @@ def _linear_strains(
             e[c, g, 3] = (t[1, 0] - t[0, 0]) / l
             for k in range(2):  # about the second axis and the third
                 mean = 0.5 * (t[0, 1 + k] + t[1, 1 + k])
-                excess = shear[c, k] - shear_fraction[c] * mean
+                excess = increments[shear[c, k]] - shear_fraction[c] * mean
                 e[c, g, 2 - k] = -excess if k == 0 else excess
                 e[c, g, 4 + k] = (t[1, 1 + k] - t[0, 1 + k] + H * (excess + mean)) / l
             for i in range(3, 6):

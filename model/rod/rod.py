@@ -1,5 +1,7 @@
 """A rod structure, a Body: state of its nodes and section points, and the forms assembled from them."""
 
+import math
+
 import numpy as np
 from dolfinx import fem
 from mpi4py import MPI
@@ -16,11 +18,12 @@ from coilset.model.rod.assembly import add_element_vectors
 from coilset.model.rod.compiled import compiled_forms
 from coilset.model.rod.finer_path import FinerPath, in_blocks
 from coilset.model.rod.kinematics import GAUSS, chord_triads, displace_nodes, section_strains
-from coilset.model.rod.prediction import Frames, Prediction, linear_strains
+from coilset.model.rod.prediction import Frames, Prediction, Unknowns, linear_strains
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule
 from coilset.model.state import State, Where
 
+EPSILON = float(np.finfo(float).eps)
 CLOCKS = "clock", "halfway_clock"  # at the end of a step, and half way along its path
 SURFACE = "surface_state"  # carries no load: it is brought to the end of a step when this is committed
 NODAL_ENTRIES = 22  # per row of the tangent: three nodes with 6 unknowns each, and two elements with 2
@@ -77,6 +80,7 @@ class Rod:
     ) -> None:
         self.line, self.law, self.rule = line, law, rule
         mesh, n = line.mesh, line.owned_cells
+        self.comm = mesh.comm
         self.mesh, self.parameters = mesh, law.parameters(temperature)
         self.temperature = law.reference_temperature if temperature is None else temperature
         self.in_time = law_in_time(law, self.parameters)
@@ -114,14 +118,14 @@ class Rod:
         self._prediction: Prediction | None = None
         self._finer: FinerPath | None = None
         values = {name: field.values for name, field in zip(forms.FIELDS, fields, strict=True)}
-        self._residual, self._tangent = compiled_forms(mesh.comm).on(values, x, self._nodes)
+        self._residual, self._tangent = compiled_forms(self.comm).on(values, x, self._nodes)
         self.row_entries = np.full(self.V.dofmap.index_map.size_local, NODAL_ENTRIES, dtype=PETSc.IntType)
         self.row_entries[self.shear_dofs] = SHEAR_ENTRIES
-        self.largest_radius = comm_max(mesh.comm, self.radius.max(initial=0.0))
+        self.largest_radius = comm_max(self.comm, self.radius.max(initial=0.0))
         self.axial_force = law.E * np.pi * self.largest_radius**2  # E A
         self.extent = float(np.ptp(line.stations, axis=0).max())
-        self._constraint_weight = comm_max(mesh.comm, (law.E * np.pi * self.radius**2 / self.l0).max(initial=0.0))
-        self._bending_stiffness = comm_max(mesh.comm, (law.E * np.pi * self.radius**4 / 4.0 / self.l0).max(initial=0.0))
+        self._constraint_weight = comm_max(self.comm, (law.E * np.pi * self.radius**2 / self.l0).max(initial=0.0))
+        self._bending_stiffness = comm_max(self.comm, (law.E * np.pi * self.radius**4 / 4.0 / self.l0).max(initial=0.0))
         self._start(x)
 
     def _number_dofs(self) -> None:
@@ -132,7 +136,7 @@ class Rod:
         for i in range(3):
             self.u_dofs[nodes, i] = nodal.sub(i).dofmap.list
             self.rotation_dofs[nodes, i] = nodal.sub(i + 3).dofmap.list
-        self._dofs = self.V.dofmap.list[: self.line.owned_cells]  # of the cells, shape (cells, 14)
+        self.element_dofs = self.V.dofmap.list[: self.line.owned_cells]  # of the cells, shape (cells, 14)
         self.shear_dofs = np.stack([shear.sub(i).dofmap.list[: self.line.owned_cells, 0] for i in range(2)], axis=1)
 
     def _start(self, x: np.ndarray) -> None:
@@ -152,6 +156,11 @@ class Rod:
             for name in CLOCKS:
                 clock = state.add(name, self.in_time.clock(0.0, self.temperature), Where.SHARED)
                 self._section_start[name], self._section_trial[name] = clock.equilibrium, clock.trial
+        self._frames = Frames(
+            self.cells, self._chord.trial, self.triads.values, self.T.values, self.P.values, self.W.values,
+            self.timoshenko_factor.values[:, 0], self._strain.trial,
+        )  # fmt: skip
+        self._unknowns = Unknowns(self.u_dofs, self.rotation_dofs, self.shear_dofs)
         self.state, self.chart = state, np.tile(np.eye(3), (len(x), 1, 1))
         self.update()
 
@@ -240,12 +249,7 @@ class Rod:
 
     def predict(self) -> None:
         """Predict the section forces after `correction`, from the trial state; see Foresees."""
-        values = self.correction.x.array
-        frames = Frames(
-            self.cells, np.linalg.norm(self._chord.trial, axis=1), self.triads.values, self.T.values, self.P.values,
-            self.W.values, self.timoshenko_factor.values[:, 0], self._strain.trial,
-        )  # fmt: skip
-        change = linear_strains(frames, values[self.u_dofs], values[self.rotation_dofs], values[self.shear_dofs])
+        change = linear_strains(self._frames, self._unknowns, self.correction.x.array)
         self._prediction = Prediction(self.s.values.copy(), self._strain.trial.copy(), self.D.values.copy(), change)
 
     def foresee(self, length: float) -> None:
@@ -267,7 +271,7 @@ class Rod:
 
     def internal_forces(self, vector: np.ndarray) -> None:
         """Add ∫ ¹σ : δΔE_l of the owned cells; see Body."""
-        add_element_vectors(self._residual(), self._dofs, vector)
+        add_element_vectors(self._residual(), self.element_dofs, vector)
 
     def to_charts(self, values: np.ndarray) -> None:
         """Replace the moments m at the owned nodes by Tᵀ m; see HasRotations."""
@@ -277,7 +281,7 @@ class Rod:
 
     def create_matrix(self, rows: int) -> PETSc.Mat:
         """A matrix for the unknowns of the rod and the seats; see Body."""
-        index_map, comm = self.V.dofmap.index_map, self.mesh.comm
+        index_map, comm = self.V.dofmap.index_map, self.comm
         matrix = PETSc.Mat().create(comm)
         matrix.setSizes(((rows, None), (rows, None)))
         matrix.setType(PETSc.Mat.Type.AIJ)
@@ -288,8 +292,12 @@ class Rod:
 
     def tangent(self, matrix: PETSc.Mat) -> None:
         """Add K_l and the stiffness of the rotating frame; see Body."""
-        values = self._tangent()
-        matrix.setValuesLocalRCV(self._dofs, self._dofs, values, addv=PETSc.InsertMode.ADD_VALUES)
+        dofs = self.element_dofs
+        matrix.setValuesLocalRCV(dofs, dofs, self.element_tangents(), addv=PETSc.InsertMode.ADD_VALUES)
+
+    def element_tangents(self) -> np.ndarray:
+        """The elements' K_l and stiffness of the rotating frame, shape (cells, 14, 14); see OfElements."""
+        return self._tangent()
 
     @property
     def constraint_weight(self) -> float:
@@ -308,8 +316,8 @@ class Rod:
         which short elements raise. And a strain of the wire of 1e-14, so that a step without any change of load also
         counts as being at rest.
         """
-        greatest = comm_max(self.mesh.comm, np.abs(increments).max(initial=0.0))
+        greatest = comm_max(self.comm, np.abs(increments).max(initial=0.0))
         greatest = min(greatest, self.extent)  # a diverging body is not at rest
-        size = self.mesh.comm.allreduce(len(increments)) if self.mesh.comm.size > 1 else len(increments)
+        size = self.comm.allreduce(len(increments)) if self.comm.size > 1 else len(increments)
         stiffest = max(greatest * self.constraint_weight, self._bending_stiffness)
-        return max(np.finfo(float).eps * np.sqrt(size) * stiffest, 1e-14 * self.axial_force)
+        return max(EPSILON * math.sqrt(size) * stiffest, 1e-14 * self.axial_force)
