@@ -27,7 +27,9 @@ from llvmlite import binding
 
 from coilset.meshes.errors import CoilsetError
 
-LANES = 8
+# As many as fill a register of 512 bits, or one of 256: with two registers for each value of FFCx's function, most of
+# which are live for long, more time goes into moving them to memory and back than the second one saves.
+LANES = 8 if binding.get_host_cpu_features().get("avx512f") else 4
 OPTIONS = ["-std=gnu17", "-O1", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-Wno-psabi"]
 HEADER = f"""
 #include <math.h>
