@@ -19,6 +19,7 @@ import numpy as np
 
 from coilset.model.contact.curve import WirePoints
 from coilset.model.contact.memory import Memory
+from coilset.model.extremes import count_above, greatest
 
 ENDS = ("bottom", "top")
 SEAT_DOFS = 6  # x, y, z, θx, θy, θz; see plate.py
@@ -68,7 +69,7 @@ class TrialPositions:
 
     def points(self, points: WirePoints) -> np.ndarray:
         """Numbers of those of the wire's points whose positions are known."""
-        return np.arange(len(points)) if self.known is None else points.of(self.known.elements)
+        return points.numbers if self.known is None else points.of(self.known.elements)
 
 
 @dataclass(frozen=True)
@@ -111,7 +112,12 @@ class Contribution:
     @cached_property
     def closed(self) -> int:
         """Number of closed elements."""
-        return int(np.count_nonzero(self.bears))
+        return count_above(self.pressure, self.onset_force, CLOSED_OF_ONSET_FORCE) if len(self.point) else 0
+
+    @property
+    def deepest(self) -> float:
+        """Maximum penetration, mm; 0 where nothing touches."""
+        return greatest(self.penetration) if len(self.point) else 0.0
 
 
 def one_sided(g: np.ndarray, c: np.ndarray, onset: float) -> tuple[np.ndarray, np.ndarray]:

@@ -7,13 +7,18 @@ from coilset.model.contact.curve import STENCIL
 
 
 @njit(cache=True)
-def add_resultant(dofs: np.ndarray, forces: np.ndarray, x: np.ndarray, out: np.ndarray) -> None:
+def add_resultant(dofs: np.ndarray, forces: np.ndarray, x: np.ndarray, rotations: int, out: np.ndarray) -> bool:
     """Add to `out` the force on the wire and its moment about the origin, shape (6,), N and N mm.
 
     Args:
         dofs, forces: of contact elements, see Contribution; forces on rotations are left out.
         x: positions of the stations, shape (n, 3), mm.
+        rotations: the first of the stations' rotations.
+
+    Returns:
+        Whether something was left out.
     """
+    left_out = False
     for e in range(len(dofs)):
         for a in range(dofs.shape[1]):
             station, k = dofs[e, a] // 3, dofs[e, a] % 3
@@ -22,6 +27,17 @@ def add_resultant(dofs: np.ndarray, forces: np.ndarray, x: np.ndarray, out: np.n
                 out[k] += force
                 out[3 + i] += x[station, j] * force
                 out[3 + j] -= x[station, i] * force
+            left_out |= dofs[e, a] >= rotations
+    return left_out
+
+
+@njit(cache=True)
+def add_force(point: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
+    """Add to `out` a force and a moment at a point, shape (3,) each, as `add_resultant`."""
+    for k in range(3):
+        i, j = (k + 1) % 3, (k + 2) % 3
+        out[k] += force[k]
+        out[3 + k] += moment[k] + point[i] * force[j] - point[j] * force[i]
 
 
 @njit(cache=True)
@@ -85,3 +101,15 @@ def pressures_on(
             rows[count, 0], rows[count, 1], rows[count, 2] = kind, i, factor * force[i] / lengths[i]
             count += 1
     return rows
+
+
+@njit(cache=True)
+def turns_without(share: np.ndarray, rows: np.ndarray) -> float:
+    """Sum of the points' shares of turns, without those that occur in `rows`, see `pressures_on`."""
+    free, total = np.ones(len(share), dtype=np.bool_), 0.0
+    for row in rows:
+        free[int(row[1])] = False
+    for i in range(len(share)):
+        if free[i]:
+            total += share[i]
+    return total

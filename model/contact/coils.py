@@ -5,15 +5,16 @@ onto the other with half of the bedding, so that neither is the master.
 """
 
 import math
-from dataclasses import replace
 
 import numpy as np
+from numba import njit
 
 from coilset.model.contact.base import Contribution, TrialPositions
 from coilset.model.contact.curve import WirePoints
 from coilset.model.contact.elements import PAIR, at_points, coil_elements
 from coilset.model.contact.memory import Memory
 from coilset.model.contact.search import longest_element, near_locations, post_stride
+from coilset.model.extremes import farthest, greatest, least
 
 LOCATIONS_PER_POINT = 4  # initial capacity: locations on other coils, average per point
 SKIN = 0.5  # in wire radii: how far beyond what touches pairs are sought
@@ -87,24 +88,23 @@ class Coils:
         Nothing is sought while the stations have moved by less than the gap that was found clear. Pairs that have no
         station of this rank are left to the others.
         """
-        margin = float(self.multiplier_offset.max())
+        offsets = self.multiplier_offset
+        margin = greatest(offsets)
         if self._clear is not None:
             there, clearance = self._clear
             if 2.0 * self._amplification * moved(there, trial) * SQRT3 < clearance - margin:
                 return NO_PAIR
         pair, where, p = self.near(trial, margin + self._skin)
-        clearance = where[:, 1].min(initial=margin + self._skin)
-        self._clear = (replace(trial, x=trial.x.copy()), clearance) if clearance > margin else None
-        near = where[:, 1] < margin
+        clearance = min(margin + self._skin, least(where[:, 1]))
+        self._clear = None
+        if clearance > margin:
+            self._clear = TrialPositions(trial.x.copy(), trial.seats, None, trial.known), clearance
+            return NO_PAIR
         if trial.known is not None:
             own, points = trial.known.own, self.points
-            near &= (own[points.stations[pair[:, 0]]] | own[points.line.stations[pair[:, 1]]]).any(axis=1)
-        if not near.any():
-            return NO_PAIR
-        pair, where = pair[near], where[near]
-        offset = self.multiplier_offset[self.sides(pair)]
-        bears = where[:, 1] < offset
-        return pair[bears], where[bears], offset[bears], p
+            ours = (own[points.stations[pair[:, 0]]] | own[points.line.stations[pair[:, 1]]]).any(axis=1)
+            pair, where = pair[ours], where[ours]
+        return *pressing(pair, where, self.points.turns, self.points.line.turns, offsets), p
 
     def max_penetration(self, trial: TrialPositions) -> float:
         """Maximum penetration, mm."""
@@ -143,5 +143,29 @@ class Coils:
 def moved(there: TrialPositions, here: TrialPositions) -> float:
     """Bound of the motion of all stations along any axis, mm."""
     if there.known is None or here.known is None:
-        return float(np.abs(here.x - there.x).max())
+        return farthest(here.x, there.x)
     return here.known.way - there.known.way
+
+
+@njit(cache=True)
+def pressing(
+    pair: np.ndarray, where: np.ndarray, turns: np.ndarray, station_turns: np.ndarray, offsets: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Those of the pairs whose gaps are smaller than their offsets.
+
+    Args:
+        pair, where: of `near_locations`.
+        turns, station_turns: of points and stations.
+        offsets: of the points, for the coil before and after, shape (m, 2), mm.
+
+    Returns:
+        Pairs, ξ and gaps, and offsets.
+    """
+    chosen, offset, count = np.empty(len(pair), np.int64), np.empty(len(pair)), 0
+    for k in range(len(pair)):
+        i = pair[k, 0]
+        own = offsets[i, 1 if station_turns[pair[k, 1]] > turns[i] else 0]
+        if where[k, 1] < own:
+            chosen[count], offset[count] = k, own
+            count += 1
+    return pair[chosen[:count]], where[chosen[:count]], offset[:count]

@@ -187,6 +187,11 @@ class WirePoints:
         return len(self.xi)
 
     @cached_property
+    def numbers(self) -> np.ndarray:
+        """Of all points, shape (m,)."""
+        return np.arange(len(self))
+
+    @cached_property
     def share_of_turns(self) -> np.ndarray:
         """Turns of wire assigned to each point, shape (m,)."""
         half = 0.5 * np.diff(self.turns)

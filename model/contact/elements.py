@@ -123,7 +123,12 @@ def flat_seat_elements(
     tip: int,
     tip_spring: float,
     slack: float,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    point: np.ndarray,
+    forces: np.ndarray,
+    k: np.ndarray,
+    pressure: np.ndarray,
+    penetration: np.ndarray,
+) -> int:
     """The points that bear on a flat seat which moves along the axis only, and the tip.
 
     Args:
@@ -132,23 +137,19 @@ def flat_seat_elements(
         stations, weights: of all points, shape (m, 4).
         level: of the seat, mm; side: 1 where the wire lies above it, else −1.
         reach, offset, stiffness, onset, tip, tip_spring, slack: of the Seat.
+        point, forces, k, pressure, penetration: written for the b points that bear: numbers, shape (b, …), forces,
+            (b, 5), stiffness, (b, 5, 5), pressure and penetration, (b,).
 
     Returns:
-        Numbers of the b points, shape (b,), their forces, shape (b, 5), stiffness, (b, 5, 5), pressure and
-        penetration, (b,).
+        b.
     """
-    gap, count = np.empty(len(points)), 0
-    for at, i in enumerate(points):
-        height = -level
+    grad, e = np.empty(FLAT), 0
+    for i in points:
+        gap = -level
         for a in range(STENCIL):
-            height += weights[i, a] * z[stations[i, a]]
-        gap[at] = side * height - reach[i]
-        count += gap[at] < offset[i] or i == tip
-    point, pressure, penetration = np.empty(count, np.int64), np.empty(count), np.empty(count)
-    forces, k, grad = np.empty((count, FLAT)), np.empty((count, FLAT, FLAT)), np.empty(FLAT)
-    e = 0
-    for at, i in enumerate(points):
-        g = gap[at] - offset[i]
+            gap += weights[i, a] * z[stations[i, a]]
+        gap = side * gap - reach[i]
+        g = gap - offset[i]
         if g >= 0.0 and i != tip:
             continue
         if i != tip:
@@ -159,7 +160,7 @@ def flat_seat_elements(
         else:
             c = stiffness[i]
             force = -c * g
-        point[e], pressure[e], penetration[e] = i, max(force, 0.0), -gap[at]
+        point[e], pressure[e], penetration[e] = i, max(force, 0.0), -gap
         for a in range(FLAT):
             grad[a] = side * (weights[i, a] if a < STENCIL else -1.0)
             forces[e, a] = -force * grad[a]
@@ -167,4 +168,4 @@ def flat_seat_elements(
             for b in range(FLAT):
                 k[e, a, b] = c * grad[a] * grad[b]
         e += 1
-    return point, forces, k, pressure, penetration
+    return e

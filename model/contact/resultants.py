@@ -6,7 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from coilset.model.contact.base import SEAT_DOFS, Contribution
-from coilset.model.contact.bearing import add_resultant
+from coilset.model.contact.bearing import add_force, add_resultant
+
+NONE = np.zeros(3)
 
 
 def station_forces(parts: Iterable[Contribution], stations: int) -> np.ndarray:
@@ -39,8 +41,6 @@ def station_moments(parts: Iterable[Contribution], charts: np.ndarray) -> np.nda
     n = len(charts)
     moment, first = np.zeros(3 * n), 3 * n + 2 * SEAT_DOFS
     for part in parts:
-        if part.dofs.max(initial=0) < first:
-            continue
         on_rotations = part.dofs >= first
         np.subtract.at(moment, part.dofs[on_rotations] - first, part.forces[on_rotations])
     if not moment.any():
@@ -54,23 +54,12 @@ def levers(x: np.ndarray, forces: np.ndarray) -> np.ndarray:
     return np.array([C[1, 2] - C[2, 1], C[2, 0] - C[0, 2], C[0, 1] - C[1, 0]])
 
 
-def lever(point: np.ndarray, force: np.ndarray) -> np.ndarray:
-    """x × f of one force, shapes (3,) each."""
-    (x, y, z), (fx, fy, fz) = point.tolist(), force.tolist()
-    return np.array([y * fz - z * fy, z * fx - x * fz, x * fy - y * fx])
-
-
 @dataclass(frozen=True)
 class Wrench:
     """Force, shape (3,), N, and its moment about the origin, shape (3,), N mm."""
 
     force: np.ndarray
     moment: np.ndarray
-
-    @classmethod
-    def at(cls, point: np.ndarray, force: np.ndarray, moment: np.ndarray) -> "Wrench":
-        """That of a force and a moment at a point, shape (3,) each."""
-        return cls(force, moment + lever(point, force))
 
     @classmethod
     def of(cls, forces: np.ndarray, x: np.ndarray, moments: np.ndarray | float = 0.0) -> "Wrench":
@@ -81,17 +70,24 @@ class Wrench:
     @classmethod
     def of_contacts(cls, parts: Sequence[Contribution], x: np.ndarray, charts: np.ndarray) -> "Wrench":
         """The resultant of contacts on the wire, with the stations at `x`, shape (n, 3), mm; `charts`: T of these."""
-        sums = np.zeros(6)
-        for part in parts:
-            add_resultant(part.dofs, part.forces, x, sums)
-        return cls(sums[:3], sums[3:] + station_moments(parts, charts).sum(axis=0))
+        sums, rotations = np.zeros(6), 3 * len(x) + 2 * SEAT_DOFS
+        turn = [part for part in parts if add_resultant(part.dofs, part.forces, x, rotations, sums)]
+        if turn:
+            sums[3:] += station_moments(turn, charts).sum(axis=0)
+        return cls(sums[:3], sums[3:])
+
+    def with_force(self, point: np.ndarray, force: np.ndarray, moment: np.ndarray) -> "Wrench":
+        """Together with a force and a moment at a point, shape (3,) each."""
+        sums = np.concatenate([self.force, self.moment])
+        add_force(point, force, moment, sums)
+        return Wrench(sums[:3], sums[3:])
 
     def __add__(self, other: "Wrench") -> "Wrench":
         return Wrench(self.force + other.force, self.moment + other.moment)
 
     def about(self, point: np.ndarray) -> np.ndarray:
         """Moment about another point, shape (3,), N mm."""
-        return self.moment - lever(point, self.force)
+        return self.with_force(-point, self.force, NONE).moment
 
     def crossing(self, point: np.ndarray) -> np.ndarray:
         """Where the resultant crosses the plane z = const through `point`, relative to it.

@@ -7,7 +7,7 @@ import numpy as np
 
 from coilset.model.contact.base import LEVEL, Contribution, TrialPositions, one_sided
 from coilset.model.contact.curve import POINTS_PER_ELEMENT, STENCIL, WirePoints
-from coilset.model.contact.elements import flat_seat_elements
+from coilset.model.contact.elements import FLAT, flat_seat_elements
 from coilset.model.contact.memory import Memory
 from coilset.model.contact.plate import Plate, radial
 
@@ -131,12 +131,17 @@ class Seat:
 
     def _flat(self, trial: TrialPositions) -> Contribution:
         """On a flat seat that moves along the axis only."""
-        points = self.points
-        i, forces, k, pressure, penetration = flat_seat_elements(
-            trial.points(points), trial.x[:, 2], points.stations, points.weights, trial.seats[self.plate.own][LEVEL],
-            self.side, self.distance, self.multiplier_offset, self.stiffness, self.onset, self.tip, self.tip_spring,
-            self.slack,
+        points, numbers = self.points, trial.points(self.points)
+        n = len(numbers)  # as many as could bear, most of them never touched
+        parts = (
+            np.empty(n, np.int64), np.empty((n, FLAT)), np.empty((n, FLAT, FLAT)), np.empty(n), np.empty(n),
         )  # fmt: skip
+        count = flat_seat_elements(
+            numbers, trial.x[:, 2], points.stations, points.weights, trial.seats[self.plate.own][LEVEL], self.side,
+            self.distance, self.multiplier_offset, self.stiffness, self.onset, self.tip, self.tip_spring, self.slack,
+            *parts,
+        )  # fmt: skip
+        i, forces, k, pressure, penetration = (part[:count] for part in parts)
         return Contribution(self.dofs[i], forces, k, pressure, penetration, i, self.stiffness[i] * self.onset)
 
     def _curved(self, trial: TrialPositions) -> Contribution:

@@ -30,6 +30,7 @@ class ContactParts:
         self.need_rotations = any(contact.needs_rotations for contact in contacts)
         # asked once, for the test of a protocol takes longer than what it guards
         self._limiting = [contact for contact in contacts if isinstance(contact, LimitsStep)]
+        self._limiting_numbers = [number for number, contact in enumerate(contacts) if contact in self._limiting]
         self._augmented = [contact for contact in contacts if isinstance(contact, Augmented)]
         self._kept = [contact.memory for contact in contacts
                       if isinstance(contact, HasMemory) and not isinstance(contact, Augmented)]  # fmt: skip
@@ -49,8 +50,7 @@ class ContactParts:
         """
         trial = self.surroundings.trial(x, seats, rotations)
         parts = [contact.evaluate(trial) for contact in self.contacts]
-        limiting = (part for contact, part in zip(self.contacts, parts, strict=True) if contact in self._limiting)
-        deepest = max((part.penetration.max(initial=0.0) for part in limiting), default=0.0)
+        deepest = max((parts[number].deepest for number in self._limiting_numbers), default=0.0)
         if self.comm.size == 1:
             return parts, deepest, sum(part.closed for part in parts)
         parts = [_those(part, self.layout.acts_here(part.dofs)) for part in parts]

@@ -100,24 +100,29 @@ class Imbalance:
 
 def imbalance(system: System, load: Load, F: PETSc.Vec) -> Imbalance:
     """Imbalance of the state evaluated last, which has the residual `F`; collective."""
-    reactions, values = system.state["reactions"], F.getArray(readonly=True)
-    missed = values[load.held] / system.body.constraint_weight
-    change = reactions.trial[load.supports] - reactions.equilibrium[load.supports]
-    squares = free_square(values, load.is_held), change @ change, missed @ missed
+    reactions = system.state["reactions"]
+    squares = _squares(F.getArray(readonly=True), load.is_held, reactions.trial, reactions.equilibrium, load.supports)
     if system.comm.size > 1:
         squares = tuple(system.comm.allreduce(np.array(squares)))
-    norms, prescribed = [math.sqrt(square) for square in squares], load.prescribed
-    return Imbalance(norms[0], norms[1], norms[2] / prescribed if prescribed > 0.0 else norms[2])
+    free, missed, change = (math.sqrt(square) for square in squares)
+    missed /= system.body.constraint_weight
+    return Imbalance(free, change, missed / load.prescribed if load.prescribed > 0.0 else missed)
 
 
 @njit(cache=True)
-def free_square(values: np.ndarray, is_held: np.ndarray) -> float:
-    """Sum of the squares of the values that are not held."""
-    total = 0.0
-    for i in range(len(values)):
-        if not is_held[i]:
-            total += values[i] * values[i]
-    return total
+def _squares(
+    F: np.ndarray, is_held: np.ndarray, reactions: np.ndarray, before: np.ndarray, supports: np.ndarray
+) -> tuple[float, float, float]:
+    """Of the residual where nothing is held, where something is, and of the reactions' change at the supports."""
+    free = held = change = 0.0
+    for i in range(len(F)):
+        if is_held[i]:
+            held += F[i] * F[i]
+        else:
+            free += F[i] * F[i]
+    for i in supports:
+        change += (reactions[i] - before[i]) ** 2
+    return free, held, change
 
 
 class EquilibriumTest:

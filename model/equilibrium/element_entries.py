@@ -1,4 +1,4 @@
-"""The elements' entries in a matrix of one rank: their places are found once for each pattern, not at each insertion."""
+"""The elements' entries in a matrix of one rank: their places are found once for each pattern, not each time."""
 
 import numpy as np
 from numba import njit

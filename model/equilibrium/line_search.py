@@ -10,9 +10,11 @@ them closed. If it was the one that meets the prescribed increments, equilibrium
 solved in parts, see coilset.model.equilibrium.newton.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from petsc4py import PETSc
 
 from coilset.model.equilibrium.contact_limit import ContactLimit
@@ -50,7 +52,7 @@ class WorkSearch:
 
     def __init__(self, system: System, limit: ContactLimit, control: NewtonControl, foresees: bool = False) -> None:
         self.system, self.limit, self.control, self.foresees = system, limit, control, foresees
-        self._direction, self._free, self._trial, self._force = (system.layout.vector() for _ in range(4))
+        self._direction, self._trial, self._force = (system.layout.vector() for _ in range(3))
 
     def __call__(self, x: PETSc.Vec, y: PETSc.Vec, F: PETSc.Vec, load: Load, load_factor: float) -> StepLength:
         """Step length from `x` along −y, with the residual `F` at x; the three are not changed; collective."""
@@ -69,8 +71,7 @@ class WorkSearch:
             length *= control.stress_backtrack
             work, norm = self._at(length)
         if work is not None and not pending:
-            start_work, start_norm = F.dot(self._free), self._free_norm(F)
-            start = start_work, start_norm
+            start_work, start_norm = start = self._work_and_norm(F)
             if not self._is_right(start, work, norm):
                 feigns = self._is_right(start, *self._without_turning(limit, length))
                 if not feigns:
@@ -91,22 +92,22 @@ class WorkSearch:
         if not self.foresees:
             return np.inf, np.inf
         self.system.residual_without_turning(self._load, self._load_factor, limit * length, self._force)
-        return self._force.dot(self._free), self._free_norm(self._force)
+        return self._work_and_norm(self._force)
 
     def _at(self, length: float) -> tuple[float | None, float]:
         """Work and norm of the forces on the free unknowns at `length`; None if the law finds no stress."""
-        self._direction.copy(self._free)
-        self._free.getArray()[self._load.held] = 0.0
         self._trial.waxpy(-length, self._direction, self._x)
         self.system.residual(self._trial, self._load, self._load_factor, self._force)
         if not self.system.last.has_stress:
             return None, np.inf
-        return self._force.dot(self._free), self._free_norm(self._force)
+        return self._work_and_norm(self._force)
 
-    def _free_norm(self, F: PETSc.Vec) -> float:
-        F.copy(self._trial)
-        self._trial.getArray()[self._load.held] = 0.0
-        return self._trial.norm()
+    def _work_and_norm(self, F: PETSc.Vec) -> tuple[float, float]:
+        """Work along the direction and norm of the forces on the free unknowns; collective."""
+        forces, direction = F.getArray(readonly=True), self._direction.getArray(readonly=True)
+        found, comm = _work_and_square(forces, direction, self._load.is_held), self.system.comm
+        work, square = found if comm.size == 1 else comm.allreduce(np.array(found))
+        return float(work), math.sqrt(square)
 
     def _zero(self, start_work: float, length: float, work: float) -> float:
         """Step length at which the work is near zero, by the Illinois rule."""
@@ -133,3 +134,14 @@ class WorkSearch:
             length *= self.control.backtrack
             best = min(best, (self._at(length)[1], length))
         return best[1]
+
+
+@njit(cache=True)
+def _work_and_square(forces: np.ndarray, direction: np.ndarray, is_held: np.ndarray) -> tuple[float, float]:
+    """Of a rank's forces on the free unknowns: their work along a direction, and the sum of their squares."""
+    work = square = 0.0
+    for i in range(len(forces)):
+        if not is_held[i]:
+            work += forces[i] * direction[i]
+            square += forces[i] * forces[i]
+    return work, square

@@ -8,6 +8,7 @@ import numpy as np
 from mpi4py import MPI
 
 from coilset.model.equilibrium.layout import Layout
+from coilset.model.extremes import largest
 
 
 @dataclass(frozen=True)
@@ -59,8 +60,9 @@ class Load:
             load_factor: from 0, the last equilibrium, to 1, the end of the step.
             reactions: internal forces of the last equilibrium, this rank's part, N and N mm.
         """
-        forces = load_factor * self.forces + (1.0 - load_factor) * reactions[self.loaded]
-        return load_factor * self.increments, forces
+        if not len(self.loaded):
+            return load_factor * self.increments, self.forces
+        return load_factor * self.increments, load_factor * self.forces + (1.0 - load_factor) * reactions[self.loaded]
 
     def dragged(self, drag: Drag | None) -> "Load":
         """The same load with another drag, or none."""
@@ -90,7 +92,7 @@ class Load:
 
     def misses(self, increments: np.ndarray, load_factor: float) -> bool:
         """Whether the increments, this rank's part, miss prescribed ones by more than rounding; collective."""
-        off = np.abs(increments[self.held] - load_factor * self.increments).max(initial=0.0)
+        off = largest(increments[self.held] - load_factor * self.increments)
         return self._max(off) > 1e-12 * self._greatest
 
     def reached(self, increments: np.ndarray) -> float:

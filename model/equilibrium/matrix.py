@@ -142,6 +142,7 @@ class TangentMatrix:
 
     def _contact_places(self, contributions: Sequence[Contribution]) -> np.ndarray:
         """A number for each contact element from its first and last dof, which identify the bodies in contact."""
+        contributions = [part for part in contributions if len(part.dofs)]
         if not contributions:
             return np.empty(0, dtype=np.int64)
         assert isinstance(self.layout, LineLayout)

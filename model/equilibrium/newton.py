@@ -75,6 +75,7 @@ class Newton:
         self.augmentation_tolerance, self.prepare = augmentation_tolerance, prepare
         self.limit = limit or ContactLimit(system, self.control, np.inf)
         self.foresees = isinstance(system.body, Foresees) and self.control.foreseen_forces is not False
+        self._feigned = system.body.axial_force if isinstance(system.body, Foresees) else 0.0
         self.test = EquilibriumTest(tolerance, self.control.stagnation)
         self.search = WorkSearch(system, self.limit, self.control, self.foresees)
         self.F, self._balance, self._arc_load = (system.layout.vector() for _ in range(3))
@@ -289,8 +290,8 @@ class Newton:
         """SNES's convergence test."""
         norm, X = norms[2], self.system.increments
         if iteration == 0:
-            body, self._step_length = self.system.body, None
-            self.test.begin(norm, body.axial_force if self.foresees and isinstance(body, Foresees) else 0.0)
+            self._step_length = None
+            self.test.begin(norm, self._feigned if self.foresees else 0.0)
         if not np.isfinite(norm):
             return NOT_A_NUMBER
         if self.method.is_arc_length and iteration == 0:

@@ -75,6 +75,7 @@ class System:
         self._reactions = self.state.add("reactions", np.zeros(layout.size_local), Where.UNKNOWN)
         self.internal = layout.vector(self._reactions.trial)
         self._local = la.vector(layout.index_map, layout.block_size)
+        self._body_increments = body.increment.x.array
         # asked once, for the test of a protocol takes longer than what it guards
         self._rotating = body if isinstance(body, HasRotations) else None
         self._foreseeing = body if isinstance(body, Foresees) else None
@@ -110,10 +111,9 @@ class System:
         if self.comm.size > 1:
             same = self.comm.allreduce(int(same)) == self.comm.size
         if not same:
-            function = self.body.increment
-            function.x.array[: self.layout.owned] = values[: self.layout.owned]
+            self._body_increments[: self.layout.owned] = values[: self.layout.owned]
             if self.comm.size > 1:
-                function.x.scatter_forward()
+                self.body.increment.x.scatter_forward()
             if self._seats is not None:
                 np.add(self._seats.equilibrium, self.layout.extra(values), out=self._seats.trial)
             self._evaluate_trial(values.copy())
@@ -138,7 +138,7 @@ class System:
         """Contributions, penetration and number of closed elements of an Evaluation."""
         rotations = None
         if self.touching.need_rotations:
-            rotations = self.body.increment.x.array[self.line.rod.rotation_dofs]
+            rotations = self._body_increments[self.line.rod.rotation_dofs]
         return self.touching.evaluate(self.state["x"].trial, self.seats, rotations)
 
     def _assemble_internal(self, add_forces: Callable[[np.ndarray], None] | None = None) -> None:
@@ -198,13 +198,13 @@ class System:
         if self.contacts:
             self.touching.share_memories()
         self.state.commit()
-        self.body.increment.x.array[:] = 0.0
+        self._body_increments[:] = 0.0
         self.expire()
 
     def restore(self) -> None:
         """Go back to the last equilibrium; collective."""
         self.state.restore()
-        self.body.increment.x.array[:] = 0.0
+        self._body_increments[:] = 0.0
         self._evaluate_trial(np.zeros(self.layout.size_local))
         self.expire()
 
@@ -237,7 +237,9 @@ class System:
         self.internal.copy(F)
         target, force = load.at(load_factor, self._reactions.equilibrium)
         values, x = F.getArray(), self.last.increments
-        if self._rotating is not None and len(load.loaded) and self._is_rotation[load.loaded].any():
+        if not len(load.loaded):
+            pass
+        elif self._rotating is not None and self._is_rotation[load.loaded].any():
             outer = np.zeros(len(values))
             outer[load.loaded] = force
             self._rotating.to_charts(outer)
@@ -255,9 +257,10 @@ class System:
         """
         body = self._foreseeing
         assert body is not None
-        function, owned = body.correction, self.layout.owned
-        function.x.array[:owned] = -correction.getArray(readonly=True)[:owned]
-        function.x.scatter_forward()
+        owned = self.layout.owned
+        np.negative(correction.getArray(readonly=True)[:owned], out=body.correction.x.array[:owned])
+        if self.comm.size > 1:
+            body.correction.x.scatter_forward()
         body.predict()
 
     def residual_without_turning(self, load: Load, load_factor: float, length: float, F: PETSc.Vec) -> None:

@@ -1,12 +1,14 @@
 """Reactions at both ends of the spring, pressure along the wire, active turns."""
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from numba import njit
 
 from coilset.model.contact.base import ENDS, SEAT_DOFS, Contact, Contribution
-from coilset.model.contact.bearing import bearing_on_seat, pressures_on
+from coilset.model.contact.bearing import bearing_on_seat, pressures_on, turns_without
 from coilset.model.contact.resultants import Wrench
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.layout import LineLayout
@@ -78,7 +80,7 @@ class _Observer:
         station, components = self.control.tips[end]
         held = np.zeros(6)
         held[components] = self.layout.values(self.system.internal, self.layout.station_dofs[station, components])
-        return Wrench.of_contacts(own, self.x, self.chart) + Wrench.at(self.x[station], held[:3], held[3:])
+        return Wrench.of_contacts(own, self.x, self.chart).with_force(self.x[station], held[:3], held[3:])
 
     def reaction(self, end: str, faint: float) -> SeatReaction:
         """The SeatReaction of an end."""
@@ -123,16 +125,35 @@ def active_turns(rod: Rod, turns: np.ndarray, change: float, before: np.ndarray)
         before: `mean_torque` before the change.
     """
     line = rod.line
-    middle = 0.5 * (rod.x[rod.cells[:, 0]] + rod.x[rod.cells[:, 1]])
-    lever = change * np.hypot(middle[:, 0], middle[:, 1])
-    active = float(((mean_torque(rod) - before) / lever) ** 2 @ np.diff(turns)[line.element[: line.owned_cells]])
-    return line.mesh.comm.allreduce(active) if line.mesh.comm.size > 1 else active
+    active = _active_turns(mean_torque(rod), before, change, rod.x, rod.cells, turns, line.element)
+    return rod.comm.allreduce(active) if rod.comm.size > 1 else active
+
+
+@njit(cache=True)
+def _active_turns(
+    torque: np.ndarray,
+    before: np.ndarray,
+    change: float,
+    x: np.ndarray,
+    cells: np.ndarray,
+    turns: np.ndarray,
+    element: np.ndarray,
+) -> float:
+    """That of the owned elements; `x` of the nodes, `cells`: nodes of the elements, `element`: their numbers."""
+    active = 0.0
+    for c in range(len(torque)):
+        middle = 0.5 * (x[cells[c, 0]] + x[cells[c, 1]])
+        share = (torque[c] - before[c]) / (change * math.hypot(middle[0], middle[1]))
+        active += share * share * (turns[element[c] + 1] - turns[element[c]])
+    return active
 
 
 def pressures(parts: OnWire) -> np.ndarray:
     """Rows of SeatReactions.pressure: forces of each kind of contact, summed at each point."""
     rows: list[np.ndarray] = [np.empty((0, 3))]
     for kind, contact, part in parts:
+        if not len(part.point):
+            continue
         halves = 1.0 if contact.end else 2.0
         rows.append(pressures_on(kind, part.point, part.pressure, part.bears, contact.lengths, halves))
     return np.concatenate(rows)
@@ -142,7 +163,4 @@ def free_turns(parts: OnWire, pressure: np.ndarray) -> float:
     """Turns of wire that touch nothing, weighted by the turns assigned to each point."""
     if not parts:
         return float("nan")
-    share = parts[0][1].points.share_of_turns
-    touched = np.zeros(len(share), dtype=bool)
-    touched[pressure[:, 1].astype(int)] = True
-    return float(share.sum() - share[touched].sum())
+    return turns_without(parts[0][1].points.share_of_turns, pressure)

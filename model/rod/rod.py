@@ -11,6 +11,7 @@ from coilset.meshes.compat import geometry_dofs
 from coilset.meshes.line import LineMesh
 from coilset.meshes.placement import Placement, straight
 from coilset.model.body import Moment
+from coilset.model.extremes import largest
 from coilset.model.material.law import Law
 from coilset.model.material.rate_law import law_in_time
 from coilset.model.rod import forms
@@ -316,7 +317,7 @@ class Rod:
         which short elements raise. And a strain of the wire of 1e-14, so that a step without any change of load also
         counts as being at rest.
         """
-        greatest = comm_max(self.comm, np.abs(increments).max(initial=0.0))
+        greatest = comm_max(self.comm, largest(increments))
         greatest = min(greatest, self.extent)  # a diverging body is not at rest
         size = self.comm.allreduce(len(increments)) if self.comm.size > 1 else len(increments)
         stiffest = max(greatest * self.constraint_weight, self._bending_stiffness)

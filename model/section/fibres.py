@@ -11,7 +11,7 @@ from coilset.meshes.placement import Placement
 from coilset.model.material.kernel import KERNEL
 from coilset.model.material.law import Law
 from coilset.model.section.chord import to_chord, to_section
-from coilset.model.section.ground import Ground, ground_sections, rim_rule
+from coilset.model.section.ground import ground_sections, rim_rule
 from coilset.model.section.integration import FIBRES, section, update_points
 from coilset.model.section.law_over_time import LawOverTime
 from coilset.model.section.rules import DiskRule, rim
@@ -121,7 +121,7 @@ class FibreSections:
         """
         place, law = self.placement, self.law_over_time.over(start, trial)
         return bool(update_sections(
-            law, self.y, self.z, self.weights, self.ground, self.radius, place.curvature, self.curved,
+            law, self.y, self.z, self.weights, tuple(self.ground), self.radius, place.curvature, self.curved,
             self._increment(strain, start, trial), place.matrices, place.stretch, start["point_state"],
             trial["point_state"], s, D, with_tangent,
         ))  # fmt: skip
@@ -133,7 +133,7 @@ class FibreSections:
         """
         place, law = self.placement, self.law_over_time.over(start, trial)
         update_surface(
-            law, self.rim_y, self.rim_z, self.ground_rim, self.radius, place.curvature, self.curved,
+            law, self.rim_y, self.rim_z, tuple(self.ground_rim), self.radius, place.curvature, self.curved,
             self._increment(strain, start, trial), place.matrices, start["surface_state"], trial["surface_state"],
         )  # fmt: skip
 
@@ -144,7 +144,7 @@ def update_sections(
     y: np.ndarray,
     z: np.ndarray,
     w: np.ndarray,
-    ground: Ground,
+    ground: tuple[np.ndarray, np.ndarray, np.ndarray],
     radius: np.ndarray,
     curvature: np.ndarray,
     curved: bool,
@@ -165,7 +165,7 @@ def update_sections(
     Args:
         p: parameters of the material law.
         y, z, w: points of the unit disk and weights, shape (points,).
-        ground: the sections that are no disks.
+        ground: entries of Ground; as plain tuples they take numba 25 µs less.
         radius: wire radius of each element, shape (cells,), mm.
         curvature: κ of the wire, towards y, shape (cells, 2), 1/mm; curved: is it known to the sections?
         de: increments of the section strains ε, γ12, γ13, φ′, κ2 = −w″, κ3 = v″, shape (cells, 2, 6).
@@ -178,7 +178,7 @@ def update_sections(
     Returns:
         False if the law found no solution at some point or the strains are no numbers: then the step must be cut.
     """
-    points, cut = len(w), ground.which
+    points, (cut, cut_fibres, cut_shape) = len(w), ground
     d, resultant, tangent, work = np.empty(6), np.empty(6), np.empty((6, 6)), np.empty((6, 6))
     strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
     disk, disk_shape = np.empty((FIBRES, points)), np.empty((SHAPE, points))
@@ -193,7 +193,7 @@ def update_sections(
             to_section(placement[c, g], de[c, g], d)
             fibres, shape = disk, disk_shape
             if cut[c, g] >= 0:
-                fibres, shape = ground.fibres[cut[c, g]], ground.shape[cut[c, g]]
+                fibres, shape = cut_fibres[cut[c, g]], cut_shape[cut[c, g]]
             elif curved:
                 curved_shape(y, z, curvature[c, g] * R, disk_shape)
             if not section(p, fibres, shape, d, old[c, g], new[c, g], strain, C, with_tangent, count, resultant,
@@ -208,7 +208,7 @@ def update_surface(
     p: np.ndarray,
     y: np.ndarray,
     z: np.ndarray,
-    ground: Ground,
+    ground: tuple[np.ndarray, np.ndarray, np.ndarray],
     radius: np.ndarray,
     curvature: np.ndarray,
     curved: bool,
@@ -218,7 +218,8 @@ def update_surface(
     new: np.ndarray,
 ) -> None:
     """Bring the points y, z of the unit circle to the end of the increment; arguments as in `update_sections`."""
-    points, cut, d, weightless = len(y), ground.which, np.empty(6), np.zeros(len(y))
+    points, (cut, cut_fibres, cut_shape) = len(y), ground
+    d, weightless = np.empty(6), np.zeros(len(y))
     strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
     disk, disk_shape = np.empty((FIBRES, points)), np.empty((SHAPE, points))
     straight_shape(disk_shape)
@@ -229,7 +230,7 @@ def update_surface(
             to_section(placement[c, g], de[c, g], d)
             fibres, shape = disk, disk_shape
             if cut[c, g] >= 0:
-                fibres, shape = ground.fibres[cut[c, g]], ground.shape[cut[c, g]]
+                fibres, shape = cut_fibres[cut[c, g]], cut_shape[cut[c, g]]
             elif curved:
                 curved_shape(y, z, curvature[c, g] * R, disk_shape)
             update_points(p, fibres, shape, d, old[c, g], new[c, g], strain, C, False, count)
