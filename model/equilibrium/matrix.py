@@ -42,8 +42,8 @@ class TangentMatrix:
         self._places, self._known = np.empty(0, dtype=np.int64), set[int]()
         self._bare: tuple[np.ndarray, np.ndarray] | None = None  # the pattern without contacts, once it is needed
         self._entries: AijEntries | None = None
-        one = isinstance(body, OfElements) and layout.comm.size == 1
-        self._elements = body if one else None  # if they are added in place
+        # if they are added in place
+        self._elements = body if isinstance(body, OfElements) and layout.comm.size == 1 else None
         self._places_of_elements: np.ndarray | None = None
         if body.row_entries is not None:
             self._allocate(body.row_entries)
