@@ -47,7 +47,6 @@ class Stability:
 
     def __init__(self, newton: Newton) -> None:
         self.newton, self.system, self.layout = newton, newton.system, newton.system.layout
-        self._parts = self._start_block()
 
     def negative_pivots(self, load: Load) -> int:
         """Number of negative eigenvalues of the symmetric part of the tangent at the last evaluation; collective."""
@@ -59,7 +58,7 @@ class Stability:
         """The weakest mode at the last evaluation; collective."""
         factors, matrix = self._factors(load), self._matrix
         scale = self.layout.vector(self.weights(load))
-        block = [vector.copy() for vector in self._parts]
+        block = self._start_block()
         values = np.zeros(len(block))
         for _iteration in range(ITERATIONS):
             for vector in block:

@@ -12,6 +12,7 @@ own log; `other` is what is left of the iteration. `set-up` is what an analysis 
 """
 
 import json
+import math
 import resource
 import sys
 import tempfile
@@ -30,6 +31,7 @@ if TYPE_CHECKING:  # at run time their import is measured
     from coilset.model.case import Case
 
 TURNS = 2.5  # of the example's spring
+MOST_TURNS = 256  # of springs whose coils touch: a thousand do not come to block in one step
 TRAVEL = 10.0  # mm, in one step: three times the travel at which the wire begins to yield
 STAGES = ("mesh", "set-up", "law", "contact", "assemble", "factorise", "solve", "other")
 FACTORISE, SOLVE = ("MatLUFactorSym", "MatLUFactorNum"), ("MatSolve",)  # PETSc's events
@@ -174,8 +176,9 @@ def write(watch: Stopwatch, analysis: "Analysis") -> None:
 def pressed(elements: int, touching: bool) -> list[str]:
     """Settings of a spring between clamped heads and of one step: see `press`."""
     if touching:
-        return ["ends=clamped", f"spring.turns={elements / 16}", "spring.pitch=5.25", "mesh.elements_per_turn=16",
-                "loading=[{to: block, steps: 1}]"]  # fmt: skip
+        per_turn = max(16, math.ceil(elements / MOST_TURNS))
+        return ["ends=clamped", f"spring.turns={elements / per_turn}", "spring.pitch=5.25",
+                f"mesh.elements_per_turn={per_turn}", "loading=[{to: block, steps: 1}]"]  # fmt: skip
     return ["ends=clamped", f"mesh.elements_per_turn={elements / TURNS}",
             f"loading=[{{to: {{travel: {TRAVEL}}}, steps: 1}}]"]  # fmt: skip
 
@@ -187,7 +190,8 @@ def press(elements: int, repeats: int = 1, touching: int = 0) -> dict[str, Any]:
         elements: their number.
         repeats: how often it is measured.
         touching: 0: the example's spring in elements of any length, compressed far into the plastic range, without
-            contact; 1: windings of 16 elements whose pitch is 5 % more than the wire's diameter, pressed to block.
+            contact; 1: windings of 16 elements, or more where there would be too many of them, whose pitch is 5 % more
+            than the wire's diameter, pressed to block.
 
     Returns:
         Dict of counts, the force, the share of plastic points, peak memory of a rank, and `stages`: wall and CPU
