@@ -1,6 +1,7 @@
 """Functions of the turn: piecewise polynomials, so that slopes and integrals are exact."""
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache
 from math import factorial
 
 import numpy as np
@@ -111,6 +112,12 @@ def joined(parts: Iterable[PiecewisePolynomial]) -> PiecewisePolynomial:
     return PiecewisePolynomial(np.hstack([part.c for part in parts]), breaks)
 
 
+@lru_cache
+def gauss(points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Abscissae and weights of Gauss's quadrature over −1 … 1, shape (points,) each."""
+    return np.polynomial.legendre.leggauss(points)
+
+
 def integral(integrand: Callable[[np.ndarray], np.ndarray], breaks: np.ndarray, points: int = 6) -> np.ndarray:
     """Integrals over every interval between breaks by Gauss quadrature.
 
@@ -122,7 +129,7 @@ def integral(integrand: Callable[[np.ndarray], np.ndarray], breaks: np.ndarray, 
     Returns:
         The integrals, shape (n,).
     """
-    ξ, w = np.polynomial.legendre.leggauss(points)
+    ξ, w = gauss(points)
     half = 0.5 * np.diff(breaks)[:, None]
     middle = 0.5 * (breaks[1:] + breaks[:-1])[:, None]
     return (half * w * integrand(middle + half * ξ)).sum(axis=1)

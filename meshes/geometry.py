@@ -149,7 +149,7 @@ class Spring:
         """Length of the centre line from the bottom end to the turns, mm, in their shape."""
         t = np.asarray(turn, dtype=float)
         i = np.clip(np.searchsorted(self.breaks, t, side="right") - 1, 0, len(self.breaks) - 2)
-        ξ, w = np.polynomial.legendre.leggauss(6)
+        ξ, w = functions.gauss(6)
         half = 0.5 * (t - self.breaks[i])
         inside = self.speed((self.breaks[i] + half)[..., None] + half[..., None] * ξ) @ w
         return self._lengths[i] + half * inside
@@ -170,7 +170,7 @@ class Spring:
         """Distance between the seats that touch the unloaded spring, mm."""
         return float(self._planes[1] - self._planes[0])
 
-    @property
+    @cached_property
     def block_height(self) -> float:
         """Distance between the seats when every coil touches the next, mm.
 

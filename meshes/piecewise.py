@@ -25,7 +25,7 @@ class PiecewisePolynomial:
     def __call__(self, x: np.ndarray | float) -> np.ndarray:
         """Values, in the shape of `x`."""
         x = np.asarray(x, dtype=float)
-        piece = np.clip(np.searchsorted(self.x, x, side="right") - 1, 0, self.c.shape[1] - 1)
+        piece = np.searchsorted(self.x[1:-1], x, side="right")  # the outer ones go on beyond their ends
         return np.asarray(_values(self.c[:, piece], x - self.x[piece]))
 
     def derivative(self, order: int = 1) -> "PiecewisePolynomial":

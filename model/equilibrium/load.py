@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 from mpi4py import MPI
+from numba import njit
 
 from coilset.model.equilibrium.layout import Layout
 from coilset.model.extremes import largest
@@ -53,16 +54,23 @@ class Load:
         """From unknown → increment and unknown → force, each the same on every rank."""
         return cls(layout, *_mine(layout, fixed), *_mine(layout, forces))
 
-    def at(self, load_factor: float, reactions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Increments and forces of a fraction of the step.
+    def forces_at(self, load_factor: float, reactions: np.ndarray) -> np.ndarray:
+        """Forces of a fraction of the step, shape (f,), N and N mm.
 
         Args:
             load_factor: from 0, the last equilibrium, to 1, the end of the step.
             reactions: internal forces of the last equilibrium, this rank's part, N and N mm.
         """
-        if not len(self.loaded):
-            return load_factor * self.increments, self.forces
-        return load_factor * self.increments, load_factor * self.forces + (1.0 - load_factor) * reactions[self.loaded]
+        return load_factor * self.forces + (1.0 - load_factor) * reactions[self.loaded]
+
+    def miss(self, load_factor: float, increments: np.ndarray, weight: float, F: np.ndarray) -> None:
+        """Write into the held places of F by how much the increments miss a fraction of the step, times `weight`.
+
+        Args:
+            load_factor: the fraction.
+            increments, F: this rank's parts.
+        """
+        _miss(self.held, self.increments, load_factor, increments, weight, F)
 
     def dragged(self, drag: Drag | None) -> "Load":
         """The same load with another drag, or none."""
@@ -118,3 +126,11 @@ def _mine(layout: Layout, entries: Mapping[int, float]) -> tuple[np.ndarray, np.
     """Places in this rank's part of a vector, and values, of entries by unknowns."""
     dofs = [dof for dof in entries if layout.start <= dof < layout.stop]
     return np.array(dofs, dtype=np.int64) - layout.start, np.array([entries[dof] for dof in dofs], dtype=float)
+
+
+@njit(cache=True)
+def _miss(
+    held: np.ndarray, targets: np.ndarray, load_factor: float, increments: np.ndarray, weight: float, F: np.ndarray
+) -> None:
+    for k in range(len(held)):
+        F[held[k]] = weight * (increments[held[k]] - load_factor * targets[k])

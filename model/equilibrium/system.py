@@ -234,21 +234,23 @@ class System:
         self._out_of_balance(load, load_factor, F)
 
     def _out_of_balance(self, load: Load, load_factor: float, F: PETSc.Vec) -> None:
-        self.internal.copy(F)
-        target, force = load.at(load_factor, self._reactions.equilibrium)
         values, x = F.getArray(), self.last.increments
-        if not len(load.loaded):
-            pass
-        elif self._rotating is not None and self._is_rotation[load.loaded].any():
+        np.copyto(values, self._reactions.trial)
+        if len(load.loaded):
+            self._subtract(load.loaded, load.forces_at(load_factor, self._reactions.equilibrium), values)
+        if load.drag is not None:
+            values += load.drag.forces(x)
+        load.miss(load_factor, x, self.body.constraint_weight, values)
+
+    def _subtract(self, loaded: np.ndarray, forces: np.ndarray, values: np.ndarray) -> None:
+        """Subtract external forces at the places `loaded`; moments are those of the fixed frame."""
+        if self._rotating is not None and self._is_rotation[loaded].any():
             outer = np.zeros(len(values))
-            outer[load.loaded] = force
+            outer[loaded] = forces
             self._rotating.to_charts(outer)
             values -= outer
         else:
-            values[load.loaded] -= force
-        if load.drag is not None:
-            values += load.drag.forces(x)
-        values[load.held] = self.body.constraint_weight * (x[load.held] - target)
+            values[loaded] -= forces
 
     def predict(self, correction: PETSc.Vec) -> None:
         """Let a body that Foresees predict its forces after the increments change by −correction; collective.

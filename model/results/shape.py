@@ -1,6 +1,7 @@
 """Checks of a compressed spring's shape: has it left a seat, have coils slipped past each other?"""
 
 import numpy as np
+from numba import njit
 
 from coilset.meshes.ends import touching_pitch
 from coilset.meshes.geometry import Spring
@@ -43,5 +44,10 @@ class LeastRise:
         """At station positions `x`, shape (n, 3), mm; None unless there are two coils, one above the other."""
         if not len(self._lower):
             return None
-        z, turns, lower = x[:, 2], self._turns, self._lower
-        return float(((np.interp(lower + 1.0, turns, z) - np.interp(lower, turns, z)) / self._touching).min())
+        return _least_rise(x[:, 2], self._turns, self._lower, self._touching)
+
+
+@njit(cache=True)
+def _least_rise(z: np.ndarray, turns: np.ndarray, lower: np.ndarray, touching: np.ndarray) -> float:
+    """Of the wire at the levels z of the stations, over a turn from the turns `lower` on."""
+    return ((np.interp(lower + 1.0, turns, z) - np.interp(lower, turns, z)) / touching).min()

@@ -15,6 +15,7 @@ is the error of the section forces. Errors that plastic flow erases are erased h
 from collections.abc import Iterable, Iterator
 
 import numpy as np
+from numba import njit
 
 from coilset.model.section.kinds import Sections
 from coilset.model.state import State, Where
@@ -105,12 +106,25 @@ class FinerPath:
         Args:
             length: of the rank's own elements, shape (cells,), mm.
         """
-        error = 0.5 * length[:, None, None] * self._error.trial
-        new = error - 0.5 * length[:, None, None] * self._error.equilibrium
-        now, first = self._increment.trial, self._first.trial
-        pairs = (error, now), (new, now), (new, first), (error, first)
-        own, new_own, left, error_left = (float(np.sum(force * strain)) for force, strain in pairs)
-        return own, new_own, left, error_left
+        error = self._error
+        return _works(length, error.trial, error.equilibrium, self._increment.trial, self._first.trial)
+
+
+@njit(cache=True)
+def _works(
+    length: np.ndarray, error: np.ndarray, before: np.ndarray, now: np.ndarray, first: np.ndarray
+) -> tuple[float, float, float, float]:
+    """Works of the error on the increments `now`, of what is new in it on these and on the `first`, of all on these."""
+    own = new_own = left = error_left = 0.0
+    for c in range(len(length)):
+        for g in range(2):
+            for k in range(6):
+                force, new = 0.5 * length[c] * error[c, g, k], 0.5 * length[c] * (error[c, g, k] - before[c, g, k])
+                own += force * now[c, g, k]
+                new_own += new * now[c, g, k]
+                left += new * first[c, g, k]
+                error_left += force * first[c, g, k]
+    return own, new_own, left, error_left
 
 
 def in_blocks(sections: Sections) -> Iterator[tuple[slice, Sections]]:
