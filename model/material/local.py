@@ -113,11 +113,12 @@ def turn(g: Group, multiplier: float) -> Turn:
 
 @njit(**INLINE)
 def rough_turn(g: Group, multiplier: float) -> Turn:
-    """`turn` with Padé's approximant of second degree of φ, without the derivatives in b*: z⁵/720 wrong for small z."""
+    """`turn` with 1/φ = exp(z) as its series up to z⁴/24, and without the derivatives in b*."""
     z = g.s * multiplier
-    psi = 1.0 / (1.0 + z * (0.5 + z * (1 / 12)))
-    phi, slope = 1.0 - z * psi, -(0.5 + z * (1 / 6)) * psi * psi
-    return Turn(phi, psi * g.x, 0.0, 0.0, -phi * g.s, slope * g.s * g.x)
+    r = 1.0 + z * (1 / 3) * (1.0 + z * (1 / 4))
+    q = 1.0 + 0.5 * z * r
+    phi = 1.0 / (1.0 + z * q)
+    return Turn(phi, phi * q * g.x, 0.0, 0.0, -phi * g.s, -0.5 * phi * r * g.s * g.x)
 
 
 @njit(**INLINE)

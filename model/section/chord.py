@@ -3,17 +3,20 @@
 import numpy as np
 from numba import njit
 
+from coilset.model.material.kernel import KERNEL
 
-@njit(cache=True)
+
+@njit(**KERNEL)
 def to_section(P: np.ndarray, de: np.ndarray, d: np.ndarray) -> None:
     """Write into `d` the section's strains P de."""
     for i in range(6):
-        d[i] = 0.0
+        value = 0.0
         for j in range(6):
-            d[i] += P[i, j] * de[j]
+            value += P[i, j] * de[j]
+        d[i] = value
 
 
-@njit(cache=True)
+@njit(**KERNEL)
 def to_chord(
     P: np.ndarray,
     stretch: float,
@@ -26,18 +29,21 @@ def to_chord(
 ) -> None:
     """s = Pᵀ s_true ds/dx and, if `with_tangent`, D = Pᵀ D_true P ds/dx; `work` is 6 × 6."""
     for i in range(6):
-        s[i] = 0.0
+        value = 0.0
         for k in range(6):
-            s[i] += P[k, i] * resultant[k] * stretch
+            value += P[k, i] * resultant[k]
+        s[i] = value * stretch
     if not with_tangent:
         return
     for i in range(6):
         for j in range(6):
-            work[i, j] = 0.0
+            value = 0.0
             for k in range(6):
-                work[i, j] += tangent[i, k] * P[k, j] * stretch
+                value += tangent[i, k] * P[k, j]
+            work[i, j] = value * stretch
     for i in range(6):
         for j in range(6):
-            D[i, j] = 0.0
+            value = 0.0
             for k in range(6):
-                D[i, j] += P[k, i] * work[k, j]
+                value += P[k, i] * work[k, j]
+            D[i, j] = value

@@ -183,7 +183,7 @@ def update_sections(
     strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
     disk, disk_shape = np.empty((FIBRES, points)), np.empty((SHAPE, points))
     straight_shape(disk_shape)
-    last = 0.0
+    last, last_bend = 0.0, math.nan
     for c in range(len(radius)):
         R = radius[c]
         if last != R:
@@ -194,8 +194,9 @@ def update_sections(
             fibres, shape = disk, disk_shape
             if cut[c, g] >= 0:
                 fibres, shape = cut_fibres[cut[c, g]], cut_shape[cut[c, g]]
-            elif curved:
-                curved_shape(y, z, curvature[c, g] * R, disk_shape)
+            elif curved and curvature[c, g] * R != last_bend:
+                last_bend = curvature[c, g] * R
+                curved_shape(y, z, last_bend, disk_shape)
             if not section(p, fibres, shape, d, old[c, g], new[c, g], strain, C, with_tangent, count, resultant,
                            tangent):  # fmt: skip
                 return False

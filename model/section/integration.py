@@ -21,8 +21,8 @@ from coilset.model.material.point_law import rod_points
 
 FIBRES = 5  # rows of `fibres`: y, z, u, v and area
 SUMS = KERNEL | {"fastmath": {"contract", "reassoc", "nsz"}, "forceinline": True}
-Six = tuple[float, float, float, float, float, float]
-NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+Three = tuple[float, float, float]
+NOTHING = (0.0, 0.0, 0.0)
 
 
 @njit(**KERNEL)
@@ -78,42 +78,53 @@ def resultants(fibres: np.ndarray, shape: np.ndarray, new: np.ndarray, s: np.nda
 
 
 @njit(**SUMS)
-def _row(fibres: np.ndarray, shape: np.ndarray, C: np.ndarray, i: int, k: int) -> Six:
-    """Row i of C S dA/g at the point k."""
-    y, z, u, v, dA = fibres[0], fibres[1], fibres[2], fibres[3], fibres[4]
-    w = dA[k] / shape[0, k]
-    c0, c1, c2 = C[3 * i, k] * w, C[3 * i + 1, k] * w, C[3 * i + 2, k] * w
-    return (
-        c0, c1 * shape[1, k] + c2 * shape[3, k], c1 * shape[2, k] + c2 * shape[4, k], c2 * u[k] - c1 * v[k],
-        c0 * z[k], -c0 * y[k],
-    )  # fmt: skip
+def _along_shear(shape: np.ndarray, u: float, v: float, k: int, c2: float, c3: float) -> Three:
+    """c2 and c3 times the second and third row of S at the point k, in γ2, γ3, φ′."""
+    return (c2 * shape[1, k] + c3 * shape[3, k], c2 * shape[2, k] + c3 * shape[4, k], c3 * u - c2 * v)
 
 
 @njit(**SUMS)
-def _added(total: Six, f: float, row: Six) -> Six:
+def _added(total: Three, f: float, row: Three) -> Three:
     """total + f row."""
-    return (
-        total[0] + f * row[0], total[1] + f * row[1], total[2] + f * row[2],
-        total[3] + f * row[3], total[4] + f * row[4], total[5] + f * row[5],
-    )  # fmt: skip
+    return (total[0] + f * row[0], total[1] + f * row[1], total[2] + f * row[2])
 
 
 @njit(**SUMS)
 def tangents(fibres: np.ndarray, shape: np.ndarray, C: np.ndarray, D: np.ndarray) -> None:
-    """Write ∂s/∂d of the points' tangents C, shape (9, points), into D, shape (6, 6)."""
-    y, z, u, v = fibres[0], fibres[1], fibres[2], fibres[3]
-    t0 = t4 = t5 = NOTHING
+    """Write ∂s/∂d of the points' tangents C, shape (9, points), into D, shape (6, 6).
+
+    The rows of S hold either ε, κ2, κ3 or γ2, γ3, φ′: D has four parts, and the sums of each fit into the registers.
+    """
+    y, z, u, v, dA, g = fibres[0], fibres[1], fibres[2], fibres[3], fibres[4], shape[0]
+    c = cy = cz = cyy = cyz = czz = 0.0
     for k in range(len(y)):
-        row = _row(fibres, shape, C, 0, k)
-        t0, t4, t5 = _added(t0, 1.0, row), _added(t4, z[k], row), _added(t5, -y[k], row)
+        at = C[0, k] * dA[k] / g[k]
+        aty, atz = at * y[k], at * z[k]
+        c, cy, cz = c + at, cy + aty, cz + atz
+        cyy, cyz, czz = cyy + aty * y[k], cyz + aty * z[k], czz + atz * z[k]
+    D[0, 0], D[0, 4], D[0, 5], D[4, 4], D[4, 5], D[5, 5] = c, cz, -cy, czz, -cyz, cyy
+    D[4, 0], D[5, 0], D[5, 4] = cz, -cy, -cyz
+    for side in range(2):  # σ by γ, and τ by ε and its bends
+        t = ty = tz = NOTHING
+        for k in range(len(y)):
+            w = dA[k] / g[k]
+            row = _along_shear(shape, u[k], v[k], k, C[3 if side else 1, k] * w, C[6 if side else 2, k] * w)
+            t, ty, tz = _added(t, 1.0, row), _added(ty, -y[k], row), _added(tz, z[k], row)
+        for j in range(3):
+            if side:
+                D[1 + j, 0], D[1 + j, 4], D[1 + j, 5] = t[j], tz[j], ty[j]
+            else:
+                D[0, 1 + j], D[4, 1 + j], D[5, 1 + j] = t[j], tz[j], ty[j]
     t1 = t2 = t3 = NOTHING
     for k in range(len(y)):
-        second, third = _row(fibres, shape, C, 1, k), _row(fibres, shape, C, 2, k)
+        w = dA[k] / g[k]
+        second = _along_shear(shape, u[k], v[k], k, C[4, k] * w, C[5, k] * w)
+        third = _along_shear(shape, u[k], v[k], k, C[7, k] * w, C[8, k] * w)
         t1 = _added(_added(t1, shape[1, k], second), shape[3, k], third)
         t2 = _added(_added(t2, shape[2, k], second), shape[4, k], third)
         t3 = _added(_added(t3, -v[k], second), u[k], third)
-    for j in range(6):
-        D[0, j], D[1, j], D[2, j], D[3, j], D[4, j], D[5, j] = t0[j], t1[j], t2[j], t3[j], t4[j], t5[j]
+    for j in range(3):
+        D[1, 1 + j], D[2, 1 + j], D[3, 1 + j] = t1[j], t2[j], t3[j]
 
 
 @njit(**KERNEL)

@@ -56,10 +56,18 @@ def test_error_of_the_turn_is_of_second_order():
 
 @pytest.mark.parametrize("z", [1e-3, 0.05, 0.2, 0.5])
 def test_rough_turn(z):
-    """Padé's approximant of φ is wrong by z⁵/720, ψ by the z-th part of that."""
+    """1/φ lacks z⁵/120 and less: φ is wrong by that at most, ψ by its z-th part, and dψ/dz by the z-th part of that."""
     g = Group(2.0, 0.0, 0.7, 0.0)
     rough, exact = rough_turn(g, 0.5 * z), turn(g, 0.5 * z)
-    assert abs(rough.phi - exact.phi) < z**5 / 700 + 1e-15
-    assert abs(rough.y - exact.y) < z**4 / 700 + 1e-15
-    assert abs(rough.phi_l - exact.phi_l) < z**5 / 300 + 1e-15
-    assert abs(rough.y_l - exact.y_l) < 2 * z**3 / 200 + 1e-14
+    wrong = z**5 / 120
+    assert abs(rough.phi - exact.phi) < wrong + 1e-15
+    assert abs(rough.y - exact.y) < 0.7 * wrong / z + 1e-15
+    assert abs(rough.phi_l - exact.phi_l) < 2.0 * wrong + 1e-15
+    assert abs(rough.y_l - exact.y_l) < 1.4 * wrong / z**2 + 1e-14
+
+
+def test_rough_turn_decays():
+    """Where Padé's approximants would come back to 1."""
+    g = Group(1.0, 0.0, 1.0, 0.0)
+    assert 0.0 < rough_turn(g, 20.0).phi < 24.0 / 20.0**4
+    assert rough_turn(g, 20.0).y == pytest.approx(turn(g, 20.0).y, rel=1e-3)
