@@ -5,10 +5,9 @@ import sys
 
 WAIT = """
 import sys
-from importlib.util import _LazyModule
-from coilset.model.libraries import UNUSED
+from coilset.model.libraries import UNUSED, Waiting
 import dolfinx, numba
-print(all(type(sys.modules[name]) is _LazyModule for name in UNUSED if name in sys.modules))
+print(all(type(sys.modules[name]) is Waiting for name in UNUSED if name in sys.modules))
 """
 USE = """
 import coilset.model, {0}, inspect
