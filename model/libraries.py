@@ -4,12 +4,13 @@ import ctypes
 import os
 import sys
 import threading
+from collections.abc import Sequence
 from importlib.machinery import EXTENSION_SUFFIXES, ModuleSpec, PathFinder
 from importlib.util import find_spec
 from types import ModuleType
 from typing import Any
 
-UNUSED = ("dolfinx.utils", "dolfinx.nls", "dolfinx.plot", "coverage", "matplotlib.pyplot", "meshio._cli")
+UNUSED = ("dolfinx.utils", "dolfinx.nls", "dolfinx.plot", "coverage", "meshio._cli")
 """Modules that others import without using them; these take as long to load as all of coilset's own."""
 
 
@@ -27,11 +28,18 @@ class Waiting(ModuleType):
 
 
 class WhenUsed:
-    """Finder and loader of the modules in UNUSED."""
+    """Finder and loader of modules that wait.
+
+    Args:
+        names: of these modules.
+    """
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self.names = names
 
     def find_spec(self, name: str, path: Any = None, target: ModuleType | None = None) -> ModuleSpec | None:
         """What the usual finder finds, but with this loader; None for all other modules."""
-        spec = PathFinder.find_spec(name, path) if name in UNUSED else None
+        spec = PathFinder.find_spec(name, path) if name in self.names else None
         if spec is not None:
             spec.loader, spec.loader_state = self, spec.loader  # type: ignore[assignment]
         return spec
@@ -46,7 +54,7 @@ class WhenUsed:
 
 def load_when_used() -> None:
     """Put off what is in UNUSED, and have no library look through all installed ones for its plug-ins."""
-    sys.meta_path.insert(0, WhenUsed())
+    sys.meta_path.insert(0, WhenUsed(UNUSED))
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 
 

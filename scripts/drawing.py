@@ -20,6 +20,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from coilset.meshes.errors import CoilsetError
+from coilset.model.libraries import WhenUsed
 from coilset.model.processes import end_with_parent, first_rank, number_of_ranks
 
 if TYPE_CHECKING:  # at run time in the process that draws
@@ -181,6 +182,7 @@ def main(part: str) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that solves
     os.nice(MODEST)
     gc.disable()  # it ends soon
+    sys.meta_path.insert(0, WhenUsed(["matplotlib.pyplot"]))  # pyvista loads it and does not use it
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # output of libraries must not mix with the answers
     answer = draw_part(part, sys.stdin.buffer)

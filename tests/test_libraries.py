@@ -14,7 +14,8 @@ print(all(type(sys.modules[name]) is Waiting for name in UNUSED if name in sys.m
 """
 AGAIN = """
 import sys
-from coilset.model.libraries import Waiting
+from coilset.model.libraries import Waiting, WhenUsed
+sys.meta_path.insert(0, WhenUsed(["matplotlib.pyplot"]))
 import matplotlib.pyplot
 import matplotlib.pyplot as plt
 waits = type(plt) is Waiting

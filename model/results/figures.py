@@ -29,8 +29,6 @@ def save(figure: Figure, path: str | Path) -> None:
     The same picture as by `savefig`, which finds the layout, draws to be sure of it, and draws once more.
     """
     with whole(path) as partial, mpl.rc_context(STYLE):
-        for axes in figure.axes:
-            axes.spines[:].set_in_layout(False)  # they lie on the edges, where each would look at all ticks again
         figure.dpi = STYLE["savefig.dpi"]
         canvas = FigureCanvasAgg(figure)
         canvas.draw()
