@@ -11,6 +11,8 @@ from coilset.meshes import functions
 from coilset.meshes.entry import Strict
 from coilset.meshes.piecewise import PiecewisePolynomial
 
+ENDS = ("bottom", "top")
+
 CLOSED_TURNS, CLOSED_TRANSITION, GROUND_TIP = 1.0, 0.5, 0.25
 
 _Turns = Annotated[float, Unit("turns"), Field(ge=0.01, allow_inf_nan=False, strict=True)]

@@ -1,31 +1,79 @@
-"""How libraries are loaded: in the order that wheels need, and not at all what no command uses."""
+"""How libraries are loaded: in the order that wheels need, some beside others, and not at all what nobody uses."""
 
+import ctypes
 import os
 import sys
-from importlib.abc import MetaPathFinder
-from importlib.machinery import ModuleSpec, PathFinder
-from importlib.util import LazyLoader, find_spec
+import threading
+from collections.abc import Sequence
+from importlib.machinery import EXTENSION_SUFFIXES, ModuleSpec, PathFinder
+from importlib.util import find_spec
 from types import ModuleType
+from typing import Any
 
-UNUSED = ("dolfinx.utils", "dolfinx.nls", "dolfinx.plot", "coverage")
+UNUSED = ("dolfinx.utils", "dolfinx.nls", "dolfinx.plot", "coverage", "meshio._cli")
 """Modules that others import without using them; these take as long to load as all of coilset's own."""
 
 
-class WhenUsed(MetaPathFinder):
-    """Finds the modules in UNUSED and has them loaded when something of them is used."""
+class Waiting(ModuleType):
+    """A module that is loaded when something of it is used. Python's own LazyLoader loads at a second import, too."""
 
-    def find_spec(self, name: str, path: object = None, target: ModuleType | None = None) -> ModuleSpec | None:
-        """As the usual finder's, but with the loader that waits."""
-        spec = PathFinder.find_spec(name, path, target) if name in UNUSED else None  # type: ignore[arg-type]
-        if spec is not None and spec.loader is not None:
-            spec.loader = LazyLoader(spec.loader)
+    def __getattr__(self, name: str) -> Any:
+        """What is asked for, once the module is loaded; to import it, or to look through all, is no use of it."""
+        spec = self.__spec__
+        if spec is None or (name.startswith("__") and name not in ("__all__", "__version__")):
+            raise AttributeError(f"module {self.__name__!r} has no attribute {name!r}")
+        self.__class__ = ModuleType  # type: ignore[assignment]
+        spec.loader_state.exec_module(self)
+        return getattr(self, name)
+
+
+class WhenUsed:
+    """Finder and loader of modules that wait.
+
+    Args:
+        names: of these modules.
+    """
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self.names = names
+
+    def find_spec(self, name: str, path: Any = None, target: ModuleType | None = None) -> ModuleSpec | None:
+        """What the usual finder finds, but with this loader; None for all other modules."""
+        spec = PathFinder.find_spec(name, path) if name in self.names else None
+        if spec is not None:
+            spec.loader, spec.loader_state = self, spec.loader  # type: ignore[assignment]
         return spec
+
+    def create_module(self, spec: ModuleSpec) -> ModuleType:
+        """An empty one."""
+        return Waiting(spec.name)
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Nothing yet."""
 
 
 def load_when_used() -> None:
     """Put off what is in UNUSED, and have no library look through all installed ones for its plug-ins."""
-    sys.meta_path.insert(0, WhenUsed())
+    sys.meta_path.insert(0, WhenUsed(UNUSED))
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+
+
+def link_beside() -> None:
+    """Have another thread link the libraries of MPI, PETSc and DOLFINx, for their modules to find them there.
+
+    It takes 0.2 s, half of it a wait: libpsm2, of Open MPI, measures a clock when it is loaded. Meanwhile Python's
+    modules can be loaded, but not such as need the linker, which does one thing at a time. Nothing is done where the
+    order matters (`load_in_order`), and nothing is lost where a library has another name.
+    """
+    if not find_spec("dolfinx_solver"):
+        threading.Thread(target=_link, daemon=True).start()
+
+
+def _link() -> None:
+    link = ctypes.CDLL(None).dlopen  # in contrast to ctypes' own, called without Python's lock
+    for package, module in (("mpi4py", "MPI"), ("dolfinx", "cpp")):
+        for folder in getattr(find_spec(package), "submodule_search_locations", None) or ():
+            link(os.fsencode(f"{folder}/{module}{EXTENSION_SUFFIXES[0]}"), os.RTLD_NOW)
 
 
 def load_in_order() -> None:

@@ -7,6 +7,7 @@ process that started them, however it ends.
 """
 
 import contextlib
+import gc
 import json
 import os
 import pickle
@@ -19,10 +20,11 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 from coilset.meshes.errors import CoilsetError
+from coilset.model.libraries import WhenUsed
 from coilset.model.processes import end_with_parent, first_rank, number_of_ranks
 
 if TYPE_CHECKING:  # at run time in the process that draws
-    from coilset.model.results.pictures import Run
+    from coilset.model.results.pictures import Draw, Run
 
 PARTS = ("figures", "scene")  # of coilset.model.results.pictures
 MODEST = 5  # niceness of these processes relative to the one that solves
@@ -112,7 +114,10 @@ def _answer(process: subprocess.Popen[bytes]) -> dict[str, Any]:
     line = process.stdout.readline()
     if line.endswith(b"\n"):
         return json.loads(line)
-    status = process.wait()
+    return _ended(process.wait())
+
+
+def _ended(status: int) -> dict[str, Any]:
     how = f"signal {-status}" if status < 0 else f"exit code {status}"
     return {"problem": f"not all pictures are drawn: the process that draws them ended with {how}", "warnings": []}
 
@@ -121,18 +126,50 @@ def draw_part(part: str, tasks: BinaryIO) -> dict[str, Any] | None:
     """Load what a part needs, wait for its task, and draw it; None if no task came."""
     from coilset.model.results import pictures
 
-    draw = pictures.PARTS[part]()
+    draws = pictures.PARTS[part]()
     try:
-        out, run = pickle.load(tasks)
+        task = pickle.load(tasks)
     except EOFError:
         return None
     before = signal.signal(signal.SIGTERM, _leave)
     try:
-        return {"problem": None, "warnings": draw(out, run)}
-    except CoilsetError as error:
-        return {"problem": str(error), "warnings": []}
+        answers = _side_by_side(draws, task)
     finally:
         signal.signal(signal.SIGTERM, before)
+    problem = next((answer["problem"] for answer in answers if answer["problem"]), None)
+    return {"problem": problem, "warnings": [warning for answer in answers for warning in answer["warnings"]]}
+
+
+def _side_by_side(draws: "tuple[Draw, ...]", task: "tuple[Path, Run]") -> list[dict[str, Any]]:
+    """What comes of each; all but the first are drawn by copies of this process, which have loaded what they need."""
+    import multiprocessing
+
+    kind, copies = multiprocessing.get_context("fork"), []
+    for draw in draws[1:]:
+        answer, theirs = kind.Pipe(duplex=False)
+        copies.append((kind.Process(target=_copy, args=(theirs, draw, task), daemon=True), answer))
+        copies[-1][0].start()
+        theirs.close()
+    answers = [_drawn(draws[0], task)]
+    for copy, answer in copies:
+        try:
+            answers.append(answer.recv())
+        except EOFError:
+            copy.join()
+            answers.append(_ended(copy.exitcode or 0))
+    return answers
+
+
+def _copy(answer: Any, draw: "Draw", task: "tuple[Path, Run]") -> None:
+    end_with_parent()
+    answer.send(_drawn(draw, task))
+
+
+def _drawn(draw: "Draw", task: "tuple[Path, Run]") -> dict[str, Any]:
+    try:
+        return {"problem": None, "warnings": draw(*task)}
+    except CoilsetError as error:
+        return {"problem": str(error), "warnings": []}
 
 
 def _leave(*_: object) -> None:
@@ -144,6 +181,8 @@ def main(part: str) -> None:
     """The process that draws a part."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that solves
     os.nice(MODEST)
+    gc.disable()  # it ends soon
+    sys.meta_path.insert(0, WhenUsed(["matplotlib.pyplot"]))  # pyvista loads it and does not use it
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # output of libraries must not mix with the answers
     answer = draw_part(part, sys.stdin.buffer)

@@ -16,6 +16,7 @@ from coilset.model.processes import first_rank
 from coilset.scripts.beginning import announce_begin
 from coilset.scripts.compiling import NOTICE, announce_compiling, compile_first, compiled
 from coilset.scripts.ending import Ending
+from coilset.scripts.loading import load_for_solve
 from coilset.scripts.material import app as material
 from coilset.scripts.output import Output, output_closed
 from coilset.scripts.plain import typer
@@ -104,6 +105,7 @@ def solve(
         if pictures and os.path.isfile(case):
             drawings.start_if_free()
         announce_compiling()
+        load_for_solve()
         from coilset.scripts.solve import solve as run_case
 
         gc.freeze()  # what libraries have made is no garbage

@@ -2,13 +2,34 @@
 
 import subprocess
 import sys
+from importlib.util import find_spec
+
+import pytest
 
 WAIT = """
 import sys
-from importlib.util import _LazyModule
-from coilset.model.libraries import UNUSED
+from coilset.model.libraries import UNUSED, Waiting
 import dolfinx, numba
-print(all(type(sys.modules[name]) is _LazyModule for name in UNUSED if name in sys.modules))
+print(all(type(sys.modules[name]) is Waiting for name in UNUSED if name in sys.modules))
+"""
+AGAIN = """
+import sys
+from coilset.model.libraries import Waiting, WhenUsed
+sys.meta_path.insert(0, WhenUsed(["matplotlib.pyplot"]))
+import matplotlib.pyplot
+import matplotlib.pyplot as plt
+waits = type(plt) is Waiting
+print(waits, callable(plt.figure), type(plt) is Waiting)
+"""
+LINK = """
+import sys, threading
+from coilset.scripts.loading import load_for_solve
+load_for_solve()
+for thread in threading.enumerate():
+    if thread is not threading.current_thread():
+        thread.join()
+with open("/proc/self/maps") as linked:
+    print("/dolfinx/cpp." in linked.read(), [name for name in ("mpi4py.MPI", "petsc4py.PETSc") if name in sys.modules])
 """
 USE = """
 import coilset.model, {0}, inspect
@@ -26,3 +47,12 @@ def test_modules_without_use_wait():
 
 def test_they_are_there_when_they_are_used():
     assert said(USE.format("dolfinx.plot")) == ["True", "True"]
+
+
+def test_a_second_import_is_no_use():
+    assert said(AGAIN) == ["True", "True", "False"]
+
+
+@pytest.mark.skipif(find_spec("dolfinx_solver") is not None, reason="wheels are linked in an order of their own")
+def test_libraries_are_linked_before_their_modules_are_loaded():
+    assert said(LINK) == ["True", "[]"]

@@ -17,8 +17,7 @@ from coilset.model.case.seats import SeatsSpec
 from coilset.model.case.settings import assign, located
 from coilset.model.entries.entry import Strict, Whole, check_entries
 from coilset.model.entries.yaml import read_data
-from coilset.model.equilibrium.methods import MethodName
-from coilset.model.equilibrium.settings import NewtonControl, StepControl
+from coilset.model.equilibrium.settings import MethodName, NewtonControl, StepControl
 from coilset.model.section import rules
 
 

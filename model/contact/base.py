@@ -17,11 +17,11 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+from coilset.meshes.ends import ENDS as ENDS
 from coilset.model.contact.curve import WirePoints
 from coilset.model.contact.memory import Memory
 from coilset.model.extremes import count_above, greatest
 
-ENDS = ("bottom", "top")
 SEAT_DOFS = 6  # x, y, z, θx, θy, θz; see plate.py
 LEVEL = 2  # the one along the spring's axis
 # A point counts as closed from this part of c w on, the force of its stiffness c over the distance w of its onset: by

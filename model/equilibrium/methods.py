@@ -10,7 +10,7 @@ a single matrix for the whole step does not converge, as the thesis found (6.3).
 from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
-from typing import Any, Literal
+from typing import Any
 
 from coilset.meshes.compat import LONGEST_STEP
 from coilset.meshes.errors import InputError
@@ -29,7 +29,6 @@ PRECONDITIONED = {f"npc_{key}": value for key, value in (ONE_STEP | KEPT).items(
 
 FIRST = {**ONE_STEP, "snes_linesearch_type": "basic"}  # only meets the prescribed increments
 
-MethodName = Literal["newton", "modified-newton", "modified-newton-anderson", "bfgs", "broyden", "arc-length"]
 METHODS: dict[str, dict[str, Any]] = {  # each MethodName
     # Newton-Raphson (4.4.4)
     # its corrections are scaled by coilset.model.equilibrium.line_search

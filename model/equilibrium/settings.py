@@ -4,7 +4,7 @@ How much each of them matters is measured in docs/methods.md: each halved and do
 """
 
 from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Unit
 from pydantic import ConfigDict, Field
@@ -15,6 +15,7 @@ Positive = Annotated[float, Unit("1"), Field(gt=0, strict=True)]
 Fraction = Annotated[float, Unit("1"), Field(gt=0, lt=1, strict=True)]
 Growth = Annotated[float, Unit("1"), Field(ge=1, strict=True)]
 Count = Annotated[Whole, Field(ge=1, strict=True)]
+MethodName = Literal["newton", "modified-newton", "modified-newton-anderson", "bfgs", "broyden", "arc-length"]
 STRICT = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 

@@ -82,7 +82,8 @@ def write_netcdf(target: str | Path, data: LabelledData) -> None:
                 for dim, size in zip(one.dims, one.values.shape, strict=True):
                     if dim not in file.dimensions:
                         file.dimensions[dim] = size
-            for name, one in data.all():
+            # Coordinates first: they replace the places held for their dimensions, also in what has these already.
+            for name, one in sorted(data.all(), key=lambda each: each[1].dims != (each[0],)):
                 words = one.values.dtype.kind in "UO"
                 values: Any = one.values.astype(object) if words else one.values
                 made = file.create_variable(name, one.dims, h5py.string_dtype() if words else values.dtype, data=values,

@@ -27,24 +27,29 @@ class Run:
 Draw = Callable[[Path, Run], list[str]]
 
 
-def load_figures() -> Draw:
-    """Load the libraries of the figures: characteristic, cross section, force centre, seats, buckling mode."""
-    from coilset.model.results import buckling_figure, figures, seat_figures
+def load_figures() -> tuple[Draw, ...]:
+    """Load the libraries of the figures: characteristic, cross section and buckling mode; force centre and seats."""
+    from coilset.model.results import figures, seat_figures
 
-    def draw(out: Path, run: Run) -> list[str]:
+    def of_spring(out: Path, run: Run) -> list[str]:
         figures.characteristic(out / "characteristic.png", run.setup, run.result, run.summary)
         if run.result.mode is not None:
+            from coilset.model.results import buckling_figure
+
             buckling_figure.buckling_mode(out / "buckling_mode.png", run.setup, run.result, run.summary)
         figures.cross_section(out / "cross_section.png", run.setup, run.result.snapshots[-1])
+        return []
+
+    def of_seats(out: Path, run: Run) -> list[str]:
         if run.result.steps:
             seat_figures.force_centre(out / "force_centre.png", run.setup, run.result)
             seat_figures.seat_pressure(out / "seat_pressure.png", run.setup, run.result)
         return []
 
-    return draw
+    return of_seats, of_spring
 
 
-def load_scene() -> Draw:
+def load_scene() -> tuple[Draw, ...]:
     """Load the libraries for springs.png, and start a virtual display if it needs one."""
     from coilset.model.results import display, scene
 
@@ -59,8 +64,8 @@ def load_scene() -> Draw:
         scene.springs(out / "springs.png", shots, run.setup.wire_radius)
         return []
 
-    return draw
+    return (draw,)
 
 
-PARTS: dict[str, Callable[[], Draw]] = {"figures": load_figures, "scene": load_scene}
-"""Names of the parts; each gives a function that draws into a folder and returns warnings, one line each."""
+PARTS: dict[str, Callable[[], tuple[Draw, ...]]] = {"figures": load_figures, "scene": load_scene}
+"""Names of the parts; each gives functions that draw into a folder and return warnings, one line each."""

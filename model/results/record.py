@@ -6,11 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from coilset.meshes.ends import ENDS
+from coilset.meshes.geometry import Spring
 from coilset.meshes.placement import Placement
-from coilset.meshes.spring import Spring
-from coilset.model.contact.base import ENDS
 from coilset.model.results.frame import Frame
-from coilset.model.rod.kinematics import GAUSS
 from coilset.model.section import surface
 from coilset.model.section.rules import DiskRule
 from coilset.model.warning import Warning
@@ -248,6 +247,8 @@ class Setup:
     @property
     def section_turns(self) -> np.ndarray:
         """Turns at which the Gauss sections stand, shape (n, 2)."""
+        from coilset.model.rod.kinematics import GAUSS  # not where results are only read
+
         return self.turns[:-1, None] + np.diff(self.turns)[:, None] * GAUSS
 
     @property

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
+import pyvista.plotting
 
 from coilset.model.results.folder import whole
 from coilset.model.results.labels import plain

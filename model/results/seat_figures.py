@@ -10,7 +10,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from coilset.model.contact.base import ENDS
+from coilset.meshes.ends import ENDS
 from coilset.model.results.figures import save
 from coilset.model.results.labels import decimals, named_phases, plain, unnamed
 from coilset.model.results.record import ContactRecord, Result, Setup
@@ -136,7 +136,7 @@ def seat_pressure(path: str | Path, setup: Setup, result: Result) -> bool:
             pressed = f"Up to {there:.3g} N/mm press" if there else "Nothing presses"
             axes.set_title(f"{pressed} the {end} seat")
         if shown is not None:
-            figure.colorbar(shown, ax=maps, label="force per length of wire in N/mm")
+            figure.colorbar(shown, ax=maps, label="force per length of wire in N/mm", format="{x:g}")
         styles = phase_styles(setup)
         for index, steps in phases(result).items():
             for end in seats:

@@ -73,6 +73,7 @@ LOOP = """
 }}
 """
 
+OWN = Path(__file__).read_text(encoding="utf-8")  # with FFCx's C, all that the compiled loop depends on
 Loop = tuple[Any, Any]  # the FFI of a compiled module, and its function
 
 
@@ -127,12 +128,12 @@ class ElementKernel:
 def load(compiled: Any) -> Loop:
     """The compiled loop over the elements for DOLFINx's CompiledForm; `load(comm, compiled)` is collective."""
     module = Path(compiled.module.__file__)
-    text = _source(module.with_name(f"{compiled.module.__name__}.c").read_text(encoding="utf-8"))
+    text = module.with_name(f"{compiled.module.__name__}.c").read_text(encoding="utf-8")
     processor = binding.get_host_cpu_name() + binding.get_host_cpu_features().flatten()
-    content = hashlib.sha256("".join([text, *OPTIONS, processor]).encode()).hexdigest()[:16]
+    content = hashlib.sha256("".join([text, OWN, processor]).encode()).hexdigest()[:16]
     path = module.with_name(f"coilset_elements_{content}{''.join(module.suffixes)}")
     if not path.is_file():
-        _compile(path, text)
+        _compile(path, _source(text))
     found = importlib.util.spec_from_file_location(path.name.split(".")[0], path)
     assert found is not None
     assert found.loader is not None

@@ -13,8 +13,9 @@ from scipy.optimize import brentq
 from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.equilibrium.methods import METHODS, MethodName, rod_method
+from coilset.model.equilibrium.methods import METHODS, rod_method
 from coilset.model.equilibrium.newton import Newton
+from coilset.model.equilibrium.settings import MethodName
 from coilset.model.equilibrium.snes import SnesFactory
 from coilset.model.material import library
 from coilset.model.section.rules import abramowitz9

@@ -1,0 +1,20 @@
+"""What a solve loads, in an order in which two threads can load it."""
+
+from coilset.model.libraries import link_beside
+
+
+def load_for_solve() -> None:
+    """Load what needs the linker itself, have MPI, PETSc and DOLFINx linked, and load what needs neither."""
+    import decimal  # noqa: F401
+    import zoneinfo  # noqa: F401
+
+    import pydantic.main  # noqa: F401
+    from numba.core.registry import cpu_target
+
+    assert cpu_target.target_context  # made when it is asked for, with LLVM
+    link_beside()
+    import ufl  # noqa: F401
+
+    import coilset.model.contact.build
+    import coilset.model.rod.finer_path
+    import coilset.model.standards.case_warnings  # noqa: F401
