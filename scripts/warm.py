@@ -7,7 +7,7 @@ from coilset.model.case import read_case
 from coilset.model.design.surrogate import guess
 from coilset.model.examples import EXAMPLES
 
-LOADING = "loading=[{to: {travel: 14}, steps: 4}, {to: {force: 0}, steps: 1}]"
+LOADING = "loading=[{to: {travel: 16}, steps: 4}, {to: {force: 0}, steps: 1}]"
 CREEPING = "loading=[{to: {force: 650}, steps: 2}, {hold: {hours: 1}, steps: 1}]"
 SHORT = {"ck15_presetting.yaml": LOADING, "time/relaxation.yaml": CREEPING}  # examples, and what they go through
 

@@ -115,6 +115,7 @@ class TangentMatrix:
         there = np.minimum(entries, layout.size - layout.size_local)
         self.mat.setPreallocationNNZ((here, there) if layout.comm.size > 1 else here)
         self.mat.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)  # lost in a parallel allocation
+        self.mat.setOption(PETSc.Mat.Option.NEW_NONZERO_ALLOCATION_ERR, False)  # where frames branch, nodes have more
 
     def _make_room(self, contributions: Sequence[Contribution]) -> None:
         """Allocate the rows anew: those of the body, and what the contacts join."""
