@@ -3,6 +3,7 @@
 import io
 import os
 import subprocess
+import sys
 
 import pytest
 
@@ -48,3 +49,12 @@ def test_more_ranks_than_cores_start_without_a_word():
     done = subprocess.run([*mpirun(ranks), "echo", "here"], env=mpi_environment(), capture_output=True, text=True,
                           check=False)  # fmt: skip
     assert (done.returncode, done.stdout, done.stderr) == (0, "here\n" * ranks, "")
+
+
+def test_ranks_print_colours_on_a_terminal_only(tmp_path):
+    """mpirun gives them terminals of its own, whatever the command's own output is."""
+    (tmp_path / "shout.py").write_text("from rich.console import Console\nConsole().print('[bold red]here[/]')\n")
+    command = [sys.executable, "-m", "coilset.scripts", "-n", "2", "python", str(tmp_path / "shout.py")]
+    seen = os.environ | {"TERM": "xterm-256color"}
+    done = subprocess.run(command, capture_output=True, text=True, check=True, env=seen)
+    assert done.stdout.split() == ["here", "here"]
