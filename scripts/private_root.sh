@@ -61,18 +61,20 @@ add_all() {
 
 # The private root brings its own system folders; every other folder of this machine is seen through. This shell stays
 # above bubblewrap, which ends with it however it ends (SIGKILL too) and takes the command along. Signals are for the
-# command: bubblewrap ignores or blocks them, and this shell passes them on. An interrupt that comes before the command has
-# begun waits for it, being blocked.
+# command: bubblewrap ignores or blocks them, and this shell passes them on, from before there is a command.
 enter_private_root() {
     enter() {
-        local binds=() folder child reset=TERM
+        local binds=() folder pipe ended child='' early=() number reset=TERM
         for folder in /*; do
             case "$folder" in
                 /bin | /boot | /dev | /etc | /lib* | /proc | /run | /sbin | /sys | /usr | /var | /lost+found) ;;
                 *) [ -d "$folder" ] && [ ! -L "$folder" ] && binds+=(--bind "$folder" "$folder") ;;
             esac
         done
-        ignores_interrupts || reset+=,INT # ignored from above, as in a script's background: stays so
+        signal_in SigIgn $$ INT || reset+=,INT # ignored from above, as in a script's background: stays so
+        exec {pipe}<> <(:) {ended}< "/dev/fd/$pipe" # which the command holds open for as long as it lives
+        trap 'pass_on INT' INT
+        trap 'pass_on TERM' TERM
         # In a shell's background, SIGINT is ignored and the input is empty: both are given back.
         (
             trap '' TERM
@@ -82,23 +84,36 @@ enter_private_root() {
                 -- env --default-signal=$reset --block-signal=INT "$@"
         ) <&0 &
         child=$!
-        trap 'in_foreground || pass_on INT' INT
-        trap 'pass_on TERM' TERM
-        while kill -0 "$child" 2> /dev/null; do wait "$child" || true; done
-        wait "$child" || exit "${interrupted:-$?}"
+        exec {pipe}>&-
+        for number in ${early[@]+"${early[@]}"}; do pass_on "$number"; done
+        # A signal just before `wait` would be answered when that ends; `read` answers within a second.
+        while kill -0 "$child" 2> /dev/null; do
+            read -rt 1 -u "$ended" || (($? > 128)) || wait "$child" || true
+        done
+        wait "$child" || exit
     }
 }
 
-pass_on() { # a signal to the command in bubblewrap; while there is none yet, nothing is lost with bubblewrap itself
+# A signal to the command in bubblewrap, as soon as there is one. An interrupt waits there, being blocked, until Python can
+# answer; SIGTERM is ignored there at first. Where the terminal sends Ctrl-C, a command that blocks it no longer has it.
+pass_on() {
     local command=''
-    { read -r command < "/proc/$child/task/$child/children"; } 2> /dev/null || true
-    kill -s "$1" "$command" 2> /dev/null || { interrupted=130; kill -s KILL "$child" 2> /dev/null || true; }
+    [ -n "$child" ] || { early+=("$1"); return; }
+    until { read -r command < "/proc/$child/task/$child/children" || [ -n "$command" ]; } 2> /dev/null &&
+        { [ "$1" = INT ] || ! signal_in SigIgn "$command" "$1"; }; do
+        kill -0 "$child" 2> /dev/null || return 0
+        read -rt 0.01 -u "$ended" || true
+    done
+    if [ "$1" != INT ] || ! in_foreground || signal_in SigBlk "$command" INT; then
+        kill -s "$1" "$command" 2> /dev/null || true
+    fi
 }
 
-ignores_interrupts() {
-    local name mask
-    while read -r name mask; do [ "$name" != SigIgn: ] || break; done < "/proc/$$/status"
-    (((16#$mask >> 1) & 1)) # SIGINT is number 2
+signal_in() { # is it in that set (SigIgn, SigBlk) of the process?
+    local name mask number=2
+    [ "$3" = INT ] || number=15 # SIGTERM
+    { while read -r name mask; do [ "$name" != "$1:" ] || break; done < "/proc/$2/status"; } 2> /dev/null || return
+    (((16#${mask:-0} >> (number - 1)) & 1))
 }
 
 in_foreground() { # are we where the terminal sends Ctrl-C? Then it reaches the command by itself
