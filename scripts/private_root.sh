@@ -101,8 +101,7 @@ pass_on() {
     [ -n "$child" ] || { early+=("$1"); return; }
     until { read -r command < "/proc/$child/task/$child/children" || [ -n "$command" ]; } 2> /dev/null &&
         { [ "$1" = INT ] || ! signal_in SigIgn "$command" "$1"; }; do
-        kill -0 "$child" 2> /dev/null || return 0
-        read -rt 0.01 -u "$ended" || true
+        read -rt 0.01 -u "$ended" || (($? > 128)) || return 0 # it has ended
     done
     if [ "$1" != INT ] || ! in_foreground || signal_in SigBlk "$command" INT; then
         kill -s "$1" "$command" 2> /dev/null || true
