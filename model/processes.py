@@ -44,8 +44,11 @@ def mpi_settings() -> dict[str, str]:
 
 
 def mpi_environment() -> dict[str, str]:
-    """Environment for `mpirun`: this process's own, with `mpi_settings` unless the user has set them."""
-    return mpi_settings() | os.environ
+    """Environment for `mpirun`: this process's own, with `mpi_settings` unless the user has set them.
+
+    mpirun gives the ranks terminals of its own, on which they print colours; where these would go into a file, none.
+    """
+    return mpi_settings() | os.environ | ({} if sys.stdout.isatty() else {"TERM": "dumb"})
 
 
 def first_rank() -> bool:

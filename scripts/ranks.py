@@ -47,8 +47,6 @@ def launch(ranks: int, arguments: Sequence[str]) -> int:
     """Run `coilset ARGUMENTS` on some ranks; returns the exit code of the first that failed."""
     command = [*mpirun(ranks), sys.executable, "-m", "coilset.scripts", *arguments]
     environment = mpi_environment() | {"COILSET_RANKS": str(ranks)}
-    if not sys.stdout.isatty():
-        environment["TERM"] = "dumb"  # mpirun gives the ranks terminals of its own, on which they would print colours
     process = subprocess.Popen(
         command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, bufsize=0, env=environment,
         process_group=0, preexec_fn=end_with_parent,
