@@ -16,6 +16,7 @@ from coilset.model.results.provenance import origin
 from coilset.model.results.record import Step
 from coilset.model.results.summary import summarise
 from coilset.scripts.solve import write_run
+from coilset.scripts.step_words import quantity, without_minus
 from coilset.scripts.target import results_folder
 
 
@@ -31,7 +32,7 @@ def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool) 
     folder = results_folder(out, Path(file).stem)
 
     def told(name: str, step: Step) -> None:
-        console.print(f"{name:6}{step.number:6d}{step.seat_height_mm:14.4f} mm{round(step.force_N, 3) + 0.0:14.3f} N")
+        console.print(f"{name:6}{step.number:6d}{step.seat_height_mm:14.4f} mm{without_minus(step.force_N, 3):>14} N")
 
     pressed = press(wanted, told)
     prepare(folder, force)
@@ -49,19 +50,16 @@ def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool) 
 
 
 def _conclude(console: Console, pressed: Pressed, found: dict[str, Any], folder: Path) -> None:
-    def number(value: float | None, unit: str, digits: int = 4) -> str:
-        return "not reached" if value is None else f"{round(value, digits) + 0.0:.{digits}f} {unit}"  # no -0.0
-
     table = Table("", "nest", *(member.name for member in pressed.members), box=None, padding=(0, 2))
     rows = {"free length before": "free_length_before_mm", "free length after": "free_length_after_mm",
             "set": "set_mm", "block": "block_height_mm"}  # fmt: skip
     columns = [found, *(found[member.name] or {} for member in pressed.members)]
     for name, key in rows.items():
-        table.add_row(name, *(number(one.get(key), "mm") for one in columns))
-    table.add_row("maximum force", *(number(one.get("force_max_N"), "N", 2) for one in columns))
+        table.add_row(name, *(quantity(one.get(key), "mm") for one in columns))
+    table.add_row("maximum force", *(quantity(one.get("force_max_N"), "N", 2) for one in columns))
     for name, key in (("maximum", "shear_inside_max_MPa"), ("residual", "residual_shear_inside_MPa")):
-        table.add_row(f"shear inside, {name}", "", *(number(one.get(key), "MPa", 1) for one in columns[1:]))
-    table.add_row("least room between them", number(found["clearance_min_mm"], "mm"), "", "")
+        table.add_row(f"shear inside, {name}", "", *(quantity(one.get(key), "MPa", 1) for one in columns[1:]))
+    table.add_row("least room between them", quantity(found["clearance_min_mm"], "mm"), "", "")
     console.print(table)
     for warning in pressed.warnings:
         console.print(f"[yellow]warning:[/] {warning.message}")

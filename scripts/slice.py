@@ -17,9 +17,8 @@ from coilset.model.results.provenance import origin
 from coilset.model.slice.analysis import ACROSS, SliceAnalysis, SliceStep
 from coilset.model.slice.summary import summarise, write_history
 from coilset.model.standards.case_warnings import case_warnings
+from coilset.scripts.step_words import HEAD, quantity, step_row
 from coilset.scripts.target import results_folder
-
-HEAD = f"{'step':>5}{'height/mm':>10}{'force/N':>12}{'iter.':>6}  touching"
 
 
 def slice_case(
@@ -61,7 +60,7 @@ def slice_case(
         console.print(f"[yellow]warning:[/] {warning.message}")
     targets = ", ".join(phase.label for phase in case.loading)
     console.print(f"{Path(case_file).name}: slice with {analysis.body.u.size + 2} unknowns, to {targets}")
-    console.print(HEAD)
+    console.print(f"{HEAD}  touching")
     failure = None
     try:
         analysis.run(lambda step: console.print(_row(step)))
@@ -75,9 +74,7 @@ def slice_case(
 
 
 def _row(step: SliceStep) -> str:
-    force = round(step.force_N, 3) + 0.0  # no -0.000
-    touching = "  coils" if step.contacts else ""
-    return f"{step.number:5d}{step.seat_height_mm:10.4f}{force:12.3f}{step.iterations:6d}{touching}"
+    return step_row(step) + ("  coils" if step.contacts else "")
 
 
 def _write(out: Path, analysis: SliceAnalysis, summary: dict[str, Any], pictures: bool) -> None:
@@ -92,19 +89,16 @@ def _write(out: Path, analysis: SliceAnalysis, summary: dict[str, Any], pictures
 
 
 def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
-    def number(value: float | None, unit: str, digits: int = 4) -> str:
-        return "not reached" if value is None else f"{round(value, digits) + 0.0:.{digits}f} {unit}"  # no -0.0
-
     loaded, released = summary["loaded"], summary["released"] or {}
     table = Table(show_header=False, box=None, padding=(0, 2))
-    table.add_row("free length before", number(summary["free_length_before_mm"], "mm"))
-    table.add_row("free length after", number(summary["free_length_after_mm"], "mm"))
-    table.add_row("[bold]set[/]", f"[bold]{number(summary['set_mm'], 'mm')}[/]")
-    table.add_row("initial rate", number(summary["rate_N_per_mm"], "N/mm"))
-    table.add_row("maximum force", number(summary["force_max_N"], "N", 2))
-    table.add_row("shear at the surface, inside, loaded", number(loaded["shear_inside_MPa"], "MPa", 2))
-    table.add_row("the same, released", number(released.get("shear_inside_MPa"), "MPa", 2))
-    table.add_row("maximum surface shear stress, released", number(released.get("surface_shear_max_MPa"), "MPa", 2))
+    table.add_row("free length before", quantity(summary["free_length_before_mm"], "mm"))
+    table.add_row("free length after", quantity(summary["free_length_after_mm"], "mm"))
+    table.add_row("[bold]set[/]", f"[bold]{quantity(summary['set_mm'], 'mm')}[/]")
+    table.add_row("initial rate", quantity(summary["rate_N_per_mm"], "N/mm"))
+    table.add_row("maximum force", quantity(summary["force_max_N"], "N", 2))
+    table.add_row("shear at the surface, inside, loaded", quantity(loaded["shear_inside_MPa"], "MPa", 2))
+    table.add_row("the same, released", quantity(released.get("shear_inside_MPa"), "MPa", 2))
+    table.add_row("maximum surface shear stress, released", quantity(released.get("surface_shear_max_MPa"), "MPa", 2))
     table.add_row("results in", f"{out}{os.sep}")
     console.print(table)
     for warning in summary["warnings"]:

@@ -17,9 +17,9 @@ from rich.table import Table
 from coilset.model.analysis import Analysis
 from coilset.model.results.contact_state import contact_words
 from coilset.model.results.record import Step
+from coilset.scripts.step_words import HEAD, quantity, step_row
 
 SOON = 5.0  # seconds; with less elapsed or left, the remaining time is not printed
-HEAD = f"{'step':>5}{'height/mm':>10}{'force/N':>12}{'iter.':>6}{'points':>7}  touching"  # a row fits in 80 columns
 
 
 class Lines:
@@ -52,17 +52,16 @@ class Lines:
         self.say(f"{Path(case_file).name}: {elements} elements, to {targets}, {ranks} rank(s)")
         if resumed:
             self.say(f"continuing after step {analysis.continuation.number}")
-        self.say(HEAD)
+        self.say(f"{HEAD}{'points':>7}  touching")  # a row fits in 80 columns
 
     def step(self, step: Step) -> None:
         """A step has been found."""
         cuts = f"  {step.cuts} cut{'s' * (step.cuts > 1)}" if step.cuts else ""
         if step.left_branch:
             cuts += "  [yellow]snapped[/]" if step.released_energy_Nmm else "  [yellow]left its path[/]"
-        force = round(step.force_N, 3) + 0.0  # no -0.000
         touching = contact_words(self.analysis.setup.contacts, self.analysis.result.seats[-1])
-        row = f"{step.number:5d}{step.seat_height_mm:10.4f}{force:12.3f}{step.iterations:6d}{step.contacts:7d}"
-        self.console.print(f"{row}  {touching}{cuts}{self._left(step)}", soft_wrap=True)
+        row = f"{step_row(step)}{step.contacts:7d}  {touching}{cuts}{self._left(step)}"
+        self.console.print(row, soft_wrap=True)
 
     def _left(self, step: Step) -> str:
         """Remaining time at the speed so far; empty if it is short, or too early to tell."""
@@ -88,19 +87,19 @@ class Lines:
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
         """What was found."""
         table = Table(show_header=False, box=None, padding=(0, 2))
-        table.add_row("free length before", _number(summary["free_length_before_mm"], "mm"))
-        table.add_row("free length after", _number(summary["free_length_after_mm"], "mm"))
-        table.add_row("[bold]set[/]", f"[bold]{_number(summary['set_mm'], 'mm')}[/]")
-        table.add_row("initial rate", _number(summary["rate_N_per_mm"], "N/mm"))
-        table.add_row("rate between 30 and 70 % of the travel", _number(summary["rate_30_70_N_per_mm"], "N/mm"))
+        table.add_row("free length before", quantity(summary["free_length_before_mm"], "mm"))
+        table.add_row("free length after", quantity(summary["free_length_after_mm"], "mm"))
+        table.add_row("[bold]set[/]", f"[bold]{quantity(summary['set_mm'], 'mm')}[/]")
+        table.add_row("initial rate", quantity(summary["rate_N_per_mm"], "N/mm"))
+        table.add_row("rate between 30 and 70 % of the travel", quantity(summary["rate_30_70_N_per_mm"], "N/mm"))
         for rate in summary["rates"]:
-            table.add_row(f"rate at {rate['travel_mm']:g} mm", _number(rate["rate_N_per_mm"], "N/mm"))
-        table.add_row("maximum force", _number(summary["force_max_N"], "N", 2))
+            table.add_row(f"rate at {rate['travel_mm']:g} mm", quantity(rate["rate_N_per_mm"], "N/mm"))
+        table.add_row("maximum force", quantity(summary["force_max_N"], "N", 2))
         if summary["load_loss_percent"] is not None:
-            table.add_row("load lost in time", _number(summary["load_loss_percent"], "%", 2))
-        table.add_row("block height", _number(summary["block_height_mm"], "mm"))
-        table.add_row("maximum residual shear stress", _number(summary["residual_shear_max_MPa"], "MPa", 2))
-        inside = _number(summary["residual_shear_inside_MPa"], "MPa", 2)
+            table.add_row("load lost in time", quantity(summary["load_loss_percent"], "%", 2))
+        table.add_row("block height", quantity(summary["block_height_mm"], "mm"))
+        table.add_row("maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2))
+        inside = quantity(summary["residual_shear_inside_MPa"], "MPa", 2)
         table.add_row("residual shear stress, inside of coil", inside)
         table.add_row("results in", f"{out}{os.sep}")
         self.console.print(table)
@@ -170,10 +169,6 @@ def _done(analysis: Analysis, step: Step | None = None) -> float:
     if step is None:
         step = analysis.result.steps[-1] if analysis.result.steps else None
     return 0.0 if step is None else (step.phase + step.progress) / len(analysis.case.loading)
-
-
-def _number(value: float | None, unit: str, digits: int = 4) -> str:
-    return "not reached" if value is None else f"{round(value, digits) + 0.0:.{digits}f} {unit}"  # no -0.0
 
 
 class _Handler(logging.Handler):
