@@ -32,22 +32,24 @@ FIRST = {**ONE_STEP, "snes_linesearch_type": "basic"}  # only meets the prescrib
 METHODS: dict[str, dict[str, Any]] = {  # each MethodName
     # Newton-Raphson (4.4.4)
     # its corrections are scaled by coilset.model.equilibrium.line_search
-    "newton": {"snes_type": "newtonls", "snes_linesearch_type": "basic", "snes_max_it": 30, **DIRECT},
+    "newton": {"snes_type": "newtonls", "snes_linesearch_type": "basic", **UNLIMITED, "snes_max_it": 30, **DIRECT},
     # (4.4.5), with a line search for the zero of the out-of-balance work along the direction
     "modified-newton": {
-        "snes_type": "newtonls", "snes_linesearch_type": "cp", "snes_lag_jacobian": RENEWAL, "snes_max_it": 100,
-        **DIRECT,
+        "snes_type": "newtonls", "snes_linesearch_type": "cp", **UNLIMITED, "snes_lag_jacobian": RENEWAL,
+        "snes_max_it": 100, **DIRECT,
     },
     # the same, accelerated by mixing the last states; with one of them it is Aitken's method for vectors
-    "modified-newton-anderson": {"snes_type": "anderson", "snes_anderson_m": 10, "snes_max_it": 100, **PRECONDITIONED},
+    "modified-newton-anderson": {
+        "snes_type": "anderson", "snes_anderson_m": 10, **UNLIMITED, "snes_max_it": 100, **PRECONDITIONED,
+    },
     # Matthies and Strang (4.4.6-4.4.13), with the line search on the out-of-balance work
     "bfgs": {
         "snes_type": "qn", "snes_qn_type": "lbfgs", "snes_qn_scale_type": "jacobian", "snes_qn_m": RENEWAL,
-        "snes_qn_restart_type": "periodic", "snes_linesearch_type": "cp", "snes_max_it": 100, **DIRECT,
+        "snes_qn_restart_type": "periodic", "snes_linesearch_type": "cp", **UNLIMITED, "snes_max_it": 100, **DIRECT,
     },
     "broyden": {
         "snes_type": "qn", "snes_qn_type": "broyden", "snes_qn_m": 5, "snes_qn_restart_type": "periodic",
-        "snes_linesearch_type": "cp", "snes_max_it": 100, "snes_npc_side": "left",
+        "snes_linesearch_type": "cp", **UNLIMITED, "snes_max_it": 100, "snes_npc_side": "left",
         "snes_function_type": "unpreconditioned", **PRECONDITIONED, "npc_snes_lag_jacobian": 5,
     },
     # the load factor as one more unknown: passes limit points within a step; the arc is measured in displacements
@@ -156,8 +158,7 @@ def rod_method(name: str, ranks: int, extra: Mapping[str, Any] | None = None, ar
         InputError: if there is no such method.
     """
     check_method(name)
-    # a failed line search must not count as a small step: stol = 0; arcs have none, and PETSc names options in vain
-    chosen = {"snes_stol": 0.0} | ({} if name == "arc-length" else UNLIMITED) | METHODS[name]
+    chosen = {"snes_stol": 0.0} | METHODS[name]  # a failed line search must not count as a small step
     prefix = "npc_" if "npc_pc_type" in chosen else ""
     if ranks > 1:
         chosen |= {f"{prefix}pc_type": "python", f"{prefix}pc_python_type": ON_RANKS}
