@@ -60,6 +60,7 @@ class Analysis:
     Args:
         case: Case (`coilset.model.case.read_case`, or built in Python).
         comm: MPI communicator.
+        detailed: also record the seats' reactions and the wire after every step.
 
     Raises:
         InputError: if the spring or the material cannot be built.
@@ -70,7 +71,7 @@ class Analysis:
         system, newton, control, program: the System of the Rod `rod`, its Newton, AxialControl and LoadProgram.
     """
 
-    def __init__(self, case: Case, comm: MPI.Comm = MPI.COMM_WORLD) -> None:
+    def __init__(self, case: Case, comm: MPI.Comm = MPI.COMM_WORLD, detailed: bool = True) -> None:
         self.case, self.comm = case, comm
         self.spring = spring = case.spring.build()
         self.law = case_law(case, spring)
@@ -118,7 +119,9 @@ class Analysis:
                            self.rod.rule, records, section.kind, placement,
                            buckling_travel(spring, self.law.G / self.law.E), self._limits(float(radius.min())),
                            tuple(case.rates_at), warnings, coiling_diameter)  # fmt: skip
-        self.recorder = Recorder(self.setup, self.rod, self.system, self.control, self.newton, self.stability)
+        self.recorder = Recorder(
+            self.setup, self.rod, self.system, self.control, self.newton, self.stability, detailed
+        )  # fmt: skip
 
     @property
     def result(self) -> Result:

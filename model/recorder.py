@@ -33,16 +33,18 @@ class Recorder:
     Args:
         setup: what the records refer to.
         rod, system, control, newton, stability: of the analysis.
+        detailed: record SeatReactions and Frames, too.
 
     Attributes:
         result: the Result so far.
     """
 
     def __init__(
-        self, setup: Setup, rod: Rod, system: System, control: AxialControl, newton: Newton, stability: Stability
-    ) -> None:
+        self, setup: Setup, rod: Rod, system: System, control: AxialControl, newton: Newton, stability: Stability,
+        detailed: bool = True,
+    ) -> None:  # fmt: skip
         self.setup, self.rod, self.system, self.control = setup, rod, system, control
-        self.layout, self._newton, self._stability = system.line, newton, stability
+        self.layout, self._newton, self._stability, self._detailed = system.line, newton, stability, detailed
         self.torque = system.state.add("torque", mean_torque(rod), Where.ELEMENT)
         self.torque_force = system.state.add("torque_force", np.zeros(1), Where.SHARED)
         self.result, self._least_rise = Result(), LeastRise(setup.turns, setup.spring)
@@ -86,14 +88,15 @@ class Recorder:
                     self._least_rise.of(x), *self._errors(taken.outcome),
                     hours=float(self.rod.clock[0]), temperature_K=self.rod.hottest,
                     load_loss_percent=self._load_loss(phase, force, loading))  # fmt: skip
-        seats = self._seat_reactions(step.number, greatest)
         if weakest and (self.result.mode is None or weakest.value < self.result.mode.eigenvalue):
             mode = BucklingMode(step.travel_mm, bears, weakest.value, x, self._stability.displacements(weakest.mode))
             self.result = replace(self.result, mode=mode)
         if self._warned is None:
             self._warned = {warning.name for warning in step_warnings(self.setup, self.result)}
-        self.result = replace(self.result, steps=(*self.result.steps, step), seats=(*self.result.seats, seats),
-                              frames=(*self.result.frames, self._frame(x)))  # fmt: skip
+        self.result = replace(self.result, steps=(*self.result.steps, step))
+        if self._detailed:
+            seats, frame = self._seat_reactions(step.number, greatest), self._frame(x)
+            self.result = replace(self.result, seats=(*self.result.seats, seats), frames=(*self.result.frames, frame))
         for warning in step_warnings(self.setup, self.result):
             if warning.name not in self._warned:
                 log.warning("warning: %s", warning.message)

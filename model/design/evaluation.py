@@ -126,7 +126,7 @@ class Evaluator:
             known, self.solves = False, self.solves + 1
             analysis = None
             try:
-                analysis = Analysis(case, MPI.COMM_SELF)
+                analysis = Analysis(case, MPI.COMM_SELF, detailed=False)
                 found = self._read(x, analysis.setup, analysis.run(), began)
             except CoilsetError as error:
                 found = _failed(x, error, began)

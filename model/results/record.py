@@ -291,7 +291,8 @@ class Result:
     """What a run has found up to now; `complete` is False if it ended before its program did.
 
     Attributes:
-        steps: converged Steps, seats: SeatReactions after each of them, frames: Frames of the wire.
+        steps: converged Steps.
+        seats, frames: SeatReactions and Frames of the wire after each of them; empty if only the steps are recorded.
         snapshots: Snapshots at the start and after each phase.
         rate: initial rate, N/mm; NaN where no equilibrium was found for it.
         warnings: Warnings of moments that its other records do not show.

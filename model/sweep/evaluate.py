@@ -34,7 +34,7 @@ def evaluate(data: dict[str, Any], comm: MPI.Comm, file: str = "", time_limit: f
     began = time.perf_counter()
     reason, analysis = "", None
     try:
-        analysis = Analysis(check(data, file), comm)
+        analysis = Analysis(check(data, file), comm, detailed=False)
         analysis.run(watch(comm, began, time_limit))
     except CoilsetError as error:
         reason = str(error)
