@@ -25,8 +25,16 @@ class PiecewisePolynomial:
     def __call__(self, x: np.ndarray | float) -> np.ndarray:
         """Values, in the shape of `x`."""
         x = np.asarray(x, dtype=float)
+        if len(self.x) == 2:
+            return np.asarray(_values(self._terms[:, 0], x - self.x[0]))
         piece = np.searchsorted(self.x[1:-1], x, side="right")  # the outer ones go on beyond their ends
-        return np.asarray(_values(self.c[:, piece], x - self.x[piece]))
+        return np.asarray(_values(self._terms[:, piece], x - self.x[piece]))
+
+    @cached_property
+    def _terms(self) -> np.ndarray:
+        """The coefficients without the highest powers that no piece has: most springs' functions are constant."""
+        used = np.flatnonzero(self.c[:-1].any(axis=1))
+        return self.c[used[0] if len(used) else -1 :]
 
     def derivative(self, order: int = 1) -> "PiecewisePolynomial":
         """The derivative of the given order; each is computed once."""
@@ -54,7 +62,7 @@ class PiecewisePolynomial:
 
 def _values(c: np.ndarray, s: np.ndarray) -> np.ndarray:
     """Σ c sᵏ, the lowest power first, as PPoly adds them."""
-    value, power = c[-1].copy(), s
+    value, power = np.full(np.shape(s), c[-1]), s
     for term in c[-2::-1]:
         value += term * power
         power = power * s

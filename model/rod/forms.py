@@ -7,7 +7,7 @@ rotations do not add.
 """
 
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import basix.ufl
@@ -29,6 +29,7 @@ class Increment:
     shear: ufl.core.expr.Expr
 
 
+@cache
 def rod_element() -> Any:
     """Two nodes with displacement and rotation vector (P1, 6 values) and two excess shear angles per element (DG0)."""
     nodal = basix.ufl.element("Lagrange", "interval", 1, shape=(6,))

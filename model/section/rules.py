@@ -1,6 +1,7 @@
 """Quadrature of the disk of radius 1; weights sum to 1, so that an integral is πR² Σ w f(Ry, Rz)."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -27,6 +28,7 @@ def abramowitz9() -> DiskRule:
     return DiskRule(np.array([(0.0, 0.0), *ring, *square]), np.array(weights), "abramowitz9")
 
 
+@lru_cache(maxsize=16)  # cases of a sweep share rules
 def polar(radial: int = 8, angular: int = 20, staggered: bool = True) -> DiskRule:
     """Gauss rule in r² times equal angles: no point on the axis, where the stress of torsion vanishes.
 

@@ -28,6 +28,14 @@ def test_values_and_derivatives(pair, order):
     np.testing.assert_array_equal(ours(t), theirs(t))
 
 
+@pytest.mark.parametrize("pieces", [1, 3])
+@pytest.mark.parametrize("degree", [0, 1])
+def test_powers_that_no_piece_has(degree, pieces):
+    c, x = np.zeros((4, pieces)), np.arange(pieces + 1.0)
+    c[3 - degree :] = np.random.default_rng(4).standard_normal((degree + 1, pieces))
+    np.testing.assert_array_equal(PiecewisePolynomial(c, x)(places(x)), PPoly(c, x)(places(x)))
+
+
 def test_integral(pair):
     ours, theirs = (one.antiderivative() for one in pair)
     t = places(pair[0].x)

@@ -1,5 +1,6 @@
 """The material library: one YAML file a material, beside this module; users name their own file instead."""
 
+from functools import cache
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -12,9 +13,10 @@ from coilset.model.material.law import Law
 FOLDER = Path(str(resources.files(__package__)))
 
 
-def names() -> list[str]:
+@cache
+def names() -> tuple[str, ...]:
     """Names of the materials that come with coilset."""
-    return sorted(path.name.removesuffix(".yaml") for path in FOLDER.iterdir() if path.name.endswith(".yaml"))
+    return tuple(sorted(path.name.removesuffix(".yaml") for path in FOLDER.iterdir() if path.name.endswith(".yaml")))
 
 
 def load(name: str | Path, **options: Any) -> Law:
