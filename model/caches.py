@@ -32,10 +32,20 @@ def keep_by_content() -> None:
 def load_without_compiler() -> None:
     """Have numba load what it has compiled without setting up its compiler first, which takes longer than all else.
 
-    Compiled functions need numba's runtime, which is set up here. The compiler is set up when it is used: by numba
-    itself, before it compiles anything. So are the modules of numba whose functions were compiled into ours.
+    A version of numba that has no such function, or no such flag, loads as it always does.
     """
-    from numba.core import caching, entrypoints, environment
+    from numba.core import entrypoints
+
+    _set_up_when_compiling()
+    _link_when_compiling()
+    _import_nothing()
+    if hasattr(entrypoints, "_already_initialized"):
+        entrypoints._already_initialized = True  # no extensions of numba: it would look through all installed packages
+
+
+def _set_up_when_compiling() -> None:
+    """Compiled functions need numba's runtime, which is set up here; its compiler is set up before it is used."""
+    from numba.core.caching import Cache
     from numba.core.runtime import rtsys
 
     def load_overload(cache: Any, signature: Any, target: Any) -> Any:
@@ -46,12 +56,53 @@ def load_without_compiler() -> None:
         with cache._guard_against_spurious_io_errors():
             return cache._load_overload(signature, target)
 
-    @functools.wraps(environment._rebuild_env)  # under whose name it is called by what was kept
-    def rebuild(module: str, constants: list, name: str) -> Any:
-        """As numba's own, but for the module of a function that was compiled into another, which is not loaded.
+    ready: list[bool] = []
+    if all(hasattr(Cache, name) for name in ("load_overload", "_load_overload")):
+        Cache.load_overload = load_overload
 
-        Only code that works on Python's objects reads its globals, and none of these functions does.
-        """
+
+def _link_when_compiling() -> None:
+    """Beside machine code numba keeps bitcode, for callers that are compiled later; it is parsed when there is one.
+
+    It takes twice as long as all else of the loading.
+    """
+    from llvmlite import binding
+    from numba.core.codegen import CPUCodeLibrary, JitEngine
+    from numba.core.compiler import CompileResult
+
+    def rebuild(target: Any, kept: tuple, function: Any, *rest: Any) -> Any:
+        """As numba's own, with an empty module in place of the bitcode."""
+        name, kind, (code, bitcode) = kept
+        engine = target.codegen()._engine
+        engine._defined_symbols.add(function.llvm_cpython_wrapper_name)
+        empty = binding.parse_assembly("").as_bitcode()
+        made = own(target, (name, kind, (code, empty)), function, *rest)
+
+        def module_for_linking() -> Any:
+            del made.library._get_module_for_linking  # numba's own comes to light again
+            made.library._shared_module = binding.parse_bitcode(bitcode)
+            engine._load_defined_symbols(made.library._shared_module)
+            return made.library._shared_module
+
+        made.library._get_module_for_linking = module_for_linking
+        return made
+
+    needed = ((CompileResult, "_rebuild"), (CPUCodeLibrary, "_get_module_for_linking"),
+              (JitEngine, "_load_defined_symbols"))  # fmt: skip
+    if all(hasattr(owner, name) for owner, name in needed):
+        own = CompileResult._rebuild
+        CompileResult._rebuild = staticmethod(rebuild)
+
+
+def _import_nothing() -> None:
+    """The module of a function that was compiled into another is not loaded.
+
+    Only code that works on Python's objects reads its globals, and none of these functions does.
+    """
+    from numba.core import environment
+
+    def rebuild(module: str, constants: list, name: str) -> Any:
+        """As numba's own, but for the module."""
         found = environment.lookup_environment(name)
         if found is None:
             there = sys.modules.get(module)
@@ -61,8 +112,5 @@ def load_without_compiler() -> None:
             environment.Environment._memo[name] = found
         return found
 
-    ready: list[bool] = []
-    if all(hasattr(caching.Cache, name) for name in ("load_overload", "_load_overload")):
-        caching.Cache.load_overload = load_overload
-    environment._rebuild_env = rebuild
-    entrypoints._already_initialized = True  # no extensions of numba: it would look through all installed packages
+    if hasattr(environment, "_rebuild_env"):  # under whose name what is kept calls it
+        environment._rebuild_env = functools.wraps(environment._rebuild_env)(rebuild)

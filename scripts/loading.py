@@ -1,6 +1,21 @@
 """What a solve loads, in an order in which two threads can load it."""
 
+import contextlib
+import gc
+from collections.abc import Iterator
+
 from coilset.model.libraries import link_beside
+
+
+@contextlib.contextmanager
+def keeping() -> Iterator[None]:
+    """Look for no garbage while libraries are loaded, nor later among what they have made: it stays until the end."""
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def load_for_solve() -> None:

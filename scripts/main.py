@@ -1,7 +1,6 @@
 """The command `coilset`: its sub-commands, and the handling of errors."""
 
 import errno
-import gc
 import os
 import re
 import signal
@@ -16,7 +15,7 @@ from coilset.model.processes import first_rank
 from coilset.scripts.beginning import announce_begin
 from coilset.scripts.compiling import NOTICE, announce_compiling, compile_first, compiled
 from coilset.scripts.ending import Ending
-from coilset.scripts.loading import load_for_solve
+from coilset.scripts.loading import keeping, load_for_solve
 from coilset.scripts.material import app as material
 from coilset.scripts.output import Output, output_closed
 from coilset.scripts.plain import typer
@@ -33,7 +32,6 @@ docs/install.md."""
 NO_ROOM = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT, errno.EROFS)
 TOGETHER = 10.0  # seconds within which all ranks meet an error that concerns them all
 HEARD = 0.5  # seconds for mpirun to pass on the output of a rank, before it ends the ranks and drops the rest
-GARBAGE = 100_000  # objects after which Python looks for circular ones
 LONGEST_MESSAGE = 400  # characters of a wrong command line that a message repeats
 INTERRUPTED = 128 + signal.SIGINT
 ONE_SIGNAL = 0.5  # seconds within which several signals count as one: `timeout` signals a process and its group
@@ -105,11 +103,10 @@ def solve(
         if pictures and os.path.isfile(case):
             drawings.start_if_free()
         announce_compiling()
-        load_for_solve()
-        from coilset.scripts.solve import solve as run_case
+        with keeping():
+            load_for_solve()
+            from coilset.scripts.solve import solve as run_case
 
-        gc.freeze()  # what libraries have made is no garbage
-        gc.set_threshold(GARBAGE)
         voice = "quiet" if quiet else "json" if json else "lines"
         run_case(case, out, force, settings, pictures, resume, interactive, drawings=drawings, voice=voice,
                  verbose=verbose)  # fmt: skip

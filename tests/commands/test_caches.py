@@ -50,17 +50,50 @@ import numpy as np
 from adding import add
 print(add(np.arange(4.0)), sum(add.stats.cache_hits.values()), "scipy.linalg" in sys.modules, add(np.arange(4)))
 """
+TWICE = """
+from numba import njit
+from adding import add
+
+@njit(cache=True)
+def twice(x):
+    return 2.0 * add(x)
+"""
+CALL = """
+import sys
+from coilset.model.caches import load_without_compiler
+load_without_compiler()
+import numpy as np
+from doubling import add, twice
+if len(sys.argv) > 1:
+    add(np.arange(4.0))
+print(twice(np.arange(4.0)), *(sum(one.stats.cache_hits.values()) for one in (add, twice)))
+"""
 
 
 def test_what_is_compiled_is_loaded_without_the_compiler(tmp_path):
     """Which is there when it is needed: for whole numbers, after the function of floating-point numbers was loaded."""
-    (tmp_path / "adding.py").write_text(ADD)
-    paths = os.pathsep.join([str(tmp_path), os.environ.get("PYTHONPATH", "")])
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": paths}
+    run = with_functions_kept_in(tmp_path)
+    assert run(LOAD) == ["6.0", "0", "True", "6"]
+    assert run(LOAD) == ["6.0", "1", "False", "6"]
 
-    def run():
-        done = subprocess.run([sys.executable, "-c", LOAD], env=environment, capture_output=True, text=True, check=True)
-        return done.stdout.split()
 
-    assert run() == ["6.0", "0", "True", "6"]
-    assert run() == ["6.0", "1", "False", "6"]
+def test_what_is_loaded_becomes_part_of_callers_that_are_compiled_later(tmp_path):
+    """Which are kept, and need it no more."""
+    run = with_functions_kept_in(tmp_path)
+    assert run(LOAD)[1] == "0"
+    assert run(CALL, "add") == ["12.0", "1", "0"]
+    assert run(CALL) == ["12.0", "0", "1"]
+
+
+def with_functions_kept_in(folder):
+    """A function that runs a script, for which ADD and TWICE are there, and gives the words that it prints."""
+    (folder / "adding.py").write_text(ADD)
+    (folder / "doubling.py").write_text(TWICE)
+    paths = os.pathsep.join([str(folder), os.environ.get("PYTHONPATH", "")])
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(folder / "cache"), "PYTHONPATH": paths}
+
+    def run(*script):
+        command = [sys.executable, "-c", *script]
+        return subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout.split()
+
+    return run
