@@ -3,8 +3,8 @@
 x = n ln 2 + r with an integer n and |r| ≤ ½ ln 2, and 2ⁿ is written into the exponent of a number. With
 exp(r) = 1 + r + r² (½ + r S(r)), S is a polynomial that agrees with its series Σ rᵏ/(k + 3)! at Chebyshev's points of
 the interval: that leaves an error of 3e-17 of exp(r), and of 8e-17 of exp(r) − 1. Its terms are summed in pairs
-(Estrin's scheme), so that few of them wait for each other. Errors of exp(x) and φ are
-below 2e-16 of them, of ψ below 4e-16.
+(Estrin's scheme), so that few of them wait for each other. Errors of exp(x) and φ are below 2e-16 of them, of ψ below
+4e-16.
 """
 
 from typing import Any

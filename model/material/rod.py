@@ -16,7 +16,6 @@ from coilset.model.material.functions import (
     HEATING,
     SPIN,
     TEMPERATURE,
-    Functions,
     elasticity,
     functions,
 )
@@ -91,12 +90,17 @@ def return_map(
         return 0
 
     e = (E * de11 / 1.5, G * dg12, G * dg13)
-    plastic = _plastic(p, old[6], temperature, heating, alpha, E, G, n0, e, values)
-    local = plastic.local
+    k2, growth = surface(p, old[6], temperature, values[0])
+    outside = p[EXPONENT] > 0.0 and inner(n0, n0) > k2
+    beginning = begin(old[6], temperature, heating, alpha, E, G, n0, e, k2, growth, outside)
+    local = solve_at_rate(p, beginning.start, values)
     if local.iterations < 0:
         for i in range(new.shape[0]):
             new[i] = old[i]
         return local.iterations
+    if local.neutral:
+        heating = 0.0
+    plastic = end(beginning, local, heating, alpha * heating)
     pl = plastic.p
     rise = plastic.heating * (local.b - old[6])
     new[0] = s[0] - E * (pl[0] + alpha * rise)
@@ -125,29 +129,6 @@ def _elastic(old: np.ndarray, s: Vector, point: Point, E: float, G: float, new: 
     C[0, 0] += E
     C[1, 1] += G
     C[2, 2] += G
-
-
-@njit(**INLINE)
-def _plastic(
-    p: np.ndarray,
-    b: float,
-    temperature: float,
-    heating: float,
-    alpha: float,
-    E: float,
-    G: float,
-    n0: Vector,
-    e: Vector,
-    values: Functions,
-) -> Plastic:
-    """Solve the plastic part: n and p at its end."""
-    k2, growth = surface(p, b, temperature, values[0])
-    outside = p[EXPONENT] > 0.0 and inner(n0, n0) > k2
-    beginning = begin(b, temperature, heating, alpha, E, G, n0, e, k2, growth, outside)
-    local = solve_at_rate(p, beginning.start, values)
-    if local.neutral:
-        heating = 0.0
-    return end(beginning, local, heating, alpha * heating)
 
 
 @njit(**INLINE)

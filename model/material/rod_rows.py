@@ -35,8 +35,8 @@ RUNNING, CONVERGED, LEFT_OUT = 0.0, 1.0, 2.0
 
 # Rows: state and strain increments at the start, k² and its slope there;
 START, STRAIN, K2, GIVEN = 0, 7, 10, 12
-# n₀, the inner products of n₀ and e, β and σ (`rod.Beginning`); b* and Λ as they approach the solution, b* half way,
-# and how far the point has come;
+# n₀, the inner products of n₀ and e, β and σ (`rod_plastic.Beginning`); b* and Λ as they approach the solution, b* half
+# way, and how far the point has come;
 NORMAL, PRODUCTS, BETA, SLOPE, B, MULTIPLIER, HALF, ENDED = 12, 15, 20, 21, 22, 23, 24, 25
 # k² and its slope at b*, the same half way, and there ζ, κ and their slopes in the end's b*;
 END, MIDDLE, ZETA, KAPPA = 26, 28, 30, 32

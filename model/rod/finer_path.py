@@ -12,7 +12,7 @@ four times as much. This divides the law's error and the area between path and c
 is the error of the section forces. Errors that plastic flow erases are erased here, too.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 from numba import njit
@@ -21,6 +21,7 @@ from coilset.model.section.kinds import Sections
 from coilset.model.state import State, Where
 
 BLOCK = 256  # cells that are followed together: only for these the state on the way is kept
+CLOCKS = "clock", "halfway_clock"  # of the whole rod, at the end of a step, and half way along its path
 KINK = 4.0  # of the parabola's height over the chord: after steps of one size, that of a kink in the middle of this one
 
 
@@ -43,9 +44,15 @@ class FinerPath:
         self._error = state.add("section_force_error", np.zeros(shape), Where.ELEMENT)
         self._fields = {name: state.add(f"finer_{name}", state[name].equilibrium.copy(), Where.ELEMENT, in_place=True)
                         for name in names}  # fmt: skip
-        cells = len(self._strain.trial)
-        self._half = {name: field.equilibrium[:BLOCK].copy() for name, field in self._fields.items()}
-        self._D = np.empty((min(BLOCK, cells), 2, 6, 6))
+        # the path's end takes the place of its start, which is not needed any more then
+        self._end = {name: field.equilibrium for name, field in self._fields.items()}
+        self._half = {name: values[:BLOCK].copy() for name, values in self._end.items()}
+        self._start = self._end | {"strain": self._strain.equilibrium}
+        if "clock" in state:
+            clock, halfway = (state[name] for name in CLOCKS)
+            self._start["clock"], self._end["clock"] = clock.equilibrium, clock.trial
+            self._half["clock"] = halfway.trial
+        self._D = np.empty((min(BLOCK, len(self._strain.trial)), 2, 6, 6))
         self._parts = list(in_blocks(sections))
 
     def follow(self, s: np.ndarray, ratio: float, kinked: bool = False, stands: bool = True) -> bool:
@@ -81,14 +88,8 @@ class FinerPath:
     def _follow(self, cells: slice, sections: Sections, middle: np.ndarray, s: np.ndarray) -> bool:
         """Advance some of the cells over `middle`, all cells' strains there, and write their errors."""
         strain, size, forces = self._strain, cells.stop - cells.start, np.empty((cells.stop - cells.start, 2, 6))
-        start = {name: field.equilibrium[cells] for name, field in self._fields.items()}
-        half = {name: values[:size] for name, values in self._half.items()}
-        end = dict(start)  # in the place of the start, which is not needed any more then
-        start["strain"] = strain.equilibrium[cells]
-        if "clock" in self._state:
-            start["clock"], end["clock"] = self._state["clock"].equilibrium, self._state["clock"].trial
-            half["clock"] = self._state["halfway_clock"].trial
-        reached, D = middle[cells], self._D[:size]
+        start, end = of_cells(self._start, cells), of_cells(self._end, cells)
+        half, reached, D = of_cells(self._half, slice(size)), middle[cells], self._D[:size]
         good = sections.update(reached, start, half, forces, D, False)
         good = good and sections.update(strain.trial[cells], half | {"strain": reached}, end, forces, D, False)
         if good:
@@ -133,3 +134,8 @@ def in_blocks(sections: Sections) -> Iterator[tuple[slice, Sections]]:
     for first in range(0, cells, BLOCK):
         part = slice(first, min(first + BLOCK, cells))
         yield part, sections.part(part)
+
+
+def of_cells(arrays: Mapping[str, np.ndarray], cells: slice) -> dict[str, np.ndarray]:
+    """The cells' part of the sections' arrays, with the rod's clocks."""
+    return {name: values if name in CLOCKS else values[cells] for name, values in arrays.items()}

@@ -14,9 +14,10 @@ from mpi4py import MPI
 
 from coilset.model.material.creep_law import HOURS, TEMPERATURE
 from coilset.model.material.law import Law
+from coilset.model.rod.finer_path import CLOCKS
 from coilset.model.rod.heat_equation import HeatConstants, HeatEquation
 from coilset.model.rod.kinematics import GAUSS
-from coilset.model.rod.rod import CLOCKS, Rod
+from coilset.model.rod.rod import Rod
 from coilset.model.section.fibres import FibreSections
 from coilset.model.section.ground import section_points
 from coilset.model.state import Where

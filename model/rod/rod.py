@@ -17,7 +17,7 @@ from coilset.model.material.rate_law import law_in_time
 from coilset.model.rod import forms
 from coilset.model.rod.assembly import add_element_vectors
 from coilset.model.rod.compiled import compiled_forms
-from coilset.model.rod.finer_path import FinerPath, in_blocks
+from coilset.model.rod.finer_path import CLOCKS, FinerPath, in_blocks, of_cells
 from coilset.model.rod.kinematics import GAUSS, chord_triads, displace_nodes, section_strains
 from coilset.model.rod.prediction import Frames, Prediction, Unknowns, linear_strains
 from coilset.model.section.kinds import make_sections
@@ -25,7 +25,6 @@ from coilset.model.section.rules import DiskRule
 from coilset.model.state import State, Where
 
 EPSILON = float(np.finfo(float).eps)
-CLOCKS = "clock", "halfway_clock"  # at the end of a step, and half way along its path
 SURFACE = "surface_state"  # carries no load: it is brought to the end of a step when this is committed
 NODAL_ENTRIES = 22  # per row of the tangent: three nodes with 6 unknowns each, and two elements with 2
 SHEAR_ENTRIES = 14  # two nodes and the element's own 2
@@ -225,8 +224,7 @@ class Rod:
     def follow(self) -> None:
         """Update the points on the wire's surface to the end of the increment; see Body."""
         for cells, sections in in_blocks(self.sections):
-            start, trial = ({name: values if name in CLOCKS else values[cells] for name, values in arrays.items()}
-                            for arrays in (self._section_start, self._section_trial))  # fmt: skip
+            start, trial = of_cells(self._section_start, cells), of_cells(self._section_trial, cells)
             reached = trial | {SURFACE: np.empty_like(start[SURFACE])}
             sections.update_surface(self._strain.trial[cells], start, reached)
             start[SURFACE][:] = reached[SURFACE]
