@@ -28,25 +28,26 @@ Draw = Callable[[Path, Run], list[str]]
 
 
 def load_figures() -> tuple[Draw, ...]:
-    """Load the libraries of the figures: characteristic, cross section and buckling mode; force centre and seats."""
+    """Load the libraries of the figures: all but the seats' pressure, and that, which takes as long."""
     from coilset.model.results import figures, seat_figures
 
-    def of_spring(out: Path, run: Run) -> list[str]:
+    def pressure(out: Path, run: Run) -> list[str]:
+        if run.result.steps:
+            seat_figures.seat_pressure(out / "seat_pressure.png", run.setup, run.result)
+        return []
+
+    def others(out: Path, run: Run) -> list[str]:
         figures.characteristic(out / "characteristic.png", run.setup, run.result, run.summary)
+        figures.cross_section(out / "cross_section.png", run.setup, run.result.snapshots[-1])
+        if run.result.steps:
+            seat_figures.force_centre(out / "force_centre.png", run.setup, run.result)
         if run.result.mode is not None:
             from coilset.model.results import buckling_figure
 
             buckling_figure.buckling_mode(out / "buckling_mode.png", run.setup, run.result, run.summary)
-        figures.cross_section(out / "cross_section.png", run.setup, run.result.snapshots[-1])
         return []
 
-    def of_seats(out: Path, run: Run) -> list[str]:
-        if run.result.steps:
-            seat_figures.force_centre(out / "force_centre.png", run.setup, run.result)
-            seat_figures.seat_pressure(out / "seat_pressure.png", run.setup, run.result)
-        return []
-
-    return of_seats, of_spring
+    return others, pressure
 
 
 def load_scene() -> tuple[Draw, ...]:

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numba import njit
 
 
 def component(state: np.ndarray, components: tuple[str, ...], name: str) -> np.ndarray:
@@ -43,16 +42,6 @@ def equivalent(state: np.ndarray, components: tuple[str, ...]) -> np.ndarray:
     s1, s2, s3 = (stress(name) for name in ("s11", "s22", "s33"))
     shears = sum(stress(name) ** 2 for name in ("t12", "t13", "t23"))
     return np.sqrt(0.5 * ((s1 - s2) ** 2 + (s2 - s3) ** 2 + (s3 - s1) ** 2) + 3.0 * shears)
-
-
-@njit(cache=True)
-def _shear_around(
-    rows: np.ndarray, columns: tuple[int, int], cosine: np.ndarray, sine: np.ndarray, sign: float, around: np.ndarray
-) -> None:
-    """Into `around`, shape (sections, points), from states of the shape (sections, points, components)."""
-    for i in range(rows.shape[0]):
-        for k in range(rows.shape[1]):
-            around[i, k] = sign * (rows[i, k, columns[1]] * cosine[k] - rows[i, k, columns[0]] * sine[k])
 
 
 TIE = 1e-8  # of the maximum value: symmetric springs have it twice, except for rounding; the first location is reported
@@ -91,10 +80,12 @@ class Inside:
         Returns:
             Shape (..., surface points), MPa.
         """
+        from coilset.model.section.around import shear_around  # compiled: not where results are only read
+
         around, columns = np.empty(state.shape[:-1]), (components.index("t12"), components.index("t13"))
         rows = state.reshape(-1, *state.shape[-2:])
-        _shear_around(rows, columns, *directions(state.shape[-2]), self.sign * math.cos(self.angle),
-                      around.reshape(len(rows), -1))  # fmt: skip
+        shear_around(rows, columns, *directions(state.shape[-2]), self.sign * math.cos(self.angle),
+                     around.reshape(len(rows), -1))  # fmt: skip
         return around
 
     def shear(self, state: np.ndarray, components: tuple[str, ...]) -> np.ndarray:
