@@ -14,7 +14,7 @@ from coilset.meshes.placement import chord_placement, refuse_sharp_bends, sectio
 from coilset.model.case import Case
 from coilset.model.case.heat import HeatSpec
 from coilset.model.case.phases import AnyPhase, Phase, TimePhase
-from coilset.model.case.targets import check_targets, check_times
+from coilset.model.case.targets import check_steps, check_targets, check_times
 from coilset.model.contact.base import BearsOnWire
 from coilset.model.contact.build import build_contacts, seats_at
 from coilset.model.contact.coarse_mesh import coarse_mesh_warnings
@@ -75,6 +75,7 @@ class Analysis:
         self.case, self.comm = case, comm
         self.spring = spring = case.spring.build()
         self.law = case_law(case, spring)
+        check_steps(case)
         check_targets(case, spring, self.law.G)
         check_times(case, self.law)
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
@@ -105,7 +106,8 @@ class Analysis:
         limit = case.contact.penetration_limit * 2.0 * float(radius.min())
         self.stability = Stability(self.newton)
         steps = case.solver.control.steps
-        self.step_error = StepError(self.control, case.accuracy, steps)
+        accuracy = case.steps_error
+        self.step_error = None if accuracy is None else StepError(self.control, accuracy, steps)
         self.continuation = Continuation(self.newton, steps, limit, None, self.stability, self.step_error)
         self.continuation.refusal = self._passed
         self.program = LoadProgram(self.control, self.continuation)
@@ -157,7 +159,7 @@ class Analysis:
 
     def _limits(self, radius: float) -> Limits:
         return Limits(self.law.validity.plastic_work, case_strength(self.case, self.spring), PENETRATION * 2.0 * radius,
-                      self.case.accuracy)  # fmt: skip
+                      self.case.steps_error)  # fmt: skip
 
     def use_method(self, name: str) -> None:
         """Switch to another iteration method.
@@ -227,11 +229,13 @@ class Analysis:
         """Change the target of the phase in progress; the case holds the new one from now on.
 
         Raises:
-            InputError: if no spring can reach it; then nothing changes.
+            InputError: if no spring can reach it, or its steps are automatic and errors are not estimated; then nothing
+                changes.
         """
         number = min(self.program.number, len(self.case.loading) - 1)
         loading = [phase if k == number else other for k, other in enumerate(self.case.loading)]
         case = self.case.model_copy(update={"loading": loading})
+        check_steps(case)
         check_targets(case, self.spring, self.law.G)
         self.case = case
         self.program.redirect(self.stage(phase))
