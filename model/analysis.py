@@ -81,6 +81,8 @@ class Analysis:
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
         effort = Effort.of(len(turns) - 1, self.case.mesh.section.points, self._planned_steps())
         effort.check_memory(machine_memory())
+        # before the rod is made, which takes the memory that this needs for a moment
+        coarse = coarse_mesh_warnings(spring, turns)
         line = line_mesh(spring.centre_line(turns), comm)
         radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
         section, chords = case.mesh.section, chord_triads(np.diff(line.stations, axis=0))
@@ -116,7 +118,7 @@ class Analysis:
             for one in contacts
         )
         warnings = (*case_warnings(case, spring, self.law), *past_warnings(self.rod, case.spring),
-                    *coarse_mesh_warnings(spring, turns), *effort.warnings())  # fmt: skip
+                    *coarse, *effort.warnings())  # fmt: skip
         self.setup = Setup(spring, self.law.name, case.ends, tuple(p.label for p in case.loading), turns, radius,
                            self.rod.rule, records, section.kind, placement,
                            buckling_travel(spring, self.law.G / self.law.E), self._limits(float(radius.min())),

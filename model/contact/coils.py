@@ -119,7 +119,7 @@ class Coils:
         forces, k, pressure = coil_elements(p, points.weights, self._y, line.first, line.cubic, pair, where, offset,
                                             self.stiffness, self.onset)  # fmt: skip
         i = pair[:, 0]
-        dofs = np.hstack([points.dofs[i], line.dofs[pair[:, 1]]])
+        dofs = np.hstack([points.dofs(i), line.dofs[pair[:, 1]]])
         return Contribution(dofs, forces, k, pressure, -where[:, 1], i, self.stiffness[i] * self.onset)
 
     @property

@@ -147,9 +147,11 @@ class Prediction:
     tangent: np.ndarray
     change: np.ndarray
 
-    def forces_after(self, length: float) -> np.ndarray:
-        """s + D B δ after `length` of the correction."""
-        return self.forces + length * np.einsum("ngij,ngj->ngi", self.tangent, self.change)
+    def forces_after(self, length: float, out: np.ndarray) -> None:
+        """Write s + D B δ after `length` of the correction."""
+        np.einsum("ngij,ngj->ngi", self.tangent, self.change, out=out)
+        out *= length
+        out += self.forces
 
     def without_turning(self, length: float, forces: np.ndarray, strain: np.ndarray) -> np.ndarray:
         """Section forces after `length` of the correction, without the part of second-order strains: s − D (e − e_lin).
