@@ -79,7 +79,8 @@ class Analysis:
         check_targets(case, spring, self.law.G)
         check_times(case, self.law)
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
-        effort = Effort.of(len(turns) - 1, self.case.mesh.section.points, self._planned_steps())
+        estimated = case.steps_error is not None
+        effort = Effort.of(len(turns) - 1, case.mesh.section.points, self._planned_steps(), estimated)
         effort.check_memory(machine_memory())
         # before the rod is made, which takes the memory that this needs for a moment
         coarse = coarse_mesh_warnings(spring, turns)

@@ -48,8 +48,9 @@ def check_steps(case: Case) -> None:
     """
     for number, phase in enumerate(case.loading):
         if case.steps_error is None and phase.steps == "auto":
-            raise InputError("automatic steps follow the error that accuracy: none leaves unknown; give a number of "
-                             "steps, as in steps: 12, or an accuracy such as 0.2 %", f"loading.{number}.steps")  # fmt: skip
+            problem = "automatic steps follow the error that accuracy: none leaves unknown"
+            raise InputError(f"{problem}; give a number of steps, as in steps: 12, or an accuracy such as 0.2 %",
+                             f"loading.{number}.steps")  # fmt: skip
 
 
 def check_times(case: Case, law: Law) -> None:

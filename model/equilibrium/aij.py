@@ -31,7 +31,7 @@ class AijEntries:
 
     def __init__(self, mat: PETSc.Mat, pattern: tuple[np.ndarray, np.ndarray] | None = None) -> None:
         self._mat, self._one = mat, mat.getComm().size == 1
-        self.pattern = _pattern(mat) if self._one else pattern or mat.getValuesCSR()[:2]
+        self.pattern: tuple[np.ndarray, np.ndarray] = _pattern(mat) if self._one else pattern or mat.getValuesCSR()[:2]
         self._size = self._own_size = len(self.pattern[1])
         self._address, self._values = 0, np.empty(0)  # of the last time, on one rank
         if not self._one:

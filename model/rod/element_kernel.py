@@ -110,14 +110,13 @@ class ElementKernel:
         self._kept = used, x, nodes  # C knows their addresses only
         self._ffi, self._function = loop
         lengths = [int(np.prod(field.shape[1:])) for field in used]
-        every = self._ffi.new("long[]", lengths), sum(lengths), int(np.prod(shape)), self._pointer(self._out)
+        fixed = self._ffi.new("long[]", lengths), sum(lengths), int(np.prod(shape)), self._pointer(self._out)
         self._blocks = []
         for first in range(0, cells, BLOCK):
             block = slice(first, min(first + BLOCK, cells))
             values = self._ffi.new("double *[]", [self._pointer(field[block]) for field in used])
-            self._blocks.append((block, (
-                block.stop - first, self._pointer(x), self._pointer(nodes[block], "int32_t *"), len(used), values, *every,
-            )))  # fmt: skip
+            places = self._pointer(x), self._pointer(nodes[block], "int32_t *")
+            self._blocks.append((block, (block.stop - first, *places, len(used), values, *fixed)))
 
     def _pointer(self, values: np.ndarray, kind: str = "double *") -> Any:
         if not values.flags.c_contiguous:

@@ -187,7 +187,7 @@ class Rod:
 
     @property
     def point_state(self) -> np.ndarray:
-        """State at the section points, shape (cells, 2, points, n_state), MPa: on trial, or, of a long rod, committed."""
+        """State at the section points, shape (cells, 2, points, n_state), MPa: on trial, in a long rod committed."""
         return self._points[POINTS]
 
     @property
@@ -254,7 +254,7 @@ class Rod:
         """As `internal_forces`, without the contribution of strains of second order in the correction; see Foresees."""
         actual = self.s.values.copy()
         assert self._prediction is not None  # `predict` comes before
-        self.s.values[:] = self._prediction.without_turning(length, actual, self._strain.trial)
+        self._prediction.take_turning_off(length, self.s.values, self._strain.trial)
         self.internal_forces(vector)
         self.s.values[:] = actual
 

@@ -40,9 +40,10 @@ class SectionStates:
         self._trial = {name: np.empty_like(field.trial[:1]) if name in passing else field.trial
                        for name, field in self._fields.items()}  # fmt: skip
         self._start["strain"] = strain.equilibrium
-        for name in CLOCKS if in_time is not None else ():
-            clock = state.add(name, in_time.clock(0.0, temperature), Where.SHARED)
-            self._start[name], self._trial[name] = clock.equilibrium, clock.trial
+        if in_time is not None:
+            for name in CLOCKS:
+                clock = state.add(name, in_time.clock(0.0, temperature), Where.SHARED)
+                self._start[name], self._trial[name] = clock.equilibrium, clock.trial
 
     @property
     def bearing(self) -> list[str]:

@@ -9,8 +9,8 @@ from coilset.model.case import read_case
 from coilset.model.rod import section_states
 
 SMALL = ["mesh.elements_per_turn=10", "mesh.section={radial: 3, angular: 8}"]
-CREEPING = ["material=creeping", "temperature=373.15", "ends=clamped",
-            "loading=[{to: {travel: 14}, steps: 3}, {hold: {hours: 100}, steps: 2}, {to: {force: 0}, steps: 2}]"]  # fmt: skip
+HELD = "[{to: {travel: 14}, steps: 3}, {hold: {hours: 100}, steps: 2}, {to: {force: 0}, steps: 2}]"
+CREEPING = ["material=creeping", "temperature=373.15", "ends=clamped", f"loading={HELD}"]
 SPRINGS = {
     "automatic": [],  # with attempts that are refused for their error
     "plane": ["mesh.section.kind=plane", "loading=[{to: block, steps: 4}, {to: {force: 0}, steps: 3}]"],
