@@ -88,7 +88,10 @@ class Placement(NamedTuple):
     flat: np.ndarray
 
     def part(self, elements: slice | np.ndarray) -> "Placement":
-        """Of some of the elements, or of all in another order."""
+        """Of some of the elements, or of all in another order; of neighbours in their order it is a view."""
+        if not isinstance(elements, slice) and len(elements):
+            first, last = int(elements[0]), int(elements[-1])
+            elements = slice(first, last + 1) if np.array_equal(elements, np.arange(first, last + 1)) else elements
         return Placement(*(np.ascontiguousarray(values[elements]) for values in self))
 
 

@@ -14,7 +14,7 @@ from coilset.meshes.placement import chord_placement, refuse_sharp_bends, sectio
 from coilset.model.case import Case
 from coilset.model.case.heat import HeatSpec
 from coilset.model.case.phases import AnyPhase, Phase, TimePhase
-from coilset.model.case.targets import check_targets, check_times
+from coilset.model.case.targets import check_steps, check_targets, check_times
 from coilset.model.contact.base import BearsOnWire
 from coilset.model.contact.build import build_contacts, seats_at
 from coilset.model.contact.coarse_mesh import coarse_mesh_warnings
@@ -75,11 +75,15 @@ class Analysis:
         self.case, self.comm = case, comm
         self.spring = spring = case.spring.build()
         self.law = case_law(case, spring)
+        check_steps(case)
         check_targets(case, spring, self.law.G)
         check_times(case, self.law)
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
-        effort = Effort.of(len(turns) - 1, self.case.mesh.section.points, self._planned_steps())
+        estimated = case.steps_error is not None
+        effort = Effort.of(len(turns) - 1, case.mesh.section.points, self._planned_steps(), estimated)
         effort.check_memory(machine_memory())
+        # before the rod is made, which takes the memory that this needs for a moment
+        coarse = coarse_mesh_warnings(spring, turns)
         line = line_mesh(spring.centre_line(turns), comm)
         radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
         section, chords = case.mesh.section, chord_triads(np.diff(line.stations, axis=0))
@@ -105,7 +109,8 @@ class Analysis:
         limit = case.contact.penetration_limit * 2.0 * float(radius.min())
         self.stability = Stability(self.newton)
         steps = case.solver.control.steps
-        self.step_error = StepError(self.control, case.accuracy, steps)
+        accuracy = case.steps_error
+        self.step_error = None if accuracy is None else StepError(self.control, accuracy, steps)
         self.continuation = Continuation(self.newton, steps, limit, None, self.stability, self.step_error)
         self.continuation.refusal = self._passed
         self.program = LoadProgram(self.control, self.continuation)
@@ -114,7 +119,7 @@ class Analysis:
             for one in contacts
         )
         warnings = (*case_warnings(case, spring, self.law), *past_warnings(self.rod, case.spring),
-                    *coarse_mesh_warnings(spring, turns), *effort.warnings())  # fmt: skip
+                    *coarse, *effort.warnings())  # fmt: skip
         self.setup = Setup(spring, self.law.name, case.ends, tuple(p.label for p in case.loading), turns, radius,
                            self.rod.rule, records, section.kind, placement,
                            buckling_travel(spring, self.law.G / self.law.E), self._limits(float(radius.min())),
@@ -157,7 +162,7 @@ class Analysis:
 
     def _limits(self, radius: float) -> Limits:
         return Limits(self.law.validity.plastic_work, case_strength(self.case, self.spring), PENETRATION * 2.0 * radius,
-                      self.case.accuracy)  # fmt: skip
+                      self.case.steps_error)  # fmt: skip
 
     def use_method(self, name: str) -> None:
         """Switch to another iteration method.
@@ -227,11 +232,13 @@ class Analysis:
         """Change the target of the phase in progress; the case holds the new one from now on.
 
         Raises:
-            InputError: if no spring can reach it; then nothing changes.
+            InputError: if no spring can reach it, or its steps are automatic and errors are not estimated; then nothing
+                changes.
         """
         number = min(self.program.number, len(self.case.loading) - 1)
         loading = [phase if k == number else other for k, other in enumerate(self.case.loading)]
         case = self.case.model_copy(update={"loading": loading})
+        check_steps(case)
         check_targets(case, self.spring, self.law.G)
         self.case = case
         self.program.redirect(self.stage(phase))

@@ -1,5 +1,6 @@
 """What equilibrium requires of a body: stresses for an increment, internal forces, a tangent."""
 
+from collections.abc import Iterator
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
@@ -150,8 +151,11 @@ class OfElements(Protocol):
 
     element_dofs: np.ndarray
 
-    def element_tangents(self) -> np.ndarray:
-        """As Body.tangent, of the owned elements, shape (cells, k, k); the next call may write over them."""
+    def element_tangents(self) -> Iterator[tuple[slice, np.ndarray]]:
+        """As Body.tangent, of some of the owned elements after others, shape (elements, k, k).
+
+        The next ones may write over them.
+        """
         ...
 
 

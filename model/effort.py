@@ -7,10 +7,11 @@ from pathlib import Path
 from coilset.meshes.errors import InputError
 from coilset.model.warning import Warning
 
-# Measured with 96 points per section, docs/scaling.md: 37 of 48 µs for the law, 10.8 of 26 kB for the points.
+# Measured with 96 points per section, docs/scaling.md: 37 of 48 µs for the law, 10.8 of 26 kB for the points and their
+# finer path, which tells the error of the steps.
 SECONDS_OF_POINT = 37e-6 / 96
 SECONDS_OF_ELEMENT = 11e-6
-BYTES_OF_POINT = 10.8e3 / 96
+BYTES_OF_POINT = 5.4e3 / 96
 BYTES_OF_ELEMENT = 15.2e3
 BYTES_OF_PROGRAM = 0.3e9  # with all its libraries
 EVALUATIONS = 6.0  # per step, mean of the example's 24 steps to block and back
@@ -34,10 +35,10 @@ class Effort:
     memory: float
 
     @classmethod
-    def of(cls, elements: int, points: int, steps: int) -> "Effort":
-        """The effort for given numbers of elements, points per section and steps."""
+    def of(cls, elements: int, points: int, steps: int, estimated: bool = True) -> "Effort":
+        """The effort for given numbers of elements, points per section and steps, whose errors are `estimated`."""
         once = elements * (SECONDS_OF_ELEMENT + SECONDS_OF_POINT * points)
-        memory = BYTES_OF_PROGRAM + elements * (BYTES_OF_ELEMENT + BYTES_OF_POINT * points)
+        memory = BYTES_OF_PROGRAM + elements * (BYTES_OF_ELEMENT + (1 + estimated) * BYTES_OF_POINT * points)
         return cls(elements, steps, EVALUATIONS * steps * once, memory)
 
     def check_memory(self, present: float) -> None:

@@ -215,10 +215,11 @@ class Case(Strict):
         Field(description="where the heat of plastic work flows; left out: it stays where it is produced"),
     ] = None
     accuracy: Annotated[
-        Part,
-        Unit("1"),
-        Field(gt=0, lt=1, description="error in force that automatic steps may cause, relative to the maximum "
-                                      "force, such as 0.2 %"),
+        Annotated[Literal["none"], Tag("(word)")]
+        | Annotated[Part, Unit("1"), Field(gt=0, lt=1), Tag("(part)")],
+        Discriminator(lambda value: "(word)" if value == "none" else "(part)"),
+        Field(description="error in force that automatic steps may cause, relative to the maximum force, such as "
+                          "0.2 %; none: errors of steps are not estimated, and all phases give their steps"),
     ] = 0.002  # fmt: skip
     loading: Annotated[
         list[AnyPhase],
@@ -283,6 +284,11 @@ class Case(Strict):
     def targets(self) -> list[Phase]:
         """The phases of `loading` that go to a target."""
         return [phase for phase in self.loading if isinstance(phase, Phase)]
+
+    @property
+    def steps_error(self) -> float | None:
+        """`accuracy` as a part of one; None if the errors of the steps are not estimated."""
+        return None if isinstance(self.accuracy, str) else self.accuracy
 
     @property
     def past(self) -> list[str]:

@@ -1,4 +1,4 @@
-"""Targets judged before a run: seats only press, and no coil comes nearer to the next than their wires allow."""
+"""Load programs judged before a run: seats only press, no coil comes nearer to the next than their wires allow."""
 
 import numpy as np
 
@@ -38,6 +38,19 @@ def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
                 raise InputError(f"is {phase.to.force:g} N, but all coils of this spring lie on each other at about "
                                  f"{greatest / BORNE:.4g} N, or less if it yields; give block, or a smaller force",
                                  f"{place}.force")  # fmt: skip
+
+
+def check_steps(case: Case) -> None:
+    """Refuse automatic steps whose errors, which they follow, are not estimated.
+
+    Raises:
+        InputError: with the phase.
+    """
+    for number, phase in enumerate(case.loading):
+        if case.steps_error is None and phase.steps == "auto":
+            problem = "automatic steps follow the error that accuracy: none leaves unknown"
+            raise InputError(f"{problem}; give a number of steps, as in steps: 12, or an accuracy such as 0.2 %",
+                             f"loading.{number}.steps")  # fmt: skip
 
 
 def check_times(case: Case, law: Law) -> None:

@@ -16,7 +16,7 @@ from coilset.model.contact.memory import Memory
 from coilset.model.contact.search import longest_element, near_locations, post_stride
 from coilset.model.extremes import farthest, greatest, least
 
-LOCATIONS_PER_POINT = 4  # initial capacity: locations on other coils, average per point
+FEW = 1024  # locations on other coils for which there is room at first
 SKIN = 0.5  # in wire radii: how far beyond what touches pairs are sought
 # Along the wire, a pair depends on three more stations of the cubic, and the search oversteps by two and by two posts.
 STATIONS_ASIDE, POSTS_ASIDE = 5, 2
@@ -40,7 +40,7 @@ class Coils:
     name, end, needs_rotations = "coils", None, False
 
     def __init__(self, points: WirePoints, stations: np.ndarray, bedding: float, onset: float):
-        self.points, self.onset = points, onset
+        self.points, self.onset, self._room = points, onset, FEW
         self.stiffness, self.lengths = 0.5 * bedding * points.length, points.length
         self.overlap = np.zeros((len(points), 2))
         self._y = np.column_stack([stations, points.line.radius])  # stations of the last search, with their radii
@@ -69,18 +69,18 @@ class Coils:
     def near(self, trial: TrialPositions, margin: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Pairs of points and locations nearer than `margin`, see `near_locations`, and the points' positions."""
         points, line, known = self.points, self.points.line, trial.known
-        p, capacity, active = np.empty((len(points), 3)), LOCATIONS_PER_POINT * len(points), trial.points(points)
+        p, active = np.empty((len(points), 3)), trial.points(points)
         self._y[:, :3] = trial.x
         at_points(active, points.weights, points.stations, trial.x, p)
         elements = np.array([[0, len(line.lengths)]]) if known is None else known.elements
         longest = longest_element(self._y) if known is None else known.longest
         while True:
-            pair, where = np.empty((capacity, 3), np.int64), np.empty((capacity, 2))
+            pair, where = np.empty((self._room, 3), np.int64), np.empty((self._room, 2))
             found = near_locations(active, p, points.radius, points.turns, self._y, line.turns, line.first, line.cubic,
                                    self.overlap, margin, elements, self._widest, longest, pair, where)  # fmt: skip
-            if found <= capacity:
+            if found <= self._room:
                 return pair[:found], where[:found], p
-            capacity = found
+            self._room = 2 * found
 
     def pressed(self, trial: TrialPositions) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Pairs in contact, with ξ and gaps, their offsets, and the points' positions; these only if there are pairs.
@@ -119,7 +119,7 @@ class Coils:
         forces, k, pressure = coil_elements(p, points.weights, self._y, line.first, line.cubic, pair, where, offset,
                                             self.stiffness, self.onset)  # fmt: skip
         i = pair[:, 0]
-        dofs = np.hstack([points.dofs[i], line.dofs[pair[:, 1]]])
+        dofs = np.hstack([points.dofs(i), line.dofs[pair[:, 1]]])
         return Contribution(dofs, forces, k, pressure, -where[:, 1], i, self.stiffness[i] * self.onset)
 
     @property

@@ -180,7 +180,7 @@ class WirePoints:
         self.line, self.element, self.xi, self.length = line, element, xi, length
         self.turns = line.turns[element] + xi * (line.turns[element + 1] - line.turns[element])
         self.weights = curve_weights(line.cubic[element], xi)
-        self.stations, self.dofs = line.stations[element], line.dofs[element]
+        self.stations = line.stations[element]
         self.radius = self.at(line.radius)
 
     def __len__(self) -> int:
@@ -203,6 +203,10 @@ class WirePoints:
         return np.concatenate(
             [np.empty(0, np.int64), *(np.arange(parts * a, parts * b + (b == last)) for a, b in elements)]
         )
+
+    def dofs(self, points: np.ndarray | slice = slice(None)) -> np.ndarray:
+        """Degrees of freedom of the stations' displacements, of all points or of the `points`, shape (m, 12)."""
+        return self.line.dofs[self.element[points]]
 
     def tip(self, end: str) -> int:
         """Number of the point at the wire's tip of an end, `bottom` or `top`."""

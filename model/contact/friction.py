@@ -130,12 +130,12 @@ class SeatFriction(Friction):
         seat, points = self.normal, self.normal.points
         known = trial.points(points)
         i = known[seat.gaps(points.at(trial.x, known), trial.seats, known) < seat.multiplier_offset[known]]
-        rotations = self.first_rotation + points.dofs[i]
+        rotations = self.first_rotation + points.dofs(i)
         plate = np.broadcast_to(seat.plate.dofs, (len(i), SEAT_DOFS))
         seats0 = self.memory.committed("seats")
         q0 = seat.plate.to_seat_frame(points.at(self.memory.committed("x"), i), seats0)
         θ0 = np.broadcast_to(seats0[seat.plate.own][3:], q0.shape)
-        return (i,), np.hstack([points.dofs[i], plate, rotations]), (i, q0, θ0)
+        return (i,), np.hstack([points.dofs(i), plate, rotations]), (i, q0, θ0)
 
     def forces(self, u: np.ndarray, before: np.ndarray, *constants: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Forces on the variables, shape (m, 30), and tractions, shape (m, 3)."""
@@ -166,7 +166,7 @@ class CoilFriction(Friction):
         coils, points, line = self.normal, self.normal.points, self.normal.points.line
         pair, where, offset, _ = coils.pressed(trial)
         i, e = pair[:, 0], pair[:, 1]
-        dofs = np.hstack([points.dofs[i], line.dofs[e]])
+        dofs = np.hstack([points.dofs(i), line.dofs[e]])
         start = self.memory.committed("x")
         at = coils.sides(pair)
         shift = coils.overlap[at] + offset

@@ -31,7 +31,7 @@ class Plate:
 
     def dofs_with(self, points: WirePoints) -> np.ndarray:
         """Degrees of freedom of wire points' stations and of the plate, shape (m, 18)."""
-        return np.hstack([points.dofs, np.tile(self.dofs, (len(points.dofs), 1))])
+        return np.hstack([points.dofs(), np.tile(self.dofs, (len(points), 1))])
 
     def to_seat_frame(self, p: np.ndarray, seats: np.ndarray) -> np.ndarray:
         """The points `p` in the plate's frame, q, shape (m, 3), mm."""

@@ -32,6 +32,7 @@ ALTERNATIVES = {
     "(word)": ", or a number",
     "(none)": ", or a group of constants",
     "(block)": ", or a target as in {travel: 5}",
+    "(part)": ", or none",
 }  # to a word, by its tag
 _short = reprlib.Repr()
 _short.maxlevel, _short.maxdict, _short.maxlist, _short.maxtuple = 3, 4, 6, 6

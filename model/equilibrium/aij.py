@@ -12,6 +12,9 @@ from petsc4py import PETSc
 _PETSC = ctypes.PyDLL(PETSc.__file__)  # finds what this module is linked with, so that it is the same PETSc
 for _function in (_PETSC.MatSeqAIJGetArray, _PETSC.MatSeqAIJRestoreArray):
     _function.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
+_INT = np.ctypeslib.as_ctypes_type(PETSc.IntType)
+for _function in (_PETSC.MatGetRowIJ, _PETSC.MatRestoreRowIJ):
+    _function.argtypes = [ctypes.c_void_p, _INT, ctypes.c_int, ctypes.c_int, *4 * [ctypes.c_void_p]]
 NONE = np.empty(0)
 
 
@@ -23,12 +26,12 @@ class AijEntries:
         pattern: indptr and indices, if they are known.
 
     Attributes:
-        pattern: of this rank's rows, CSR with global, ascending columns: indptr and indices.
+        pattern: of this rank's rows, CSR with global, ascending columns: indptr and indices; on one rank PETSc's own.
     """
 
     def __init__(self, mat: PETSc.Mat, pattern: tuple[np.ndarray, np.ndarray] | None = None) -> None:
-        self._mat, self.pattern = mat, pattern or mat.getValuesCSR()[:2]
-        self._one = mat.getComm().size == 1
+        self._mat, self._one = mat, mat.getComm().size == 1
+        self.pattern: tuple[np.ndarray, np.ndarray] = _pattern(mat) if self._one else pattern or mat.getValuesCSR()[:2]
         self._size = self._own_size = len(self.pattern[1])
         self._address, self._values = 0, np.empty(0)  # of the last time, on one rank
         if not self._one:
@@ -69,6 +72,17 @@ class AijEntries:
         parts = (ctypes.byref(part) for part in (own, others, columns))
         _check(_PETSC.MatMPIAIJGetSeqAIJ(ctypes.c_void_p(self._mat.handle), *parts))
         return _at(_address(own), self._own_size), _at(_address(others), self._size - self._own_size)
+
+
+def _pattern(mat: PETSc.Mat) -> tuple[np.ndarray, np.ndarray]:
+    """Where PETSc keeps indptr and indices of a matrix of its type `seqaij`."""
+    rows, done, indptr, indices = _INT(), ctypes.c_int(), ctypes.POINTER(_INT)(), ctypes.POINTER(_INT)()
+    parts = [ctypes.byref(part) for part in (rows, indptr, indices, done)]
+    _check(_PETSC.MatGetRowIJ(mat.handle, 0, 0, 0, *parts))
+    starts = np.ctypeslib.as_array(indptr, (rows.value + 1,))
+    pattern = starts, np.ctypeslib.as_array(indices, (int(starts[-1]),))
+    _check(_PETSC.MatRestoreRowIJ(mat.handle, 0, 0, 0, *parts))
+    return pattern
 
 
 def _address(part: int | ctypes.c_void_p) -> int:

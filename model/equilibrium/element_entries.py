@@ -4,7 +4,6 @@ import numpy as np
 from numba import njit
 
 
-@njit(cache=True)
 def find_places(indptr: np.ndarray, indices: np.ndarray, dofs: np.ndarray) -> np.ndarray:
     """Where the entries of all elements lie.
 
@@ -13,25 +12,36 @@ def find_places(indptr: np.ndarray, indices: np.ndarray, dofs: np.ndarray) -> np
         dofs: unknowns of the elements, shape (cells, k).
 
     Returns:
-        Shape (cells, k, k).
+        Places in the rows, in 8 bits where they suffice, shape (cells, k, k).
     """
-    at, places = np.empty(len(indptr) - 1, indptr.dtype), np.empty((*dofs.shape, dofs.shape[1]), indptr.dtype)
-    for c in range(dofs.shape[0]):
-        for i in range(dofs.shape[1]):
-            for place in range(indptr[dofs[c, i]], indptr[dofs[c, i] + 1]):
-                at[indices[place]] = place
-            for j in range(dofs.shape[1]):
-                places[c, i, j] = at[dofs[c, j]]
+    longest = int(np.diff(indptr)[dofs].max(initial=0))
+    places = np.empty((*dofs.shape, dofs.shape[1]), np.uint8 if longest <= 2**8 else np.uint32)
+    _find_places(indptr, indices, dofs, places)
     return places
 
 
 @njit(cache=True)
-def add_elements(places: np.ndarray, matrices: np.ndarray, values: np.ndarray) -> None:
-    """Add the elements' matrices, shape (cells, k, k), to the entries of the matrix."""
+def _find_places(indptr: np.ndarray, indices: np.ndarray, dofs: np.ndarray, places: np.ndarray) -> None:
+    at = np.empty(len(indptr) - 1, indptr.dtype)
+    for c in range(dofs.shape[0]):
+        for i in range(dofs.shape[1]):
+            start = indptr[dofs[c, i]]
+            for place in range(start, indptr[dofs[c, i] + 1]):
+                at[indices[place]] = place - start
+            for j in range(dofs.shape[1]):
+                places[c, i, j] = at[dofs[c, j]]
+
+
+@njit(cache=True)
+def add_elements(
+    indptr: np.ndarray, dofs: np.ndarray, places: np.ndarray, matrices: np.ndarray, values: np.ndarray
+) -> None:
+    """Add the elements' matrices, shape (cells, k, k), to the entries of the matrix, see `find_places`."""
     for c in range(places.shape[0]):
         for i in range(places.shape[1]):
+            start = indptr[dofs[c, i]]
             for j in range(places.shape[2]):
-                values[places[c, i, j]] += matrices[c, i, j]
+                values[start + places[c, i, j]] += matrices[c, i, j]
 
 
 @njit(cache=True)

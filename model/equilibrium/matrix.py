@@ -72,7 +72,9 @@ class TangentMatrix:
             return
         if self._places_of_elements is None:
             self._places_of_elements = find_places(*entries.pattern, elements.element_dofs)
-        add_elements(self._places_of_elements, elements.element_tangents(), entries.room())
+        indptr, dofs, places = entries.pattern[0], elements.element_dofs, self._places_of_elements
+        for cells, tangents in elements.element_tangents():
+            add_elements(indptr, dofs[cells], places[cells], tangents, entries.room())
         self._add_contacts(contributions)
 
     def hold(self, held: np.ndarray) -> None:

@@ -211,22 +211,22 @@ class Newton:
 
         Where nothing touches, a part would fail just as the whole: the step is to be cut.
         """
-        X, good, reached, counts = self.system.increments, self.system.increments.duplicate(), 0.0, np.zeros(2, int)
-        good.set(0.0)
+        X, reached, counts = self.system.increments, 0.0, np.zeros(2, int)
+        good: PETSc.Vec | None = None  # at `reached`; None: the last equilibrium
         while True:
             counts += self._once()
             self._corrected = None
             if self.snes.getConvergedReason() > 0:
                 if self.load_factor == 1.0:
                     return int(counts[0]), int(counts[1])
-                X.copy(good)
+                good = X.copy()
                 reached, self.load_factor = self.load_factor, 1.0
             else:
                 part = 0.5 * (self.load_factor - reached)
                 if part < self.control.smallest_part or not self.system.touches:
                     return int(counts[0]), int(counts[1])
                 self._failed += 1
-                good.copy(X)
+                X.set(0.0) if good is None else good.copy(X)
                 self.load_factor = reached + part
                 log.info("no equilibrium of the whole step yet: first %.3g of it", self.load_factor)
 

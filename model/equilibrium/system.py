@@ -111,6 +111,7 @@ class System:
         if self.comm.size > 1:
             same = self.comm.allreduce(int(same)) == self.comm.size
         if not same:
+            self.expire()
             self._body_increments[: self.layout.owned] = values[: self.layout.owned]
             if self.comm.size > 1:
                 self.body.increment.x.scatter_forward()

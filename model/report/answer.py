@@ -67,7 +67,9 @@ def _said(value: float | None, unit: str, digits: int) -> str:
 
 
 def _error(value: float | None, unit: str) -> str:
-    return "" if value is None else f"{abs(value):.2g} {unit} estimated error due to the step size"
+    if value is None:
+        return "error due to the step size not estimated"
+    return f"{abs(value):.2g} {unit} estimated error due to the step size"
 
 
 def _after(summary: Mapping[str, Any]) -> str:

@@ -180,6 +180,9 @@ class Checkpoint:
         for entry in SPRING_ENTRIES:
             if old.get(entry) != new[entry]:
                 raise InputError(f"differs from that of the checkpoint; {ANEW}", entry, self.folder)
+        if old.get("accuracy") == "none" != new["accuracy"]:
+            raise InputError(f"the errors of its steps were not estimated; keep none; {ANEW}", "accuracy",
+                             self.folder)  # fmt: skip
         changed_content = changed(about.get("provenance"), self.provenance)
         if changed_content == "version":
             raise InputError(f"the checkpoint is of another version of coilset; {ANEW}", "",

@@ -197,13 +197,14 @@ class Limits:
         plastic_work: b* up to which the material's constants are valid, N/mm².
         strength: least tensile strength of the wire, MPa; None if no wire of a standard is named.
         penetration: usual maximum penetration, mm.
-        accuracy: error by the steps' length that is asked for, over the maximum force and over the set.
+        accuracy: error by the steps' length that is asked for, over the maximum force and over the set; None: it is
+            not estimated.
     """
 
     plastic_work: float
     strength: float | None
     penetration: float
-    accuracy: float
+    accuracy: float | None
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ SLIPPED = 0.7  # of the rise to touch: coils of one wire that lie so are shifted
 # Change of the force over that of the travel, both in per cent, from which a spring counts as standing on a wall: a
 # spring of constant rate has 1, the example at block 1.1, the cone 160.
 WALL = 20.0
+WALL_FORCE = 0.002  # of the force, for which the warning tells the height where no accuracy is asked for
 Check = Callable[[Setup, Result], Iterator[Warning]]
 
 
@@ -94,7 +95,7 @@ def _slipped(setup: Setup, result: Result) -> Iterator[Warning]:
 
 def _wall(setup: Setup, result: Result) -> Iterator[Warning]:
     """At the end of a compression."""
-    accuracy = setup.limits.accuracy
+    accuracy = setup.limits.accuracy or WALL_FORCE
     for before, step in pairwise(result.steps):
         travel = step.travel_mm - before.travel_mm
         if step.phase != before.phase or step.progress < 1.0 or travel <= 0.0 or step.force_N <= 0.0:
@@ -187,7 +188,7 @@ def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
     """The worse of force, at its greatest, and set."""
     asked = setup.limits.accuracy
     top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
-    if top is not None and top.estimated_force_error_N is not None and top.force_N:
+    if asked is not None and top is not None and top.estimated_force_error_N is not None and top.force_N:
         worst, place, of = abs(top.estimated_force_error_N / top.force_N), _place(top), ("the force", "")
         error = set_error(result)
         set_mm = setup.spring.free_length - setup.outer_length(result.snapshots[-1].x)

@@ -35,7 +35,7 @@ class CompiledForms:
     def on(
         self, fields: Mapping[str, np.ndarray], x: np.ndarray, nodes: np.ndarray
     ) -> tuple[ElementKernel, ElementKernel]:
-        """Residual and tangent of a rod's elements, shapes (cells, 14) and (cells, 14, 14).
+        """Residual and tangent of a rod's elements, shapes (elements, 14) and (elements, 14, 14).
 
         Args:
             fields: values by their names in forms.FIELDS, shape (cells, …); read at each evaluation.

@@ -53,7 +53,7 @@ class FinerPath:
             self._start["clock"], self._end["clock"] = clock.equilibrium, clock.trial
             self._half["clock"] = halfway.trial
         self._D = np.empty((min(BLOCK, len(self._strain.trial)), 2, 6, 6))
-        self._parts = list(in_blocks(sections))
+        self._parts, self._lost = list(in_blocks(sections)), False
 
     def follow(self, s: np.ndarray, ratio: float, kinked: bool = False, stands: bool = True) -> bool:
         """Advance the finer path to the trial strains.
@@ -65,8 +65,8 @@ class FinerPath:
             stands: whether the step is not given up any more.
 
         Returns:
-            False if the law found no solution on this rank: the finer path then continues from the step's own end, and
-            the error is not changed.
+            False if the law found no solution on this rank: the finer path then continues from the step's own end, see
+            `catch_up`, and the error is not changed.
         """
         strain, change = self._strain, self._strain.trial - self._strain.equilibrium
         # of the path's middle from the chord's
@@ -79,11 +79,16 @@ class FinerPath:
             for name in self._fields:
                 self._state.overwrite(f"finer_{name}")
         good = all(self._follow(cells, sections, middle, s) for cells, sections in self._parts)
-        if not good:
+        self._lost = not good
+        if self._lost:
             self._error.trial[:] = self._error.equilibrium
+        return good
+
+    def catch_up(self) -> None:
+        """Continue from the end of a step, which the sections have reached, if the law found no solution in it."""
+        if self._lost:
             for name, field in self._fields.items():
                 field.equilibrium[:] = self._state[name].trial
-        return good
 
     def _follow(self, cells: slice, sections: Sections, middle: np.ndarray, s: np.ndarray) -> bool:
         """Advance some of the cells over `middle`, all cells' strains there, and write their errors."""

@@ -16,6 +16,8 @@ from numba import njit
 
 from coilset.model.rod.kinematics import GAUSS
 
+BLOCK = 4096  # cells that are taken together, so that no large arrays are made on the way
+
 
 @dataclass(frozen=True)
 class Frames:
@@ -147,13 +149,18 @@ class Prediction:
     tangent: np.ndarray
     change: np.ndarray
 
-    def forces_after(self, length: float) -> np.ndarray:
-        """s + D B δ after `length` of the correction."""
-        return self.forces + length * np.einsum("ngij,ngj->ngi", self.tangent, self.change)
+    def forces_after(self, length: float, out: np.ndarray) -> None:
+        """Write s + D B δ after `length` of the correction."""
+        np.einsum("ngij,ngj->ngi", self.tangent, self.change, out=out)
+        out *= length
+        out += self.forces
 
-    def without_turning(self, length: float, forces: np.ndarray, strain: np.ndarray) -> np.ndarray:
-        """Section forces after `length` of the correction, without the part of second-order strains: s − D (e − e_lin).
+    def take_turning_off(self, length: float, forces: np.ndarray, strain: np.ndarray) -> None:
+        """Take the part of second-order strains off the forces after `length` of the correction: s − D (e − e_lin).
 
-        In an elastic rod they are the foreseen ones; where the wire yields, the reduction by yielding remains.
+        In an elastic rod they are the foreseen ones then; where the wire yields, the reduction by yielding remains.
         """
-        return forces - np.einsum("ngij,ngj->ngi", self.tangent, strain - self.strain - length * self.change)
+        for first in range(0, len(forces), BLOCK):
+            part = slice(first, first + BLOCK)
+            second = strain[part] - self.strain[part] - length * self.change[part]
+            forces[part] -= np.einsum("ngij,ngj->ngi", self.tangent[part], second)

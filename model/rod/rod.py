@@ -1,6 +1,7 @@
 """A rod structure, a Body: state of its nodes and section points, and the forms assembled from them."""
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from dolfinx import fem
@@ -17,15 +18,15 @@ from coilset.model.material.rate_law import law_in_time
 from coilset.model.rod import forms
 from coilset.model.rod.assembly import add_element_vectors
 from coilset.model.rod.compiled import compiled_forms
-from coilset.model.rod.finer_path import CLOCKS, FinerPath, in_blocks, of_cells
+from coilset.model.rod.finer_path import CLOCKS, FinerPath
 from coilset.model.rod.kinematics import GAUSS, chord_triads, displace_nodes, section_strains
 from coilset.model.rod.prediction import Frames, Prediction, Unknowns, linear_strains
+from coilset.model.rod.section_states import POINTS, SURFACE, SectionStates
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule
 from coilset.model.state import State, Where
 
 EPSILON = float(np.finfo(float).eps)
-SURFACE = "surface_state"  # carries no load: it is brought to the end of a step when this is committed
 NODAL_ENTRIES = 22  # per row of the tangent: three nodes with 6 unknowns each, and two elements with 2
 SHEAR_ENTRIES = 14  # two nodes and the element's own 2
 
@@ -147,15 +148,7 @@ class Rod:
         self._chord = state.add("chord", x[self.cells[:, 1]] - x[self.cells[:, 0]], Where.ELEMENT)
         self._shear = state.add("shear", np.zeros((n, 2)), Where.ELEMENT)
         self._strain = state.add("strain", self.e.values, Where.ELEMENT)
-        points = {name: state.add(name, rows, Where.ELEMENT, in_place=name == SURFACE)
-                  for name, rows in self.sections.initial_state().items()}  # fmt: skip
-        self._section_start = {name: field.equilibrium for name, field in points.items()}
-        self._section_trial = {name: field.trial for name, field in points.items()}
-        self._section_start["strain"] = self._strain.equilibrium
-        if self.in_time is not None:
-            for name in CLOCKS:
-                clock = state.add(name, self.in_time.clock(0.0, self.temperature), Where.SHARED)
-                self._section_start[name], self._section_trial[name] = clock.equilibrium, clock.trial
+        self._points = SectionStates(self.sections, state, self._strain, self.in_time, self.temperature)
         self._frames = Frames(
             self.cells, self._chord.trial, self.triads.values, self.T.values, self.P.values, self.W.values,
             self.timoshenko_factor.values[:, 0], self._strain.trial,
@@ -194,13 +187,13 @@ class Rod:
 
     @property
     def point_state(self) -> np.ndarray:
-        """State at the section points on trial, shape (cells, 2, points, n_state), MPa."""
-        return self._section_trial["point_state"]
+        """State at the section points, shape (cells, 2, points, n_state), MPa: on trial, in a long rod committed."""
+        return self._points[POINTS]
 
     @property
     def surface_state(self) -> np.ndarray:
         """State of the points on the wire's surface, shape (cells, 2, surface points, n_state), MPa."""
-        return self._section_trial[SURFACE]
+        return self._points[SURFACE]
 
     # ---- Body ------------------------------------------------------------------------------------------------------
 
@@ -216,23 +209,19 @@ class Rod:
             self.timoshenko_factor.values[:, 0], GAUSS, self.triads.values, self.P.values, self.W.values,
             self._strain.trial,
         )  # fmt: skip
-        start, trial = self._section_start, self._section_trial
-        has_stress = self.sections.update(self._strain.trial, start, trial, self.s.values, self.D.values)
+        has_stress = self._points.update(self.s.values, self.D.values)
         self.stop_foreseeing()
         return has_stress
 
     def follow(self) -> None:
-        """Update the points on the wire's surface to the end of the increment; see Body."""
-        for cells, sections in in_blocks(self.sections):
-            start, trial = of_cells(self._section_start, cells), of_cells(self._section_trial, cells)
-            reached = trial | {SURFACE: np.empty_like(start[SURFACE])}
-            sections.update_surface(self._strain.trial[cells], start, reached)
-            start[SURFACE][:] = reached[SURFACE]
+        """Update the points on the wire's surface to the end of the increment, and those of a long rod; see Body."""
+        self._points.follow()
+        if self._finer is not None:
+            self._finer.catch_up()
 
     def estimate_errors(self) -> None:
         """Follow every step on a finer path from now on; see EstimatesErrors."""
-        names = [name for name in self._section_trial if name not in (SURFACE, *CLOCKS)]
-        self._finer = FinerPath(self.sections, self.state, names)
+        self._finer = FinerPath(self.sections, self.state, self._points.bearing)
 
     def error_works(self, ratio: float, kinked: bool, stands: bool) -> tuple[float, float, float, float]:
         """Works of the errors of all steps so far and of the last one; see EstimatesErrors."""
@@ -248,13 +237,14 @@ class Rod:
 
     def predict(self) -> None:
         """Predict the section forces after `correction`, from the trial state; see Foresees."""
+        self._prediction = None  # the next one takes the memory of the last
         change = linear_strains(self._frames, self._unknowns, self.correction.x.array)
         self._prediction = Prediction(self.s.values.copy(), self._strain.trial.copy(), self.D.values.copy(), change)
 
     def foresee(self, length: float) -> None:
         """Build the frame stiffness of the next tangents with the predicted section forces; see Foresees."""
         assert self._prediction is not None  # `predict` comes before
-        self.foreseen.values[:] = self._prediction.forces_after(length)
+        self._prediction.forces_after(length, self.foreseen.values)
 
     def stop_foreseeing(self) -> None:
         """Build the tangents with the actual section forces; see Foresees."""
@@ -264,13 +254,14 @@ class Rod:
         """As `internal_forces`, without the contribution of strains of second order in the correction; see Foresees."""
         actual = self.s.values.copy()
         assert self._prediction is not None  # `predict` comes before
-        self.s.values[:] = self._prediction.without_turning(length, actual, self._strain.trial)
+        self._prediction.take_turning_off(length, self.s.values, self._strain.trial)
         self.internal_forces(vector)
         self.s.values[:] = actual
 
     def internal_forces(self, vector: np.ndarray) -> None:
         """Add ∫ ¹σ : δΔE_l of the owned cells; see Body."""
-        add_element_vectors(self._residual(), self.element_dofs, vector)
+        for cells, forces in self._residual():
+            add_element_vectors(forces, self.element_dofs[cells], vector)
 
     def to_charts(self, values: np.ndarray) -> None:
         """Replace the moments m at the owned nodes by Tᵀ m; see HasRotations."""
@@ -291,11 +282,12 @@ class Rod:
 
     def tangent(self, matrix: PETSc.Mat) -> None:
         """Add K_l and the stiffness of the rotating frame; see Body."""
-        dofs = self.element_dofs
-        matrix.setValuesLocalRCV(dofs, dofs, self.element_tangents(), addv=PETSc.InsertMode.ADD_VALUES)
+        for cells, tangents in self.element_tangents():
+            dofs = self.element_dofs[cells]
+            matrix.setValuesLocalRCV(dofs, dofs, tangents, addv=PETSc.InsertMode.ADD_VALUES)
 
-    def element_tangents(self) -> np.ndarray:
-        """The elements' K_l and stiffness of the rotating frame, shape (cells, 14, 14); see OfElements."""
+    def element_tangents(self) -> Iterator[tuple[slice, np.ndarray]]:
+        """The elements' K_l and stiffness of the rotating frame, shape (elements, 14, 14); see OfElements."""
         return self._tangent()
 
     @property

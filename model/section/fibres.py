@@ -34,7 +34,10 @@ class FibreSections:
 
     Attributes:
         components: names of the columns of a point's state.
+        passing: arrays of the state on trial in which `update` may write one element after the other in the same place.
     """
+
+    passing: tuple[str, ...] = ("point_state",)
 
     components: tuple[str, ...] = ("s11", "t12", "t13", "B11", "B12", "B13", "b")
 
@@ -171,7 +174,7 @@ def update_sections(
         de: increments of the section strains ε, γ12, γ13, φ′, κ2 = −w″, κ3 = v″, shape (cells, 2, 6).
         placement: shape (cells, 2, 6, 6), stretch: ds/dx, shape (cells, 2).
         old: state at the last equilibrium, shape (cells, 2, points, n_state); not changed.
-        new: written, the state at the end of the increment.
+        new: written, the state at the end of the increment; of the last section only, if it has room for one element.
         s: written, N, Q2, Q3 in N and Mt, M2, M3 in N mm, shape (cells, 2, 6), about the chord axis.
         D: written if `with_tangent`, section tangent ds/de, shape (cells, 2, 6, 6).
 
@@ -183,9 +186,9 @@ def update_sections(
     strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
     disk, disk_shape = np.empty((FIBRES, points)), np.empty((SHAPE, points))
     straight_shape(disk_shape)
-    last, last_bend = 0.0, math.nan
+    last, last_bend, kept = 0.0, math.nan, len(new) == len(radius)
     for c in range(len(radius)):
-        R = radius[c]
+        R, at = radius[c], c if kept else 0
         if last != R:
             last = R
             round_fibres(y, z, w, R, disk)
@@ -197,7 +200,7 @@ def update_sections(
             elif curved and curvature[c, g] * R != last_bend:
                 last_bend = curvature[c, g] * R
                 curved_shape(y, z, last_bend, disk_shape)
-            if not section(p, fibres, shape, d, old[c, g], new[c, g], strain, C, with_tangent, count, resultant,
+            if not section(p, fibres, shape, d, old[c, g], new[at, g], strain, C, with_tangent, count, resultant,
                            tangent):  # fmt: skip
                 return False
             to_chord(placement[c, g], stretch[c, g], resultant, tangent, work, s[c, g], D[c, g], with_tangent)

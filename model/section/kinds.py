@@ -26,11 +26,13 @@ class Sections(Protocol):
     Attributes:
         radius, placement: of the cells.
         law_over_time: the law of their points.
+        passing: arrays of the state on trial in which `update` may write one element after the other in the same place.
     """
 
     radius: np.ndarray
     placement: Placement
     law_over_time: LawOverTime
+    passing: tuple[str, ...]
 
     @property
     def components(self) -> tuple[str, ...]:

@@ -42,8 +42,10 @@ class WarpingSections:
     Attributes:
         components: names of the columns of a point's state.
         unknowns: number of warping unknowns of a section.
+        passing: as in `FibreSections`; none, as the points' states go with the warping that was found.
     """
 
+    passing: tuple[str, ...] = ()
     components: tuple[str, ...] = (
         "s11", "s22", "s33", "t12", "t13", "t23", "B11", "B22", "B33", "B12", "B13", "B23", "b",
     )  # fmt: skip

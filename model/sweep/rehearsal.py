@@ -8,14 +8,14 @@ from typing import Any
 
 from coilset.meshes.errors import InputError
 from coilset.model.case import Case
-from coilset.model.case.targets import check_targets
+from coilset.model.case.targets import check_steps, check_targets
 from coilset.model.entries.entry import shown
 from coilset.model.standards.wires.law import case_law
 from coilset.model.sweep.spec import SweepSpec, Values
 
 
 def build_input(case: Case) -> None:
-    """Build the spring, its nodes and the material of a case, check its targets, and discard them.
+    """Build the spring, its nodes and the material of a case, check its steps and targets, and discard them.
 
     Raises:
         InputError: with the same message as the case would give when it runs.
@@ -23,6 +23,7 @@ def build_input(case: Case) -> None:
     spring = case.spring.build()
     spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
     law = case_law(case, spring)
+    check_steps(case)
     check_targets(case, spring, law.G)
     if case.temperature is not None:
         law.known(case.temperature)

@@ -1,0 +1,71 @@
+"""The states of a rod's section points: what evaluations write of them, and what follows when a step ends.
+
+The points on the surface carry no load: they lie in place and follow when a step ends. In a long rod all points do.
+Their states on trial would fill as much memory as those at the last equilibrium, and each evaluation would write all of
+it. So an evaluation keeps one element's at a time, and a step's end finds them once more.
+"""
+
+import numpy as np
+
+from coilset.model.material.creep_law import CreepLaw
+from coilset.model.material.rate_law import RateLaw
+from coilset.model.rod.finer_path import CLOCKS, in_blocks, of_cells
+from coilset.model.section.kinds import Sections
+from coilset.model.state import Field, State, Where
+
+POINTS, SURFACE = "point_state", "surface_state"
+KEPT = 4096  # elements up to which all points' states on trial are kept: as many as a processor's caches may hold
+
+
+class SectionStates:
+    """The sections' arrays in the state of a rod.
+
+    Args:
+        sections: of the rod.
+        state: State, to which they are added.
+        strain: its field of section strains.
+        in_time: the law in time, which has clocks; None without.
+        temperature: of the clocks at the start, K.
+    """
+
+    def __init__(
+        self, sections: Sections, state: State, strain: Field, in_time: CreepLaw | RateLaw | None, temperature: float
+    ) -> None:
+        self._sections, self._strain, cells = sections, strain, len(sections.radius)
+        passing = sections.passing if cells > KEPT else ()
+        self._in_place = (*passing, SURFACE)
+        self._fields = {name: state.add(name, rows, Where.ELEMENT, in_place=name in self._in_place)
+                        for name, rows in sections.initial_state().items()}  # fmt: skip
+        self._start = {name: field.equilibrium for name, field in self._fields.items()}
+        self._trial = {name: np.empty_like(field.trial[:1]) if name in passing else field.trial
+                       for name, field in self._fields.items()}  # fmt: skip
+        self._start["strain"] = strain.equilibrium
+        if in_time is not None:
+            for name in CLOCKS:
+                clock = state.add(name, in_time.clock(0.0, temperature), Where.SHARED)
+                self._start[name], self._trial[name] = clock.equilibrium, clock.trial
+
+    @property
+    def bearing(self) -> list[str]:
+        """Names of the arrays on which the section forces depend."""
+        return [name for name in self._fields if name != SURFACE]
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """An array on trial, or, where it lies in place, at the last equilibrium."""
+        return self._fields[name].trial
+
+    def update(self, s: np.ndarray, D: np.ndarray) -> bool:
+        """Advance all sections to the trial strains; `s`, `D` and what it returns are those of `Sections.update`."""
+        return bool(self._sections.update(self._strain.trial, self._start, self._trial, s, D))
+
+    def follow(self) -> None:
+        """Bring what lies in place to the end of the step."""
+        for cells, sections in in_blocks(self._sections):
+            start, reached = of_cells(self._start, cells), of_cells(self._trial, cells)
+            reached |= {name: np.empty_like(start[name]) for name in self._in_place}
+            strain, size = self._strain.trial[cells], cells.stop - cells.start
+            if POINTS in self._in_place:
+                sections.update(strain, start, reached, np.empty((size, 2, 6)), np.empty((size, 2, 6, 6)), False)
+            sections.update_surface(strain, start, reached)
+            for name in self._in_place:
+                start[name][:] = reached[name]
