@@ -271,9 +271,6 @@ class Newton:
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Before a line search of type `basic`: scale the correction −y."""
-        if self.foresees:
-            self.system.evaluate(x)
-            self.system.predict(y)
         step = self.search(x, y, self.F, self.load, self.load_factor)
         self._step_length = step.contact_limit * step.value
         ahead = self.foresees and (step.feigns or self.control.foreseen_forces or not self.system.touches)
