@@ -99,7 +99,7 @@ class LineLayout(Layout):
         gathered = values[: self._nodes]
         if self.comm.size > 1:
             gathered = np.concatenate(self.comm.allgather(gathered))
-        return gathered[self._place]
+        return gathered.take(self._place, axis=0)
 
     def at_station(self, values: np.ndarray, station: int) -> np.ndarray:
         """Values of the local nodes, shape (nodes, …), at one station, on every rank, shape (…); collective."""

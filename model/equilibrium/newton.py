@@ -6,6 +6,7 @@ change how a state is found, not the state.
 """
 
 import logging
+import math
 import weakref
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -289,7 +290,7 @@ class Newton:
         if iteration == 0:
             self._step_length = None
             self.test.begin(norm, self._feigned if self.foresees else 0.0)
-        if not np.isfinite(norm):
+        if not math.isfinite(norm):
             return NOT_A_NUMBER
         if self.method.is_arc_length and iteration == 0:
             return Reason.ITERATING  # at the load factor 0 every step is in equilibrium
