@@ -13,7 +13,7 @@ Every kind is a `Contact`. What only some of them do has a protocol of its own, 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Protocol, runtime_checkable
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -49,8 +49,7 @@ class Known:
     own: np.ndarray
 
 
-@dataclass(frozen=True)
-class TrialPositions:
+class TrialPositions(NamedTuple):
     """Where stations and seats are at a trial state.
 
     Attributes:

@@ -89,13 +89,14 @@ class Wrench:
         moment_about(point, self.force, self.moment, moment)
         return moment
 
-    def crossing(self, point: np.ndarray) -> np.ndarray:
+    def crossing(self, point: np.ndarray) -> tuple[float, float]:
         """Where the resultant crosses the plane z = const through `point`, relative to it.
 
         There its moments about x and y vanish: ex = −My/Fz, ey = Mx/Fz.
 
         Returns:
-            ex, ey, shape (2,), mm.
+            ex, ey, mm.
         """
-        mx, my, _ = self.about(point)
-        return np.array([-my, mx]) / self.force[2]
+        mx, my, _ = self.about(point).tolist()
+        along = float(self.force[2])
+        return -my / along, mx / along

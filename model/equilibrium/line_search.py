@@ -11,7 +11,7 @@ solved in parts, see coilset.model.equilibrium.newton.
 """
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -23,8 +23,7 @@ from coilset.model.equilibrium.settings import NewtonControl
 from coilset.model.equilibrium.system import System
 
 
-@dataclass(frozen=True)
-class StepLength:
+class StepLength(NamedTuple):
     """Result of a line search.
 
     Attributes:

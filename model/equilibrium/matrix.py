@@ -39,7 +39,7 @@ class TangentMatrix:
     def __init__(self, body: Body, layout: Layout) -> None:
         self.body, self.layout = body, layout
         self.mat, self.version = body.create_matrix(layout.size_local), 0
-        self._places, self._known = np.empty(0, dtype=np.int64), set[int]()
+        self._places, self._known = list[int](), set[int]()
         self._bare: tuple[np.ndarray, np.ndarray] | None = None  # the pattern without contacts, once it is needed
         self._entries: AijEntries | None = None
         # if they are added in place
@@ -85,8 +85,8 @@ class TangentMatrix:
 
     def _clear(self, contributions: Sequence[Contribution], exactly: bool) -> None:
         """Zero it, with room for the closed contacts; with `exactly`, for no others."""
-        places = self._contact_places(contributions)
-        fits = np.array_equal(places, self._places) or (not exactly and self._known.issuperset(places.tolist()))
+        places = self._contact_places(contributions).tolist()
+        fits = places == self._places or (not exactly and self._known.issuperset(places))
         fits = fits and (self._entries is not None or self._elements is None)
         if self.layout.comm.size > 1:
             fits = self.layout.comm.allreduce(int(fits)) == self.layout.comm.size
@@ -94,7 +94,7 @@ class TangentMatrix:
             self.mat.zeroEntries()
         else:
             self._make_room(contributions)
-            self._places, self._known = places, set(places.tolist())
+            self._places, self._known = places, set(places)
 
     def _add_contacts(
         self, contributions: Sequence[Contribution], pattern: tuple[np.ndarray, np.ndarray], room: np.ndarray

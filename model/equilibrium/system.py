@@ -1,7 +1,7 @@
 """Residual and tangent of a body and what touches it, as functions of one vector of increments."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from dolfinx import la
@@ -19,8 +19,7 @@ from coilset.model.state import Where
 EXPIRED = b""  # in the place of the increments of an evaluation
 
 
-@dataclass(frozen=True)
-class Evaluation:
+class Evaluation(NamedTuple):
     """What the last evaluation found.
 
     Attributes:

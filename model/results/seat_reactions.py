@@ -86,24 +86,25 @@ class _Observer:
         """The SeatReaction of an end."""
         wrench, centre = self.wrench(end), self.control.centre(end, self.x)
         side = 1.0 if end == "bottom" else -1.0  # the bottom pushes up
-        crossing = wrench.crossing(centre) if abs(wrench.force[2]) > faint else np.full(2, np.nan)
+        lateral_x, lateral_y, along = wrench.force.tolist()
+        crossing = wrench.crossing(centre) if abs(along) > faint else (math.nan, math.nan)
         spot, length, down = (np.nan, np.nan), 0.0, 0.0
         for _, contact, part in self.on_wire:
             if contact.end == end:
                 wire = contact.points
-                bears, reach, *at = bearing_on_seat(
+                bears, reach, x, y = bearing_on_seat(
                     part.point, part.pressure, part.bears, wire.weights, wire.stations, self.x, wire.length, wire.turns,
                     wire.tip(end), faint,
                 )  # fmt: skip
                 length, down = length + bears, max(down, reach)
-                if not math.isnan(at[0]):
-                    spot = at
-        axial = side * wrench.force[2]
+                if not math.isnan(x):
+                    spot = x, y
+        axial = side * along
         if not self.control.clamped and axial < -faint:
             axial = 0.0  # a seat cannot pull: tension comes from the spring that holds a lifted tip
-        numbers = (axial, *wrench.force[:2], *wrench.about(centre), *crossing, np.hypot(*crossing),
-                   *spot, length, down, self.tilt(end))  # fmt: skip
-        return SeatReaction(*map(float, numbers))
+        mx, my, mz = wrench.about(centre).tolist()
+        return SeatReaction(axial, lateral_x, lateral_y, mx, my, mz, *crossing, math.hypot(*crossing), *spot, length,
+                            down, self.tilt(end))  # fmt: skip
 
     def tilt(self, end: str) -> float:
         """Angle between the axes of a seat and of the spring, rad."""
