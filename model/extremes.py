@@ -42,12 +42,3 @@ def farthest(x: np.ndarray, y: np.ndarray) -> float:
         for k in range(3):
             found = max(found, abs(x[i, k] - y[i, k]))
     return found
-
-
-@njit(cache=True)
-def count_above(values: np.ndarray, limits: np.ndarray, part: float) -> int:
-    """How many of the values are above a part of their limits."""
-    found = 0
-    for i in range(len(values)):
-        found += values[i] > part * limits[i]
-    return found

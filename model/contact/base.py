@@ -13,14 +13,14 @@ Every kind is a `Contact`. What only some of them do has a protocol of its own, 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Protocol, runtime_checkable
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
 from coilset.meshes.ends import ENDS as ENDS
 from coilset.model.contact.curve import WirePoints
+from coilset.model.contact.elements import extent_of_contact
 from coilset.model.contact.memory import Memory
-from coilset.model.extremes import count_above, greatest
 
 SEAT_DOFS = 6  # x, y, z, θx, θy, θz; see plate.py
 LEVEL = 2  # the one along the spring's axis
@@ -49,8 +49,7 @@ class Known:
     own: np.ndarray
 
 
-@dataclass(frozen=True)
-class TrialPositions:
+class TrialPositions(NamedTuple):
     """Where stations and seats are at a trial state.
 
     Attributes:
@@ -94,6 +93,12 @@ class Contribution:
     point: np.ndarray
     onset_force: np.ndarray
 
+    @staticmethod
+    def room(m: int, k: int) -> tuple[np.ndarray, ...]:
+        """Arrays for up to m elements on k degrees of freedom each, not yet written, in the order of the attributes."""
+        point, dofs = np.empty(m, np.int64), np.empty((m, k), np.int64)
+        return dofs, np.empty((m, k)), np.empty((m, k, k)), np.empty(m), np.empty(m), point, np.empty(m)
+
     def only(self, elements: np.ndarray) -> "Contribution":
         """Some of the elements, given as numbers or as booleans."""
         return Contribution(*(getattr(self, field.name)[elements] for field in fields(self)))
@@ -110,14 +115,20 @@ class Contribution:
         return self.pressure > CLOSED_OF_ONSET_FORCE * self.onset_force
 
     @cached_property
+    def _extent(self) -> tuple[int, float]:
+        if not len(self.point):
+            return 0, 0.0
+        return extent_of_contact(self.pressure, self.onset_force, CLOSED_OF_ONSET_FORCE, self.penetration)
+
+    @property
     def closed(self) -> int:
         """Number of closed elements."""
-        return count_above(self.pressure, self.onset_force, CLOSED_OF_ONSET_FORCE) if len(self.point) else 0
+        return self._extent[0]
 
     @property
     def deepest(self) -> float:
         """Maximum penetration, mm; 0 where nothing touches."""
-        return greatest(self.penetration) if len(self.point) else 0.0
+        return self._extent[1]
 
 
 def one_sided(g: np.ndarray, c: np.ndarray, onset: float) -> tuple[np.ndarray, np.ndarray]:

@@ -41,6 +41,14 @@ def add_force(point: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.
 
 
 @njit(cache=True)
+def moment_about(point: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
+    """Write the moment about a point of a force and a moment at the origin, shape (3,) each."""
+    for k in range(3):
+        i, j = (k + 1) % 3, (k + 2) % 3
+        out[k] = moment[k] - (point[i] * force[j] - point[j] * force[i])
+
+
+@njit(cache=True)
 def bearing_on_seat(
     point: np.ndarray,
     pressure: np.ndarray,
@@ -51,6 +59,7 @@ def bearing_on_seat(
     lengths: np.ndarray,
     turns: np.ndarray,
     tip: int,
+    faint: float,
 ) -> tuple[float, float, float, float]:
     """Where a seat bears on the wire.
 
@@ -59,13 +68,15 @@ def bearing_on_seat(
         weights, stations, lengths, turns: of the WirePoints.
         x: positions of the stations, shape (n, 3), mm.
         tip: number of the point at the wire's tip.
+        faint: force that counts as none, N.
 
     Returns:
         Length of the wire that bears, mm, how far it reaches from the tip, turns, and x and y of the centre of
         pressure, mm, not numbers where nothing presses.
     """
-    length = reach = total = px = py = 0.0
+    length = reach = total = force = px = py = 0.0
     for e in range(len(point)):
+        force += pressure[e]
         if bears[e]:
             i = point[e]
             length, reach = length + lengths[i], max(reach, abs(turns[i] - turns[tip]))
@@ -73,7 +84,9 @@ def bearing_on_seat(
             for a in range(STENCIL):
                 px += pressure[e] * weights[i, a] * x[stations[i, a], 0]
                 py += pressure[e] * weights[i, a] * x[stations[i, a], 1]
-    return (length, reach, px / total, py / total) if total > 0.0 else (length, reach, np.nan, np.nan)
+    if force <= faint or total <= 0.0:
+        return length, reach, np.nan, np.nan
+    return length, reach, px / total, py / total
 
 
 @njit(cache=True)

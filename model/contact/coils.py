@@ -44,7 +44,7 @@ class Coils:
         self.stiffness, self.lengths = 0.5 * bedding * points.length, points.length
         self.overlap = np.zeros((len(points), 2))
         self._y = np.column_stack([stations, points.line.radius])  # stations of the last search, with their radii
-        self._widest = float(points.line.radius.max())
+        self._widest, self._all_elements = float(points.line.radius.max()), np.array([[0, len(points.line.lengths)]])
         self.aside = STATIONS_ASIDE + POSTS_ASIDE * post_stride(self._widest, longest_element(self._y))
         pair, where, _ = self.near(TrialPositions(stations, np.empty(0)))
         np.minimum.at(self.overlap, self.sides(pair), where[:, 1])
@@ -72,7 +72,7 @@ class Coils:
         p, active = np.empty((len(points), 3)), trial.points(points)
         self._y[:, :3] = trial.x
         at_points(active, points.weights, points.stations, trial.x, p)
-        elements = np.array([[0, len(line.lengths)]]) if known is None else known.elements
+        elements = self._all_elements if known is None else known.elements
         longest = longest_element(self._y) if known is None else known.longest
         while True:
             pair, where = np.empty((self._room, 3), np.int64), np.empty((self._room, 2))
@@ -104,7 +104,9 @@ class Coils:
             own, points = trial.known.own, self.points
             ours = (own[points.stations[pair[:, 0]]] | own[points.line.stations[pair[:, 1]]]).any(axis=1)
             pair, where = pair[ours], where[ours]
-        return *pressing(pair, where, self.points.turns, self.points.line.turns, offsets), p
+        offset = np.empty(len(pair))
+        count = keep_pressing(self.points.turns, self.points.line.turns, offsets, pair, where, offset)
+        return pair[:count], where[:count], offset[:count], p
 
     def max_penetration(self, trial: TrialPositions) -> float:
         """Maximum penetration, mm."""
@@ -116,11 +118,10 @@ class Coils:
         pair, where, offset, p = self.pressed(trial)
         if not len(pair):
             return self._nothing
-        forces, k, pressure = coil_elements(p, points.weights, self._y, line.first, line.cubic, pair, where, offset,
-                                            self.stiffness, self.onset)  # fmt: skip
-        i = pair[:, 0]
-        dofs = np.hstack([points.dofs(i), line.dofs[pair[:, 1]]])
-        return Contribution(dofs, forces, k, pressure, -where[:, 1], i, self.stiffness[i] * self.onset)
+        room = Contribution.room(len(pair), PAIR)
+        coil_elements(p, points.weights, self._y, line.first, line.cubic, pair, where, offset, self.stiffness,
+                      self.onset, points.element, line.dofs, *room)  # fmt: skip
+        return Contribution(*room)
 
     @property
     def reach(self) -> float:
@@ -148,24 +149,30 @@ def moved(there: TrialPositions, here: TrialPositions) -> float:
 
 
 @njit(cache=True)
-def pressing(
-    pair: np.ndarray, where: np.ndarray, turns: np.ndarray, station_turns: np.ndarray, offsets: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Those of the pairs whose gaps are smaller than their offsets.
+def keep_pressing(
+    turns: np.ndarray,
+    station_turns: np.ndarray,
+    offsets: np.ndarray,
+    pair: np.ndarray,
+    where: np.ndarray,
+    offset: np.ndarray,
+) -> int:
+    """Move those of the pairs to the front whose gaps are smaller than their offsets, and write these.
 
     Args:
-        pair, where: of `near_locations`.
         turns, station_turns: of points and stations.
         offsets: of the points, for the coil before and after, shape (m, 2), mm.
+        pair, where: of `near_locations`; the others are overwritten.
+        offset: written, of the pairs.
 
     Returns:
-        Pairs, ξ and gaps, and offsets.
+        Their number.
     """
-    chosen, offset, count = np.empty(len(pair), np.int64), np.empty(len(pair)), 0
+    count = 0
     for k in range(len(pair)):
         i = pair[k, 0]
         own = offsets[i, 1 if station_turns[pair[k, 1]] > turns[i] else 0]
         if where[k, 1] < own:
-            chosen[count], offset[count] = k, own
+            pair[count], where[count], offset[count] = pair[k], where[k], own
             count += 1
-    return pair[chosen[:count]], where[chosen[:count]], offset[:count]
+    return count

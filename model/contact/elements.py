@@ -18,6 +18,18 @@ def one_sided_at(g: float, c: float, onset: float) -> tuple[float, float]:
 
 
 @njit(**COMPILED)
+def extent_of_contact(
+    pressure: np.ndarray, onset_force: np.ndarray, part: float, penetration: np.ndarray
+) -> tuple[int, float]:
+    """How many elements press by more than a part of their onset force, and the maximum penetration, at least 0, mm."""
+    closed, deepest = 0, 0.0
+    for m in range(len(pressure)):
+        closed += pressure[m] > part * onset_force[m]
+        deepest = max(deepest, penetration[m])
+    return closed, deepest
+
+
+@njit(**COMPILED)
 def at_points(
     points: np.ndarray, weights: np.ndarray, stations: np.ndarray, values: np.ndarray, out: np.ndarray
 ) -> None:
@@ -48,8 +60,17 @@ def coil_elements(
     offset: np.ndarray,
     stiffness: np.ndarray,
     onset: float,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Forces, stiffness and pressure of the pairs, shapes (m, 24), (m, 24, 24) and (m,).
+    element: np.ndarray,
+    element_dofs: np.ndarray,
+    dofs: np.ndarray,
+    forces: np.ndarray,
+    k: np.ndarray,
+    pressure: np.ndarray,
+    penetration: np.ndarray,
+    point: np.ndarray,
+    onset_force: np.ndarray,
+) -> None:
+    """Write what the pairs do to the stations.
 
     With q = Σ a_m x_m from the other coil to the point, d = |q|, n = q/d, P = (1 − n nᵀ)/d and a′ = ∂a/∂ξ the gap
     g(u, ξ) = d − r_p − r(ξ) has
@@ -67,15 +88,18 @@ def coil_elements(
         where: ξ and gap of the pairs, offset: by which they are pressed beyond their penetration, shape (m,), mm.
         stiffness: of the points, N/mm.
         onset: distance over which contact sets in, mm.
+        element: of the points; element_dofs: degrees of freedom of all elements, shape (elements, 12).
+        dofs, forces, k, pressure, penetration, point, onset_force: written, the arrays of a Contribution.
     """
-    count, size = len(pair), 2 * STENCIL
-    forces, k, pressure = np.empty((count, PAIR)), np.empty((count, PAIR, PAIR)), np.empty(count)
+    count, size, half = len(pair), 2 * STENCIL, 3 * STENCIL
     c, dc, ddc = np.empty(4), np.empty(4), np.empty(4)
     n, a, da, P, Pc, mixed = np.empty(3), np.zeros(size), np.zeros(size), np.empty((3, 3)), np.empty(3), np.empty(PAIR)
     spread = np.empty((3, PAIR))  # rows of aᵀ (c n nᵀ − f P)
     for m in range(count):
         i, e, t = pair[m, 0], pair[m, 1], where[m, 0]
         pressure[m], hardness = one_sided_at(where[m, 1] - offset[m], stiffness[i], onset)
+        penetration[m], point[m], onset_force[m] = -where[m, 1], i, stiffness[i] * onset
+        dofs[m, :half], dofs[m, half:] = element_dofs[element[i]], element_dofs[e]
         point_on_curve(y, first, cubic, e, t, c, 0)
         point_on_curve(y, first, cubic, e, t, dc, 1)
         point_on_curve(y, first, cubic, e, t, ddc, 2)
@@ -105,15 +129,15 @@ def coil_elements(
                 row, from_spread, from_mixed = k[m, 3 * s + o], spread[o], eliminated * mixed[3 * s + o]
                 for j in range(PAIR):
                     row[j] = a[s] * from_spread[j] + from_mixed * mixed[j]
-    return forces, k, pressure
 
 
 @njit(**COMPILED)
 def flat_seat_elements(
     points: np.ndarray,
-    z: np.ndarray,
+    x: np.ndarray,
     stations: np.ndarray,
     weights: np.ndarray,
+    numbers: np.ndarray,
     level: float,
     side: float,
     reach: np.ndarray,
@@ -123,22 +147,25 @@ def flat_seat_elements(
     tip: int,
     tip_spring: float,
     slack: float,
-    point: np.ndarray,
+    dofs: np.ndarray,
     forces: np.ndarray,
     k: np.ndarray,
     pressure: np.ndarray,
     penetration: np.ndarray,
+    point: np.ndarray,
+    onset_force: np.ndarray,
 ) -> int:
     """The points that bear on a flat seat which moves along the axis only, and the tip.
 
     Args:
         points: numbers of the points that are asked for.
-        z: levels of the stations, mm.
+        x: positions of the stations, shape (n, 3), mm.
         stations, weights: of all points, shape (m, 4).
+        numbers: degrees of freedom of all points, shape (m, 5).
         level: of the seat, mm; side: 1 where the wire lies above it, else −1.
         reach, offset, stiffness, onset, tip, tip_spring, slack: of the Seat.
-        point, forces, k, pressure, penetration: written for the b points that bear: numbers, shape (b, …), forces,
-            (b, 5), stiffness, (b, 5, 5), pressure and penetration, (b,).
+        dofs, forces, k, pressure, penetration, point, onset_force: written for the b points that bear, as the
+            arrays of a Contribution.
 
     Returns:
         b.
@@ -147,7 +174,7 @@ def flat_seat_elements(
     for i in points:
         gap = -level
         for a in range(STENCIL):
-            gap += weights[i, a] * z[stations[i, a]]
+            gap += weights[i, a] * x[stations[i, a], 2]
         gap = side * gap - reach[i]
         g = gap - offset[i]
         if g >= 0.0 and i != tip:
@@ -160,8 +187,9 @@ def flat_seat_elements(
         else:
             c = stiffness[i]
             force = -c * g
-        point[e], pressure[e], penetration[e] = i, max(force, 0.0), -gap
+        point[e], pressure[e], penetration[e], onset_force[e] = i, max(force, 0.0), -gap, stiffness[i] * onset
         for a in range(FLAT):
+            dofs[e, a] = numbers[i, a]
             grad[a] = side * (weights[i, a] if a < STENCIL else -1.0)
             forces[e, a] = -force * grad[a]
         for a in range(FLAT):

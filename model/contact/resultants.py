@@ -6,9 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from coilset.model.contact.base import SEAT_DOFS, Contribution
-from coilset.model.contact.bearing import add_force, add_resultant
-
-NONE = np.zeros(3)
+from coilset.model.contact.bearing import add_force, add_resultant, moment_about
 
 
 def station_forces(parts: Iterable[Contribution], stations: int) -> np.ndarray:
@@ -87,15 +85,18 @@ class Wrench:
 
     def about(self, point: np.ndarray) -> np.ndarray:
         """Moment about another point, shape (3,), N mm."""
-        return self.with_force(-point, self.force, NONE).moment
+        moment = np.empty(3)
+        moment_about(point, self.force, self.moment, moment)
+        return moment
 
-    def crossing(self, point: np.ndarray) -> np.ndarray:
+    def crossing(self, point: np.ndarray) -> tuple[float, float]:
         """Where the resultant crosses the plane z = const through `point`, relative to it.
 
         There its moments about x and y vanish: ex = −My/Fz, ey = Mx/Fz.
 
         Returns:
-            ex, ey, shape (2,), mm.
+            ex, ey, mm.
         """
-        mx, my, _ = self.about(point)
-        return np.array([-my, mx]) / self.force[2]
+        mx, my, _ = self.about(point).tolist()
+        along = float(self.force[2])
+        return -my / along, mx / along

@@ -74,9 +74,10 @@ class Seat:
             self.distance += gap.min()  # zero on a flat seat; a cone is moved until it touches
         self.memory = Memory({"multiplier_offset": points.stations[:, 0]}, multiplier_offset=np.zeros(len(points)))
         self.slack = 0.0 if stepped else gap[self.tip] - gap.min()
-        self.dofs = self.plate.dofs_with(points)
+        self.dofs, self._level = self.plate.dofs_with(points), self.plate.own.start + LEVEL
         if self.linear:
-            self.dofs = self.dofs[:, np.append(np.arange(2, 3 * STENCIL, 3), 3 * STENCIL + LEVEL)]
+            levels = np.append(np.arange(2, 3 * STENCIL, 3), 3 * STENCIL + LEVEL)
+            self.dofs = np.ascontiguousarray(self.dofs[:, levels])
 
     @property
     def multiplier_offset(self) -> np.ndarray:
@@ -132,17 +133,13 @@ class Seat:
     def _flat(self, trial: TrialPositions) -> Contribution:
         """On a flat seat that moves along the axis only."""
         points, numbers = self.points, trial.points(self.points)
-        n = len(numbers)  # as many as could bear, most of them never touched
-        parts = (
-            np.empty(n, np.int64), np.empty((n, FLAT)), np.empty((n, FLAT, FLAT)), np.empty(n), np.empty(n),
-        )  # fmt: skip
+        room = Contribution.room(len(numbers), FLAT)  # for as many as could bear, most of them never touched
         count = flat_seat_elements(
-            numbers, trial.x[:, 2], points.stations, points.weights, trial.seats[self.plate.own][LEVEL], self.side,
+            numbers, trial.x, points.stations, points.weights, self.dofs, trial.seats[self._level], self.side,
             self.distance, self.multiplier_offset, self.stiffness, self.onset, self.tip, self.tip_spring, self.slack,
-            *parts,
+            *room,
         )  # fmt: skip
-        i, forces, k, pressure, penetration = (part[:count] for part in parts)
-        return Contribution(self.dofs[i], forces, k, pressure, penetration, i, self.stiffness[i] * self.onset)
+        return Contribution(*(part[:count] for part in room))
 
     def _curved(self, trial: TrialPositions) -> Contribution:
         """On a cone, or on a seat that moves in any way."""

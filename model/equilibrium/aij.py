@@ -34,6 +34,7 @@ class AijEntries:
         self.pattern: tuple[np.ndarray, np.ndarray] = _pattern(mat) if self._one else pattern or mat.getValuesCSR()[:2]
         self._size = self._own_size = len(self.pattern[1])
         self._address, self._values = 0, np.empty(0)  # of the last time, on one rank
+        self._handle, self._found = ctypes.c_void_p(mat.handle), ctypes.c_void_p()
         if not self._one:
             start, stop = mat.getOwnershipRange()
             own = (self.pattern[1] >= start) & (self.pattern[1] < stop)
@@ -65,13 +66,14 @@ class AijEntries:
     def _arrays(self) -> tuple[np.ndarray, np.ndarray]:
         """Where PETSc keeps the entries now."""
         if self._one:
-            if self._address != (address := _address(self._mat.handle)):
+            if self._address != (address := _address(self._handle, self._found)):
                 self._address, self._values = address, _at(address, self._size)
             return self._values, NONE
         own, others, columns = ctypes.c_void_p(), ctypes.c_void_p(), ctypes.c_void_p()
         parts = (ctypes.byref(part) for part in (own, others, columns))
         _check(_PETSC.MatMPIAIJGetSeqAIJ(ctypes.c_void_p(self._mat.handle), *parts))
-        return _at(_address(own), self._own_size), _at(_address(others), self._size - self._own_size)
+        places = (_address(part, self._found) for part in (own, others))
+        return _at(next(places), self._own_size), _at(next(places), self._size - self._own_size)
 
 
 def _pattern(mat: PETSc.Mat) -> tuple[np.ndarray, np.ndarray]:
@@ -85,12 +87,12 @@ def _pattern(mat: PETSc.Mat) -> tuple[np.ndarray, np.ndarray]:
     return pattern
 
 
-def _address(part: int | ctypes.c_void_p) -> int:
+def _address(part: ctypes.c_void_p, found: ctypes.c_void_p) -> int:
     """Where a matrix of PETSc's type `seqaij` keeps its entries; PETSc takes them for changed from now on."""
-    values = ctypes.c_void_p()
-    _check(_PETSC.MatSeqAIJGetArray(part, ctypes.byref(values)))
-    address = values.value or 0
-    _check(_PETSC.MatSeqAIJRestoreArray(part, ctypes.byref(values)))
+    place = ctypes.byref(found)
+    _check(_PETSC.MatSeqAIJGetArray(part, place))
+    address = found.value or 0
+    _check(_PETSC.MatSeqAIJRestoreArray(part, place))
     return address
 
 

@@ -48,16 +48,18 @@ class AxialControl:
             for number, dofs in enumerate(seats_held):
                 held += [layout.seat_dofs[SEAT_DOFS * number + dof] for dof in dofs]
         self.held = {int(dof): 0.0 for dof in held}
+        self._higher = Load.of(layout, {**self.held, self.axial: 1.0}, {})  # by 1 mm
+        self._pulled = Load.of(layout, self.held, {self.axial: 1.0})  # by 1 N
         self.tips = {"bottom": (0, components), "top": (len(layout.station_dofs) - 1, components)}
         self._start = self._level("equilibrium")
 
     def to_height(self, height: float) -> Load:
         """The load that brings the spring from the last equilibrium to a height, mm."""
-        return Load.of(self.layout, {**self.held, self.axial: height - self.height}, {})
+        return self._higher.scaled(height - self.height)
 
     def to_force(self, force: float) -> Load:
         """The load that brings the spring to an axial force, compression positive, N."""
-        return Load.of(self.layout, self.held, {self.axial: -force})
+        return self._pulled.scaled(-force)
 
     @property
     def height(self) -> float:

@@ -50,9 +50,9 @@ class ContactParts:
         """
         trial = self.surroundings.trial(x, seats, rotations)
         parts = [contact.evaluate(trial) for contact in self.contacts]
-        deepest = max((parts[number].deepest for number in self._limiting_numbers), default=0.0)
+        deepest = max([parts[number].deepest for number in self._limiting_numbers], default=0.0)
         if self.comm.size == 1:
-            return parts, deepest, sum(part.closed for part in parts)
+            return parts, deepest, sum([part.closed for part in parts])
         parts = [_those(part, self.layout.acts_here(part.dofs)) for part in parts]
         closed = sum(np.count_nonzero(part.bears & self.layout.begins_here(part.dofs)) for part in parts)
         found = np.empty((self.comm.size, 2))

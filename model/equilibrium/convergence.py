@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import KW_ONLY, dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -78,8 +79,7 @@ def reason_in_words(reason: int) -> str:
     return WORDS.get(name, name)
 
 
-@dataclass(frozen=True)
-class Imbalance:
+class Imbalance(NamedTuple):
     """Distance of a state from equilibrium.
 
     Attributes:
@@ -104,7 +104,7 @@ def imbalance(system: System, load: Load, F: PETSc.Vec) -> Imbalance:
     squares = _squares(F.getArray(readonly=True), load.is_held, reactions.trial, reactions.equilibrium, load.supports)
     if system.comm.size > 1:
         squares = tuple(system.comm.allreduce(np.array(squares)))
-    free, missed, change = (math.sqrt(square) for square in squares)
+    free, missed, change = [math.sqrt(square) for square in squares]
     missed /= system.body.constraint_weight
     return Imbalance(free, change, missed / load.prescribed if load.prescribed > 0.0 else missed)
 

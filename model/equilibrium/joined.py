@@ -28,13 +28,19 @@ def join_patterns(
 
 
 def add_matrices(
-    pattern: tuple[np.ndarray, np.ndarray], unknowns: np.ndarray, matrices: np.ndarray, start: int, values: np.ndarray
+    pattern: tuple[np.ndarray, np.ndarray],
+    unknowns: np.ndarray,
+    numbers: np.ndarray,
+    matrices: np.ndarray,
+    start: int,
+    values: np.ndarray,
 ) -> None:
     """Add small matrices to a range of rows.
 
     Args:
         pattern: indptr and indices of the rows, which have room for them.
-        unknowns: of the small matrices, shape (m, k).
+        unknowns: by what the small matrices call them.
+        numbers: what these call their unknowns, shape (m, k).
         matrices: shape (m, k, k).
         start: number of the first row.
         values: of the rows' entries.
@@ -42,7 +48,7 @@ def add_matrices(
     Raises:
         ValueError: if there is no room for them.
     """
-    if not _add(*pattern, unknowns, matrices, start, values):
+    if not _add(*pattern, unknowns, numbers, matrices, start, values):
         raise ValueError("the matrix has no entries for some of the contacts")
 
 
@@ -122,13 +128,21 @@ def _find_runs(columns: np.ndarray, length: np.ndarray) -> None:
 
 @njit(cache=True)
 def _add(
-    indptr: np.ndarray, indices: np.ndarray, unknowns: np.ndarray, matrices: np.ndarray, start: int, values: np.ndarray
+    indptr: np.ndarray,
+    indices: np.ndarray,
+    unknowns: np.ndarray,
+    numbers: np.ndarray,
+    matrices: np.ndarray,
+    start: int,
+    values: np.ndarray,
 ) -> bool:
     """As `add_matrices`; False if some entry has no place."""
-    n, k = len(indptr) - 1, unknowns.shape[1]
+    n, k = len(indptr) - 1, numbers.shape[1]
     offset, length = np.zeros(k, np.int64), np.empty(k, np.int64)  # of each run: its place in a row, and its columns
-    for m in range(len(unknowns)):
-        columns = unknowns[m]
+    columns = np.empty(k, np.int64)
+    for m in range(len(numbers)):
+        for a in range(k):
+            columns[a] = unknowns[numbers[m, a]]
         _find_runs(columns, length)
         for a in range(k):
             row, b = columns[a] - start, 0
@@ -156,10 +170,17 @@ def _add(
 
 
 @njit(cache=True)
-def add_vectors(unknowns: np.ndarray, vectors: np.ndarray, start: int, out: np.ndarray) -> None:
-    """Add small vectors, shape (m, k), at their `unknowns` to the `out` of a range of rows from `start` on."""
-    for m in range(len(unknowns)):
-        for a in range(unknowns.shape[1]):
-            row = unknowns[m, a] - start
+def add_vectors(unknowns: np.ndarray, numbers: np.ndarray, vectors: np.ndarray, start: int, out: np.ndarray) -> None:
+    """Add small vectors, shape (m, k), to the `out` of a range of rows from `start` on; see `add_matrices`."""
+    for m in range(len(numbers)):
+        for a in range(numbers.shape[1]):
+            row = unknowns[numbers[m, a]] - start
             if 0 <= row < len(out):
                 out[row] += vectors[m, a]
+
+
+@njit(cache=True)
+def number_pairs(numbers: np.ndarray, count: int, out: np.ndarray) -> None:
+    """Write a number for the first and the last of the `count` unknowns in each row of `numbers`, shape (m, k)."""
+    for m in range(len(numbers)):
+        out[m] = numbers[m, 0] * count + numbers[m, -1]

@@ -46,7 +46,7 @@ class Layout:
 
     def extra(self, values: np.ndarray) -> np.ndarray:
         """The extra unknowns of this rank's part `values` of a vector, the same on every rank."""
-        mine = values[self.owned :].copy()  # empty except on the last rank, which owns them
+        mine = values[self.owned :]  # empty except on the last rank, which owns them
         return mine if self.comm.size == 1 else self.comm.bcast(mine, root=self.comm.size - 1)
 
     def values(self, vector: PETSc.Vec, dofs: np.ndarray) -> np.ndarray:
@@ -99,7 +99,7 @@ class LineLayout(Layout):
         gathered = values[: self._nodes]
         if self.comm.size > 1:
             gathered = np.concatenate(self.comm.allgather(gathered))
-        return gathered[self._place]
+        return gathered.take(self._place, axis=0)
 
     def at_station(self, values: np.ndarray, station: int) -> np.ndarray:
         """Values of the local nodes, shape (nodes, …), at one station, on every rank, shape (…); collective."""

@@ -11,7 +11,7 @@ solved in parts, see coilset.model.equilibrium.newton.
 """
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -23,8 +23,7 @@ from coilset.model.equilibrium.settings import NewtonControl
 from coilset.model.equilibrium.system import System
 
 
-@dataclass(frozen=True)
-class StepLength:
+class StepLength(NamedTuple):
     """Result of a line search.
 
     Attributes:
@@ -47,7 +46,7 @@ class WorkSearch:
         system: System; it is evaluated at the trial points.
         limit: ContactLimit.
         control: NewtonControl.
-        foresees: whether the body has predicted its forces for the correction (Foresees).
+        foresees: whether the body predicts its forces for the correction (Foresees).
     """
 
     def __init__(self, system: System, limit: ContactLimit, control: NewtonControl, foresees: bool = False) -> None:
@@ -59,6 +58,8 @@ class WorkSearch:
         system, control = self.system, self.control
         self._x, self._load, self._load_factor = x, load, load_factor
         system.evaluate(x)
+        if self.foresees:
+            system.predict(y)
         allowed = self.limit.allowed(system.max_penetration)
         pending = load.misses(x.getArray(readonly=True), load_factor)
         y.copy(self._direction)

@@ -10,6 +10,7 @@ from numba import njit
 
 from coilset.model.equilibrium.layout import Layout
 from coilset.model.extremes import largest
+from coilset.model.state import Field
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,12 @@ class Load:
         """From unknown → increment and unknown → force, each the same on every rank."""
         return cls(layout, *_mine(layout, fixed), *_mine(layout, forces))
 
+    def scaled(self, factor: float) -> "Load":
+        """The same unknowns, with increments and forces times `factor`."""
+        load = replace(self, increments=factor * self.increments, forces=factor * self.forces)
+        vars(load).update(is_held=self.is_held, supports=self.supports)  # found once for all of them
+        return load
+
     def forces_at(self, load_factor: float, reactions: np.ndarray) -> np.ndarray:
         """Forces of a fraction of the step, shape (f,), N and N mm.
 
@@ -62,6 +69,19 @@ class Load:
             reactions: internal forces of the last equilibrium, this rank's part, N and N mm.
         """
         return load_factor * self.forces + (1.0 - load_factor) * reactions[self.loaded]
+
+    def out_of_balance(
+        self, load_factor: float, reactions: Field, increments: np.ndarray, weight: float, F: np.ndarray
+    ) -> None:
+        """Write into F the reactions less the forces of a fraction of the step, and what `miss` does.
+
+        Args:
+            load_factor: as in `forces_at`.
+            reactions: the internal forces, those of the last equilibrium among them.
+            increments, weight: as in `miss`.
+        """
+        _out_of_balance(reactions.trial, reactions.equilibrium, self.loaded, self.forces, self.held, self.increments,
+                        load_factor, increments, weight, F)  # fmt: skip
 
     def miss(self, load_factor: float, increments: np.ndarray, weight: float, F: np.ndarray) -> None:
         """Write into the held places of F by how much the increments miss a fraction of the step, times `weight`.
@@ -96,11 +116,11 @@ class Load:
     @cached_property
     def _greatest(self) -> float:
         """The greatest of the prescribed increments of all ranks; collective when it is first asked for."""
-        return self._max(np.abs(self.increments).max(initial=0.0))
+        return self._max(largest(self.increments))
 
     def misses(self, increments: np.ndarray, load_factor: float) -> bool:
         """Whether the increments, this rank's part, miss prescribed ones by more than rounding; collective."""
-        off = largest(increments[self.held] - load_factor * self.increments)
+        off = _largest_miss(self.held, self.increments, load_factor, increments)
         return self._max(off) > 1e-12 * self._greatest
 
     def reached(self, increments: np.ndarray) -> float:
@@ -134,3 +154,33 @@ def _miss(
 ) -> None:
     for k in range(len(held)):
         F[held[k]] = weight * (increments[held[k]] - load_factor * targets[k])
+
+
+@njit(cache=True)
+def _out_of_balance(
+    reactions: np.ndarray,
+    before: np.ndarray,
+    loaded: np.ndarray,
+    forces: np.ndarray,
+    held: np.ndarray,
+    targets: np.ndarray,
+    load_factor: float,
+    increments: np.ndarray,
+    weight: float,
+    F: np.ndarray,
+) -> None:
+    F[:] = reactions
+    for k in range(len(loaded)):
+        F[loaded[k]] -= load_factor * forces[k] + (1.0 - load_factor) * before[loaded[k]]
+    _miss(held, targets, load_factor, increments, weight, F)
+
+
+@njit(cache=True)
+def _largest_miss(held: np.ndarray, targets: np.ndarray, load_factor: float, increments: np.ndarray) -> float:
+    """As `largest`, of what the increments miss."""
+    found = 0.0
+    for k in range(len(held)):
+        miss = abs(increments[held[k]] - load_factor * targets[k])
+        if not miss <= found:
+            found = miss
+    return found

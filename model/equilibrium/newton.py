@@ -6,6 +6,7 @@ change how a state is found, not the state.
 """
 
 import logging
+import math
 import weakref
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -271,9 +272,6 @@ class Newton:
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Before a line search of type `basic`: scale the correction −y."""
-        if self.foresees:
-            self.system.evaluate(x)
-            self.system.predict(y)
         step = self.search(x, y, self.F, self.load, self.load_factor)
         self._step_length = step.contact_limit * step.value
         ahead = self.foresees and (step.feigns or self.control.foreseen_forces or not self.system.touches)
@@ -292,7 +290,7 @@ class Newton:
         if iteration == 0:
             self._step_length = None
             self.test.begin(norm, self._feigned if self.foresees else 0.0)
-        if not np.isfinite(norm):
+        if not math.isfinite(norm):
             return NOT_A_NUMBER
         if self.method.is_arc_length and iteration == 0:
             return Reason.ITERATING  # at the load factor 0 every step is in equilibrium

@@ -76,9 +76,9 @@ class StepError:
         memory, last = self._memory.trial, self._memory.equilibrium
         memory[CLOSED] = control.system.last.closed
         kinked = controls and memory[CLOSED] != last[CLOSED]
-        works = np.array(self._body.error_works(ratio, bool(kinked), stands=not controls))
+        works = self._body.error_works(ratio, bool(kinked), stands=not controls)
         if comm.size > 1:
-            works = comm.allreduce(works)
+            works = tuple(comm.allreduce(np.array(works)).tolist())
         before, force = control.force, control.trial_force
         travel = control.height - control.trial_height
         memory[GREATEST] = greatest = max(float(last[GREATEST]), abs(force))
@@ -86,7 +86,7 @@ class StepError:
         if still or none or (self._takes_time() and abs(force - before) <= STILL_FORCE * greatest):
             return self._in_time(works, greatest, float(last[FIRST]))
         memory[FIRST] = last[FIRST] or travel
-        error, new, left = (float(work) for work in works[:3] / (travel, travel, memory[FIRST]))
+        error, new, left = works[0] / travel, works[1] / travel, works[2] / float(memory[FIRST])
         stiffness = (force - before) / travel
         share = max(abs(new), abs(left)) / (self.steps.step_share * self.accuracy * greatest)
         if math.isnan(share):
@@ -98,14 +98,14 @@ class StepError:
         state = self.control.system.state
         return "clock" in state and not np.array_equal(state["clock"].trial, state["clock"].equilibrium)
 
-    def _in_time(self, works: np.ndarray, greatest: float, first: float) -> Estimate:
+    def _in_time(self, works: tuple[float, ...], greatest: float, first: float) -> Estimate:
         """A held spring is deformed by no travel of its own; the first step of all shows what a travel does."""
         if greatest <= ROUNDING * self._body.axial_force or first == 0.0 or not self._takes_time():
             return Estimate(math.nan, math.nan, 0.0, self.steps.growth)
-        share = abs(float(works[2]) / first) / (self.steps.step_share * self.accuracy * greatest)
+        share = abs(works[2] / first) / (self.steps.step_share * self.accuracy * greatest)
         if math.isnan(share):
             return Estimate(math.nan, math.nan, 0.0, 1.0)
-        return Estimate(float(works[3]) / first, math.nan, share, self._factor(share))
+        return Estimate(works[3] / first, math.nan, share, self._factor(share))
 
     def rejoin(self) -> None:
         """Go on from the last equilibrium, which was reached by steps that were not judged."""
@@ -114,4 +114,4 @@ class StepError:
     def _factor(self, share: float) -> float:
         steps = self.steps
         wanted = steps.growth if share == 0.0 else steps.caution * share ** (-1.0 / ORDER)
-        return float(np.clip(wanted, steps.least_factor, steps.growth))
+        return min(max(wanted, steps.least_factor), steps.growth)

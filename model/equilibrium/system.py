@@ -1,7 +1,7 @@
 """Residual and tangent of a body and what touches it, as functions of one vector of increments."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from dolfinx import la
@@ -19,8 +19,7 @@ from coilset.model.state import Where
 EXPIRED = b""  # in the place of the increments of an evaluation
 
 
-@dataclass(frozen=True)
-class Evaluation:
+class Evaluation(NamedTuple):
     """What the last evaluation found.
 
     Attributes:
@@ -79,6 +78,7 @@ class System:
         # asked once, for the test of a protocol takes longer than what it guards
         self._rotating = body if isinstance(body, HasRotations) else None
         self._foreseeing = body if isinstance(body, Foresees) else None
+        self._correction = body.correction.x.array if isinstance(body, Foresees) else np.empty(0)
         self.bearing = [isinstance(contact, BearsOnWire) for contact in self.contacts]
         if self.contacts:
             self.touching = ContactParts(self.line, self.contacts)
@@ -155,7 +155,7 @@ class System:
             values[: self.layout.owned] = local.array[: self.layout.owned]
         for part in self.last.contributions:
             if len(part.dofs):
-                add_vectors(self.line.contact_dofs[part.dofs], part.forces, self.layout.start, values)
+                add_vectors(self.line.contact_dofs, part.dofs, part.forces, self.layout.start, values)
         self.internal.stateIncrease()  # its entries have changed behind PETSc's back
 
     def with_ghosts(self, values: np.ndarray) -> np.ndarray:
@@ -235,33 +235,33 @@ class System:
         self._out_of_balance(load, load_factor, F)
 
     def _out_of_balance(self, load: Load, load_factor: float, F: PETSc.Vec) -> None:
-        values, x = F.getArray(), self.last.increments
-        np.copyto(values, self._reactions.trial)
-        if len(load.loaded):
-            self._subtract(load.loaded, load.forces_at(load_factor, self._reactions.equilibrium), values)
+        values, x, weight = F.getArray(), self.last.increments, self.body.constraint_weight
+        load.out_of_balance(load_factor, self._reactions, x, weight, values)
+        moments = self._rotating is not None and len(load.loaded) > 0 and self._is_rotation[load.loaded].any()
+        if moments:
+            self._turn_moments(load, load_factor, values)
         if load.drag is not None:
             values += load.drag.forces(x)
-        load.miss(load_factor, x, self.body.constraint_weight, values)
+        if moments or load.drag is not None:
+            load.miss(load_factor, x, weight, values)
 
-    def _subtract(self, loaded: np.ndarray, forces: np.ndarray, values: np.ndarray) -> None:
-        """Subtract external forces at the places `loaded`; moments are those of the fixed frame."""
-        if self._rotating is not None and self._is_rotation[loaded].any():
-            outer = np.zeros(len(values))
-            outer[loaded] = forces
-            self._rotating.to_charts(outer)
-            values -= outer
-        else:
-            values[loaded] -= forces
+    def _turn_moments(self, load: Load, load_factor: float, values: np.ndarray) -> None:
+        """Subtract moments of the fixed frame as the charts have them, where they have been subtracted as they are."""
+        assert self._rotating is not None
+        outer = np.zeros(len(values))
+        outer[load.loaded] = load.forces_at(load_factor, self._reactions.equilibrium)
+        values += outer
+        self._rotating.to_charts(outer)
+        values -= outer
 
     def predict(self, correction: PETSc.Vec) -> None:
         """Let a body that Foresees predict its forces after the increments change by −correction; collective.
 
         The last evaluation is that of the increments before it.
         """
-        body = self._foreseeing
+        body, owned = self._foreseeing, self.layout.owned
         assert body is not None
-        owned = self.layout.owned
-        np.negative(correction.getArray(readonly=True)[:owned], out=body.correction.x.array[:owned])
+        np.negative(correction.getArray(readonly=True)[:owned], out=self._correction[:owned])
         if self.comm.size > 1:
             body.correction.x.scatter_forward()
         body.predict()

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf, isfinite
+from math import hypot, inf, isfinite
 
 import numpy as np
 from numba import njit
@@ -90,9 +90,7 @@ def axis_offset(x: np.ndarray, start: np.ndarray, turns: np.ndarray) -> float:
         x, start: station positions now and at the start, shape (n, 3), mm.
         turns: of the stations, shape (n,).
     """
-    if turns[-1] - turns[0] <= 1.5:
-        return 0.0
-    return float(np.hypot(*turn_means((x - start)[:, :2], turns).T).max())
+    return _axis_offset(x, start, turns) if turns[-1] - turns[0] > 1.5 else 0.0
 
 
 @njit(cache=True)
@@ -110,3 +108,11 @@ def turn_means(values: np.ndarray, turns: np.ndarray) -> np.ndarray:
             total[i] = total[i - 1] + 0.5 * (turns[i] - turns[i - 1]) * (values[i, k] + values[i - 1, k])
         means[:, k] = np.interp(first + 1.0, turns, total) - np.interp(first, turns, total)
     return means
+
+
+@njit(cache=True)
+def _axis_offset(x: np.ndarray, start: np.ndarray, turns: np.ndarray) -> float:
+    means, offset = turn_means((x - start)[:, :2], turns), 0.0
+    for i in range(len(means)):
+        offset = max(offset, hypot(means[i, 0], means[i, 1]))
+    return offset

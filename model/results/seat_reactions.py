@@ -15,7 +15,7 @@ from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.system import System
 from coilset.model.results.record import SeatReaction, SeatReactions
 from coilset.model.rod.rod import Rod
-from coilset.model.rotations.vectors import rotation_matrix
+from coilset.model.rotations.kernels import exponential
 
 ROUNDING = 2e-13  # axial forces below this part of E A are rounding, whatever came before
 FAINT = 1e-6  # axial forces below this part of the largest one so far have no centre and load no turns
@@ -86,27 +86,31 @@ class _Observer:
         """The SeatReaction of an end."""
         wrench, centre = self.wrench(end), self.control.centre(end, self.x)
         side = 1.0 if end == "bottom" else -1.0  # the bottom pushes up
-        crossing = wrench.crossing(centre) if abs(wrench.force[2]) > faint else np.full(2, np.nan)
+        lateral_x, lateral_y, along = wrench.force.tolist()
+        crossing = wrench.crossing(centre) if abs(along) > faint else (math.nan, math.nan)
         spot, length, down = (np.nan, np.nan), 0.0, 0.0
         for _, contact, part in self.on_wire:
             if contact.end == end:
                 wire = contact.points
-                bears, reach, *at = bearing_on_seat(part.point, part.pressure, part.bears, wire.weights, wire.stations,
-                                                    self.x, wire.length, wire.turns, wire.tip(end))  # fmt: skip
+                bears, reach, x, y = bearing_on_seat(
+                    part.point, part.pressure, part.bears, wire.weights, wire.stations, self.x, wire.length, wire.turns,
+                    wire.tip(end), faint,
+                )  # fmt: skip
                 length, down = length + bears, max(down, reach)
-                if part.pressure.sum() > faint:
-                    spot = at
-        axial = side * wrench.force[2]
+                if not math.isnan(x):
+                    spot = x, y
+        axial = side * along
         if not self.control.clamped and axial < -faint:
             axial = 0.0  # a seat cannot pull: tension comes from the spring that holds a lifted tip
-        numbers = (axial, *wrench.force[:2], *wrench.about(centre), *crossing, np.hypot(*crossing),
-                   *spot, length, down, self.tilt(end))  # fmt: skip
-        return SeatReaction(*map(float, numbers))
+        mx, my, mz = wrench.about(centre).tolist()
+        return SeatReaction(axial, lateral_x, lateral_y, mx, my, mz, *crossing, math.hypot(*crossing), *spot, length,
+                            down, self.tilt(end))  # fmt: skip
 
     def tilt(self, end: str) -> float:
         """Angle between the axes of a seat and of the spring, rad."""
-        axis = rotation_matrix(self.system.seats[SEAT_DOFS * ENDS.index(end) :][3:SEAT_DOFS])[:, 2]
-        return float(np.arctan2(np.hypot(axis[0], axis[1]), axis[2]))
+        first, R = SEAT_DOFS * ENDS.index(end), np.empty((3, 3))
+        exponential(self.system.seats[first + 3 : first + SEAT_DOFS], R)
+        return math.atan2(math.hypot(R[0, 2], R[1, 2]), R[2, 2])
 
 
 def mean_torque(rod: Rod) -> np.ndarray:

@@ -57,27 +57,8 @@ class Unknowns:
     shear: np.ndarray
 
 
-def linear_strains(frames: Frames, unknowns: Unknowns, increments: np.ndarray) -> np.ndarray:
-    """B δ, the change of the section strains by increments of first order.
-
-    Args:
-        frames: Frames.
-        unknowns: Unknowns.
-        increments: of the local unknowns, mm and rad.
-
-    Returns:
-        ε, γ12, γ13, φ′, −w″, v″ at the two Gauss sections, shape (cells, 2, 6).
-    """
-    e = np.empty((len(frames.cells), 2, 6))
-    _linear_strains(
-        frames.cells, frames.chord, frames.E, frames.T, frames.P, frames.W, frames.shear_fraction, frames.strain,
-        unknowns.u, unknowns.turns, unknowns.shear, increments, GAUSS, e,
-    )  # fmt: skip
-    return e
-
-
 @njit(cache=True)
-def _linear_strains(
+def linear_strains(
     cells: np.ndarray,
     chords: np.ndarray,
     E: np.ndarray,
@@ -93,7 +74,15 @@ def _linear_strains(
     xi: np.ndarray,
     e: np.ndarray,
 ) -> None:
-    """As `linear_strains`, into `e`; `xi` are the abscissae of the Gauss sections."""
+    """Write B δ, the change of the section strains by increments of first order.
+
+    Args:
+        cells, chords, E, T, P, W, shear_fraction, strain: of the Frames.
+        u, turns, shear: of the Unknowns.
+        increments: of the local unknowns, mm and rad.
+        xi: abscissae of the Gauss sections.
+        e: written, ε, γ12, γ13, φ′, −w″, v″ at these, shape (cells, 2, 6).
+    """
     spins, t, frame, d = np.empty((2, 3)), np.empty((2, 3)), np.empty(3), np.empty(3)
     for c in range(len(cells)):
         first, second = cells[c, 0], cells[c, 1]
@@ -134,20 +123,33 @@ def _linear_strains(
                 e[c, g, i] -= stretch * strain[c, g, i]  # a longer chord is bent less
 
 
-@dataclass(frozen=True)
 class Prediction:
     """Prediction of a correction, from the state before it.
 
+    Args:
+        frames: Frames.
+        unknowns: Unknowns.
+        forces, tangent: section forces, shape (cells, 2, 6), and their tangent, shape (cells, 2, 6, 6), on trial.
+
     Attributes:
-        forces, strain: section forces and strains there, shape (cells, 2, 6).
-        tangent: section tangent there, shape (cells, 2, 6, 6).
+        forces, strain, tangent: section forces, strains and tangent before the correction.
         change: B δ of the whole correction, shape (cells, 2, 6).
     """
 
-    forces: np.ndarray
-    strain: np.ndarray
-    tangent: np.ndarray
-    change: np.ndarray
+    def __init__(self, frames: Frames, unknowns: Unknowns, forces: np.ndarray, tangent: np.ndarray) -> None:
+        self._on_trial = forces, frames.strain, tangent
+        self.forces, self.strain, self.tangent = (np.zeros_like(each) for each in self._on_trial)
+        self.change = np.zeros_like(forces)
+        self._arguments = (
+            frames.cells, frames.chord, frames.E, frames.T, frames.P, frames.W, frames.shear_fraction, frames.strain,
+            unknowns.u, unknowns.turns, unknowns.shear,
+        )  # fmt: skip
+
+    def begin(self, correction: np.ndarray) -> None:
+        """Take the state on trial, from which a correction of the local unknowns begins, mm and rad."""
+        for kept, on_trial in zip((self.forces, self.strain, self.tangent), self._on_trial, strict=True):
+            np.copyto(kept, on_trial)
+        linear_strains(*self._arguments, correction, GAUSS, self.change)
 
     def forces_after(self, length: float, out: np.ndarray) -> None:
         """Write s + D B δ after `length` of the correction."""

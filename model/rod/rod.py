@@ -20,7 +20,7 @@ from coilset.model.rod.assembly import add_element_vectors
 from coilset.model.rod.compiled import compiled_forms
 from coilset.model.rod.finer_path import CLOCKS, FinerPath
 from coilset.model.rod.kinematics import GAUSS, chord_triads, displace_nodes, section_strains
-from coilset.model.rod.prediction import Frames, Prediction, Unknowns, linear_strains
+from coilset.model.rod.prediction import Frames, Prediction, Unknowns
 from coilset.model.rod.section_states import POINTS, SURFACE, SectionStates
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule
@@ -116,7 +116,7 @@ class Rod:
             self.xi, self.timoshenko_factor, self.triads, self.T, self.P, self.W, self.e, self.s, self.foreseen, self.D,
         )  # fmt: skip
         self.correction = fem.Function(self.V)
-        self._prediction: Prediction | None = None
+        self._increment, self._correction = self.increment.x.array, self.correction.x.array
         self._finer: FinerPath | None = None
         values = {name: field.values for name, field in zip(forms.FIELDS, fields, strict=True)}
         self._residual, self._tangent = compiled_forms(self.comm).on(values, x, self._nodes)
@@ -149,11 +149,12 @@ class Rod:
         self._shear = state.add("shear", np.zeros((n, 2)), Where.ELEMENT)
         self._strain = state.add("strain", self.e.values, Where.ELEMENT)
         self._points = SectionStates(self.sections, state, self._strain, self.in_time, self.temperature)
-        self._frames = Frames(
+        frames = Frames(
             self.cells, self._chord.trial, self.triads.values, self.T.values, self.P.values, self.W.values,
             self.timoshenko_factor.values[:, 0], self._strain.trial,
         )  # fmt: skip
-        self._unknowns = Unknowns(self.u_dofs, self.rotation_dofs, self.shear_dofs)
+        unknowns = Unknowns(self.u_dofs, self.rotation_dofs, self.shear_dofs)
+        self._prediction = Prediction(frames, unknowns, self.s.values, self.D.values)
         self.state, self.chart = state, np.tile(np.eye(3), (len(x), 1, 1))
         self.update()
 
@@ -200,7 +201,7 @@ class Rod:
     def update(self) -> bool:
         """Update the trial state to the increments; see Body."""
         displace_nodes(
-            self.increment.x.array, self.u_dofs, self.rotation_dofs, self.shear_dofs, self.cells,
+            self._increment, self.u_dofs, self.rotation_dofs, self.shear_dofs, self.cells,
             self._x.equilibrium, self._chord.equilibrium, self._R.equilibrium, self._shear.equilibrium,
             self._x.trial, self._chord.trial, self._R.trial, self._shear.trial, self.chart, self.T.values,
         )  # fmt: skip
@@ -237,13 +238,10 @@ class Rod:
 
     def predict(self) -> None:
         """Predict the section forces after `correction`, from the trial state; see Foresees."""
-        self._prediction = None  # the next one takes the memory of the last
-        change = linear_strains(self._frames, self._unknowns, self.correction.x.array)
-        self._prediction = Prediction(self.s.values.copy(), self._strain.trial.copy(), self.D.values.copy(), change)
+        self._prediction.begin(self._correction)
 
     def foresee(self, length: float) -> None:
         """Build the frame stiffness of the next tangents with the predicted section forces; see Foresees."""
-        assert self._prediction is not None  # `predict` comes before
         self._prediction.forces_after(length, self.foreseen.values)
 
     def stop_foreseeing(self) -> None:
@@ -253,7 +251,6 @@ class Rod:
     def forces_without_turning(self, vector: np.ndarray, length: float) -> None:
         """As `internal_forces`, without the contribution of strains of second order in the correction; see Foresees."""
         actual = self.s.values.copy()
-        assert self._prediction is not None  # `predict` comes before
         self._prediction.take_turning_off(length, self.s.values, self._strain.trial)
         self.internal_forces(vector)
         self.s.values[:] = actual

@@ -32,6 +32,7 @@ class SectionStates:
         self, sections: Sections, state: State, strain: Field, in_time: CreepLaw | RateLaw | None, temperature: float
     ) -> None:
         self._sections, self._strain, cells = sections, strain, len(sections.radius)
+        self._blocks = list(in_blocks(sections))
         passing = sections.passing if cells > KEPT else ()
         self._in_place = (*passing, SURFACE)
         self._fields = {name: state.add(name, rows, Where.ELEMENT, in_place=name in self._in_place)
@@ -60,7 +61,7 @@ class SectionStates:
 
     def follow(self) -> None:
         """Bring what lies in place to the end of the step."""
-        for cells, sections in in_blocks(self._sections):
+        for cells, sections in self._blocks:
             start, reached = of_cells(self._start, cells), of_cells(self._trial, cells)
             reached |= {name: np.empty_like(start[name]) for name in self._in_place}
             strain, size = self._strain.trial[cells], cells.stop - cells.start

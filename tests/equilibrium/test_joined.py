@@ -6,6 +6,7 @@ import pytest
 from coilset.model.equilibrium.joined import add_matrices, add_vectors, join_patterns
 
 SIZE, RANGE = 40, slice(9, 33)  # unknowns, and those whose rows are here
+NUMBERS = np.arange(SIZE, dtype=np.int32)  # the small matrices call them by their numbers
 
 
 def tables():
@@ -41,8 +42,8 @@ def test_pattern_and_sum_are_those_of_dense_matrices():
     assert all(np.array_equal(*pair) for pair in zip(found, csr(pattern), strict=True))
     values, added = np.zeros(len(found[1])), np.zeros(RANGE.stop - RANGE.start)
     for table, of_table, loads in zip(tables(), matrices, vectors, strict=True):
-        add_matrices(found, table, of_table, RANGE.start, values)
-        add_vectors(table, loads, RANGE.start, added)
+        add_matrices(found, NUMBERS, table, of_table, RANGE.start, values)
+        add_vectors(NUMBERS, table, loads, RANGE.start, added)
     np.testing.assert_allclose(values, total[RANGE][pattern[RANGE]], rtol=0, atol=1e-13)
     np.testing.assert_allclose(added, forces[RANGE], rtol=0, atol=1e-13)
 
@@ -50,4 +51,4 @@ def test_pattern_and_sum_are_those_of_dense_matrices():
 def test_matrix_without_room_is_refused():
     """The pattern has no entries for what is added: nothing is written beside it."""
     with pytest.raises(ValueError, match="no entries"):
-        add_matrices(csr(bare()), tables()[1], np.ones((5, 6, 6)), RANGE.start, np.zeros(csr(bare())[0][-1]))
+        add_matrices(csr(bare()), NUMBERS, tables()[1], np.ones((5, 6, 6)), RANGE.start, np.zeros(csr(bare())[0][-1]))

@@ -88,7 +88,7 @@ def test_entries_are_added_where_they_lie_as_petsc_inserts_them(bent):
     dofs = np.array([[0, 1, 2, 27, 28, 29], [3, 4, 5, 30, 31, 32], [6, 7, 8, 33, 34, 35]])
     none = np.empty(3)
     contacts = Contribution(dofs, none, random.normal(scale=1e5, size=(3, 6, 6)), none, none, none, none)
-    for closed, version in (([], 0), ([0, 1], 1), ([1, 0], 1), ([1], 1), ([0, 1, 2], 2), ([], 2)):
+    for closed, version in (([], 1), ([0, 1], 2), ([1, 0], 2), ([1], 2), ([0, 1, 2], 3), ([], 3)):
         part = contacts.only(np.array(closed, dtype=int))
         matrix.fill([part])
         found, right = dense(matrix.mat, size), by_petsc(bent, layout, part)
