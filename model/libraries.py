@@ -4,7 +4,7 @@ import ctypes
 import os
 import sys
 import threading
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib.machinery import EXTENSION_SUFFIXES, ModuleSpec, PathFinder
 from importlib.util import find_spec
 from types import ModuleType
@@ -59,22 +59,26 @@ def load_when_used() -> None:
     os.environ.setdefault("PYDANTIC_SKIP_VALIDATING_CORE_SCHEMAS", "1")  # of what it compiles from our classes
 
 
-def link_beside() -> None:
+def link_beside(then: Callable[[], object]) -> None:
     """Have another thread link the libraries of MPI, PETSc and DOLFINx, for their modules to find them there.
 
     It takes 0.2 s, half of it a wait: libpsm2, of Open MPI, measures a clock when it is loaded. Meanwhile Python's
     modules can be loaded, but not such as need the linker, which does one thing at a time. Nothing is done where the
     order matters (`load_in_order`), and nothing is lost where a library has another name.
+
+    Args:
+        then: what that thread does afterwards.
     """
     if not find_spec("dolfinx_solver"):
-        threading.Thread(target=_link, daemon=True).start()
+        threading.Thread(target=_link, args=(then,), daemon=True).start()
 
 
-def _link() -> None:
+def _link(then: Callable[[], object]) -> None:
     link = ctypes.CDLL(None).dlopen  # in contrast to ctypes' own, called without Python's lock
     for package, module in (("mpi4py", "MPI"), ("dolfinx", "cpp")):
         for folder in getattr(find_spec(package), "submodule_search_locations", None) or ():
             link(os.fsencode(f"{folder}/{module}{EXTENSION_SUFFIXES[0]}"), os.RTLD_NOW)
+    then()
 
 
 def load_in_order() -> None:

@@ -19,15 +19,20 @@ def keeping() -> Iterator[None]:
 
 
 def load_for_solve() -> None:
-    """Load what needs the linker itself, have MPI, PETSc and DOLFINx linked, and load what needs neither."""
+    """Load what needs the linker itself, have MPI, PETSc and DOLFINx linked, and load what needs neither.
+
+    The thread that links then sets up what numba's compiled functions call, which takes LLVM 15 ms.
+    """
     import decimal  # noqa: F401
     import zoneinfo  # noqa: F401
 
-    import pydantic.main  # noqa: F401
+    import pydantic_core  # noqa: F401
     from numba.core.registry import cpu_target
+    from numba.core.runtime import rtsys
 
-    assert cpu_target.target_context  # made when it is asked for, with LLVM
-    link_beside()
+    target = cpu_target.target_context  # made when it is asked for, with LLVM
+    link_beside(lambda: rtsys.initialize(target))
+    import pydantic.main  # noqa: F401
     import ufl  # noqa: F401
 
     import coilset.model.contact.build
