@@ -92,7 +92,11 @@ class LineLayout(Layout):
         element = np.concatenate(comm.allgather(line.element[: line.owned_cells]))
         self.element_dofs = np.empty((len(element), 2), dtype=PETSc.IntType)
         self.element_dofs[element] = np.concatenate(comm.allgather(shear))
-        self._all_dofs = np.concatenate([self.station_dofs.ravel(), self.element_dofs.ravel(), self.seat_dofs])
+
+    @property
+    def _all_dofs(self) -> np.ndarray:
+        """Unknowns by stations, elements and seats."""
+        return np.concatenate([self.station_dofs.ravel(), self.element_dofs.ravel(), self.seat_dofs])
 
     def gather(self, values: np.ndarray) -> np.ndarray:
         """Values of the local nodes, in the order of the stations on every rank; shape (nodes, …) → (stations, …)."""

@@ -1,6 +1,7 @@
 """Residual and tangent of a body and what touches it, as functions of one vector of increments."""
 
 from collections.abc import Callable, Sequence
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -73,7 +74,6 @@ class System:
         self.state.add("increments_before", np.zeros(layout.size_local), Where.UNKNOWN)  # of the step before the last
         self._reactions = self.state.add("reactions", np.zeros(layout.size_local), Where.UNKNOWN)
         self.internal = layout.vector(self._reactions.trial)
-        self._local = la.vector(layout.index_map, layout.block_size)
         self._body_increments = body.increment.x.array
         # asked once, for the test of a protocol takes longer than what it guards
         self._rotating = body if isinstance(body, HasRotations) else None
@@ -88,6 +88,11 @@ class System:
             self._is_rotation[body.rotation_dofs[body.rotation_dofs < layout.owned]] = True
         self.last, self.evaluations = Evaluation(np.full(layout.size_local, np.nan), True, []), 0
         self._evaluated = EXPIRED
+
+    @cached_property
+    def _local(self) -> la.Vector:
+        """The body's unknowns of this rank and after them the ghosts'; one rank alone hardly ever needs it."""
+        return la.vector(self.layout.index_map, self.layout.block_size)
 
     # ---- evaluation ------------------------------------------------------------------------------------------------
 
@@ -144,11 +149,12 @@ class System:
 
     def _assemble_internal(self, add_forces: Callable[[np.ndarray], None] | None = None) -> None:
         """Into `internal`; `add_forces` in place of the body's own `internal_forces`."""
-        local, add, values = self._local, add_forces or self.body.internal_forces, self._reactions.trial
+        add, values = add_forces or self.body.internal_forces, self._reactions.trial
         values[:] = 0.0
         if self.comm.size == 1:
             add(values)
         else:
+            local = self._local
             local.array[:] = 0.0
             add(local.array)
             local.scatter_reverse(la.InsertMode.add)

@@ -20,6 +20,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from coilset.model.caches import load_without_compiler
 from coilset.model.examples import EXAMPLES
 from coilset.verification.benchmarks.same_spring import compare
 from coilset.verification.benchmarks.stopwatch import Stopwatch
@@ -261,7 +262,8 @@ JOBS: dict[str, Job] = {"example": example, "press": press, "cases": cases, "ope
 
 
 def main(job: str, *arguments: str) -> None:
-    """Run a job with whole numbers as arguments and print what it found."""
+    """Run a job with whole numbers as arguments and print what it found; kernels are loaded as commands load them."""
+    load_without_compiler()
     found = JOBS[job](*map(int, arguments))
     from mpi4py import MPI
 
