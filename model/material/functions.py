@@ -68,13 +68,6 @@ def row_functions(p: np.ndarray, o: int, b: float) -> Functions:
 
 
 @njit(**INLINE)
-def row_constants(p: np.ndarray, o: int, b: float) -> Functions:
-    """As `row_functions` where k² has constants and no curve: loops over points can take several of them at once."""
-    k2, dk2 = hardening(p, o, b)
-    return with_deviation(p, o, b, k2, dk2)
-
-
-@njit(**INLINE)
 def hardening(p: np.ndarray, o: int, b: float) -> tuple[float, float]:
     """k² and ∂k²/∂b* by the constants of (6.2.2)."""
     # all constants are read before anything branches, so that loops over points can take several of them at once
