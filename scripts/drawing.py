@@ -14,7 +14,7 @@ import pickle
 import signal
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, BinaryIO
@@ -73,10 +73,10 @@ class Drawings:
             answers = [_answer(process) for process in self.processes.values()]
         finally:
             signal.signal(signal.SIGTERM, before)
-        problem = next((answer["problem"] for answer in answers if answer["problem"]), None)
-        if problem:
-            raise CoilsetError(problem)
-        return [warning for answer in answers for warning in answer["warnings"]]
+        found = _together(answers)
+        if found["problem"]:
+            raise CoilsetError(found["problem"])
+        return found["warnings"]
 
     def __enter__(self) -> "Drawings":
         return self
@@ -117,6 +117,12 @@ def _answer(process: subprocess.Popen[bytes]) -> dict[str, Any]:
     return _ended(process.wait())
 
 
+def _together(answers: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """The first problem, and all warnings."""
+    problem = next((answer["problem"] for answer in answers if answer["problem"]), None)
+    return {"problem": problem, "warnings": [warning for answer in answers for warning in answer["warnings"]]}
+
+
 def _ended(status: int) -> dict[str, Any]:
     how = f"signal {-status}" if status < 0 else f"exit code {status}"
     return {"problem": f"not all pictures are drawn: the process that draws them ended with {how}", "warnings": []}
@@ -133,11 +139,9 @@ def draw_part(part: str, tasks: BinaryIO) -> dict[str, Any] | None:
         return None
     before = signal.signal(signal.SIGTERM, _leave)
     try:
-        answers = _side_by_side(draws, task)
+        return _together(_side_by_side(draws, task))
     finally:
         signal.signal(signal.SIGTERM, before)
-    problem = next((answer["problem"] for answer in answers if answer["problem"]), None)
-    return {"problem": problem, "warnings": [warning for answer in answers for warning in answer["warnings"]]}
 
 
 def _side_by_side(draws: "tuple[Draw, ...]", task: "tuple[Path, Run]") -> list[dict[str, Any]]:

@@ -64,7 +64,7 @@ add_all() {
 # command: bubblewrap ignores or blocks them, and this shell passes them on, from before there is a command.
 enter_private_root() {
     enter() {
-        local binds=() folder pipe ended child='' early=() number reset=TERM
+        local binds=() folder pipe ended child='' early=() signal reset=TERM
         for folder in /*; do
             case "$folder" in
                 /bin | /boot | /dev | /etc | /lib* | /proc | /run | /sbin | /sys | /usr | /var | /lost+found) ;;
@@ -85,7 +85,7 @@ enter_private_root() {
         ) <&0 &
         child=$!
         exec {pipe}>&-
-        for number in ${early[@]+"${early[@]}"}; do pass_on "$number"; done
+        for signal in ${early[@]+"${early[@]}"}; do pass_on "$signal"; done
         # A signal just before `wait` would be answered when that ends; `read` answers within a second.
         while kill -0 "$child" 2> /dev/null; do
             read -rt 1 -u "$ended" || (($? > 128)) || wait "$child" || true
