@@ -41,6 +41,7 @@ from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.standards.wires.law import case_law, case_strength
 from coilset.model.state import State
+from coilset.model.threads import Threads
 
 log = logging.getLogger("coilset.steps")
 PENETRATION = 0.02  # usual maximum penetration in wire diameters; a case may allow more
@@ -61,6 +62,7 @@ class Analysis:
         case: Case (`coilset.model.case.read_case`, or built in Python).
         comm: MPI communicator.
         detailed: also record the seats' reactions and the wire after every step.
+        threads: of each rank, see coilset.model.threads.
 
     Raises:
         InputError: if the spring or the material cannot be built.
@@ -71,7 +73,9 @@ class Analysis:
         system, newton, control, program: the System of the Rod `rod`, its Newton, AxialControl and LoadProgram.
     """
 
-    def __init__(self, case: Case, comm: MPI.Comm = MPI.COMM_WORLD, detailed: bool = True) -> None:
+    def __init__(
+        self, case: Case, comm: MPI.Comm = MPI.COMM_WORLD, detailed: bool = True, threads: int = 1
+    ) -> None:
         self.case, self.comm = case, comm
         self.spring = spring = case.spring.build()
         self.law = case_law(case, spring)
@@ -94,7 +98,7 @@ class Analysis:
             placement = section_placement(spring, turns, chords, GAUSS, to_normal)
             refuse_sharp_bends(placement, radius, turns)
         self.rod = Rod(line, radius, self.law, section.build(), placement, case.temperature, section.kind,
-                       section.degree)  # fmt: skip
+                       section.degree, Threads(threads))  # fmt: skip
         self.heat = None if case.heat is None else self._wire_heat(case.heat)
         coiling_diameter = give_past(self.rod, case.spring)
         seats = case.seats if case.ends == "seats" else None

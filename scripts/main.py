@@ -89,6 +89,9 @@ def solve(
     json: bool = typer.Option(False, "--json", help="print a line of JSON a step, for scripts"),
     verbose: bool = typer.Option(False, "--verbose", help="also print each iteration: norm, step length"),
     method: str = typer.Option(None, help="iteration method: newton, modified-newton, bfgs, broyden, arc-length, ..."),
+    threads: int = typer.Option(
+        None, min=1, envvar="COILSET_THREADS", help="threads of each rank [default: one for each core; on several ranks 1]"
+    ),
 ) -> None:
     """Take a spring through its load program and write the results."""
     from coilset.scripts.drawing import Drawings
@@ -109,7 +112,7 @@ def solve(
 
         voice = "quiet" if quiet else "json" if json else "lines"
         run_case(case, out, force, settings, pictures, resume, interactive, drawings=drawings, voice=voice,
-                 verbose=verbose)  # fmt: skip
+                 verbose=verbose, threads=threads)  # fmt: skip
 
 
 def _check_case(case: str, settings: list[str]) -> None:

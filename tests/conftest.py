@@ -1,5 +1,6 @@
 """Shared by all tests: small springs and rods, and the communicator of the rank alone."""
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,8 @@ from coilset.model.material import library
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.rod.rod import Rod
 from coilset.model.section.rules import polar
+
+os.environ.setdefault("COILSET_THREADS", "1")  # the tests' own processes run side by side already
 
 EXAMPLES = Path(__file__).resolve().parent.parent / "examples"
 

@@ -25,6 +25,7 @@ from coilset.model.rod.section_states import POINTS, SURFACE, SectionStates
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule
 from coilset.model.state import State, Where
+from coilset.model.threads import Threads
 
 EPSILON = float(np.finfo(float).eps)
 NODAL_ENTRIES = 22  # per row of the tangent: three nodes with 6 unknowns each, and two elements with 2
@@ -55,6 +56,7 @@ class Rod:
             straight rods.
         temperature: of the rod, K; at the start, if plastic work heats it. None: the first one of the material.
         kind: of the sections, see `coilset.model.section.kinds`, and `degree` of those that warp.
+        threads: Threads that advance the sections; None: the calling one alone.
 
     Raises:
         InputError: if the temperature lies outside the material's table.
@@ -78,7 +80,9 @@ class Rod:
         temperature: float | None = None,
         kind: str = "plane",
         degree: int = 3,
+        threads: Threads | None = None,
     ) -> None:
+        self.threads = threads or Threads()
         self.line, self.law, self.rule = line, law, rule
         mesh, n = line.mesh, line.owned_cells
         self.comm = mesh.comm
@@ -148,7 +152,8 @@ class Rod:
         self._chord = state.add("chord", x[self.cells[:, 1]] - x[self.cells[:, 0]], Where.ELEMENT)
         self._shear = state.add("shear", np.zeros((n, 2)), Where.ELEMENT)
         self._strain = state.add("strain", self.e.values, Where.ELEMENT)
-        self._points = SectionStates(self.sections, state, self._strain, self.in_time, self.temperature)
+        self._points = SectionStates(self.sections, state, self._strain, self.in_time, self.temperature,
+                                     self.threads)  # fmt: skip
         frames = Frames(
             self.cells, self._chord.trial, self.triads.values, self.T.values, self.P.values, self.W.values,
             self.timoshenko_factor.values[:, 0], self._strain.trial,
@@ -222,7 +227,9 @@ class Rod:
 
     def estimate_errors(self) -> None:
         """Follow every step on a finer path from now on; see EstimatesErrors."""
-        self._finer = FinerPath(self.sections, self.state, self._points.bearing)
+        self._finer = FinerPath(
+            self.sections, self.state, self._points.bearing, self.threads, self._points.shares
+        )
 
     def error_works(self, ratio: float, kinked: bool, stands: bool) -> tuple[float, float, float, float]:
         """Works of the errors of all steps so far and of the last one; see EstimatesErrors."""

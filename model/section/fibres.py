@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from coilset.meshes.placement import Placement
-from coilset.model.material.kernel import KERNEL
+from coilset.model.material.kernel import KERNEL, OF_THREADS
 from coilset.model.material.law import Law
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.ground import ground_sections, rim_rule
@@ -141,7 +141,7 @@ class FibreSections:
         )  # fmt: skip
 
 
-@njit(**KERNEL)
+@njit(**OF_THREADS)
 def update_sections(
     p: np.ndarray,
     y: np.ndarray,
@@ -207,7 +207,7 @@ def update_sections(
     return True
 
 
-@njit(**KERNEL)
+@njit(**OF_THREADS)
 def update_surface(
     p: np.ndarray,
     y: np.ndarray,

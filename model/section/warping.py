@@ -126,7 +126,7 @@ def _with_polynomials(points: Sequence[np.ndarray], bases: Sequence[Basis]) -> t
     return y, z, np.array([basis(one) for basis, one in zip(bases, points, strict=True)])
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def update_sections(
     p: np.ndarray,
     which: np.ndarray,
@@ -202,7 +202,7 @@ def update_sections(
     return 0
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def update_surface(
     p: np.ndarray,
     which: np.ndarray,

@@ -10,6 +10,7 @@ from coilset.model.rod.finer_path import FinerPath
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import polar
 from coilset.model.state import State, Where
+from coilset.model.threads import Threads
 
 TWIST, BENDING = 3, 4  # of the section strains
 
@@ -24,7 +25,8 @@ def strains(time):
 class Path:
     """Sections of elements with these radii, brought along a path of strains."""
 
-    def __init__(self, radii=(2.5,), kind="plane", ground=()):
+    def __init__(self, radii=(2.5,), kind="plane", ground=(), threads=1):
+        self.threads = Threads(threads)
         law, place = library.load("ck15", spin=False), straight(len(radii))
         for cell in ground:
             place.flat[cell] = (0.2, 1.0, 0.0)
@@ -43,11 +45,16 @@ class Path:
         assert self.sections.update(strain, start, {name: f.trial for name, f in self.points.items()}, self.s, self.D)
 
 
+def follower(path):
+    """The finer path of all arrays of the path's sections."""
+    return FinerPath(path.sections, path.state, list(path.points), path.threads, path.threads.shares(len(path.s), 1))
+
+
 @pytest.mark.parametrize("steps", [4, 8])
 def test_error_of_section_forces_is_known(steps):
     """Error of 1.1 % with four steps, 0.29 % with eight: estimated within 0.7 and 0.1 % of itself."""
     path = Path()
-    finer = FinerPath(path.sections, path.state, ["point_state"])
+    finer = follower(path)
     for k in range(1, steps + 1):
         path.to(strains(k / steps))
         assert finer.follow(path.s, 1.0 if k > 1 else 0.0)
@@ -64,7 +71,7 @@ def test_error_of_section_forces_is_known(steps):
 
 def test_what_stays_elastic_has_no_error():
     path = Path()
-    finer = FinerPath(path.sections, path.state, ["point_state"])
+    finer = follower(path)
     for k in (1, 2):
         path.to(0.05 * strains(0.5 * k))
         finer.follow(path.s, 1.0 if k > 1 else 0.0)
@@ -74,21 +81,20 @@ def test_what_stays_elastic_has_no_error():
 
 
 @pytest.mark.parametrize("kind", ["plane", "warping"])
-def test_many_elements_are_followed_block_by_block(monkeypatch, kind):
+def test_many_elements_are_followed_block_by_block_and_side_by_side(monkeypatch, kind):
     """Also where grinding has cut the last sections, which no block begins with."""
     radii, errors = np.linspace(2.0, 3.0, 5), []
-    for block in (2, 64):
+    for block, threads in ((2, 1), (64, 1), (64, 2), (2, 2)):
         monkeypatch.setattr(finer_path, "BLOCK", block)
-        path = Path(radii, kind, ground=(3, 4))
-        finer = FinerPath(path.sections, path.state, list(path.points))
+        path = Path(radii, kind, ground=(3, 4), threads=threads)
+        finer = follower(path)
         for k in (1, 2):
             path.to(strains(0.5 * k))
             assert finer.follow(path.s, k - 1.0)
             path.state.commit()
         errors.append(path.state["section_force_error"].equilibrium)
     assert np.abs(errors[0]).max() > 1.0
-    assert np.array_equal(*errors)
-    assert len(finer._half["point_state"]) == 5
+    assert all(np.array_equal(errors[0], others) for others in errors[1:])
 
 
 def test_step_that_is_given_up_leaves_no_trace():
@@ -96,7 +102,7 @@ def test_step_that_is_given_up_leaves_no_trace():
     found = []
     for given_up in (False, True):
         path = Path()
-        finer = FinerPath(path.sections, path.state, ["point_state"])
+        finer = follower(path)
         if given_up:
             path.to(strains(1.0))
             assert finer.follow(path.s, 0.0, stands=False)

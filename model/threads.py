@@ -1,0 +1,49 @@
+"""Threads of one process, among which the sections of its rods are divided.
+
+The law takes most of the time, and its points know nothing of each other. Its compiled loops let go of Python's lock, so
+that threads run side by side on as many cores. No number depends on how many there are: each section is computed whole,
+by one of them.
+"""
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
+from typing import TypeVar
+
+from mpi4py import MPI
+
+T, R = TypeVar("T"), TypeVar("R")
+
+
+def cores(comm: MPI.Comm) -> int:
+    """Threads for each rank of a communicator: all cores that the process may use for one alone, else one a rank."""
+    return len(os.sched_getaffinity(0)) if comm.size == 1 else 1
+
+
+class Threads:
+    """The calling thread and those that help it.
+
+    Args:
+        number: of all of them.
+    """
+
+    def __init__(self, number: int = 1) -> None:
+        self.number = number
+        self._helpers = ThreadPoolExecutor(number - 1, "sections") if number > 1 else None
+
+    def shares(self, count: int, least: int) -> list[slice]:
+        """As many equal parts of `count` things as there are threads, but each of `least` of them or all."""
+        parts = max(1, min(self.number, count // max(least, 1)))
+        ends = [count * part // parts for part in range(parts + 1)]
+        return [slice(*pair) for pair in zip(ends[:-1], ends[1:], strict=True)]
+
+    def map(self, work: Callable[[T], R], shares: Sequence[T]) -> list[R]:
+        """What `work` makes of each share; it raises what one of them raises, when none is at work any more."""
+        if self._helpers is None or len(shares) == 1:
+            return [work(share) for share in shares]
+        others = [self._helpers.submit(work, share) for share in shares[1:]]
+        try:
+            mine = work(shares[0])
+        finally:
+            wait(others)
+        return [mine, *(other.result() for other in others)]
