@@ -10,14 +10,12 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
 from typing import TypeVar
 
-from mpi4py import MPI
-
 T, R = TypeVar("T"), TypeVar("R")
 
 
-def cores(comm: MPI.Comm) -> int:
-    """Threads for each rank of a communicator: all cores that the process may use for one alone, else one a rank."""
-    return len(os.sched_getaffinity(0)) if comm.size == 1 else 1
+def usual(ranks: int) -> int:
+    """Threads of each of so many ranks unless the user says: of one alone as many as it may use cores, else one."""
+    return len(os.sched_getaffinity(0)) if ranks == 1 else 1
 
 
 class Threads:

@@ -24,6 +24,7 @@ def load_for_solve() -> None:
     The thread that links then sets up what numba's compiled functions call, which takes LLVM 15 ms.
     """
     import decimal  # noqa: F401
+    import queue  # noqa: F401
     import zoneinfo  # noqa: F401
 
     import pydantic_core  # noqa: F401

@@ -20,7 +20,7 @@ from coilset.model.results.pictures import Run
 from coilset.model.results.provenance import origin
 from coilset.model.results.record import Result, Setup, Step
 from coilset.model.results.summary import summarise
-from coilset.model.threads import cores
+from coilset.model.threads import usual
 from coilset.scripts.drawing import Drawings
 from coilset.scripts.interactive import Prompt
 from coilset.scripts.interrupt import Interrupt
@@ -61,7 +61,7 @@ def solve(
     with contextlib.ExitStack() as stack:
         interrupt = stack.enter_context(Interrupt(comm, telling.say))
         try:
-            analysis = Analysis(case, comm, threads=threads or cores(comm))
+            analysis = Analysis(case, comm, threads=threads or usual(comm.size))
         except InputError as error:
             raise InputError(error.problem, error.place, error.file or case_file) from None
         on_first_rank(comm, lambda: _prepare(folder, analysis.case, force, resume))
