@@ -73,9 +73,7 @@ class Analysis:
         system, newton, control, program: the System of the Rod `rod`, its Newton, AxialControl and LoadProgram.
     """
 
-    def __init__(
-        self, case: Case, comm: MPI.Comm = MPI.COMM_WORLD, detailed: bool = True, threads: int = 1
-    ) -> None:
+    def __init__(self, case: Case, comm: MPI.Comm = MPI.COMM_WORLD, detailed: bool = True, threads: int = 1) -> None:
         self.case, self.comm = case, comm
         self.spring = spring = case.spring.build()
         self.law = case_law(case, spring)

@@ -1,16 +1,18 @@
 """Threads of one process, among which the sections of its rods are divided.
 
-The law takes most of the time, and its points know nothing of each other. Its compiled loops let go of Python's lock, so
-that threads run side by side on as many cores. No number depends on how many there are: each section is computed whole,
-by one of them.
+The law takes most of the time, and sections know nothing of each other. Its compiled loops let go of Python's lock, so
+that threads run side by side on as many cores. No number depends on how many there are: one of them computes all of a
+section.
 """
 
 import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
+from itertools import pairwise
 from typing import TypeVar
 
-T, R = TypeVar("T"), TypeVar("R")
+T = TypeVar("T")
+R = TypeVar("R")
 
 
 def usual(ranks: int) -> int:
@@ -33,7 +35,7 @@ class Threads:
         """As many equal parts of `count` things as there are threads, but each of `least` of them or all."""
         parts = max(1, min(self.number, count // max(least, 1)))
         ends = [count * part // parts for part in range(parts + 1)]
-        return [slice(*pair) for pair in zip(ends[:-1], ends[1:], strict=True)]
+        return [slice(*pair) for pair in pairwise(ends)]
 
     def map(self, work: Callable[[T], R], shares: Sequence[T]) -> list[R]:
         """What `work` makes of each share; it raises what one of them raises, when none is at work any more."""

@@ -90,7 +90,7 @@ def solve(
     verbose: bool = typer.Option(False, "--verbose", help="also print each iteration: norm, step length"),
     method: str = typer.Option(None, help="iteration method: newton, modified-newton, bfgs, broyden, arc-length, ..."),
     threads: int = typer.Option(
-        None, min=1, envvar="COILSET_THREADS", help="threads of each rank [default: one for each core; on several ranks 1]"
+        None, min=1, envvar="COILSET_THREADS", help="threads [default: as many as cores, on several ranks one for each]"
     ),
 ) -> None:
     """Take a spring through its load program and write the results."""

@@ -86,7 +86,7 @@ class FinerPath:
         if not stands:
             for name in self._fields:
                 self._state.overwrite(f"finer_{name}")
-        good = all(self._threads.map(lambda part: self._follow_part(*part, middle, s), self._parts))
+        good = all(self._threads.map(lambda part: self._follow_part(part, middle, s), self._parts))
         self._lost = not good
         if self._lost:
             self._error.trial[:] = self._error.equilibrium
@@ -98,8 +98,9 @@ class FinerPath:
             for name, field in self._fields.items():
                 field.equilibrium[:] = self._state[name].trial
 
-    def _follow_part(self, blocks: Iterable[Block], way: Arrays, middle: np.ndarray, s: np.ndarray) -> bool:
-        """Advance some blocks of cells, one after the other, each with its state on the way in the arrays `way`."""
+    def _follow_part(self, part: tuple[list[Block], Arrays], middle: np.ndarray, s: np.ndarray) -> bool:
+        """Advance a thread's blocks of cells, one after the other, with its arrays for the state on the way."""
+        blocks, way = part
         return all(self._follow(*block, of_cells(way, slice(len(block[1].radius))), middle, s) for block in blocks)
 
     def _follow(self, cells: slice, sections: Sections, half: Arrays, middle: np.ndarray, s: np.ndarray) -> bool:

@@ -227,9 +227,7 @@ class Rod:
 
     def estimate_errors(self) -> None:
         """Follow every step on a finer path from now on; see EstimatesErrors."""
-        self._finer = FinerPath(
-            self.sections, self.state, self._points.bearing, self.threads, self._points.shares
-        )
+        self._finer = FinerPath(self.sections, self.state, self._points.bearing, self.threads, self._points.shares)
 
     def error_works(self, ratio: float, kinked: bool, stands: bool) -> tuple[float, float, float, float]:
         """Works of the errors of all steps so far and of the last one; see EstimatesErrors."""
