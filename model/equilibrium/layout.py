@@ -80,8 +80,9 @@ class LineLayout(Layout):
         mine = np.concatenate([rod.u_dofs[: self._nodes], rod.rotation_dofs[: self._nodes]], axis=1)
         mine = index_map.local_to_global(mine.ravel().astype(np.int32)).reshape(-1, 6)
         self.own_stations = line.node[: self._nodes]
-        self._order = np.concatenate(comm.allgather(self.own_stations))
-        self._place = np.argsort(self._order)
+        parts = comm.allgather(self.own_stations)
+        self._order = np.concatenate(parts)
+        self._place, self._before = np.argsort(self._order), sum(map(len, parts[: comm.rank]))
         self.station_dofs = np.empty((len(line.stations), 6), dtype=PETSc.IntType)
         self.station_dofs[self._order] = np.concatenate(comm.allgather(mine))
         self.seat_dofs = self.body_size + np.arange(SEATS, dtype=PETSc.IntType)
@@ -107,9 +108,11 @@ class LineLayout(Layout):
 
     def at_station(self, values: np.ndarray, station: int) -> np.ndarray:
         """Values of the local nodes, shape (nodes, …), at one station, on every rank, shape (…); collective."""
-        mine = np.flatnonzero(self.own_stations == station)
-        found = values[mine].sum(axis=0)
-        return self.comm.allreduce(found) if self.comm.size > 1 else found
+        node = self._place[station] - self._before
+        if self.comm.size == 1:
+            return values[node].copy()
+        mine = 0 <= node < self._nodes
+        return self.comm.allreduce(values[node] if mine else np.zeros(values.shape[1:]))
 
     def acts_here(self, dofs: np.ndarray) -> np.ndarray:
         """Which contact elements act on unknowns of this rank, shape (m, k) → (m,), bool."""

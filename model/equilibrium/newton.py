@@ -195,10 +195,9 @@ class Newton:
         """Take a start for a correction of the last equilibrium: its finite turns feign forces like any other's."""
         if not self.foresees or self.system.touches:
             return
-        correction = guess.duplicate()
-        correction.set(0.0)
-        self.system.evaluate(correction)
-        correction.axpy(-1.0, guess)
+        correction = guess.copy()
+        correction.scale(-1.0)
+        self.system.stand()
         self.system.predict(correction)
         self._corrected = 1.0
 
