@@ -33,7 +33,7 @@ class Recorder:
     Args:
         setup: what the records refer to.
         rod, system, control, newton, stability: of the analysis.
-        detailed: record SeatReactions and Frames, too.
+        detailed: record SeatReactions and Frames, too, and log warnings as soon as a step shows them.
 
     Attributes:
         result: the Result so far.
@@ -91,17 +91,22 @@ class Recorder:
         if weakest and (self.result.mode is None or weakest.value < self.result.mode.eigenvalue):
             mode = BucklingMode(step.travel_mm, bears, weakest.value, x, self._stability.displacements(weakest.mode))
             self.result = replace(self.result, mode=mode)
-        if self._warned is None:
-            self._warned = {warning.name for warning in step_warnings(self.setup, self.result)}
-        self.result = replace(self.result, steps=(*self.result.steps, step))
+        before = self.result
+        self.result = replace(before, steps=(*before.steps, step))
         if self._detailed:
             seats, frame = self._seat_reactions(step.number, greatest), self._frame(x)
             self.result = replace(self.result, seats=(*self.result.seats, seats), frames=(*self.result.frames, frame))
+            self._announce(before)
+        return step
+
+    def _announce(self, before: Result) -> None:
+        """Log the warnings that the last step has brought; `before` is the result without it."""
+        if self._warned is None:
+            self._warned = {warning.name for warning in step_warnings(self.setup, before)}
         for warning in step_warnings(self.setup, self.result):
             if warning.name not in self._warned:
                 log.warning("warning: %s", warning.message)
                 self._warned.add(warning.name)
-        return step
 
     def _frame(self, x: np.ndarray) -> Frame:
         """The wire at the last equilibrium, stations at `x`; collective."""

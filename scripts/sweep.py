@@ -14,8 +14,6 @@ from rich.table import Table
 
 from coilset.meshes.errors import InputError, SolveError
 from coilset.model.results.folder import refuse_obstacles
-from coilset.model.sweep import dataset
-from coilset.model.sweep.figures import draw
 from coilset.model.sweep.journal import Journal
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.pools import Pool, local_pool, usable_cores
@@ -151,6 +149,9 @@ class Bar:
 
 def _conclude(plan: Plan, out: Path, pictures: bool, console: Console) -> int:
     """Data set, figures and a summary in words; returns the number of failed cases."""
+    from coilset.model.sweep import dataset  # not before the cases run: xarray and matplotlib take half a second
+    from coilset.model.sweep.figures import draw
+
     data = dataset.collect(plan, out / "journal.jsonl")
     (out / "report.html").unlink(missing_ok=True)  # of other cases
     dataset.write(out / "sweep.nc", data)

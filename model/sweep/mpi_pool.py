@@ -1,6 +1,5 @@
 """Cases on the ranks of an MPI job, by mpi4py.futures: rank 0 leads, the others solve, one or several per case."""
 
-import gc
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,7 +9,7 @@ from mpi4py import MPI
 from mpi4py.futures import MPICommExecutor
 
 from coilset.meshes.errors import InputError
-from coilset.model.sweep.evaluate import evaluate
+from coilset.model.sweep.evaluate import evaluate_in_worker
 from coilset.model.sweep.pools import Pool
 
 _group: MPI.Comm = None  # communicator of the ranks that share a case with this one
@@ -19,7 +18,7 @@ _group: MPI.Comm = None  # communicator of the ranks that share a case with this
 def solve_in_group(task: dict[str, Any]) -> dict[str, Any]:
     """On the first rank of a group: pass the task to the group's other ranks, and solve it with them."""
     _group.bcast(task)
-    return evaluate(comm=_group, **task)
+    return evaluate_in_worker(comm=_group, **task)
 
 
 @contextmanager
@@ -44,8 +43,6 @@ def mpi_pool(comm: MPI.Comm, ranks_per_case: int) -> Iterator[Pool | None]:
     if comm.rank:
         for number in (signal.SIGINT, signal.SIGUSR1):  # mpirun passes the former on as the latter
             signal.signal(number, signal.SIG_IGN)  # Ctrl-C is handled by the leading rank
-    gc.collect()
-    gc.freeze()  # so that collection after each case skips the libraries' objects
     number = (comm.rank - 1) // ranks_per_case  # of this rank's group; -1 for the leading rank
     idle = number >= groups
     _group = comm.Split(number + 1 if not idle else groups + 1, comm.rank)
@@ -57,5 +54,5 @@ def mpi_pool(comm: MPI.Comm, ranks_per_case: int) -> Iterator[Pool | None]:
         _group.bcast(None)
     else:
         while not idle and (task := _group.bcast(None)) is not None:
-            evaluate(comm=_group, **task)
+            evaluate_in_worker(comm=_group, **task)
         yield None

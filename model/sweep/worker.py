@@ -4,7 +4,6 @@ Imports, compiled forms and compiled kernels are reused from case to case. It en
 however that ends.
 """
 
-import gc
 import json
 import os
 import signal
@@ -24,12 +23,10 @@ def main() -> None:
     load_without_compiler()
     from mpi4py import MPI
 
-    from coilset.model.sweep.evaluate import evaluate
+    from coilset.model.sweep.evaluate import evaluate_in_worker
 
-    gc.collect()
-    gc.freeze()  # so that collection after each case skips the libraries' objects
     for line in sys.stdin:
-        record = evaluate(comm=MPI.COMM_SELF, **json.loads(line))
+        record = evaluate_in_worker(comm=MPI.COMM_SELF, **json.loads(line))
         answers.write(json.dumps(record, allow_nan=False) + "\n")
         answers.flush()
 
