@@ -11,7 +11,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 from coilset.meshes.errors import CoilsetError, InputError, printable
-from coilset.model.processes import first_rank
+from coilset.model.processes import first_rank, number_of_ranks
 from coilset.scripts.beginning import announce_begin
 from coilset.scripts.compiling import NOTICE, announce_compiling, compile_first, compiled
 from coilset.scripts.ending import Ending
@@ -239,13 +239,20 @@ def sweep(
     pictures: bool = typer.Option(True, help="draw the figures"),
 ) -> None:
     """Solve many variants of a case."""
-    from coilset.model.sweep.plan import Plan
+    from coilset.model.sweep.pools import Workers, usable_cores
 
     announce_begin("sweeps", sweep_file, out)
-    compile_first(lambda: Plan(sweep_file))
-    from coilset.scripts.sweep import sweep as run_sweep
+    compile_first(lambda: _check_sweep(sweep_file))
+    with Workers((jobs or usable_cores()) if number_of_ranks() == 1 else 0, dict(os.environ)) as workers:
+        from coilset.scripts.sweep import sweep as run_sweep
 
-    run_sweep(sweep_file, out, force, resume, retry, jobs, ranks_per_case, pictures)
+        run_sweep(sweep_file, out, force, resume, retry, workers, ranks_per_case, pictures)
+
+
+def _check_sweep(sweep_file: str) -> None:
+    from coilset.model.sweep.plan import Plan
+
+    Plan(sweep_file)
 
 
 @app.command()

@@ -16,7 +16,7 @@ from coilset.meshes.errors import InputError, SolveError
 from coilset.model.results.folder import refuse_obstacles
 from coilset.model.sweep.journal import Journal
 from coilset.model.sweep.plan import Plan
-from coilset.model.sweep.pools import Pool, local_pool, usable_cores
+from coilset.model.sweep.pools import Pool, Workers
 from coilset.model.sweep.run import finished, missing, run
 from coilset.scripts.target import results_folder
 
@@ -28,17 +28,16 @@ SHOWN_FAILURES = 5
 
 
 def sweep(
-    sweep_file: str, out: str | None, force: bool, resume: bool, retry: bool, jobs: int | None, ranks_per_case: int,
+    sweep_file: str, out: str | None, force: bool, resume: bool, retry: bool, workers: Workers, ranks_per_case: int,
     pictures: bool,
 ) -> None:  # fmt: skip
-    """Run a sweep; see `coilset sweep --help`.
+    """Run a sweep, by the Workers if there is one rank only; see `coilset sweep --help`.
 
     Raises:
         InputError: before anything is run, if a file is wrong or the folder already holds a sweep.
         SolveError: cases failed; after the results are written.
         KeyboardInterrupt: after the finished cases are collected.
     """
-    environment = dict(os.environ)  # as it was before MPI
     from mpi4py import MPI
 
     comm = MPI.COMM_WORLD
@@ -47,7 +46,7 @@ def sweep(
     console = Console(highlight=False)
     interrupted = False
     try:
-        with _pool(comm, jobs or usable_cores(), ranks_per_case, environment, folder) as pool:
+        with _pool(comm, workers, ranks_per_case, folder) as pool:
             if pool is not None and plan is not None:
                 _lead(plan, folder, retry, pool, console)
     except KeyboardInterrupt:
@@ -92,16 +91,14 @@ def _prepare(sweep_file: str, out: Path, force: bool, resume: bool) -> Plan:
 
 
 @contextmanager
-def _pool(
-    comm: "MPI.Comm", jobs: int, ranks_per_case: int, environment: dict[str, str], out: Path
-) -> Iterator[Pool | None]:
+def _pool(comm: "MPI.Comm", workers: Workers, ranks_per_case: int, out: Path) -> Iterator[Pool | None]:
     if comm.size > 1:
         from coilset.model.sweep.mpi_pool import mpi_pool
 
         with mpi_pool(comm, ranks_per_case) as pool:
             yield pool
     else:
-        with open(out / "workers.log", "a") as log, local_pool(jobs, environment, log) as pool:
+        with workers.pool(out / "workers.log") as pool:
             yield pool
 
 

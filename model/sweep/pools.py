@@ -1,6 +1,7 @@
 """Where the cases of a sweep run: processes of this machine, or the ranks of an MPI job.
 
 Both provide `submit(task)`, which returns a future of the record, and `workers`, the number of cases run at a time.
+The processes are started before the sweep is read and checked, and load their libraries meanwhile.
 """
 
 import json
@@ -11,34 +12,43 @@ import threading
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
-from typing import IO, Any
+from pathlib import Path
+from typing import Any, Self
 
 WORKER = [sys.executable, "-m", "coilset.model.sweep.worker"]
 
 
 class Process:
-    """One worker process; it is restarted if a case crashes it.
+    """One worker process, which loads its libraries from now on; it is restarted if a case crashes it.
 
     Args:
         environment: of the process, saved before MPI starts, which changes it.
-        log: file for its output.
     """
 
-    def __init__(self, environment: Mapping[str, str], log: IO[str]) -> None:
-        self.environment, self.log = environment, log
-        self.process: subprocess.Popen[str] | None = None
+    def __init__(self, environment: Mapping[str, str]) -> None:
+        self.environment, self.log = environment, ""
+        self.process: subprocess.Popen[str] | None = self._started()
 
-    def run(self, task: dict[str, Any]) -> dict[str, Any]:
-        """The record of a task; the case fails if the process dies."""
+    def _started(self) -> "subprocess.Popen[str]":
+        return subprocess.Popen(WORKER, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=self.environment, text=True,
+                                encoding="utf-8", start_new_session=True)  # fmt: skip
+
+    def run(self, task: dict[str, Any], log: str) -> dict[str, Any]:
+        """The record of a task; the case fails if the process dies.
+
+        Args:
+            task: arguments of `evaluate`.
+            log: file for the process's output from the first task on.
+        """
         if self.process is None:
-            self.process = subprocess.Popen(
-                WORKER, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.log, env=self.environment, text=True,
-                encoding="utf-8", start_new_session=True,
-            )  # fmt: skip
+            self.process, self.log = self._started(), ""
         process, answer = self.process, ""
         assert process.stdin is not None
         assert process.stdout is not None
         try:
+            if not self.log:
+                self.log = log
+                process.stdin.write(json.dumps(log) + "\n")
             process.stdin.write(json.dumps(task) + "\n")
             process.stdin.flush()
             answer = process.stdout.readline()
@@ -63,28 +73,44 @@ class Process:
                     pipe.close()
 
 
-@contextmanager
-def local_pool(jobs: int, environment: Mapping[str, str], log: IO[str]) -> Iterator["Pool"]:
-    """A pool of `jobs` processes on this machine; leaving the context ends them."""
-    own = threading.local()
-    started, lock = [], threading.Lock()
+class Workers:
+    """Processes of this machine; leaving this context ends them.
 
-    def begin() -> None:
-        own.process = Process(environment, log)
-        with lock:
-            started.append(own.process)
+    Args:
+        jobs: their number.
+        environment: as in Process.
+    """
 
-    executor = ThreadPoolExecutor(jobs, initializer=begin)
+    def __init__(self, jobs: int, environment: Mapping[str, str]) -> None:
+        self.jobs, self.environment = jobs, environment
+        self._processes: list[Process] = []
 
-    def submit(task: dict[str, Any]) -> Future[dict[str, Any]]:
-        return executor.submit(lambda: own.process.run(task))
+    def __enter__(self) -> Self:
+        for _job in range(self.jobs):
+            self._processes.append(Process(self.environment))
+        return self
 
-    try:
-        yield Pool(submit, jobs)
-    finally:
-        executor.shutdown(wait=False, cancel_futures=True)
-        for process in list(started):
+    def __exit__(self, *problem: object) -> None:
+        for process in self._processes:
             process.close()
+
+    @contextmanager
+    def pool(self, log: Path) -> Iterator["Pool"]:
+        """Pool of these processes, whose output goes to the end of a file; once."""
+        own, free = threading.local(), list(self._processes)
+
+        def begin() -> None:
+            own.process = free.pop()
+
+        executor = ThreadPoolExecutor(self.jobs, initializer=begin)
+
+        def submit(task: dict[str, Any]) -> Future[dict[str, Any]]:
+            return executor.submit(lambda: own.process.run(task, str(log)))
+
+        try:
+            yield Pool(submit, self.jobs)
+        finally:
+            executor.shutdown(wait=False, cancel_futures=True)
 
 
 class Pool:

@@ -1,7 +1,7 @@
 """A process that runs cases one after another: JSON lines in, JSON lines out; it ends when its input ends.
 
-Imports, compiled forms and compiled kernels are reused from case to case. It ends with the process that started it,
-however that ends.
+The first line in names the file for its other output. Imports, compiled forms and compiled kernels are reused from case
+to case. It ends with the process that started it, however that ends.
 """
 
 import json
@@ -25,6 +25,12 @@ def main() -> None:
 
     from coilset.model.sweep.evaluate import evaluate_in_worker
 
+    first = sys.stdin.readline()
+    if not first:
+        return
+    log = os.open(json.loads(first), os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o666)
+    for output in (1, 2):
+        os.dup2(log, output)
     for line in sys.stdin:
         record = evaluate_in_worker(comm=MPI.COMM_SELF, **json.loads(line))
         answers.write(json.dumps(record, allow_nan=False) + "\n")

@@ -27,7 +27,7 @@ from coilset.model.sweep.evaluate import evaluate
 from coilset.model.sweep.figures import draw
 from coilset.model.sweep.journal import Journal, read_records
 from coilset.model.sweep.plan import Plan
-from coilset.model.sweep.pools import local_pool
+from coilset.model.sweep.pools import Workers
 from coilset.model.sweep.run import finished, missing, run
 from coilset.model.sweep.spec import RESPONSES
 
@@ -42,9 +42,9 @@ def sweep(plan, folder, jobs=1, retry=False):
     """Run what is missing; returns the keys that were run."""
     ran, path = [], folder / "journal.jsonl"
     with (
-        open(folder / "log", "a") as log,
+        Workers(jobs, dict(os.environ)) as workers,
         closing(Journal(path)) as journal,
-        local_pool(jobs, dict(os.environ), log) as pool,
+        workers.pool(folder / "log") as pool,
     ):
         run(plan, missing(plan, finished(path, retry)), pool, journal, lambda record: ran.append(record["key"]))
     return ran
@@ -85,6 +85,7 @@ def test_process_that_dies_is_the_reason_of_its_case_only(write_sweep, tmp_path,
     stub = tmp_path / "stub.py"
     stub.write_text(
         "import json, os, sys\n"
+        "assert json.loads(sys.stdin.readline()).endswith('log')\n"
         "for line in sys.stdin:\n"
         "    if json.loads(line)['data']['spring']['wire_diameter'] == 5.0: os.kill(os.getpid(), 11)\n"
         "    print(json.dumps(dict(status='done', reason='', summary={}, steps={}, seconds=0)), flush=True)\n"
