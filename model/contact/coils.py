@@ -120,7 +120,7 @@ class Coils:
             return self._nothing
         room = Contribution.room(len(pair), PAIR)
         coil_elements(p, points.weights, self._y, line.first, line.cubic, pair, where, offset, self.stiffness,
-                      self.onset, points.element, line.dofs, *room)  # fmt: skip
+                      self.onset, points.element, line.dofs, room)  # fmt: skip
         return Contribution(*room)
 
     @property

@@ -8,6 +8,7 @@ from coilset.model.contact.curve import STENCIL, point_on_curve, station_weight
 COMPILED = {"cache": True, "error_model": "numpy"}
 PAIR = 6 * STENCIL  # displacements of the eight stations of a pair
 FLAT = STENCIL + 1  # levels of a point's stations and of the seat
+Room = tuple[np.ndarray, ...]  # a Contribution's arrays, in the order of its attributes
 
 
 @njit(**COMPILED)
@@ -62,13 +63,7 @@ def coil_elements(
     onset: float,
     element: np.ndarray,
     element_dofs: np.ndarray,
-    dofs: np.ndarray,
-    forces: np.ndarray,
-    k: np.ndarray,
-    pressure: np.ndarray,
-    penetration: np.ndarray,
-    point: np.ndarray,
-    onset_force: np.ndarray,
+    room: Room,
 ) -> None:
     """Write what the pairs do to the stations.
 
@@ -89,8 +84,9 @@ def coil_elements(
         stiffness: of the points, N/mm.
         onset: distance over which contact sets in, mm.
         element: of the points; element_dofs: degrees of freedom of all elements, shape (elements, 12).
-        dofs, forces, k, pressure, penetration, point, onset_force: written, the arrays of a Contribution.
+        room: written, see Contribution.room.
     """
+    dofs, forces, k, pressure, penetration, point, onset_force = room
     count, size, half = len(pair), 2 * STENCIL, 3 * STENCIL
     c, dc, ddc = np.empty(4), np.empty(4), np.empty(4)
     n, a, da, P, Pc, mixed = np.empty(3), np.zeros(size), np.zeros(size), np.empty((3, 3)), np.empty(3), np.empty(PAIR)
@@ -147,13 +143,7 @@ def flat_seat_elements(
     tip: int,
     tip_spring: float,
     slack: float,
-    dofs: np.ndarray,
-    forces: np.ndarray,
-    k: np.ndarray,
-    pressure: np.ndarray,
-    penetration: np.ndarray,
-    point: np.ndarray,
-    onset_force: np.ndarray,
+    room: Room,
 ) -> int:
     """The points that bear on a flat seat which moves along the axis only, and the tip.
 
@@ -164,12 +154,12 @@ def flat_seat_elements(
         numbers: degrees of freedom of all points, shape (m, 5).
         level: of the seat, mm; side: 1 where the wire lies above it, else −1.
         reach, offset, stiffness, onset, tip, tip_spring, slack: of the Seat.
-        dofs, forces, k, pressure, penetration, point, onset_force: written for the b points that bear, as the
-            arrays of a Contribution.
+        room: written for the b points that bear, see Contribution.room.
 
     Returns:
         b.
     """
+    dofs, forces, k, pressure, penetration, point, onset_force = room
     grad, e = np.empty(FLAT), 0
     for i in points:
         gap = -level

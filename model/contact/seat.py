@@ -137,7 +137,7 @@ class Seat:
         count = flat_seat_elements(
             numbers, trial.x, points.stations, points.weights, self.dofs, trial.seats[self._level], self.side,
             self.distance, self.multiplier_offset, self.stiffness, self.onset, self.tip, self.tip_spring, self.slack,
-            *room,
+            room,
         )  # fmt: skip
         return Contribution(*(part[:count] for part in room))
 
