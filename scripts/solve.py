@@ -102,6 +102,8 @@ def _solve(
     telling.begin(analysis, case_file, resume)
     began = time.perf_counter()
     failure = _run(telling, analysis, checkpoint, interactive, interrupt)
+    if comm.rank == 0:
+        checkpoint.over()
     interrupt.over()
     analysed = time.perf_counter() - began
     summary = comm.bcast(summarise(analysis.setup, analysis.result) if comm.rank == 0 else None)

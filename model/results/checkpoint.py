@@ -18,10 +18,12 @@ from coilset.model.case import Case
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.program import ProgramPosition, Stage
 from coilset.model.equilibrium.step_control import Position
+from coilset.model.results.arrays import read_arrays, write_arrays
 from coilset.model.results.folder import make, whole
 from coilset.model.results.provenance import changed, provenance
 from coilset.model.results.record import BucklingMode, Result, Snapshot
 from coilset.model.results.step_journal import StepJournal
+from coilset.model.results.turns import Turns
 from coilset.model.state import State
 from coilset.model.warning import Warning
 
@@ -58,7 +60,7 @@ class Checkpoint:
     def __init__(self, folder: str | Path, case: Case) -> None:
         self.folder = Path(folder) / "checkpoint"
         self.case, self.provenance = case.model_dump(mode="json"), provenance(case)
-        self.journal = StepJournal(self.folder / "steps.jsonl")
+        self.journal, self.state = StepJournal(self.folder / "steps.jsonl"), Turns(self.folder / "state.npz")
 
     # ---- saving ----------------------------------------------------------------------------------------------------
 
@@ -82,23 +84,22 @@ class Checkpoint:
         self.journal.append(result.steps, result.seats, result.frames)
         for number, snapshot in enumerate(result.snapshots):
             self._save_snapshot(number, snapshot)
-        with whole(self.folder / "state.npz") as path, open(path, "wb") as file:
-            np.savez(file, about=np.array(json.dumps(about)), **arrays)
+        with self.state.next() as file:
+            write_arrays(file, {"about": np.array(json.dumps(about)), **arrays})
 
     def _save_snapshot(self, number: int, snapshot: Snapshot) -> None:
         path = self.folder / f"snapshot-{number:02d}.npz"
         if not path.exists():
             with whole(path) as partial, open(partial, "wb") as file:
-                np.savez(file, **asdict(snapshot))
+                write_arrays(file, vars(snapshot))
 
-    def clear(self) -> None:
-        """Remove the checkpoint of an earlier run."""
-        for path in (*self.folder.glob("*.npz"), self.journal.path):
-            path.unlink(missing_ok=True)
+    def over(self) -> None:
+        """Nothing more will be saved."""
+        self.state.over()
 
     def require(self) -> None:
         """Raise InputError if there is nothing to resume from."""
-        if not (self.folder / "state.npz").exists():
+        if not self.state.path.exists():
             raise InputError("there is no checkpoint to continue from; run it without --resume", "", self.folder)
 
     # ---- resuming --------------------------------------------------------------------------------------------------
@@ -124,9 +125,9 @@ class Checkpoint:
     def _read(self) -> Saved:
         """On rank 0; a damaged file can fail in any way: as zip, as array, as JSON, as record."""
         self.require()
-        path = self.folder / "state.npz"
+        path = self.state.path
         try:
-            loaded = _arrays(path)
+            loaded = read_arrays(path)
             about = json.loads(str(loaded["about"]))
             self._compare(about)
             arrays = {name.removeprefix(PREFIX): values for name, values in loaded.items() if name.startswith(PREFIX)}
@@ -151,7 +152,7 @@ class Checkpoint:
         return Result(*self.journal.read(about["steps"]), snapshots, about["rate"], warnings=warnings, mode=mode)
 
     def _snapshot(self, number: int) -> Snapshot:
-        found: dict[str, Any] = _arrays(self.folder / f"snapshot-{number:02d}.npz")
+        found: dict[str, Any] = read_arrays(self.folder / f"snapshot-{number:02d}.npz")
         for name, kind in (("name", str), ("height", float), ("force", float)):
             found[name] = kind(found[name])
         found["components"] = tuple(str(name) for name in found["components"])
@@ -193,11 +194,6 @@ class Checkpoint:
         behind = about["position"]["stage"]
         if old["loading"][:behind] != new["loading"][:behind]:
             raise InputError(f"its first {behind} phases are finished and must not change", "loading", self.folder)
-
-
-def _arrays(path: Path) -> dict[str, np.ndarray]:
-    with open(path, "rb") as content, np.load(content, allow_pickle=False) as file:
-        return {name: file[name] for name in file.files}
 
 
 def _without_cells(result: Result) -> Result:

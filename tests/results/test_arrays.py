@@ -1,0 +1,75 @@
+"""Arrays of a checkpoint: the files that NumPy writes, and two of them that take turns."""
+
+import io
+
+import numpy as np
+import pytest
+
+from coilset.meshes.errors import CoilsetError
+from coilset.model.results import turns
+from coilset.model.results.arrays import read_arrays, write_arrays
+from coilset.model.results.turns import Turns
+
+ARRAYS = {
+    "numbers": np.linspace(0.0, 1.0, 24).reshape(2, 3, 4),
+    "turned": np.arange(12.0).reshape(3, 4).T,
+    "every second": np.arange(10.0)[::2],
+    "one": np.float64(1.0) / 3.0,
+    "none": np.empty((0, 3)),
+    "whole": np.arange(3),
+    "true": np.array([True, False]),
+    "words": ("Mt", "größer"),
+    "about": np.array('{"steps": 3}'),
+}
+
+
+class Half(Exception):
+    """Ends what is being written."""
+
+
+def write_half(file):
+    with file.next() as next_one:
+        next_one.write(b"half of the next")
+        next_one.flush()
+        raise Half
+
+
+def test_files_are_those_of_numpy(tmp_path):
+    ours, theirs = io.BytesIO(), io.BytesIO()
+    write_arrays(ours, ARRAYS)
+    np.savez(theirs, **{name: np.asarray(values, order="C") for name, values in ARRAYS.items()})
+    assert ours.getvalue() == theirs.getvalue()
+    (tmp_path / "a.npz").write_bytes(ours.getvalue())
+    for name, values in read_arrays(tmp_path / "a.npz").items():
+        np.testing.assert_array_equal(values, ARRAYS[name])
+
+
+@pytest.mark.parametrize("exchange", [turns._exchange, lambda one, other: False])
+def test_what_is_written_in_turns_is_always_complete(tmp_path, monkeypatch, exchange):
+    """Also if it becomes shorter, ends half way, or the file system cannot exchange names."""
+    monkeypatch.setattr(turns, "_exchange", exchange)
+    file = Turns(tmp_path / "state.npz")
+    for content in (b"first", b"a longer second", b"3", b"the longest of all", b"fifth"):
+        with file.next() as next_one:
+            next_one.write(content)
+        assert file.path.read_bytes() == content
+        with pytest.raises(Half):
+            write_half(file)
+        assert file.path.read_bytes() == content
+    file.over()
+    assert list(tmp_path.iterdir()) == [file.path]
+
+
+def test_what_cannot_be_written_is_said(tmp_path):
+    with pytest.raises(CoilsetError, match=r"state\.npz: cannot be written: No such file"):
+        write_half(Turns(tmp_path / "missing" / "state.npz"))
+
+
+def test_files_change_names_where_the_system_can(tmp_path):
+    """It is not only the fallback that was tested."""
+    one, other = tmp_path / "one", tmp_path / "other"
+    one.write_text("one")
+    other.write_text("other")
+    if not turns._exchange(one, other):
+        pytest.skip("this file system cannot exchange names")
+    assert (one.read_text(), other.read_text()) == ("other", "one")
