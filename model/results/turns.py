@@ -9,7 +9,8 @@ from typing import BinaryIO
 
 from coilset.meshes.errors import CoilsetError
 
-AT_FDCWD, RENAME_EXCHANGE = -100, 2  # of Linux's renameat2
+AT_FDCWD, RENAME_EXCHANGE = -100, 2  # of Linux's renameat2, which other systems do not have
+RENAME = getattr(ctypes.CDLL(None), "renameat2", None)
 
 
 class Turns:
@@ -50,5 +51,4 @@ class Turns:
 
 def _exchange(one: Path, other: Path) -> bool:
     """Let two files change names in one step; False where the system or the file system cannot."""
-    rename = getattr(ctypes.CDLL(None), "renameat2", None)
-    return rename is not None and not rename(AT_FDCWD, os.fsencode(one), AT_FDCWD, os.fsencode(other), RENAME_EXCHANGE)
+    return RENAME is not None and not RENAME(AT_FDCWD, os.fsencode(one), AT_FDCWD, os.fsencode(other), RENAME_EXCHANGE)
