@@ -1,20 +1,44 @@
-"""The rod's forms, compiled once per process: all rods share them, each with its own fields."""
+"""The rod's forms, compiled once per process: all rods share them, each with its own fields.
 
+What a form was compiled into is also written down: building the forms in UFL, only to find that FFCx has compiled them
+before, takes 30 ms.
+"""
+
+import contextlib
+import hashlib
+import json
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from pathlib import Path
 
 import basix.ufl
+import dolfinx
+import ffcx
 import numpy as np
 import ufl
-from dolfinx import default_scalar_type, fem
+from dolfinx import default_scalar_type, fem, jit
 from mpi4py import MPI
 
 from coilset.model.rod import element_kernel, forms
-from coilset.model.rod.element_kernel import ElementKernel, Loop
+from coilset.model.rod.element_kernel import PROCESSOR, ElementKernel, Loop
 
 UNKNOWNS = 14  # of an element: two nodes with 6, and two shear angles
+SOURCES = (Path(__file__), Path(forms.__file__), Path(element_kernel.__file__))
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """A form that was compiled.
+
+    Attributes:
+        module: the file of its loop over the elements, see element_kernel.
+        fields: names in forms.FIELDS of the coefficients that the loop reads, in its order.
+    """
+
+    module: str
+    fields: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -22,14 +46,12 @@ class CompiledForms:
     """Forms that are not yet bound to a mesh.
 
     Attributes:
-        coefficients: of the fields by their names in forms.FIELDS.
-        residual, tangent: DOLFINx's CompiledForm.
+        residual, tangent: Compiled.
         loops: of residual and tangent over the elements.
     """
 
-    coefficients: Mapping[str, ufl.Coefficient]
-    residual: Any
-    tangent: Any
+    residual: Compiled
+    tangent: Compiled
     loops: tuple[Loop, Loop]
 
     def on(
@@ -41,11 +63,9 @@ class CompiledForms:
             fields: values by their names in forms.FIELDS, shape (cells, …); read at each evaluation.
             x, nodes: positions of the nodes and the cells' nodes, as in ElementKernel.
         """
-        of = {coefficient: fields[name] for name, coefficient in self.coefficients.items()}
 
-        def kernel(compiled: Any, loop: Loop, rank: int) -> ElementKernel:
-            used = [of[coefficient] for coefficient in compiled.ufl_form.coefficients()]
-            return ElementKernel(compiled, loop, used, x, nodes, (UNKNOWNS,) * rank)
+        def kernel(compiled: Compiled, loop: Loop, rank: int) -> ElementKernel:
+            return ElementKernel(loop, [fields[name] for name in compiled.fields], x, nodes, (UNKNOWNS,) * rank)
 
         return kernel(self.residual, self.loops[0], 1), kernel(self.tangent, self.loops[1], 2)
 
@@ -58,22 +78,48 @@ def compiled_forms(comm: MPI.Comm) -> CompiledForms:
     Args:
         comm: communicator of the rods' mesh.
     """
-    return _kept() if comm.size == 1 else _compile(comm)
+    return _kept() if comm.size == 1 else _loaded(*_compile(comm))
 
 
 @lru_cache
 def _kept() -> CompiledForms:
-    return _compile(MPI.COMM_SELF)
+    record = _record()
+    with contextlib.suppress(OSError, ImportError, ValueError, KeyError, TypeError):  # there is none, or none of use
+        return _loaded(*(Compiled(one["module"], tuple(one["fields"])) for one in json.loads(record.read_text())))
+    compiled = _compile(MPI.COMM_SELF)
+    with contextlib.suppress(OSError):  # the next process compiles again
+        partial = record.with_suffix(f".{os.getpid()}")
+        partial.write_text(json.dumps([vars(one) for one in compiled]))
+        os.replace(partial, record)
+    return _loaded(*compiled)
 
 
-def _compile(comm: MPI.Comm) -> CompiledForms:
+def _record() -> Path:
+    """The file that says what the forms were compiled into; its name depends on all that this depends on."""
+    versions = [module.__version__ for module in (ufl, basix, ffcx, dolfinx)]
+    options = sorted((name, str(value)) for name, value in ffcx.get_options(_options()).items())
+    content = repr([*(path.read_text(encoding="utf-8") for path in SOURCES), versions, options, PROCESSOR])
+    return jit.get_options()["cache_dir"] / f"coilset_forms_{hashlib.sha256(content.encode()).hexdigest()[:16]}.json"
+
+
+def _options() -> dict[str, type]:
+    return {"scalar_type": default_scalar_type}
+
+
+def _loaded(residual: Compiled, tangent: Compiled) -> CompiledForms:
+    return CompiledForms(residual, tangent, (element_kernel.load(residual.module), element_kernel.load(tangent.module)))
+
+
+def _compile(comm: MPI.Comm) -> tuple[Compiled, Compiled]:
     mesh = ufl.Mesh(basix.ufl.element("Lagrange", "interval", 1, shape=(3,)))
     V = ufl.FunctionSpace(mesh, forms.rod_element())
     fields = {name: ufl.Coefficient(ufl.FunctionSpace(mesh, element())) for name, element in forms.FIELDS.items()}
-    rod = forms.RodForms(mesh, V, **fields)
-    residual, tangent = (
-        fem.compile_form(comm, form, {"scalar_type": default_scalar_type})
-        for form in (rod.residual, rod.material_stiffness + rod.frame_stiffness)
-    )
-    loops = element_kernel.load(comm, residual), element_kernel.load(comm, tangent)
-    return CompiledForms(fields, residual, tangent, loops)
+    rod, names = forms.RodForms(mesh, V, **fields), {field: name for name, field in fields.items()}
+
+    def compiled(form: ufl.Form) -> Compiled:
+        made = fem.compile_form(comm, form, _options())
+        places = made.ufcx_form.original_coefficient_positions[0 : made.ufcx_form.num_coefficients]
+        used = tuple(names[form.coefficients()[place]] for place in places)
+        return Compiled(str(element_kernel.make(comm, made)), used)
+
+    return compiled(rod.residual), compiled(rod.material_stiffness + rod.frame_stiffness)

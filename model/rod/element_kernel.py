@@ -29,7 +29,9 @@ from coilset.meshes.errors import CoilsetError
 
 # As many as fill a register of 512 bits, or one of 256: with two registers for each value of FFCx's function, most of
 # which are live for long, more time goes into moving them to memory and back than the second one saves.
-LANES = 8 if binding.get_host_cpu_features().get("avx512f") else 4
+FEATURES = binding.get_host_cpu_features()
+LANES = 8 if FEATURES.get("avx512f") else 4
+PROCESSOR = binding.get_host_cpu_name() + FEATURES.flatten()
 OPTIONS = ["-std=gnu17", "-O1", "-march=native", "-fno-math-errno", "-fno-trapping-math", "-Wno-psabi"]
 BLOCK = 256  # elements whose tangents, 1.6 kB each, fit into a processor's second cache
 HEADER = f"""
@@ -82,10 +84,8 @@ class ElementKernel:
     """The function of a form for all elements of a rod.
 
     Args:
-        compiled: DOLFINx's CompiledForm of a form with one integral over the cells, line elements of two nodes.
-        loop: what `load` has made of it.
-        fields: values of its coefficients, in the order of `compiled.ufl_form.coefficients()`, each of shape
-            (cells, …).
+        loop: of a form with one integral over the cells, line elements of two nodes, see `load`.
+        fields: values of the coefficients that it reads, in its order, each of shape (cells, …).
         x: positions of the nodes, shape (nodes, 3), mm.
         nodes: of the cells, shape (cells, 2), 32-bit whole numbers.
         shape: of an element's tensor.
@@ -96,27 +96,24 @@ class ElementKernel:
 
     def __init__(
         self,
-        compiled: Any,
         loop: Loop,
         fields: Sequence[np.ndarray],
         x: np.ndarray,
         nodes: np.ndarray,
         shape: tuple[int, ...],
     ) -> None:
-        form = compiled.ufcx_form
-        used = [fields[form.original_coefficient_positions[i]] for i in range(form.num_coefficients)]
-        cells = len(used[0])
+        cells = len(fields[0])
         self._out = np.zeros((min(BLOCK, cells), *shape))
-        self._kept = used, x, nodes  # C knows their addresses only
+        self._kept = fields, x, nodes  # C knows their addresses only
         self._ffi, self._function = loop
-        lengths = [int(np.prod(field.shape[1:])) for field in used]
+        lengths = [int(np.prod(field.shape[1:])) for field in fields]
         fixed = self._ffi.new("long[]", lengths), sum(lengths), int(np.prod(shape)), self._pointer(self._out)
         self._blocks = []
         for first in range(0, cells, BLOCK):
             block = slice(first, min(first + BLOCK, cells))
-            values = self._ffi.new("double *[]", [self._pointer(field[block]) for field in used])
+            values = self._ffi.new("double *[]", [self._pointer(field[block]) for field in fields])
             places = self._pointer(x), self._pointer(nodes[block], "int32_t *")
-            self._blocks.append((block, (block.stop - first, *places, len(used), values, *fixed)))
+            self._blocks.append((block, (block.stop - first, *places, len(fields), values, *fixed)))
 
     def _pointer(self, values: np.ndarray, kind: str = "double *") -> Any:
         if not values.flags.c_contiguous:
@@ -131,16 +128,24 @@ class ElementKernel:
 
 
 @mpi_jit_decorator
-def load(compiled: Any) -> Loop:
-    """The compiled loop over the elements for DOLFINx's CompiledForm; `load(comm, compiled)` is collective."""
+def make(compiled: Any) -> Path:
+    """The file of the loop over the elements for DOLFINx's CompiledForm; `make(comm, compiled)` is collective."""
     module = Path(compiled.module.__file__)
     text = module.with_name(f"{compiled.module.__name__}.c").read_text(encoding="utf-8")
-    processor = binding.get_host_cpu_name() + binding.get_host_cpu_features().flatten()
-    content = hashlib.sha256("".join([text, OWN, processor]).encode()).hexdigest()[:16]
+    content = hashlib.sha256("".join([text, OWN, PROCESSOR]).encode()).hexdigest()[:16]
     path = module.with_name(f"coilset_elements_{content}{''.join(module.suffixes)}")
     if not path.is_file():
         _compile(path, _source(text))
-    found = importlib.util.spec_from_file_location(path.name.split(".")[0], path)
+    return path
+
+
+def load(file: str) -> Loop:
+    """The compiled loop of a file.
+
+    Raises:
+        ImportError: if there is none.
+    """
+    found = importlib.util.spec_from_file_location(Path(file).name.split(".")[0], file)
     assert found is not None
     assert found.loader is not None
     loaded = importlib.util.module_from_spec(found)
