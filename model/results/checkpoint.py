@@ -18,7 +18,6 @@ from coilset.model.case import Case
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.program import ProgramPosition, Stage
 from coilset.model.equilibrium.step_control import Position
-from coilset.model.results.arrays import read_arrays, write_arrays
 from coilset.model.results.folder import make, whole
 from coilset.model.results.provenance import changed, provenance
 from coilset.model.results.record import BucklingMode, Result, Snapshot
@@ -85,13 +84,13 @@ class Checkpoint:
         for number, snapshot in enumerate(result.snapshots):
             self._save_snapshot(number, snapshot)
         with self.state.next() as file:
-            write_arrays(file, {"about": np.array(json.dumps(about)), **arrays})
+            np.savez(file, about=np.array(json.dumps(about)), **arrays)
 
     def _save_snapshot(self, number: int, snapshot: Snapshot) -> None:
         path = self.folder / f"snapshot-{number:02d}.npz"
         if not path.exists():
             with whole(path) as partial, open(partial, "wb") as file:
-                write_arrays(file, vars(snapshot))
+                np.savez(file, **asdict(snapshot))
 
     def over(self) -> None:
         """Nothing more will be saved."""
@@ -127,7 +126,7 @@ class Checkpoint:
         self.require()
         path = self.state.path
         try:
-            loaded = read_arrays(path)
+            loaded = _arrays(path)
             about = json.loads(str(loaded["about"]))
             self._compare(about)
             arrays = {name.removeprefix(PREFIX): values for name, values in loaded.items() if name.startswith(PREFIX)}
@@ -152,7 +151,7 @@ class Checkpoint:
         return Result(*self.journal.read(about["steps"]), snapshots, about["rate"], warnings=warnings, mode=mode)
 
     def _snapshot(self, number: int) -> Snapshot:
-        found: dict[str, Any] = read_arrays(self.folder / f"snapshot-{number:02d}.npz")
+        found: dict[str, Any] = _arrays(self.folder / f"snapshot-{number:02d}.npz")
         for name, kind in (("name", str), ("height", float), ("force", float)):
             found[name] = kind(found[name])
         found["components"] = tuple(str(name) for name in found["components"])
@@ -194,6 +193,11 @@ class Checkpoint:
         behind = about["position"]["stage"]
         if old["loading"][:behind] != new["loading"][:behind]:
             raise InputError(f"its first {behind} phases are finished and must not change", "loading", self.folder)
+
+
+def _arrays(path: Path) -> dict[str, np.ndarray]:
+    with open(path, "rb") as content, np.load(content, allow_pickle=False) as file:
+        return {name: file[name] for name in file.files}
 
 
 def _without_cells(result: Result) -> Result:

@@ -168,11 +168,11 @@ def test_a_kill_while_writing_leaves_the_checkpoint_before(example, tmp_path, mo
     run_until(analysis, checkpoint, 3)
     before = final(tmp_path)
 
-    def half(file, arrays):
+    def half(file, **arrays):
         file.write(b"PK half a file")
         raise Killed
 
-    monkeypatch.setattr(checkpoints, "write_arrays", half)
+    monkeypatch.setattr(checkpoints.np, "savez", half)
     with pytest.raises(Killed):
         checkpoint.save(analysis.system.state, analysis.layout, analysis.program.position, analysis.result)
     monkeypatch.undo()

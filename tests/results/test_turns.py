@@ -1,26 +1,10 @@
-"""Arrays of a checkpoint: the files that NumPy writes, and two of them that take turns."""
+"""A file of which two take turns is complete at any moment."""
 
-import io
-
-import numpy as np
 import pytest
 
 from coilset.meshes.errors import CoilsetError
 from coilset.model.results import turns
-from coilset.model.results.arrays import read_arrays, write_arrays
 from coilset.model.results.turns import Turns
-
-ARRAYS = {
-    "numbers": np.linspace(0.0, 1.0, 24).reshape(2, 3, 4),
-    "turned": np.arange(12.0).reshape(3, 4).T,
-    "every second": np.arange(10.0)[::2],
-    "one": np.float64(1.0) / 3.0,
-    "none": np.empty((0, 3)),
-    "whole": np.arange(3),
-    "true": np.array([True, False]),
-    "words": ("Mt", "größer"),
-    "about": np.array('{"steps": 3}'),
-}
 
 
 class Half(Exception):
@@ -32,16 +16,6 @@ def write_half(file):
         next_one.write(b"half of the next")
         next_one.flush()
         raise Half
-
-
-def test_files_are_those_of_numpy(tmp_path):
-    ours, theirs = io.BytesIO(), io.BytesIO()
-    write_arrays(ours, ARRAYS)
-    np.savez(theirs, **{name: np.asarray(values, order="C") for name, values in ARRAYS.items()})
-    assert ours.getvalue() == theirs.getvalue()
-    (tmp_path / "a.npz").write_bytes(ours.getvalue())
-    for name, values in read_arrays(tmp_path / "a.npz").items():
-        np.testing.assert_array_equal(values, ARRAYS[name])
 
 
 @pytest.mark.parametrize("exchange", [turns._exchange, lambda one, other: False])
