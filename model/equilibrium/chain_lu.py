@@ -20,7 +20,7 @@ from mpi4py import MPI
 from numba import njit
 from petsc4py import PETSc
 
-from coilset.model.equilibrium.aij import AijEntries
+from coilset.model.equilibrium.aij import AijEntries, take
 from coilset.model.equilibrium.elimination import Plan, plan_elimination
 from coilset.model.equilibrium.multifrontal import PartialLU
 
@@ -54,8 +54,8 @@ class ChainLU:
         self._local, self._shared = PartialLU(self._local_plan), PartialLU(self._shared_plan)
         self._blocks = np.empty(self._block_starts[-1])
         self._gathered = [self.comm.allgather(places) for places in (self._rows, self._at)]
-        # this rank's entries, what is fetched, and a zero
-        self._matrix = np.zeros(len(self._entries.pattern[1]) + self._take.sum() + 1)
+        # entries in columns of other ranks, what is fetched, and a zero
+        self._behind = np.zeros(len(self._entries.others[1]) + self._take.sum() + 1)
 
     # ---- plan ------------------------------------------------------------------------------------------------------
 
@@ -144,15 +144,16 @@ class ChainLU:
 
     def factorise(self) -> bool:
         """Factorise the current matrix; False on every rank if a pivot is zero or NaN; collective."""
-        values, own = self._matrix, len(self._entries.pattern[1])
-        self._entries.read(values[:own])
-        self.comm.Alltoallv((values[self._sent], self._give), (values[own:-1], self._take))
-        found = self._local.factorise(values)
+        (own, others), behind = self._entries.arrays(), self._behind
+        behind[: len(others)] = others
+        sent = take(self._sent, own, behind)
+        self.comm.Alltoallv((sent, self._give), (behind[len(others) : -1], self._take))
+        found = self._local.factorise(own, behind)
         starts = self._block_starts
         self.comm.Allgatherv(self._local.schur.ravel(), (self._blocks, np.diff(starts)))
         self._values[:] = 0.0
         shared = np.empty(sum(self._counts))
-        self.comm.Allgatherv(values[self._shared_entries], (shared, self._counts))
+        self.comm.Allgatherv(take(self._shared_entries, own, behind), (shared, self._counts))
         self._values[self._shared_places] = shared
         for rank, places in enumerate(self._block_places):
             self._values[places] += self._blocks[starts[rank] : starts[rank + 1]]

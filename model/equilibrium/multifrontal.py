@@ -14,6 +14,8 @@ from numba import njit
 
 from coilset.model.equilibrium.elimination import Plan
 
+NONE = np.empty(0)
+
 
 class PartialLU:
     """Factors of matrices with one pattern.
@@ -35,16 +37,17 @@ class PartialLU:
         self._stack = np.empty(plan.stack)
         self._places = np.empty(len(plan.order))
 
-    def factorise(self, values: np.ndarray) -> bool:
+    def factorise(self, values: np.ndarray, behind: np.ndarray = NONE) -> bool:
         """Eliminate; False if a pivot is zero or NaN.
 
         Args:
             values: entries of the matrix in the order of the pattern.
+            behind: those that follow, if they lie elsewhere.
         """
         p = self.plan
         self.negative_pivots = eliminate(
             p.first, p.rest_start, p.into, p.child_start, p.child, p.entry_start, p.entry, p.position, values,
-            self._work, self._stack, self._factors, self.schur,
+            behind, self._work, self._stack, self._factors, self.schur,
         )  # fmt: skip
         return self.negative_pivots >= 0
 
@@ -72,6 +75,7 @@ def eliminate(
     entry: np.ndarray,
     position: np.ndarray,
     values: np.ndarray,
+    behind: np.ndarray,
     work: np.ndarray,
     stack: np.ndarray,
     factors: np.ndarray,
@@ -85,9 +89,10 @@ def eliminate(
         F = schur.reshape(schur.size) if last else work[: w * w]
         F[:] = 0.0
         for e in range(entry_start[f], entry_start[f + 1]):
-            F[position[e]] = values[entry[e]]
-        for at in range(child_start[f + 1] - 1, child_start[f] - 1, -1):
-            c = child[at]
+            at = entry[e]
+            F[position[e]] = values[at] if at < len(values) else behind[at - len(values)]
+        for number in range(child_start[f + 1] - 1, child_start[f] - 1, -1):
+            c = child[number]
             size = rest_start[c + 1] - rest_start[c]
             top -= size * size
             rows = into[rest_start[c] : rest_start[c + 1]]
