@@ -68,7 +68,7 @@ class ChainLU:
         fetched = self._plan_fetching(across, mine, complete, places)
         kept = np.unique(indices[across])
         self._numbers = np.union1d(self.start + np.flatnonzero(~of_interface[self.start : self.stop]), kept)
-        at, keep = np.zeros(self.size, np.int64), of_interface[self._numbers]
+        at, keep = np.zeros(self.size, np.int32), of_interface[self._numbers]
         at[self._numbers] = np.arange(len(self._numbers))
         own_indptr, own_indices, entries = own_pattern(
             indptr, indices, self.start, self._numbers, at, keep, places, fetched
@@ -129,7 +129,8 @@ class ChainLU:
         self._at, self._values = at, np.empty(len(pattern))
         self._block_starts = np.append(0, np.cumsum([len(block) for block in blocks]))
         counts = np.bincount(pattern // max(size, 1), minlength=size)
-        return plan_elimination(np.append(0, np.cumsum(counts)), pattern % max(size, 1), np.zeros(size, dtype=bool))
+        columns = (pattern % max(size, 1)).astype(np.int32)
+        return plan_elimination(np.append(0, np.cumsum(counts)), columns, np.zeros(size, dtype=bool))
 
     def _whole_is_cheaper(self) -> bool:
         """Whether eliminating the whole matrix takes fewer multiplications than the two plans; collective."""
@@ -241,19 +242,20 @@ def own_pattern(
         row = numbers[i] - start
         out[i + 1] += indptr[row + 1] - indptr[row]
         for e in range(indptr[row], indptr[row + 1]):
-            out[at[indices[e]] + 1] += keep[at[indices[e]]]
+            if keep[at[indices[e]]]:
+                out[at[indices[e]] + 1] += 1
     out = np.cumsum(out)
-    columns, entries, filled, mirrored = np.empty(out[n], np.int64), np.empty(out[n], np.int32), out[:-1].copy(), 0
+    columns, entries, filled, mirrored = np.empty(out[n], np.int32), np.empty(out[n], np.int32), out[:-1].copy(), 0
     for i in range(n):  # in this order, columns ascend in the rows of A_si, too
         if keep[i]:
             columns[filled[i]], entries[filled[i]] = i, zero
             filled[i] += 1
             continue
-        row = numbers[i] - start
+        row, place = numbers[i] - start, filled[i]
         for e in range(indptr[row], indptr[row + 1]):
             j = at[indices[e]]
-            columns[filled[i]], entries[filled[i]] = j, places[e]
-            filled[i] += 1
+            columns[place], entries[place] = j, places[e]
+            place += 1
             if keep[j]:
                 columns[filled[j]], entries[filled[j]] = i, fetched[mirrored]
                 filled[j] += 1
