@@ -28,11 +28,6 @@ class Body(Protocol):
     increment: fem.Function
     state: State
 
-    @property
-    def row_entries(self) -> np.ndarray | None:
-        """Number of entries in each owned unknown's row of the tangent; None if `create_matrix` allocates them."""
-        ...
-
     def update(self) -> bool:
         """Update the trial state to `increment`.
 
@@ -51,14 +46,6 @@ class Body(Protocol):
 
     def create_matrix(self, rows: int) -> PETSc.Mat:
         """A new matrix for the tangent with `rows` rows on this rank; those after the body's own are extra ones."""
-        ...
-
-    def tangent(self, matrix: PETSc.Mat) -> None:
-        """Add the derivative of the internal forces at the trial state to a matrix, without assembling it."""
-        ...
-
-    def hold(self, matrix: PETSc.Mat, rows: np.ndarray) -> None:
-        """Set the rows of prescribed increments (global numbers) to those of `constraint_weight` times the identity."""
         ...
 
     @property
@@ -149,8 +136,24 @@ class EstimatesErrors(Protocol):
 
 
 @runtime_checkable
+class FillsMatrix(Protocol):
+    """A body that assembles its tangent itself, in a matrix that has room for all of it from the start."""
+
+    def tangent(self, matrix: PETSc.Mat) -> None:
+        """Add the derivative of the internal forces at the trial state to a matrix, without assembling it."""
+        ...
+
+    def hold(self, matrix: PETSc.Mat, rows: np.ndarray) -> None:
+        """Set the rows of prescribed increments (global numbers) to those of `constraint_weight` times the identity."""
+        ...
+
+
+@runtime_checkable
 class OfElements(Protocol):
-    """A body whose tangent is a sum over elements with equally many unknowns.
+    """A body whose tangent is a sum over elements with equally many unknowns; other bodies FillsMatrix.
+
+    Rows of prescribed increments are those of `constraint_weight` times the identity. Columns stay, so that even a
+    large correction meets them.
 
     Attributes:
         element_dofs: local numbers of the owned elements' unknowns, shape (cells, k).
@@ -159,7 +162,7 @@ class OfElements(Protocol):
     element_dofs: np.ndarray
 
     def element_tangents(self) -> Iterator[tuple[slice, np.ndarray]]:
-        """As Body.tangent, of some of the owned elements after others, shape (elements, k, k).
+        """Derivatives of the internal forces of some owned elements after others, shape (elements, k, k).
 
         The next ones may write over them.
         """

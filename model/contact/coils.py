@@ -40,7 +40,7 @@ class Coils:
     name, end, needs_rotations = "coils", None, False
 
     def __init__(self, points: WirePoints, stations: np.ndarray, bedding: float, onset: float):
-        self.points, self.onset, self._room = points, onset, FEW
+        self.points, self.onset, self._room = points, onset, max(FEW, len(points))
         self.stiffness, self.lengths = 0.5 * bedding * points.length, points.length
         self.overlap = np.zeros((len(points), 2))
         self._y = np.column_stack([stations, points.line.radius])  # stations of the last search, with their radii

@@ -5,8 +5,10 @@ others. In both, entries lie row by row with ascending columns, as they do on on
 """
 
 import ctypes
+from typing import Any
 
 import numpy as np
+from numba import njit
 from petsc4py import PETSc
 
 _PETSC = ctypes.PyDLL(PETSc.__file__)  # finds what this module is linked with, so that it is the same PETSc
@@ -15,6 +17,7 @@ for _function in (_PETSC.MatSeqAIJGetArray, _PETSC.MatSeqAIJRestoreArray):
 _INT = np.ctypeslib.as_ctypes_type(PETSc.IntType)
 for _function in (_PETSC.MatGetRowIJ, _PETSC.MatRestoreRowIJ):
     _function.argtypes = [ctypes.c_void_p, _INT, ctypes.c_int, ctypes.c_int, *4 * [ctypes.c_void_p]]
+_PETSC.MatMPIAIJGetSeqAIJ.argtypes = 4 * [ctypes.c_void_p]
 NONE = np.empty(0)
 
 
@@ -23,67 +26,127 @@ class AijEntries:
 
     Args:
         mat: of PETSc's type `seqaij` or `mpiaij`.
-        pattern: indptr and indices, if they are known.
 
     Attributes:
         pattern: of this rank's rows, CSR with global, ascending columns: indptr and indices; on one rank PETSc's own.
+        own, others: PETSc's patterns of the rank's own columns, numbered from the first of these, and of the others.
     """
 
-    def __init__(self, mat: PETSc.Mat, pattern: tuple[np.ndarray, np.ndarray] | None = None) -> None:
+    def __init__(self, mat: PETSc.Mat) -> None:
         self._mat, self._one = mat, mat.getComm().size == 1
-        self.pattern: tuple[np.ndarray, np.ndarray] = _pattern(mat) if self._one else pattern or mat.getValuesCSR()[:2]
-        self._size = self._own_size = len(self.pattern[1])
-        self._address, self._values = 0, np.empty(0)  # of the last time, on one rank
-        self._handle, self._found = ctypes.c_void_p(mat.handle), ctypes.c_void_p()
+        own, others, columns = self._parts()
+        self._address, self._values = 0, NONE  # of the last time, on one rank
+        self._handle, self._found = own, ctypes.c_void_p()
+        self.own = self.pattern = _pattern(own)
+        self.others = np.zeros_like(self.own[0]), self.own[1][:0]
+        self._places, self._room = np.empty(0, np.int32), NONE
         if not self._one:
-            start, stop = mat.getOwnershipRange()
-            own = (self.pattern[1] >= start) & (self.pattern[1] < stop)
-            self._own, self._others = np.flatnonzero(own), np.flatnonzero(~own)
-            self._own_size = len(self._own)
+            self.others = _pattern(others)
+            numbers = _numbers(columns, int(self.others[1].max(initial=-1)) + 1)
+            self.pattern, self._places = _side_by_side(*self.own, *self.others, numbers, mat.getOwnershipRange()[0])
 
     def places(self) -> np.ndarray:
-        """Where `read` writes each entry of the pattern."""
-        places = np.arange(self._size, dtype=np.int32)
-        if not self._one:
-            places[np.concatenate([self._own, self._others])] = np.arange(self._size)
-        return places
+        """Where each entry of the pattern lies in the first of the `arrays`, or behind it, in the second."""
+        return np.arange(len(self.pattern[1]), dtype=np.int32) if self._one else self._places
 
-    def read(self, out: np.ndarray) -> None:
-        """Write the entries as PETSc keeps them: those of the rank's own columns, then the others, shape (entries,)."""
-        out[: self._own_size], out[self._own_size :] = self._arrays()
+    def arrays(self) -> tuple[np.ndarray, np.ndarray]:
+        """Where PETSc keeps the entries now: those of the rank's own columns, and the others."""
+        if self._one:
+            if self._address != (address := _address(self._handle, self._found)):
+                self._address, self._values = address, _at(address, len(self.pattern[1]))
+            return self._values, NONE
+        own, others, _ = self._parts()
+        values = _at(_address(own, self._found), len(self.own[1]))
+        return values, _at(_address(others, self._found), len(self.others[1]))
 
     def room(self) -> np.ndarray:
         """Where values in the order of the pattern can be added up: PETSc's own array, or zeros for `add`."""
-        return self._arrays()[0] if self._one else np.zeros(self._size)
+        if self._one:
+            return self.arrays()[0]
+        if not len(self._room):
+            self._room = np.empty(len(self.pattern[1]))
+        self._room[:] = 0.0
+        return self._room
 
     def add(self, room: np.ndarray) -> None:
         """Add what is in the `room`."""
         if not self._one:
-            own, others = self._arrays()
-            own += room[self._own]
-            others += room[self._others]
+            _add(room, self._places, *self.arrays())
 
-    def _arrays(self) -> tuple[np.ndarray, np.ndarray]:
-        """Where PETSc keeps the entries now."""
-        if self._one:
-            if self._address != (address := _address(self._handle, self._found)):
-                self._address, self._values = address, _at(address, self._size)
-            return self._values, NONE
-        own, others, columns = ctypes.c_void_p(), ctypes.c_void_p(), ctypes.c_void_p()
-        parts = (ctypes.byref(part) for part in (own, others, columns))
-        _check(_PETSC.MatMPIAIJGetSeqAIJ(ctypes.c_void_p(self._mat.handle), *parts))
-        places = (_address(part, self._found) for part in (own, others))
-        return _at(next(places), self._own_size), _at(next(places), self._size - self._own_size)
+    def _parts(self) -> tuple[ctypes.c_void_p, ctypes.c_void_p, Any]:
+        """PETSc's matrices of the own columns and of the others, and where it keeps the numbers of these."""
+        own, others, columns = ctypes.c_void_p(self._mat.handle), ctypes.c_void_p(), ctypes.POINTER(_INT)()
+        if not self._one:
+            found = [ctypes.byref(part) for part in (own, others, columns)]
+            _check(_PETSC.MatMPIAIJGetSeqAIJ(self._mat.handle, *found))
+        return own, others, columns
 
 
-def _pattern(mat: PETSc.Mat) -> tuple[np.ndarray, np.ndarray]:
+@njit(cache=True)
+def _side_by_side(
+    own_indptr: np.ndarray,
+    own_indices: np.ndarray,
+    indptr: np.ndarray,
+    indices: np.ndarray,
+    numbers: np.ndarray,
+    start: int,
+) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
+    """One pattern of both, and where each of its entries lies among those of the first, or behind them.
+
+    Args:
+        own_indptr, own_indices: of the own columns, numbered from `start` on.
+        indptr, indices: of the others, which have `numbers`, ascending.
+    """
+    count, size = 0, len(own_indices)
+    out, columns = np.zeros_like(own_indptr), np.empty(size + len(indices), own_indices.dtype)
+    places = np.empty(size + len(indices), np.int32)
+    for row in range(len(out) - 1):
+        e, mine = indptr[row], own_indptr[row]
+        while e < indptr[row + 1] or mine < own_indptr[row + 1]:
+            below = e < indptr[row + 1] and (mine == own_indptr[row + 1] or numbers[indices[e]] < start)
+            if below:
+                columns[count], places[count] = numbers[indices[e]], size + e
+                e += 1
+            else:
+                columns[count], places[count] = start + own_indices[mine], mine
+                mine += 1
+            count += 1
+        out[row + 1] = count
+    return (out, columns), places
+
+
+@njit(cache=True)
+def _add(values: np.ndarray, places: np.ndarray, own: np.ndarray, others: np.ndarray) -> None:
+    for e in range(len(places)):
+        place = places[e]
+        if place < len(own):
+            own[place] += values[e]
+        else:
+            others[place - len(own)] += values[e]
+
+
+@njit(cache=True)
+def take(places: np.ndarray, own: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Entries at some of the `AijEntries.places`."""
+    out = np.empty(len(places))
+    for e in range(len(places)):
+        place = places[e]
+        out[e] = own[place] if place < len(own) else others[place - len(own)]
+    return out
+
+
+def _numbers(columns: Any, size: int) -> np.ndarray:
+    return np.ctypeslib.as_array(columns, (size,)) if size else np.empty(0, PETSc.IntType)
+
+
+def _pattern(part: ctypes.c_void_p) -> tuple[np.ndarray, np.ndarray]:
     """Where PETSc keeps indptr and indices of a matrix of its type `seqaij`."""
     rows, done, indptr, indices = _INT(), ctypes.c_int(), ctypes.POINTER(_INT)(), ctypes.POINTER(_INT)()
     parts = [ctypes.byref(part) for part in (rows, indptr, indices, done)]
-    _check(_PETSC.MatGetRowIJ(mat.handle, 0, 0, 0, *parts))
+    _check(_PETSC.MatGetRowIJ(part, 0, 0, 0, *parts))
     starts = np.ctypeslib.as_array(indptr, (rows.value + 1,))
     pattern = starts, np.ctypeslib.as_array(indices, (int(starts[-1]),))
-    _check(_PETSC.MatRestoreRowIJ(mat.handle, 0, 0, 0, *parts))
+    _check(_PETSC.MatRestoreRowIJ(part, 0, 0, 0, *parts))
     return pattern
 
 

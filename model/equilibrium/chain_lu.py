@@ -20,7 +20,7 @@ from mpi4py import MPI
 from numba import njit
 from petsc4py import PETSc
 
-from coilset.model.equilibrium.aij import AijEntries
+from coilset.model.equilibrium.aij import AijEntries, take
 from coilset.model.equilibrium.elimination import Plan, plan_elimination
 from coilset.model.equilibrium.multifrontal import PartialLU
 
@@ -54,8 +54,8 @@ class ChainLU:
         self._local, self._shared = PartialLU(self._local_plan), PartialLU(self._shared_plan)
         self._blocks = np.empty(self._block_starts[-1])
         self._gathered = [self.comm.allgather(places) for places in (self._rows, self._at)]
-        # this rank's entries, what is fetched, and a zero
-        self._matrix = np.zeros(len(self._entries.pattern[1]) + self._take.sum() + 1)
+        # entries in columns of other ranks, what is fetched, and a zero
+        self._behind = np.zeros(len(self._entries.others[1]) + self._take.sum() + 1)
 
     # ---- plan ------------------------------------------------------------------------------------------------------
 
@@ -68,7 +68,7 @@ class ChainLU:
         fetched = self._plan_fetching(across, mine, complete, places)
         kept = np.unique(indices[across])
         self._numbers = np.union1d(self.start + np.flatnonzero(~of_interface[self.start : self.stop]), kept)
-        at, keep = np.zeros(self.size, np.int64), of_interface[self._numbers]
+        at, keep = np.zeros(self.size, np.int32), of_interface[self._numbers]
         at[self._numbers] = np.arange(len(self._numbers))
         own_indptr, own_indices, entries = own_pattern(
             indptr, indices, self.start, self._numbers, at, keep, places, fetched
@@ -129,7 +129,8 @@ class ChainLU:
         self._at, self._values = at, np.empty(len(pattern))
         self._block_starts = np.append(0, np.cumsum([len(block) for block in blocks]))
         counts = np.bincount(pattern // max(size, 1), minlength=size)
-        return plan_elimination(np.append(0, np.cumsum(counts)), pattern % max(size, 1), np.zeros(size, dtype=bool))
+        columns = (pattern % max(size, 1)).astype(np.int32)
+        return plan_elimination(np.append(0, np.cumsum(counts)), columns, np.zeros(size, dtype=bool))
 
     def _whole_is_cheaper(self) -> bool:
         """Whether eliminating the whole matrix takes fewer multiplications than the two plans; collective."""
@@ -144,15 +145,16 @@ class ChainLU:
 
     def factorise(self) -> bool:
         """Factorise the current matrix; False on every rank if a pivot is zero or NaN; collective."""
-        values, own = self._matrix, len(self._entries.pattern[1])
-        self._entries.read(values[:own])
-        self.comm.Alltoallv((values[self._sent], self._give), (values[own:-1], self._take))
-        found = self._local.factorise(values)
+        (own, others), behind = self._entries.arrays(), self._behind
+        behind[: len(others)] = others
+        sent = take(self._sent, own, behind)
+        self.comm.Alltoallv((sent, self._give), (behind[len(others) : -1], self._take))
+        found = self._local.factorise(own, behind)
         starts = self._block_starts
         self.comm.Allgatherv(self._local.schur.ravel(), (self._blocks, np.diff(starts)))
         self._values[:] = 0.0
         shared = np.empty(sum(self._counts))
-        self.comm.Allgatherv(values[self._shared_entries], (shared, self._counts))
+        self.comm.Allgatherv(take(self._shared_entries, own, behind), (shared, self._counts))
         self._values[self._shared_places] = shared
         for rank, places in enumerate(self._block_places):
             self._values[places] += self._blocks[starts[rank] : starts[rank + 1]]
@@ -240,19 +242,20 @@ def own_pattern(
         row = numbers[i] - start
         out[i + 1] += indptr[row + 1] - indptr[row]
         for e in range(indptr[row], indptr[row + 1]):
-            out[at[indices[e]] + 1] += keep[at[indices[e]]]
+            if keep[at[indices[e]]]:
+                out[at[indices[e]] + 1] += 1
     out = np.cumsum(out)
-    columns, entries, filled, mirrored = np.empty(out[n], np.int64), np.empty(out[n], np.int32), out[:-1].copy(), 0
+    columns, entries, filled, mirrored = np.empty(out[n], np.int32), np.empty(out[n], np.int32), out[:-1].copy(), 0
     for i in range(n):  # in this order, columns ascend in the rows of A_si, too
         if keep[i]:
             columns[filled[i]], entries[filled[i]] = i, zero
             filled[i] += 1
             continue
-        row = numbers[i] - start
+        row, place = numbers[i] - start, filled[i]
         for e in range(indptr[row], indptr[row + 1]):
             j = at[indices[e]]
-            columns[filled[i]], entries[filled[i]] = j, places[e]
-            filled[i] += 1
+            columns[place], entries[place] = j, places[e]
+            place += 1
             if keep[j]:
                 columns[filled[j]], entries[filled[j]] = i, fetched[mirrored]
                 filled[j] += 1

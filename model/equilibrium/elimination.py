@@ -79,13 +79,13 @@ def plan_elimination(indptr: np.ndarray, indices: np.ndarray, keep: np.ndarray) 
 @njit(cache=True)
 def mirrored_entries(indptr: np.ndarray, indices: np.ndarray) -> np.ndarray:
     """Entry (j, i) for each entry (i, j); nothing if one is missing."""
-    mirror, next_in_row = np.empty(len(indices), np.int64), indptr[:-1].astype(np.int64)
+    mirror, next_in_row = np.empty(len(indices), np.int32), indptr[:-1].astype(np.int32)
     for i in range(len(indptr) - 1):
         for e in range(indptr[i], indptr[i + 1]):
             j = indices[e]
             mirror[e] = next_in_row[j]
             if next_in_row[j] >= indptr[j + 1] or indices[next_in_row[j]] != i:
-                return np.empty(0, np.int64)
+                return np.empty(0, np.int32)
             next_in_row[j] += 1
     return mirror
 
@@ -325,30 +325,30 @@ def place_entries(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Where the updates and the matrix's entries go: `into`, `entry_start`, `entry`, `position` of Plan."""
     n, fronts = len(order), len(first) - 1
-    place, row = np.empty(n, np.int64), np.zeros(n, np.int64)
+    place, row = np.empty(n, np.int32), np.zeros(n, np.int32)  # row: of what follows a front's pivots
     for p in range(n):
         place[order[p]] = p
     into, entry_start = np.zeros(len(rest), np.int32), np.zeros(fronts + 1, np.int64)
     entry, position, count = np.empty(len(indices), np.int32), np.empty(len(indices), np.int32), 0
     for f in range(fronts):
-        k, m = first[f + 1] - first[f], rest_start[f + 1] - rest_start[f]
+        begin, stop = first[f], first[f + 1]
+        k, m = stop - begin, rest_start[f + 1] - rest_start[f]
         w = k + m
-        for p in range(k):
-            row[first[f] + p] = p
         for p in range(m):
             row[rest[rest_start[f] + p]] = k + p
         for c in child[child_start[f] : child_start[f + 1]]:
             for e in range(rest_start[c], rest_start[c + 1]):
-                into[e] = row[rest[e]]
-        for p in range(first[f], first[f + 1]):
+                into[e] = rest[e] - begin if rest[e] < stop else row[rest[e]]
+        for p in range(begin, stop):
             i = order[p]
             for e in range(indptr[i], indptr[i + 1]):
                 q = place[indices[e]]
-                if q >= first[f]:
-                    entry[count], position[count] = e, row[p] * w + row[q]
+                if q >= stop:
+                    entry[count], position[count] = e, (p - begin) * w + row[q]
+                    entry[count + 1], position[count + 1] = mirror[e], row[q] * w + (p - begin)
+                    count += 2
+                elif q >= begin:
+                    entry[count], position[count] = e, (p - begin) * w + (q - begin)
                     count += 1
-                    if q >= first[f + 1]:
-                        entry[count], position[count] = mirror[e], row[q] * w + row[p]
-                        count += 1
         entry_start[f + 1] = count
     return into, entry_start, entry, position

@@ -82,16 +82,10 @@ def _join(
     """As `join_patterns`, of small matrices whose unknowns lie one after the other, from `first` on."""
     n, count = len(indptr) - 1, 0
     begin, holders = _matrices_of_rows(first, unknowns, start, n)
-    out, found, seen = np.zeros_like(indptr), np.empty(2 * len(indices) + 64, indices.dtype), np.full(size, -1)
+    most = len(indices) + np.sum(np.diff(first) ** 2)  # most of which will never be touched
+    out, found, seen = np.zeros_like(indptr), np.empty(most, indices.dtype), np.full(size, -1)
     for row in range(n):
         own, of_row = indices[indptr[row] : indptr[row + 1]], holders[begin[row] : begin[row + 1]]
-        most = len(own)
-        for matrix in of_row:
-            most += first[matrix + 1] - first[matrix]
-        if count + most > len(found):
-            grown = np.empty(2 * (count + most), indices.dtype)
-            grown[:count] = found[:count]
-            found = grown
         if (row > 0 and _same(of_row, holders[begin[row - 1] : begin[row]])
                 and _same(own, indices[indptr[row - 1] : indptr[row]])):  # fmt: skip
             before = found[out[row - 1] : count]
@@ -111,7 +105,7 @@ def _join(
         found[count:end].sort()
         count = end
         out[row + 1] = count
-    return out, found[:count].copy()
+    return out, found[:count]
 
 
 @njit(cache=True)

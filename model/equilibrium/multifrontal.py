@@ -14,6 +14,8 @@ from numba import njit
 
 from coilset.model.equilibrium.elimination import Plan
 
+NONE = np.empty(0)
+
 
 class PartialLU:
     """Factors of matrices with one pattern.
@@ -35,16 +37,17 @@ class PartialLU:
         self._stack = np.empty(plan.stack)
         self._places = np.empty(len(plan.order))
 
-    def factorise(self, values: np.ndarray) -> bool:
+    def factorise(self, values: np.ndarray, behind: np.ndarray = NONE) -> bool:
         """Eliminate; False if a pivot is zero or NaN.
 
         Args:
             values: entries of the matrix in the order of the pattern.
+            behind: those that follow, if they lie elsewhere.
         """
         p = self.plan
         self.negative_pivots = eliminate(
             p.first, p.rest_start, p.into, p.child_start, p.child, p.entry_start, p.entry, p.position, values,
-            self._work, self._stack, self._factors, self.schur,
+            behind, self._work, self._stack, self._factors, self.schur,
         )  # fmt: skip
         return self.negative_pivots >= 0
 
@@ -72,6 +75,7 @@ def eliminate(
     entry: np.ndarray,
     position: np.ndarray,
     values: np.ndarray,
+    behind: np.ndarray,
     work: np.ndarray,
     stack: np.ndarray,
     factors: np.ndarray,
@@ -85,9 +89,10 @@ def eliminate(
         F = schur.reshape(schur.size) if last else work[: w * w]
         F[:] = 0.0
         for e in range(entry_start[f], entry_start[f + 1]):
-            F[position[e]] = values[entry[e]]
-        for at in range(child_start[f + 1] - 1, child_start[f] - 1, -1):
-            c = child[at]
+            at = entry[e]
+            F[position[e]] = values[at] if at < len(values) else behind[at - len(values)]
+        for number in range(child_start[f + 1] - 1, child_start[f] - 1, -1):
+            c = child[number]
             size = rest_start[c + 1] - rest_start[c]
             top -= size * size
             rows = into[rest_start[c] : rest_start[c + 1]]
@@ -115,26 +120,37 @@ def eliminate(
 @njit(cache=True, error_model="numpy", fastmath={"contract"})
 def eliminate_pivots(F: np.ndarray, k: int) -> int:
     """Eliminate the first k unknowns of a front, row after row; number of negative pivots, −1 if one is unusable."""
-    w, negative = len(F), 0
+    w, negative, inverse = len(F), 0, np.empty(k)  # a division takes as long as many products
     for i in range(w):
         row, p, stop = F[i], 0, min(i, k)
-        while p + 1 < stop:  # two pivot rows at a time, as each number of the row is read and written once then
+        while p + 3 < stop:  # four pivot rows at a time, as each number of the row is read and written once then
+            one, two, three, four = F[p], F[p + 1], F[p + 2], F[p + 3]
+            a = row[p] * inverse[p]
+            b = (row[p + 1] - a * one[p + 1]) * inverse[p + 1]
+            c = (row[p + 2] - a * one[p + 2] - b * two[p + 2]) * inverse[p + 2]
+            d = (row[p + 3] - a * one[p + 3] - b * two[p + 3] - c * three[p + 3]) * inverse[p + 3]
+            row[p], row[p + 1], row[p + 2], row[p + 3] = a, b, c, d
+            for j in range(p + 4, w):
+                row[j] -= (a * one[j] + b * two[j]) + (c * three[j] + d * four[j])
+            p += 4
+        if p + 1 < stop:
             one, two = F[p], F[p + 1]
-            a = row[p] / one[p]
-            b = (row[p + 1] - a * one[p + 1]) / two[p + 1]
+            a = row[p] * inverse[p]
+            b = (row[p + 1] - a * one[p + 1]) * inverse[p + 1]
             row[p], row[p + 1] = a, b
             for j in range(p + 2, w):
                 row[j] -= a * one[j] + b * two[j]
             p += 2
         if p < stop:
             one = F[p]
-            a = row[p] / one[p]
+            a = row[p] * inverse[p]
             row[p] = a
             for j in range(p + 1, w):
                 row[j] -= a * one[j]
         if i < k:
             if not abs(row[i]) > 0.0 or not abs(row[i]) < np.inf:
                 return -1
+            inverse[i] = 1.0 / row[i]
             negative += row[i] < 0.0
     return negative
 

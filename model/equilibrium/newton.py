@@ -10,6 +10,7 @@ import math
 import weakref
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -62,6 +63,11 @@ class Newton:
         matrix: TangentMatrix.
     """
 
+    # a step's load on an arc, and the forces where SNES's function is another one: only where
+    # the method needs them
+    _arc_load = cached_property(lambda self: self.system.layout.vector())
+    _balance = cached_property(lambda self: self.system.layout.vector())
+
     def __init__(
         self,
         system: System,
@@ -79,7 +85,7 @@ class Newton:
         self._feigned = system.body.axial_force if isinstance(system.body, Foresees) else 0.0
         self.test = EquilibriumTest(tolerance, self.control.stagnation)
         self.search = WorkSearch(system, self.limit, self.control, self.foresees)
-        self.F, self._balance, self._arc_load = (system.layout.vector() for _ in range(3))
+        self.F = system.layout.vector()
         self.matrix = TangentMatrix(system.body, system.layout)
         self.load, self.load_factor = Load.of(system.layout, {}, {}), 1.0
         self.ratio, self._factorisations, self._at_step_start = np.inf, 0, True

@@ -32,6 +32,8 @@ class Surroundings:
         self._nearby = [contact for contact in contacts if isinstance(contact, ActsNearby)]
         self._own, n = layout.own_stations, len(layout.station_dofs)
         self._all = layout.comm.size == 1 or len(self._nearby) < len(contacts) or n < STENCIL
+        if self._all:
+            return
         self._is_own = np.zeros(n, dtype=bool)
         self._is_own[self._own] = True
         self._along = np.argsort(self._own)

@@ -130,6 +130,7 @@ class System:
     def _evaluate_trial(self, values: np.ndarray) -> None:
         self.evaluations += 1
         self._in_equilibrium = False
+        self.last = Evaluation(values, False, [])  # the new contacts' stiffness takes the memory of the old
         has_stress = self.body.update()
         if self.comm.size > 1:
             has_stress = self.comm.allreduce(int(has_stress)) == self.comm.size

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from functools import cached_property
 
 import numpy as np
 from dolfinx import fem
@@ -28,8 +29,6 @@ from coilset.model.state import State, Where
 from coilset.model.threads import Threads
 
 EPSILON = float(np.finfo(float).eps)
-NODAL_ENTRIES = 22  # per row of the tangent: three nodes with 6 unknowns each, and two elements with 2
-SHEAR_ENTRIES = 14  # two nodes and the element's own 2
 
 
 def comm_max(comm: MPI.Comm, value: float) -> float:
@@ -124,8 +123,6 @@ class Rod:
         self._finer: FinerPath | None = None
         values = {name: field.values for name, field in zip(forms.FIELDS, fields, strict=True)}
         self._residual, self._tangent = compiled_forms(self.comm).on(values, x, self._nodes)
-        self.row_entries = np.full(self.V.dofmap.index_map.size_local, NODAL_ENTRIES, dtype=PETSc.IntType)
-        self.row_entries[self.shear_dofs] = SHEAR_ENTRIES
         self.largest_radius = comm_max(self.comm, self.radius.max(initial=0.0))
         self.axial_force = law.E * np.pi * self.largest_radius**2  # E A
         self.extent = float(np.ptp(line.stations, axis=0).max())
@@ -154,12 +151,6 @@ class Rod:
         self._strain = state.add("strain", self.e.values, Where.ELEMENT)
         self._points = SectionStates(self.sections, state, self._strain, self.in_time, self.temperature,
                                      self.threads)  # fmt: skip
-        frames = Frames(
-            self.cells, self._chord.trial, self.triads.values, self.T.values, self.P.values, self.W.values,
-            self.timoshenko_factor.values[:, 0], self._strain.trial,
-        )  # fmt: skip
-        unknowns = Unknowns(self.u_dofs, self.rotation_dofs, self.shear_dofs)
-        self._prediction = Prediction(frames, unknowns, self.s.values, self.D.values)
         self.state, self.chart = state, np.tile(np.eye(3), (len(x), 1, 1))
         self.update()
 
@@ -249,6 +240,16 @@ class Rod:
         assert self._finer is not None, "estimate_errors comes before"
         self._finer.rejoin()
 
+    @cached_property
+    def _prediction(self) -> Prediction:
+        """Made when it is first needed: its arrays then take the memory that the first factors needed for a moment."""
+        frames = Frames(
+            self.cells, self._chord.trial, self.triads.values, self.T.values, self.P.values, self.W.values,
+            self.timoshenko_factor.values[:, 0], self._strain.trial,
+        )  # fmt: skip
+        unknowns = Unknowns(self.u_dofs, self.rotation_dofs, self.shear_dofs)
+        return Prediction(frames, unknowns, self.s.values, self.D.values)
+
     def predict(self) -> None:
         """Predict the section forces after `correction`, from the trial state; see Foresees."""
         self._prediction.begin(self._correction)
@@ -281,20 +282,10 @@ class Rod:
 
     def create_matrix(self, rows: int) -> PETSc.Mat:
         """A matrix for the unknowns of the rod and the seats; see Body."""
-        index_map, comm = self.V.dofmap.index_map, self.comm
-        matrix = PETSc.Mat().create(comm)
+        matrix = PETSc.Mat().create(self.comm)
         matrix.setSizes(((rows, None), (rows, None)))
         matrix.setType(PETSc.Mat.Type.AIJ)
-        ghosts = np.concatenate([np.arange(*index_map.local_range), index_map.ghosts]).astype(PETSc.IntType)
-        matrix.setLGMap(PETSc.LGMap().create(ghosts, comm=comm), PETSc.LGMap().create(ghosts, comm=comm))
-        matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
         return matrix
-
-    def tangent(self, matrix: PETSc.Mat) -> None:
-        """Add K_l and the stiffness of the rotating frame; see Body."""
-        for cells, tangents in self.element_tangents():
-            dofs = self.element_dofs[cells]
-            matrix.setValuesLocalRCV(dofs, dofs, tangents, addv=PETSc.InsertMode.ADD_VALUES)
 
     def element_tangents(self) -> Iterator[tuple[slice, np.ndarray]]:
         """The elements' K_l and stiffness of the rotating frame, shape (elements, 14, 14); see OfElements."""
@@ -304,10 +295,6 @@ class Rod:
     def constraint_weight(self) -> float:
         """Axial stiffness of the stiffest element, N/mm; see Body."""
         return self._constraint_weight
-
-    def hold(self, matrix: PETSc.Mat, rows: np.ndarray) -> None:
-        """Rows of prescribed increments; columns stay, so that even a large correction meets them; see Body."""
-        matrix.zeroRows(rows.astype(PETSc.IntType), diag=self.constraint_weight)
 
     def rounding(self, increments: np.ndarray) -> float:
         """The largest of three rounding errors, N; see Body.

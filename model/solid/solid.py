@@ -46,8 +46,6 @@ class Solid:
         seconds: time spent at the points (`points`) and in assembling the tangent (`assembly`).
     """
 
-    row_entries = None
-
     def __init__(self, wire: SolidMesh, points: PointLaw, symmetric: bool = False) -> None:
         self.wire, self.points, self.symmetric = wire, points, symmetric
         self.configuration = Configuration(wire.mesh)
@@ -117,7 +115,7 @@ class Solid:
         return create_matrix(self.forms.tangent)
 
     def tangent(self, matrix: PETSc.Mat) -> None:
-        """Add the material and the initial-stress part; see Body."""
+        """Add the material and the initial-stress part; see FillsMatrix."""
         began = time.perf_counter()
         assemble_matrix(matrix, self.forms.tangent)
         self.seconds["assembly"] += time.perf_counter() - began
@@ -128,7 +126,7 @@ class Solid:
         return 1.0
 
     def hold(self, matrix: PETSc.Mat, rows: np.ndarray) -> None:
-        """Rows and columns of prescribed increments, so that the matrix stays symmetric; see Body.
+        """Rows and columns of prescribed increments, so that the matrix stays symmetric; see FillsMatrix.
 
         Increments used with this matrix satisfy the prescribed values from the start, see `HeadPredictor`.
         """

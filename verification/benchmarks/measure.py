@@ -41,8 +41,7 @@ FACTORISE, SOLVE = ("MatLUFactorSym", "MatLUFactorNum"), ("MatSolve",)  # PETSc'
 def watch_analysis(watch: Stopwatch, analysis: "Analysis") -> None:
     """Make the stages of a solve count."""
     watch.watch(analysis.rod, "update", "law")
-    for owner, function in ((analysis.rod, "tangent"), (analysis.rod, "internal_forces"),
-                            (analysis.system, "tangent")):  # fmt: skip
+    for owner, function in ((analysis.rod, "internal_forces"), (analysis.system, "tangent")):
         watch.watch(owner, function, "assemble")
     for contact in analysis.system.contacts:
         watch.watch(contact, "evaluate", "contact")
