@@ -74,13 +74,6 @@ class Foresees(Protocol):
     correction: fem.Function
     axial_force: float
 
-    def stand(self) -> None:
-        """Stand at the last equilibrium, where the forces of the trial state are, with increments of zero.
-
-        What `update` finds of the place is found, the material is not asked: `predict` needs no more.
-        """
-        ...
-
     def predict(self) -> None:
         """Predict the forces after `correction`, from the trial state."""
         ...

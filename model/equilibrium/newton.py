@@ -201,9 +201,10 @@ class Newton:
         """Take a start for a correction of the last equilibrium: its finite turns feign forces like any other's."""
         if not self.foresees or self.system.touches:
             return
-        correction = guess.copy()
-        correction.scale(-1.0)
-        self.system.stand()
+        correction = guess.duplicate()
+        correction.set(0.0)
+        self.system.evaluate(correction)
+        correction.axpy(-1.0, guess)
         self.system.predict(correction)
         self._corrected = 1.0
 

@@ -88,7 +88,6 @@ class System:
             self._is_rotation[body.rotation_dofs[body.rotation_dofs < layout.owned]] = True
         self.last, self.evaluations = Evaluation(np.full(layout.size_local, np.nan), True, []), 0
         self._evaluated = EXPIRED
-        self._in_equilibrium = False  # are the forces of the last evaluation those of the last equilibrium?
 
     @cached_property
     def _local(self) -> la.Vector:
@@ -129,7 +128,6 @@ class System:
 
     def _evaluate_trial(self, values: np.ndarray) -> None:
         self.evaluations += 1
-        self._in_equilibrium = False
         self.last = Evaluation(values, False, [])  # the new contacts' stiffness takes the memory of the old
         has_stress = self.body.update()
         if self.comm.size > 1:
@@ -185,7 +183,6 @@ class System:
         assert isinstance(self.body, PassesTime), "this body knows no time"
         self.body.pass_time(middle, end)
         self.expire()
-        self._in_equilibrium = False
 
     @property
     def max_penetration(self) -> float:
@@ -211,7 +208,6 @@ class System:
         self.state.commit()
         self._body_increments[:] = 0.0
         self.expire()
-        self._in_equilibrium = True
 
     def restore(self) -> None:
         """Go back to the last equilibrium; collective."""
@@ -219,7 +215,6 @@ class System:
         self._body_increments[:] = 0.0
         self._evaluate_trial(np.zeros(self.layout.size_local))
         self.expire()
-        self._in_equilibrium = True
 
     def reset_contacts(self) -> None:
         """Let contacts remember the last equilibrium and nothing of what was tried since."""
@@ -266,20 +261,10 @@ class System:
         self._rotating.to_charts(outer)
         values -= outer
 
-    def stand(self) -> None:
-        """Have a body that Foresees stand at the last equilibrium, with the forces there; collective."""
-        assert self._foreseeing is not None
-        self._body_increments[:] = 0.0
-        if self._in_equilibrium:
-            self._foreseeing.stand()
-        else:
-            self._evaluate_trial(np.zeros(self.layout.size_local))
-        self.expire()
-
     def predict(self, correction: PETSc.Vec) -> None:
         """Let a body that Foresees predict its forces after the increments change by −correction; collective.
 
-        The last evaluation is that of the increments before it, or the body stands at the last equilibrium.
+        The last evaluation is that of the increments before it.
         """
         body, owned = self._foreseeing, self.layout.owned
         assert body is not None

@@ -196,17 +196,6 @@ class Rod:
 
     def update(self) -> bool:
         """Update the trial state to the increments; see Body."""
-        self._move()
-        has_stress = self._points.update(self.s.values, self.D.values)
-        self.stop_foreseeing()
-        return has_stress
-
-    def stand(self) -> None:
-        """Frames and strains of the last equilibrium; its forces and the last tangent are kept; see Foresees."""
-        self._move()
-
-    def _move(self) -> None:
-        """Nodes, frames and strains of the trial state, at the increments."""
         displace_nodes(
             self._increment, self.u_dofs, self.rotation_dofs, self.shear_dofs, self.cells,
             self._x.equilibrium, self._chord.equilibrium, self._R.equilibrium, self._shear.equilibrium,
@@ -217,6 +206,9 @@ class Rod:
             self.timoshenko_factor.values[:, 0], GAUSS, self.triads.values, self.P.values, self.W.values,
             self._strain.trial,
         )  # fmt: skip
+        has_stress = self._points.update(self.s.values, self.D.values)
+        self.stop_foreseeing()
+        return has_stress
 
     def follow(self) -> None:
         """Update the points on the wire's surface to the end of the increment, and those of a long rod; see Body."""
