@@ -64,3 +64,8 @@ def number_of_ranks() -> int:
 def _told(names: tuple[str, ...], otherwise: int) -> int:
     """The number in the first of these variables of the environment that there is."""
     return int(next((os.environ[name] for name in names if name in os.environ), otherwise))
+
+
+def usable_cores() -> int:
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -5,11 +5,12 @@ that threads run side by side on as many cores. No number depends on how many th
 section.
 """
 
-import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
 from itertools import pairwise
 from typing import TypeVar
+
+from coilset.model.processes import usable_cores
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -17,7 +18,7 @@ R = TypeVar("R")
 
 def usual(ranks: int) -> int:
     """Threads of each of so many ranks unless the user says: of one alone as many as it may use cores, else one."""
-    return len(os.sched_getaffinity(0)) if ranks == 1 else 1
+    return usable_cores() if ranks == 1 else 1
 
 
 class Threads:

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO
 
 from coilset.meshes.errors import CoilsetError
 from coilset.model.libraries import WhenUsed
-from coilset.model.processes import end_with_parent, first_rank, number_of_ranks
+from coilset.model.processes import end_with_parent, first_rank, number_of_ranks, usable_cores
 
 if TYPE_CHECKING:  # at run time in the process that draws
     from coilset.model.results.pictures import Draw, Run
@@ -44,7 +44,7 @@ class Drawings:
 
     def start_if_free(self) -> None:
         """Start the processes now if there is a core for them besides those of the ranks."""
-        if first_rank() and len(os.sched_getaffinity(0)) > number_of_ranks():
+        if first_rank() and usable_cores() > number_of_ranks():
             self._start()
 
     def _start(self) -> None:

@@ -11,7 +11,7 @@ from types import FrameType
 from typing import TYPE_CHECKING, Any
 
 from coilset.meshes.errors import CoilsetError, InputError, printable
-from coilset.model.processes import first_rank, number_of_ranks
+from coilset.model.processes import first_rank, number_of_ranks, usable_cores
 from coilset.scripts.beginning import announce_begin
 from coilset.scripts.compiling import NOTICE, announce_compiling, compile_first, compiled
 from coilset.scripts.ending import Ending
@@ -239,7 +239,7 @@ def sweep(
     pictures: bool = typer.Option(True, help="draw the figures"),
 ) -> None:
     """Solve many variants of a case."""
-    from coilset.model.sweep.pools import Workers, usable_cores
+    from coilset.model.sweep.pools import Workers
 
     announce_begin("sweeps", sweep_file, out)
     compile_first(lambda: _check_sweep(sweep_file))

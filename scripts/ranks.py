@@ -16,7 +16,7 @@ from collections.abc import Callable, Sequence
 from typing import IO, Protocol
 
 from coilset.meshes.errors import InputError
-from coilset.model.processes import end_with_parent, mpi_environment, mpirun
+from coilset.model.processes import end_with_parent, mpi_environment, mpirun, usable_cores
 
 PARALLEL = ("solve", "sweep", "python")
 RANKS_A_CORE = 4
@@ -35,7 +35,7 @@ def check(ranks: int, command: str) -> None:
     """
     if ranks > 1 and command not in PARALLEL:
         raise InputError(f"'{command}' works on one rank only; omit -n", "-n")
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    cores = usable_cores()
     given = os.environ.get("COILSET_MAX_RANKS", "")
     most = int(given) if given.isdigit() else RANKS_A_CORE * cores
     if ranks > most:

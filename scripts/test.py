@@ -8,8 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from coilset.meshes.errors import InputError
-from coilset.model.processes import end_with_parent, mpi_environment, mpirun
-from coilset.model.sweep.pools import usable_cores
+from coilset.model.processes import end_with_parent, mpi_environment, mpirun, usable_cores
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 # tests that solve springs or solids to the end, or start the command: minutes, where most others take seconds; those

@@ -19,7 +19,7 @@ import numpy as np
 
 from coilset.meshes.ends import ENDS as ENDS
 from coilset.model.contact.curve import WirePoints
-from coilset.model.contact.elements import extent_of_contact
+from coilset.model.contact.elements import Room, extent_of_contact
 from coilset.model.contact.memory import Memory
 
 SEAT_DOFS = 6  # x, y, z, θx, θy, θz; see plate.py
@@ -94,7 +94,7 @@ class Contribution:
     onset_force: np.ndarray
 
     @staticmethod
-    def room(m: int, k: int) -> tuple[np.ndarray, ...]:
+    def room(m: int, k: int) -> Room:
         """Arrays for up to m elements on k degrees of freedom each, not yet written, in the order of the attributes."""
         point, dofs = np.empty(m, np.int64), np.empty((m, k), np.int64)
         return dofs, np.empty((m, k)), np.empty((m, k, k)), np.empty(m), np.empty(m), point, np.empty(m)

@@ -63,8 +63,7 @@ class Newton:
         matrix: TangentMatrix.
     """
 
-    # a step's load on an arc, and the forces where SNES's function is another one: only where
-    # the method needs them
+    # a step's load on an arc, and the forces where SNES's function is another one: made where a method needs them
     _arc_load = cached_property(lambda self: self.system.layout.vector())
     _balance = cached_property(lambda self: self.system.layout.vector())
 

@@ -57,8 +57,8 @@ def evaluate(data: dict[str, Any], comm: MPI.Comm, file: str = "", time_limit: f
 def evaluate_in_worker(**task: Any) -> dict[str, Any]:
     """`evaluate` in a process that does nothing else, the faster the more cases it has run.
 
-    What is left after a case stays until the end: libraries, compiled functions. Later searches for garbage, 19 ms each
-    if they looked through all this, skip it.
+    What is left after a case stays until the end: libraries, compiled functions. Later searches for garbage, which
+    would take 12 ms longer each, skip it.
     """
     record = evaluate(**task)
     gc.freeze()

@@ -5,7 +5,6 @@ The processes are started before the sweep is read and checked, and load their l
 """
 
 import json
-import os
 import subprocess
 import sys
 import threading
@@ -118,8 +117,3 @@ class Pool:
 
     def __init__(self, submit: Callable[[dict[str, Any]], Future[dict[str, Any]]], workers: int) -> None:
         self.submit, self.workers = submit, workers
-
-
-def usable_cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0))

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from coilset.meshes.errors import CoilsetError
-from coilset.model.processes import end_with_parent, mpi_settings, mpirun
+from coilset.model.processes import end_with_parent, mpi_settings, mpirun, usable_cores
 from coilset.verification.benchmarks.everyday import everyday
 from coilset.verification.benchmarks.ranks import compare
 from coilset.verification.benchmarks.target import targets
@@ -110,4 +110,4 @@ def machine() -> dict[str, Any]:
             model = next(line.split(":", 1)[1].strip() for line in file if line.startswith("model name"))
     except (OSError, StopIteration):
         pass
-    return {"processor": model, "cores": len(os.sched_getaffinity(0)), "load": os.getloadavg()[0]}
+    return {"processor": model, "cores": usable_cores(), "load": os.getloadavg()[0]}
