@@ -66,10 +66,15 @@ def link_beside(then: Callable[[], object]) -> None:
     modules can be loaded, but not such as need the linker, which does one thing at a time. Nothing is done where the
     order matters (`load_in_order`), and nothing is lost where a library has another name.
 
+    UCX, of Open MPI, would put its own code into the functions of the C library that give and take memory while another
+    thread is in them, which now and then crashes a process (https://github.com/openucx/ucx/pull/9148), and would wait
+    40 ms for that. Only networks that read memory of other machines by themselves need it.
+
     Args:
         then: what that thread does afterwards.
     """
     if not find_spec("dolfinx_solver"):
+        os.environ.setdefault("UCX_MEM_EVENTS", "n")
         threading.Thread(target=_link, args=(then,), daemon=True).start()
 
 

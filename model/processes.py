@@ -1,5 +1,6 @@
 """Processes that a command starts: they end with it, however it ends."""
 
+import contextlib
 import ctypes
 import functools
 import os
@@ -7,6 +8,8 @@ import re
 import signal
 import subprocess
 import sys
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 PR_SET_PDEATHSIG = 1  # of Linux's prctl
@@ -29,18 +32,23 @@ def mpirun(ranks: int) -> list[str]:
 
 
 @functools.cache
-def mpi_settings() -> dict[str, str]:
-    """Variables for Open MPI; other kinds of MPI allow more ranks than cores by themselves and read none of these."""
+def _open_mpi() -> int:
+    """The version of this mpirun, where it is Open MPI's; else 0."""
     said = subprocess.run([*mpirun(1)[:1], "--version"], capture_output=True, text=True, check=False).stdout
     version = re.search(r"Open MPI\) (\d+)", said)
-    renamed = version is not None and int(version[1]) >= 6  # which warns of the earlier name
+    return 0 if version is None else int(version[1])
+
+
+@functools.cache
+def mpi_settings() -> dict[str, str]:
+    """Variables for Open MPI; other kinds of MPI allow more ranks than cores by themselves and read none of these."""
     return {
         "OMPI_MCA_btl": "self,sm",  # ranks of one machine communicate through memory
         # A rank that waits gives its core away: where other programs run, the one that it waits for would else not be
         # served meanwhile.
         "OMPI_MCA_mpi_yield_when_idle": "1",
-        f"PRTE_MCA_{'mapby' if renamed else 'rmaps_default_mapping_policy'}": ":oversubscribe",
-    }
+        f"PRTE_MCA_{'mapby' if _open_mpi() >= 6 else 'rmaps_default_mapping_policy'}": ":oversubscribe",
+    }  # version 6 warns of the earlier name of the last
 
 
 def mpi_environment() -> dict[str, str]:
@@ -49,6 +57,16 @@ def mpi_environment() -> dict[str, str]:
     mpirun gives the ranks terminals of its own, on which they print colours; where these would go into a file, none.
     """
     return mpi_settings() | os.environ | ({} if sys.stdout.isatty() else {"TERM": "dumb"})
+
+
+@contextlib.contextmanager
+def folder_of_mpirun() -> Iterator[dict[str, str]]:
+    """A folder for an mpirun's own files, removed afterwards, as a variable that tells Open MPI of it.
+
+    By itself it names that folder by its process number, and fails where a killed one has left a folder of that name.
+    """
+    with tempfile.TemporaryDirectory(prefix="coilset-", ignore_cleanup_errors=True) as folder:
+        yield {"PRTE_MCA_prte_tmpdir_base" if _open_mpi() >= 5 else "OMPI_MCA_orte_tmpdir_base": folder}
 
 
 def first_rank() -> bool:

@@ -16,7 +16,7 @@ from collections.abc import Callable, Sequence
 from typing import IO, Protocol
 
 from coilset.meshes.errors import InputError
-from coilset.model.processes import end_with_parent, mpi_environment, mpirun, usable_cores
+from coilset.model.processes import end_with_parent, folder_of_mpirun, mpi_environment, mpirun, usable_cores
 
 PARALLEL = ("solve", "sweep", "python")
 RANKS_A_CORE = 4
@@ -45,8 +45,13 @@ def check(ranks: int, command: str) -> None:
 
 def launch(ranks: int, arguments: Sequence[str]) -> int:
     """Run `coilset ARGUMENTS` on some ranks; returns the exit code of the first that failed."""
-    command = [*mpirun(ranks), sys.executable, "-m", "coilset.scripts", *arguments]
-    environment = mpi_environment() | {"COILSET_RANKS": str(ranks)}
+    with folder_of_mpirun() as folder:
+        command = [*mpirun(ranks), sys.executable, "-m", "coilset.scripts", *arguments]
+        return _run(command, mpi_environment() | folder | {"COILSET_RANKS": str(ranks)})
+
+
+def _run(command: list[str], environment: dict[str, str]) -> int:
+    """Run mpirun, and pass on what it says, and the signals that come; its exit code."""
     process = subprocess.Popen(
         command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, bufsize=0, env=environment,
         process_group=0, preexec_fn=end_with_parent,

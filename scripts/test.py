@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from coilset.meshes.errors import InputError
-from coilset.model.processes import end_with_parent, mpi_environment, mpirun, usable_cores
+from coilset.model.processes import end_with_parent, folder_of_mpirun, mpi_environment, mpirun, usable_cores
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 # tests that solve springs or solids to the end, or start the command: minutes, where most others take seconds; those
@@ -41,7 +41,8 @@ def test(arguments: list[str]) -> int:
         status = run("tests of parts", parts) or run("tests of whole solves", [*pytest, *solves])
     for ranks in (2, 3):
         command = [*mpirun(ranks), *pytest, "-m", "mpi"]
-        status = status or run(f"tests on {ranks} ranks", command, mpi_environment())
+        with folder_of_mpirun() as folder:
+            status = status or run(f"tests on {ranks} ranks", command, mpi_environment() | folder)
     return status
 
 

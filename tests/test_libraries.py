@@ -31,6 +31,20 @@ for thread in threading.enumerate():
 with open("/proc/self/maps") as linked:
     print("/dolfinx/cpp." in linked.read(), [name for name in ("mpi4py.MPI", "petsc4py.PETSc") if name in sys.modules])
 """
+UNCHANGED = """
+import ctypes
+from coilset.scripts.loading import load_for_solve
+
+def beginnings():
+    functions = (getattr(ctypes.CDLL(None), name) for name in ("mmap", "munmap", "mremap", "madvise", "brk"))
+    return [ctypes.string_at(ctypes.cast(function, ctypes.c_void_p).value, 16) for function in functions]
+
+before = beginnings()
+load_for_solve()
+from mpi4py import MPI
+import dolfinx
+print(beginnings() == before)
+"""
 USE = """
 import coilset.model, {0}, inspect
 print("def " in inspect.getsource({0}), inspect.getmodule({0}) is {0})
@@ -56,3 +70,10 @@ def test_a_second_import_is_no_use():
 @pytest.mark.skipif(find_spec("dolfinx_solver") is not None, reason="wheels are linked in an order of their own")
 def test_libraries_are_linked_before_their_modules_are_loaded():
     assert said(LINK) == ["True", "[]"]
+
+
+@pytest.mark.skipif(find_spec("dolfinx_solver") is not None, reason="nothing is linked beside other work")
+def test_no_library_changes_the_functions_of_memory(monkeypatch):
+    """Another thread may be in them, and would crash."""
+    monkeypatch.delenv("UCX_MEM_EVENTS", raising=False)
+    assert said(UNCHANGED) == ["True"]

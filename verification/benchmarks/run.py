@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from coilset.meshes.errors import CoilsetError
-from coilset.model.processes import end_with_parent, mpi_settings, mpirun, usable_cores
+from coilset.model.processes import end_with_parent, folder_of_mpirun, mpi_settings, mpirun, usable_cores
 from coilset.verification.benchmarks.everyday import everyday
 from coilset.verification.benchmarks.ranks import compare
 from coilset.verification.benchmarks.target import targets
@@ -40,8 +40,9 @@ def measure(environment: dict[str, str], job: str, *arguments: int, ranks: int =
     command = [sys.executable, "-m", MODULE, job, *map(str, arguments)]
     if ranks > 1:
         command = [*mpirun(ranks), *command]
-    done = subprocess.run(command, env=mpi_settings() | environment, capture_output=True, text=True,
-                          preexec_fn=end_with_parent)  # fmt: skip
+    with folder_of_mpirun() as folder:
+        done = subprocess.run(command, env=mpi_settings() | environment | folder, capture_output=True, text=True,
+                              preexec_fn=end_with_parent)  # fmt: skip
     if done.returncode:
         reason = (done.stderr.strip() or "no message").splitlines()[-1]
         raise CoilsetError(f"the measurement '{' '.join(map(str, (job, *arguments)))}' failed: {reason}")
