@@ -74,6 +74,16 @@ class Foresees(Protocol):
     correction: fem.Function
     axial_force: float
 
+    def stand(self) -> bool:
+        """Bring the trial state to the last equilibrium and its forces, as far as `predict` needs them.
+
+        The increments are zero. The material is not asked.
+
+        Returns:
+            False, and nothing is done, if the forces at the last equilibrium were not kept; the same on every rank.
+        """
+        ...
+
     def predict(self) -> None:
         """Predict the forces after `correction`, from the trial state."""
         ...

@@ -202,7 +202,8 @@ class Newton:
             return
         correction = guess.duplicate()
         correction.set(0.0)
-        self.system.evaluate(correction)
+        if not self.system.stand():
+            self.system.evaluate(correction)
         correction.axpy(-1.0, guess)
         self.system.predict(correction)
         self._corrected = 1.0

@@ -261,10 +261,17 @@ class System:
         self._rotating.to_charts(outer)
         values -= outer
 
+    def stand(self) -> bool:
+        """Let a body that Foresees stand at the last equilibrium; see there."""
+        assert self._foreseeing is not None
+        self.expire()
+        self._body_increments[:] = 0.0
+        return self._foreseeing.stand()
+
     def predict(self, correction: PETSc.Vec) -> None:
         """Let a body that Foresees predict its forces after the increments change by −correction; collective.
 
-        The last evaluation is that of the increments before it.
+        The last evaluation is that of the increments before it, or the body stands at the last equilibrium.
         """
         body, owned = self._foreseeing, self.layout.owned
         assert body is not None

@@ -72,7 +72,7 @@ def give_past(rod: Rod, spring: object) -> float | None:
         wanted = "'coiling' needs a wire that yields and keeps its shape"
         raise InputError(f"{wanted}: {problem}", "spring.made_by")
     rod.state.restore()
-    rod.update()
+    rod.rest()
     ordered = rod.mesh.comm.bcast(rod.line.in_order(np.moveaxis(tight, 0, -1)))
     curvature, torsion = ordered[len(ordered) // 2, 0]
     return float(2.0 * curvature / (curvature**2 + torsion**2)) if past.coiled else None

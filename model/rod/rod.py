@@ -22,10 +22,10 @@ from coilset.model.rod.compiled import compiled_forms
 from coilset.model.rod.finer_path import CLOCKS, FinerPath
 from coilset.model.rod.kinematics import GAUSS, chord_triads, displace_nodes, section_strains
 from coilset.model.rod.prediction import Frames, Prediction, Unknowns
-from coilset.model.rod.section_states import POINTS, SURFACE, SectionStates
+from coilset.model.rod.section_states import KEPT, POINTS, SURFACE, SectionStates
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule
-from coilset.model.state import State, Where
+from coilset.model.state import Field, State, Where
 from coilset.model.threads import Threads
 
 EPSILON = float(np.finfo(float).eps)
@@ -65,7 +65,8 @@ class Rod:
         correction: function of the last correction to them, the input of `predict`.
         state: State with `x`, mm, and `R`, rotations since the stress-free state, of the local nodes; `chord`, mm,
             `shear`, `strain`, shape (cells, 2, 6), and the arrays of the sections, of the owned cells; of these
-            `point_state`, shape (cells, 2, points, n_state), and `surface_state` are always there.
+            `point_state`, shape (cells, 2, points, n_state), and `surface_state` are always there. Rods of up to KEPT
+            elements, whose law knows no time, also keep `section_forces` and `section_tangents`.
         chart: tangents of the nodes' rotation charts on trial, shape (nodes, 3, 3).
     """
 
@@ -151,8 +152,18 @@ class Rod:
         self._strain = state.add("strain", self.e.values, Where.ELEMENT)
         self._points = SectionStates(self.sections, state, self._strain, self.in_time, self.temperature,
                                      self.threads)  # fmt: skip
+        self._forces: list[Field] = []  # at the last equilibrium; an element's tangents take 576 bytes
+        if self.in_time is None and self.mesh.topology.index_map(1).size_global <= KEPT:
+            known = {"section_forces": self.s.values, "section_tangents": self.D.values}
+            self._forces = [state.add(name, values, Where.ELEMENT) for name, values in known.items()]
         self.state, self.chart = state, np.tile(np.eye(3), (len(x), 1, 1))
+        self.rest()
+
+    def rest(self) -> None:
+        """Find the forces at the last equilibrium, which has been given and not found by a step."""
         self.update()
+        for field in self._forces:
+            np.copyto(field.equilibrium, field.trial)
 
     # ---- time -----------------------------------------------------------------------------------------------------
 
@@ -196,6 +207,21 @@ class Rod:
 
     def update(self) -> bool:
         """Update the trial state to the increments; see Body."""
+        self._move()
+        has_stress = self._points.update(self.s.values, self.D.values)
+        self.stop_foreseeing()
+        return has_stress
+
+    def stand(self) -> bool:
+        """Forces and tangents of the last equilibrium, unless they change in time; see Foresees."""
+        if self._forces:
+            self._move()
+        for field in self._forces:
+            np.copyto(field.trial, field.equilibrium)
+        return bool(self._forces)
+
+    def _move(self) -> None:
+        """Bring nodes, frames and strains to the increments."""
         displace_nodes(
             self._increment, self.u_dofs, self.rotation_dofs, self.shear_dofs, self.cells,
             self._x.equilibrium, self._chord.equilibrium, self._R.equilibrium, self._shear.equilibrium,
@@ -206,9 +232,6 @@ class Rod:
             self.timoshenko_factor.values[:, 0], GAUSS, self.triads.values, self.P.values, self.W.values,
             self._strain.trial,
         )  # fmt: skip
-        has_stress = self._points.update(self.s.values, self.D.values)
-        self.stop_foreseeing()
-        return has_stress
 
     def follow(self) -> None:
         """Update the points on the wire's surface to the end of the increment, and those of a long rod; see Body."""

@@ -59,6 +59,27 @@ def test_without_turning_an_elastic_rod_has_its_foreseen_forces(turned):
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10 * np.abs(expected).max())
 
 
+def test_a_rod_stands_where_its_last_step_ended_without_asking_the_material(make_rod):
+    """With that step's own tangents, which are those of plastic flow; not as at the place tried since."""
+    rod = make_rod([[0, 0, 0], [LENGTH, 0, 0], [LENGTH, 60, 20]])
+    increments = 0.02 * np.random.default_rng(5).normal(size=len(rod.increment.x.array))
+    at(rod, increments)
+    known = (rod.s, rod.D, rod.triads, rod.P, rod.W, rod.e)
+    there = [field.values.copy() for field in known]
+    assert there[0].any()
+    rod.follow()
+    rod.state.commit()
+    at(rod, -2.0 * increments)
+    tried = rod.point_state.copy()
+    rod.increment.x.array[:] = 0.0
+    assert rod.stand()
+    for field, values in zip(known, there, strict=True):
+        np.testing.assert_array_equal(field.values, values)
+    np.testing.assert_array_equal(rod.point_state, tried)
+    assert rod.update()  # the material at rest yields no more
+    assert np.abs(rod.D.values[..., 3, 3] / there[1][..., 3, 3]).max() > 1.5
+
+
 @pytest.mark.parametrize("slenderness", [1e-2, 1e-3, 1e-4])
 @pytest.mark.parametrize("problem", [elastica, circles])
 def test_newton_does_not_mind_slenderness(problem, slenderness):
