@@ -55,7 +55,8 @@ def _elements(axes: Axes, runs: list[dict[str, Any]]) -> None:
     if len(large):
         middle = np.sqrt(large.min() * large.max())
         half = np.sqrt(1.0 + FLAT)
-        axes.fill_between([LARGE, max(n)], middle / half, middle * half, color="0.85", zorder=0, label="within 20 %")
+        axes.fill_between([LARGE, max(n)], middle / half, middle * half, color="0.85", zorder=0,
+                          label=f"within {100 * FLAT:.0f} %")  # fmt: skip
     axes.set(xscale="log", yscale="log", xlabel="elements", ylabel="processor time of an element\nin an iteration, µs",
              title="Cost of an element, one plastic step")  # fmt: skip
     axes.title.set_fontsize(9)

@@ -1,7 +1,7 @@
 """One measurement, in a process of its own so that its memory is its own: prints one line of JSON.
 
     python -m coilset.verification.benchmarks.measure example [REPEATS]
-    mpirun -n RANKS python -m coilset.verification.benchmarks.measure press ELEMENTS [REPEATS [TOUCHING]]
+    mpirun -n RANKS python -m coilset.verification.benchmarks.measure press ELEMENTS [REPEATS [TOUCHING [ESTIMATED]]]
     python -m coilset.verification.benchmarks.measure cases COUNT
     python -m coilset.verification.benchmarks.measure opensees ELEMENTS [CURVED]
 
@@ -183,7 +183,7 @@ def pressed(elements: int, touching: bool) -> list[str]:
             f"loading=[{{to: {{travel: {TRAVEL}}}, steps: 1}}]"]  # fmt: skip
 
 
-def press(elements: int, repeats: int = 1, touching: int = 0) -> dict[str, Any]:
+def press(elements: int, repeats: int = 1, touching: int = 0, estimated: int = 1) -> dict[str, Any]:
     """One step of a spring between clamped heads, in many elements.
 
     Args:
@@ -192,6 +192,7 @@ def press(elements: int, repeats: int = 1, touching: int = 0) -> dict[str, Any]:
         touching: 0: the example's spring in elements of any length, compressed far into the plastic range, without
             contact; 1: windings of 16 elements, or more where there would be too many of them, whose pitch is 5 % more
             than the wire's diameter, pressed to block.
+        estimated: 0: the error of the step is not estimated.
 
     Returns:
         Dict of counts, the force, the share of plastic points, peak memory of a rank, and `stages`: wall and CPU
@@ -201,7 +202,7 @@ def press(elements: int, repeats: int = 1, touching: int = 0) -> dict[str, Any]:
 
     comm, watch, runs = MPI.COMM_WORLD, watch_meshing(), []
     logged = Logged(watch)
-    case = read_example(pressed(elements, bool(touching)))
+    case = read_example([*pressed(elements, bool(touching)), *([] if estimated else ["accuracy=none"])])
     for _ in range(repeats):
         watch.wall.clear()
         watch.cpu.clear()
@@ -214,6 +215,7 @@ def press(elements: int, repeats: int = 1, touching: int = 0) -> dict[str, Any]:
     plastic = analysis.rod.point_state[..., 6] > 0.0
     return {
         "elements": len(analysis.setup.turns) - 1,
+        "estimated": bool(estimated),
         "ranks": comm.size,
         "unknowns": analysis.layout.size,
         "force_N": analysis.control.force,

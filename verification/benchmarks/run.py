@@ -19,6 +19,7 @@ from coilset.verification.benchmarks.target import targets
 
 MODULE = "coilset.verification.benchmarks.measure"
 QUICK = ((40, 5), (400, 3), (4_000, 2), (16_000, 1))  # elements, and how often they are measured
+UNESTIMATED = 100_000  # elements that are also measured without the error of the step
 FULL = ((40, 5), (400, 5), (4_000, 3), (16_000, 2), (40_000, 1), (100_000, 1), (400_000, 1))
 SHARED = {"quick": 8_000, "full": 40_000}  # elements that one and two ranks are compared on
 RANKS = (1, 2)
@@ -83,10 +84,13 @@ def bench(
     if with_cold:
         report("example, nothing compiled")
         record["cold"] = cold(environment)
-    record["elements"] = []
+    record["elements"], record["unestimated"] = [], []
     for elements, repeats in FULL if full else QUICK:
         report(f"{elements} elements")
         record["elements"].append(measure(environment, "press", elements, repeats))
+        if elements == UNESTIMATED:
+            report(f"{elements} elements, error not estimated")
+            record["unestimated"].append(measure(environment, "press", elements, repeats, 0, 0))
     record["ranks"] = []
     for ranks in RANKS:
         report(f"{ranks} rank(s)")
