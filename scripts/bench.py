@@ -125,8 +125,8 @@ def _ranks(runs: list[dict[str, Any]]) -> Table:
 
 
 def _opensees(runs: list[dict[str, Any]]) -> Table:
-    table = _new("the same clamped spring in OpenSees: 10 mm in 40 steps and release; time of the analysis, of the "
-                 "processor with one thread, by the clock with more",
+    table = _new("the same clamped spring in OpenSees: 10 mm in 40 steps and release; the analysis alone, with "
+                 "several threads by the clock",
                  "elements", "our axis", "error", "time", "coilset, N", "set, mm", "s",
                  "OpenSees, N", "set, mm", "s", "times as fast")  # fmt: skip
     for run in runs:

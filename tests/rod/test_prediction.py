@@ -2,8 +2,12 @@
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
+from coilset.model.analysis import Analysis
+from coilset.model.case import read_case
 from coilset.model.material import library
+from coilset.model.rod import rod as rods
 from coilset.verification.cases.slender_rods import circles, elastica
 
 LENGTH, WANTED = 80.0, 8
@@ -78,6 +82,22 @@ def test_a_rod_stands_where_its_last_step_ended_without_asking_the_material(make
     np.testing.assert_array_equal(rod.point_state, tried)
     assert rod.update()  # the material at rest yields no more
     assert np.abs(rod.D.values[..., 3, 3] / there[1][..., 3, 3]).max() > 1.5
+
+
+def test_a_long_rod_asks_the_law_instead(example, monkeypatch):
+    """It keeps no tangents of its last equilibrium: another one for each start of a step, and the same forces."""
+    settings = ["ends=clamped", "mesh={elements_per_turn: 8, section: {rule: abramowitz9}}",
+                "loading=[{to: {travel: 12}, steps: 6}, {to: {force: 0}, steps: 3}]"]  # fmt: skip
+    runs = []
+    for kept in (20, 19):
+        monkeypatch.setattr(rods, "KEPT", kept)
+        runs.append(Analysis(read_case(example, settings), MPI.COMM_SELF))
+        runs[-1].run()
+    known, asked = runs
+    assert ("section_tangents" in known.system.state, "section_tangents" in asked.system.state) == (True, False)
+    assert asked.system.evaluations - known.system.evaluations >= 7  # steps whose path has one before it
+    for one, other in zip(known.result.steps, asked.result.steps, strict=True):
+        assert one.force_N == pytest.approx(other.force_N, abs=1e-7)  # of 200 N, balanced to 1e-9
 
 
 @pytest.mark.parametrize("slenderness", [1e-2, 1e-3, 1e-4])
