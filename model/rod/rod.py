@@ -152,6 +152,16 @@ class Rod:
         self._points = SectionStates(self.sections, state, self._strain, self.in_time, self.temperature,
                                      self.threads)  # fmt: skip
         self.state, self.chart = state, np.tile(np.eye(3), (len(x), 1, 1))
+        self._of_nodes = (
+            self._increment, self.u_dofs, self.rotation_dofs, self.shear_dofs, self.cells,
+            self._x.equilibrium, self._chord.equilibrium, self._R.equilibrium, self._shear.equilibrium,
+            self._x.trial, self._chord.trial, self._R.trial, self._shear.trial, self.chart, self.T.values,
+        )  # fmt: skip
+        self._of_cells = (
+            self.cells, self._chord.trial, self._R.trial, self.E0, self.l0, self._shear.trial,
+            self.timoshenko_factor.values[:, 0], GAUSS, self.triads.values, self.P.values, self.W.values,
+            self._strain.trial,
+        )  # fmt: skip
         self.update()
 
     # ---- time -----------------------------------------------------------------------------------------------------
@@ -196,16 +206,8 @@ class Rod:
 
     def update(self) -> bool:
         """Update the trial state to the increments; see Body."""
-        displace_nodes(
-            self._increment, self.u_dofs, self.rotation_dofs, self.shear_dofs, self.cells,
-            self._x.equilibrium, self._chord.equilibrium, self._R.equilibrium, self._shear.equilibrium,
-            self._x.trial, self._chord.trial, self._R.trial, self._shear.trial, self.chart, self.T.values,
-        )  # fmt: skip
-        section_strains(
-            self.cells, self._chord.trial, self._R.trial, self.E0, self.l0, self._shear.trial,
-            self.timoshenko_factor.values[:, 0], GAUSS, self.triads.values, self.P.values, self.W.values,
-            self._strain.trial,
-        )  # fmt: skip
+        displace_nodes(*self._of_nodes)
+        section_strains(*self._of_cells)
         has_stress = self._points.update(self.s.values, self.D.values)
         self.stop_foreseeing()
         return has_stress
