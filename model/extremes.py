@@ -16,15 +16,6 @@ def greatest(values: np.ndarray) -> float:
 
 
 @njit(cache=True)
-def least(values: np.ndarray) -> float:
-    """The least of some values, infinite if there are none."""
-    found = math.inf
-    for value in values:
-        found = min(found, value)
-    return found
-
-
-@njit(cache=True)
 def largest(values: np.ndarray) -> float:
     """The largest magnitude of some values; not a number if one of them is none."""
     found = 0.0
@@ -35,10 +26,13 @@ def largest(values: np.ndarray) -> float:
 
 
 @njit(cache=True)
-def farthest(x: np.ndarray, y: np.ndarray) -> float:
-    """The largest difference of two arrays of shape (n, 3)."""
-    found = 0.0
-    for i in range(len(x)):
-        for k in range(3):
-            found = max(found, abs(x[i, k] - y[i, k]))
-    return found
+def relative_motion(x: np.ndarray, y: np.ndarray) -> float:
+    """Diagonal of the box around the motions of points from x to y, shape (n, 3), with n > 0."""
+    square = 0.0
+    for k in range(3):
+        low, high = math.inf, -math.inf
+        for i in range(len(x)):
+            motion = y[i, k] - x[i, k]
+            low, high = min(low, motion), max(high, motion)
+        square += (high - low) ** 2
+    return math.sqrt(square)

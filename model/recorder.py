@@ -91,19 +91,23 @@ class Recorder:
         if weakest and (self.result.mode is None or weakest.value < self.result.mode.eigenvalue):
             mode = BucklingMode(step.travel_mm, bears, weakest.value, x, self._stability.displacements(weakest.mode))
             self.result = replace(self.result, mode=mode)
-        before = self.result
-        self.result = replace(before, steps=(*before.steps, step))
+        before, seats, frames = self.result, self.result.seats, self.result.frames
         if self._detailed:
-            seats, frame = self._seat_reactions(step.number, greatest), self._frame(x)
-            self.result = replace(self.result, seats=(*self.result.seats, seats), frames=(*self.result.frames, frame))
+            seats, frames = (*seats, self._seat_reactions(step.number, greatest)), (*frames, self._frame(x))
+        self.result = replace(before, steps=(*before.steps, step), seats=seats, frames=frames)
+        if self._detailed:
             self._announce(before)
         return step
 
     def _announce(self, before: Result) -> None:
-        """Log the warnings that the last step has brought; `before` is the result without it."""
+        """Log the warnings that the last step has brought; `before` is the result without it.
+
+        Whether a slender spring has buckled all its eigenvalues tell; what else is new shows in the last two steps.
+        """
         if self._warned is None:
             self._warned = {warning.name for warning in step_warnings(self.setup, before)}
-        for warning in step_warnings(self.setup, self.result):
+        steps = self.result.steps if self.setup.slender else self.result.steps[-2:]
+        for warning in step_warnings(self.setup, Result(steps)):
             if warning.name not in self._warned:
                 log.warning("warning: %s", warning.message)
                 self._warned.add(warning.name)
@@ -117,9 +121,10 @@ class Recorder:
     def _seat_reactions(self, step: int, greatest_force: float) -> SeatReactions:
         """The seats' reactions at the last equilibrium; keeps its torque and force for the next step's active turns."""
         before = float(self.torque_force.equilibrium[0]), self.torque.equilibrium
-        reactions = seat_reactions(self.system, self.control, self.setup.turns, step, greatest_force, before)
-        self.torque.trial[:] = self.torque.equilibrium[:] = mean_torque(self.rod)
-        self.torque_force.trial[0] = self.torque_force.equilibrium[0] = self.control.force
+        force, torque = now = self.control.force, mean_torque(self.rod)
+        reactions = seat_reactions(self.system, self.control, self.setup.turns, step, greatest_force, before, now)
+        self.torque.trial[:] = self.torque.equilibrium[:] = torque
+        self.torque_force.trial[0] = self.torque_force.equilibrium[0] = force
         return reactions
 
     def _greatest_plastic_work(self) -> float:
@@ -132,8 +137,10 @@ class Recorder:
         first = phase
         while first >= 0 and isinstance(one := loading[first], TimePhase) and one.duration.keep == "height":
             first -= 1
+        if first == phase:
+            return None
         before = next((step.force_N for step in reversed(self.result.steps) if step.phase <= first), 0.0)
-        if first == phase or abs(before) <= faint_force(self.rod, self.result.greatest_force):
+        if abs(before) <= faint_force(self.rod, self.result.greatest_force):
             return None
         return 100.0 * (1.0 - force / before)
 
@@ -147,8 +154,8 @@ class Recorder:
 
     def _weakest(self) -> Weakest | None:
         """Weakest of the tangent, for a spring slender enough to buckle, until it buckles; else None; collective."""
-        slender, setup = np.isfinite(self.setup.buckling_travel), self.setup
-        if not slender or buckling(self.result.steps, setup.mean_diameter) is not None:
+        setup = self.setup
+        if not setup.slender or buckling(self.result.steps, setup.mean_diameter) is not None:
             return None
         return self._stability.weakest(self._newton.load)
 

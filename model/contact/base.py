@@ -38,8 +38,8 @@ class Known:
         elements: ranges of elements of which all stations of the centre line's cubics are known, ascending, shape
             (k, 2).
         longest: distance of neighbouring stations, the maximum along the whole wire, mm.
-        way: by how much any station of the whole wire may have moved along any axis so far, mm: the sum of what the
-            fastest has moved from each trial state to the next.
+        way: by how much any two stations of the whole wire may have moved against each other so far, mm: the sum of
+            the diagonals of the boxes around the motions from each trial state to the next.
         own: which stations are the rank's own, shape (n,), bool.
     """
 

@@ -32,12 +32,12 @@ def add_resultant(dofs: np.ndarray, forces: np.ndarray, x: np.ndarray, rotations
 
 
 @njit(cache=True)
-def add_force(point: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
-    """Add to `out` a force and a moment at a point, shape (3,) each, as `add_resultant`."""
+def add_force(point: np.ndarray, force: np.ndarray, out: np.ndarray) -> None:
+    """Add to `out` a force and a moment, shape (6,), at a point, shape (3,), as `add_resultant`."""
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
         out[k] += force[k]
-        out[3 + k] += moment[k] + point[i] * force[j] - point[j] * force[i]
+        out[3 + k] += force[3 + k] + point[i] * force[j] - point[j] * force[i]
 
 
 @njit(cache=True)

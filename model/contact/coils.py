@@ -4,23 +4,20 @@ The gap is the distance from the point to the other coil's centre line less both
 onto the other with half of the bedding, so that neither is the master.
 """
 
-import math
-
 import numpy as np
 from numba import njit
 
 from coilset.model.contact.base import Contribution, TrialPositions
 from coilset.model.contact.curve import WirePoints
-from coilset.model.contact.elements import PAIR, at_points, coil_elements
+from coilset.model.contact.elements import PAIR, coil_elements
 from coilset.model.contact.memory import Memory
 from coilset.model.contact.search import longest_element, near_locations, post_stride
-from coilset.model.extremes import farthest, greatest, least
+from coilset.model.extremes import greatest, relative_motion
 
 FEW = 1024  # locations on other coils for which there is room at first
 SKIN = 0.5  # in wire radii: how far beyond what touches pairs are sought
 # Along the wire, a pair depends on three more stations of the cubic, and the search oversteps by two and by two posts.
 STATIONS_ASIDE, POSTS_ASIDE = 5, 2
-SQRT3 = math.sqrt(3.0)
 NO_PAIR = np.empty((0, 3), np.int64), np.empty((0, 2)), np.empty(0), np.empty((0, 3))
 
 
@@ -35,6 +32,9 @@ class Coils:
         stations: stress-free positions, shape (n, 3), mm.
         bedding: force per length of wire and penetration, N/mm per mm.
         onset: distance over which contact sets in, mm.
+
+    Attributes:
+        multiplier_offset: by which each point is pressed beyond its penetration, for the coil before and after, mm.
     """
 
     name, end, needs_rotations = "coils", None, False
@@ -50,16 +50,12 @@ class Coils:
         np.minimum.at(self.overlap, self.sides(pair), where[:, 1])
         first = points.stations[:, 0]
         self.memory = Memory({"multiplier_offset": first}, multiplier_offset=np.zeros_like(self.overlap))
+        self.multiplier_offset = self.memory["multiplier_offset"]
         self._amplification, self._skin = points.line.amplification(), SKIN * self._widest
         none = np.empty(0)
         self._nothing = Contribution(np.empty((0, PAIR), np.int64), np.empty((0, PAIR)),
                                      np.empty((0, PAIR, PAIR)), none, none, np.empty(0, np.int64), none)  # fmt: skip
         self._clear: tuple[TrialPositions, float] | None = None  # where all gaps were greater than a distance
-
-    @property
-    def multiplier_offset(self) -> np.ndarray:
-        """Distance by which each point is pressed beyond its penetration, for the coil before and after, mm."""
-        return self.memory["multiplier_offset"]
 
     def sides(self, pair: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Indices of pairs into arrays of points and sides: the coil before a point, and the one after it."""
@@ -71,13 +67,13 @@ class Coils:
         points, line, known = self.points, self.points.line, trial.known
         p, active = np.empty((len(points), 3)), trial.points(points)
         self._y[:, :3] = trial.x
-        at_points(active, points.weights, points.stations, trial.x, p)
         elements = self._all_elements if known is None else known.elements
         longest = longest_element(self._y) if known is None else known.longest
         while True:
             pair, where = np.empty((self._room, 3), np.int64), np.empty((self._room, 2))
-            found = near_locations(active, p, points.radius, points.turns, self._y, line.turns, line.first, line.cubic,
-                                   self.overlap, margin, elements, self._widest, longest, pair, where)  # fmt: skip
+            found = near_locations(active, points.weights, points.stations, points.radius, points.turns, self._y,
+                                   line.turns, line.first, line.cubic, self.overlap, margin, elements, self._widest,
+                                   longest, p, pair, where)  # fmt: skip
             if found <= self._room:
                 return pair[:found], where[:found], p
             self._room = 2 * found
@@ -85,28 +81,29 @@ class Coils:
     def pressed(self, trial: TrialPositions) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Pairs in contact, with ξ and gaps, their offsets, and the points' positions; these only if there are pairs.
 
-        Nothing is sought while the stations have moved by less than the gap that was found clear. Pairs that have no
-        station of this rank are left to the others.
+        Nothing is sought while no two points can have come closer by the gap that was found clear. The weights of a
+        point's stations add up to 1: it moves against another by no more than `amplification` times the diagonal of the
+        box around the stations' motions. Pairs that have no station of this rank are left to the others.
         """
         offsets = self.multiplier_offset
         margin = greatest(offsets)
         if self._clear is not None:
             there, clearance = self._clear
-            if 2.0 * self._amplification * moved(there, trial) * SQRT3 < clearance - margin:
+            if self._amplification * moved(there, trial) < clearance - margin:
                 return NO_PAIR
         pair, where, p = self.near(trial, margin + self._skin)
-        clearance = min(margin + self._skin, least(where[:, 1]))
-        self._clear = None
+        offset = np.empty(len(pair))
+        count, least = keep_pressing(self.points.turns, self.points.line.turns, offsets, pair, where, offset)
+        clearance, self._clear = min(margin + self._skin, least), None
         if clearance > margin:
             self._clear = TrialPositions(trial.x.copy(), trial.seats, None, trial.known), clearance
             return NO_PAIR
+        pair, where, offset = pair[:count], where[:count], offset[:count]
         if trial.known is not None:
             own, points = trial.known.own, self.points
             ours = (own[points.stations[pair[:, 0]]] | own[points.line.stations[pair[:, 1]]]).any(axis=1)
-            pair, where = pair[ours], where[ours]
-        offset = np.empty(len(pair))
-        count = keep_pressing(self.points.turns, self.points.line.turns, offsets, pair, where, offset)
-        return pair[:count], where[:count], offset[:count], p
+            pair, where, offset = pair[ours], where[ours], offset[ours]
+        return pair, where, offset, p
 
     def max_penetration(self, trial: TrialPositions) -> float:
         """Maximum penetration, mm."""
@@ -142,9 +139,9 @@ class Coils:
 
 
 def moved(there: TrialPositions, here: TrialPositions) -> float:
-    """Bound of the motion of all stations along any axis, mm."""
+    """By how much two stations have moved against each other at most, mm."""
     if there.known is None or here.known is None:
-        return farthest(here.x, there.x)
+        return relative_motion(there.x, here.x)
     return here.known.way - there.known.way
 
 
@@ -156,7 +153,7 @@ def keep_pressing(
     pair: np.ndarray,
     where: np.ndarray,
     offset: np.ndarray,
-) -> int:
+) -> tuple[int, float]:
     """Move those of the pairs to the front whose gaps are smaller than their offsets, and write these.
 
     Args:
@@ -166,13 +163,13 @@ def keep_pressing(
         offset: written, of the pairs.
 
     Returns:
-        Their number.
+        Their number, and the least gap of all pairs, mm, infinite if there are none.
     """
-    count = 0
+    count, least = 0, np.inf
     for k in range(len(pair)):
-        i = pair[k, 0]
+        i, least = pair[k, 0], min(least, where[k, 1])
         own = offsets[i, 1 if station_turns[pair[k, 1]] > turns[i] else 0]
         if where[k, 1] < own:
             pair[count], where[count], offset[count] = pair[k], where[k], own
             count += 1
-    return count
+    return count, least

@@ -69,6 +69,23 @@ def element_polynomials(y: np.ndarray, first: np.ndarray, cubic: np.ndarray, ele
     return out
 
 
+@njit(cache=True)
+def points_on_wire(active: np.ndarray, weights: np.ndarray, stations: np.ndarray, y: np.ndarray, p: np.ndarray) -> None:
+    """Write the positions of some of the m points of the wire.
+
+    Args:
+        active: their numbers.
+        weights, stations: of all points, shape (m, 4).
+        y: as in `point_on_curve`.
+        p: written at the active points, shape (m, 3), mm.
+    """
+    for i in active:
+        for k in range(3):
+            p[i, k] = 0.0
+            for a in range(STENCIL):
+                p[i, k] += weights[i, a] * y[stations[i, a], k]
+
+
 def curve_weights(cubic: np.ndarray, xi: np.ndarray, order: int = 0) -> np.ndarray:
     """Weights of the four stations, or their derivatives by ξ; also for complex ξ.
 

@@ -31,25 +31,6 @@ def extent_of_contact(
 
 
 @njit(**COMPILED)
-def at_points(
-    points: np.ndarray, weights: np.ndarray, stations: np.ndarray, values: np.ndarray, out: np.ndarray
-) -> None:
-    """Write the stations' vectors at some of the m points.
-
-    Args:
-        points: their numbers.
-        weights, stations: of all points, shape (m, 4).
-        values: of the stations, shape (n, 3).
-        out: written at the points, shape (m, 3).
-    """
-    for i in points:
-        for k in range(3):
-            out[i, k] = 0.0
-            for a in range(STENCIL):
-                out[i, k] += weights[i, a] * values[stations[i, a], k]
-
-
-@njit(**COMPILED)
 def coil_elements(
     p: np.ndarray,
     weights: np.ndarray,

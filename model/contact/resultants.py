@@ -54,7 +54,7 @@ def levers(x: np.ndarray, forces: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Wrench:
-    """Force, shape (3,), N, and its moment about the origin, shape (3,), N mm."""
+    """Force, shape (3,), N, and its moment about the origin or another point, shape (3,), N mm."""
 
     force: np.ndarray
     moment: np.ndarray
@@ -66,37 +66,40 @@ class Wrench:
         return cls(np.sum(forces, axis=0), levers(x, forces) + np.sum(turning, axis=0))
 
     @classmethod
-    def of_contacts(cls, parts: Sequence[Contribution], x: np.ndarray, charts: np.ndarray) -> "Wrench":
-        """The resultant of contacts on the wire, with the stations at `x`, shape (n, 3), mm; `charts`: T of these."""
+    def of_contacts(
+        cls, parts: Sequence[Contribution], x: np.ndarray, charts: np.ndarray, station: int, held: np.ndarray
+    ) -> "Wrench":
+        """The resultant of contacts on the wire, and of what holds one of its stations.
+
+        Args:
+            parts: Contributions.
+            x, charts: positions and T of the stations, shapes (n, 3) and (n, 3, 3), mm.
+            station: that is held; held: force on it, N, and moment, N mm, shape (6,).
+        """
         sums, rotations = np.zeros(6), 3 * len(x) + 2 * SEAT_DOFS
         turn = [part for part in parts if add_resultant(part.dofs, part.forces, x, rotations, sums)]
         if turn:
             sums[3:] += station_moments(turn, charts).sum(axis=0)
+        add_force(x[station], held, sums)
         return cls(sums[:3], sums[3:])
-
-    def with_force(self, point: np.ndarray, force: np.ndarray, moment: np.ndarray) -> "Wrench":
-        """Together with a force and a moment at a point, shape (3,) each."""
-        sums = np.concatenate([self.force, self.moment])
-        add_force(point, force, moment, sums)
-        return Wrench(sums[:3], sums[3:])
 
     def __add__(self, other: "Wrench") -> "Wrench":
         return Wrench(self.force + other.force, self.moment + other.moment)
 
-    def about(self, point: np.ndarray) -> np.ndarray:
-        """Moment about another point, shape (3,), N mm."""
+    def about(self, point: np.ndarray) -> "Wrench":
+        """The same with its moment about a `point`, shape (3,), mm, instead of the origin."""
         moment = np.empty(3)
         moment_about(point, self.force, self.moment, moment)
-        return moment
+        return Wrench(self.force, moment)
 
-    def crossing(self, point: np.ndarray) -> tuple[float, float]:
-        """Where the resultant crosses the plane z = const through `point`, relative to it.
+    def crossing(self) -> tuple[float, float]:
+        """Where the resultant crosses the plane z = const through the point about which its moment is, relative to it.
 
         There its moments about x and y vanish: ex = −My/Fz, ey = Mx/Fz.
 
         Returns:
             ex, ey, mm.
         """
-        mx, my, _ = self.about(point).tolist()
+        mx, my, _ = self.moment.tolist()
         along = float(self.force[2])
         return -my / along, mx / along

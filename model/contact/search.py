@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
-from coilset.model.contact.curve import element_polynomials
+from coilset.model.contact.curve import element_polynomials, points_on_wire
 
 LEAST_TURNS_BETWEEN = 0.5  # turns between two points of the wire that may touch
 MOST_CELLS_PER_STATION = 16  # cells of the grid
@@ -176,7 +176,8 @@ def longest_element(y: np.ndarray) -> float:
 @njit(cache=True, error_model="numpy")
 def near_locations(
     active: np.ndarray,
-    p: np.ndarray,
+    weights: np.ndarray,
+    stations: np.ndarray,
     radius: np.ndarray,
     turns: np.ndarray,
     y: np.ndarray,
@@ -188,6 +189,7 @@ def near_locations(
     elements: np.ndarray,
     widest: float,
     longest: float,
+    p: np.ndarray,
     pair: np.ndarray,
     where: np.ndarray,
 ) -> int:
@@ -195,13 +197,14 @@ def near_locations(
 
     Args:
         active: numbers of the points that are asked for, ascending.
-        p: points, shape (m, 3), with radius and turn, shape (m,).
+        weights, stations: of all points, shape (m, 4), with radius and turn, shape (m,).
         y: stations with their radii, shape (n, 4); station_turns: shape (n,).
         first, cubic: of the CentreLine.
         overlap: what counts as touching though the bodies overlap, for the coil before and after, shape (m, 2), mm.
         margin: maximum gap, mm.
         elements: ranges of elements whose four stations are known, shape (k, 2).
         widest, longest: largest radius and distance of neighbouring stations along the wire, mm.
+        p: written, positions of the `active` points, shape (m, 3), mm.
         pair: written, point, element and whether the location is inside the wire, shape (capacity, 3).
         where: written, ξ and gap, shape (capacity, 2).
 
@@ -213,6 +216,7 @@ def near_locations(
     posts, ranges = find_posts(elements, len(first), stride)
     if not len(posts):
         return 0
+    points_on_wire(active, weights, stations, y, p)
     x = y[posts]
     # the post nearest to a location is at most half a stride from it
     reach = 2.0 * widest + margin + 0.6 * stride * longest

@@ -34,6 +34,9 @@ class Seat:
         slope: tan β of a conical seat that rises outwards, 0 for a flat one.
         stepped: turns from the tip over which the seat follows the wire's underside; beyond it goes on level.
         moves: whether the seat has degrees of freedom besides its axial position.
+
+    Attributes:
+        multiplier_offset: by which each point is pressed in addition to its penetration, shape (m,), mm.
     """
 
     needs_rotations = False
@@ -73,16 +76,12 @@ class Seat:
         else:
             self.distance += gap.min()  # zero on a flat seat; a cone is moved until it touches
         self.memory = Memory({"multiplier_offset": points.stations[:, 0]}, multiplier_offset=np.zeros(len(points)))
+        self.multiplier_offset = self.memory["multiplier_offset"]
         self.slack = 0.0 if stepped else gap[self.tip] - gap.min()
         self.dofs, self._level = self.plate.dofs_with(points), self.plate.own.start + LEVEL
         if self.linear:
             levels = np.append(np.arange(2, 3 * STENCIL, 3), 3 * STENCIL + LEVEL)
             self.dofs = np.ascontiguousarray(self.dofs[:, levels])
-
-    @property
-    def multiplier_offset(self) -> np.ndarray:
-        """Offset by which each point is pressed in addition to its penetration, shape (m,), mm."""
-        return self.memory["multiplier_offset"]
 
     def gaps(self, p: np.ndarray, seats: np.ndarray, points: np.ndarray | slice = slice(None)) -> np.ndarray:
         """Gap of the underside at all points or the `points`, at `p`, shape (m, 3), negative for penetration, mm."""
@@ -139,7 +138,7 @@ class Seat:
             self.distance, self.multiplier_offset, self.stiffness, self.onset, self.tip, self.tip_spring, self.slack,
             room,
         )  # fmt: skip
-        return Contribution(*(part[:count] for part in room))
+        return Contribution(*[part[:count] for part in room])
 
     def _curved(self, trial: TrialPositions) -> Contribution:
         """On a cone, or on a seat that moves in any way."""

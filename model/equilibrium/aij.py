@@ -59,10 +59,10 @@ class AijEntries:
         values = _at(_address(own, self._found), len(self.own[1]))
         return values, _at(_address(others, self._found), len(self.others[1]))
 
-    def room(self) -> np.ndarray:
-        """Where values in the order of the pattern can be added up: PETSc's own array, or zeros for `add`."""
+    def room(self, own: np.ndarray) -> np.ndarray:
+        """Where values in the order of the pattern can be added up: the first of the `arrays`, or zeros for `add`."""
         if self._one:
-            return self.arrays()[0]
+            return own
         if not len(self._room):
             self._room = np.empty(len(self.pattern[1]))
         self._room[:] = 0.0

@@ -33,14 +33,18 @@ class ElementEntries:
 
     def find(self, entries: AijEntries) -> None:
         """Find the places in a matrix that has room for them."""
-        self._entries, self._places = entries, find_places(*entries.own, self._body.element_dofs, self._at_cut)
+        self._indptr, self._places = entries.own[0], find_places(*entries.own, self._body.element_dofs, self._at_cut)
 
-    def add(self, mat: PETSc.Mat) -> None:
-        """Add all tangents to the matrix whose places were found; collective."""
-        indptr, values = self._entries.own[0], self._entries.arrays()[0]
+    def add(self, mat: PETSc.Mat, values: np.ndarray) -> None:
+        """Add all tangents to the matrix whose places were found; collective.
+
+        Args:
+            mat: the matrix.
+            values: its entries in this rank's own columns, the first of `AijEntries.arrays`.
+        """
         dofs, places, at_cut = self._body.element_dofs, self._places, self._at_cut
         for cells, tangents in self._body.element_tangents():
-            add_elements(indptr, dofs[cells], places[cells], tangents, at_cut[cells], values)
+            add_elements(self._indptr, dofs[cells], places[cells], tangents, at_cut[cells], values)
             if self._comm.size > 1 and at_cut[cells].any():
                 numbers = self._numbers[cells][at_cut[cells]]
                 mat.setValuesRCV(numbers, numbers, tangents[at_cut[cells]], addv=PETSc.InsertMode.ADD_VALUES)

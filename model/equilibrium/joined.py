@@ -72,7 +72,10 @@ def _matrices_of_rows(first: np.ndarray, unknowns: np.ndarray, start: int, n: in
 
 @njit(cache=True)
 def _same(a: np.ndarray, b: np.ndarray) -> bool:
-    return len(a) == len(b) and bool(np.all(a == b))
+    same = len(a) == len(b)
+    for i in range(len(a)):
+        same = same and a[i] == b[i]
+    return same
 
 
 @njit(cache=True)

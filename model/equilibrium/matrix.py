@@ -58,8 +58,10 @@ class TangentMatrix:
         """
         self._clear(contributions, exactly)
         if self._elements is not None:
-            self._elements.add(self.mat)
-            self._add_contacts(contributions)
+            assert self._entries is not None
+            own, _ = self._entries.arrays()
+            self._elements.add(self.mat, own)
+            self._add_contacts(contributions, own)
             return
         assert isinstance(self.body, FillsMatrix)
         self.body.tangent(self.mat)
@@ -91,14 +93,14 @@ class TangentMatrix:
             self._make_room(contributions)
             self._places, self._known = places, set(places)
 
-    def _add_contacts(self, contributions: Sequence[Contribution]) -> None:
-        """Add the stiffness of contacts."""
+    def _add_contacts(self, contributions: Sequence[Contribution], own: np.ndarray) -> None:
+        """Add the stiffness of contacts; `own` are the entries of the rank's own columns."""
         layout, entries, acting = self.layout, self._entries, [part for part in contributions if len(part.dofs)]
         if not acting:
             return
         assert isinstance(layout, LineLayout)
         assert entries is not None
-        room = entries.room()
+        room = entries.room(own)
         for part in acting:
             add_matrices(entries.pattern, layout.contact_dofs, part.dofs, part.stiffness, layout.start, room)
         entries.add(room)

@@ -143,24 +143,22 @@ class Newton:
         Returns:
             Outcome; its counts are those of all solves where contacts are augmented.
         """
-        start = start or Start()
         self.load = load
         self.system.reset_contacts()
-        outcome = self._solve(start.increments)
+        outcome = self._solve(start or Start())
         for _attempt in range(self.control.augmentations):
             if not outcome.converged or self.system.max_penetration <= self.augmentation_tolerance:
                 break
             self.system.augment()
-            outcome = outcome + self._solve(self.system.increments.copy())
+            outcome = outcome + self._solve(Start(self.system.increments.copy()))
         else:
             left, count = self.system.max_penetration, self.control.augmentations
             outcome = replace(outcome, converged=False,
                               reason=f"a penetration of {left:.3g} mm is left after {count} augmentations")  # fmt: skip
-        return replace(outcome, iterations=outcome.iterations + start.iterations,
-                       linear_iterations=outcome.linear_iterations + start.linear_iterations)  # fmt: skip
+        return outcome
 
-    def _solve(self, guess: PETSc.Vec | None) -> Outcome:
-        system, method, X, first = self.system, self.method, self.system.increments, 0
+    def _solve(self, start: Start) -> Outcome:
+        system, method, X, guess, first = self.system, self.method, self.system.increments, start.increments, 0
         self.ratio, self._factorisations, self._failed, evaluations = np.inf, 0, 0, system.evaluations
         self.load_factor, self._at_step_start, self._corrected = 1.0, True, None
         if guess is None or method.is_arc_length:
@@ -188,10 +186,10 @@ class Newton:
             converged=reason > 0,
             reason=reason_in_words(reason),
             ratio=self.ratio,
-            iterations=first + iterations,
+            iterations=start.iterations + first + iterations,
             factorisations=self._factorisations,
             evaluations=system.evaluations - evaluations,
-            linear_iterations=linear,
+            linear_iterations=start.linear_iterations + linear,
             failed_solves=self._failed,
             stagnated=reason == Reason.DIVERGED_LOCAL_MIN,
         )

@@ -72,15 +72,14 @@ class Surroundings:
             axis at most, shape (3,); the longest distance of neighbouring stations; mm.
         """
         own, cells = x[: len(self._own)][self._along], self.layout.rod.cells
-        mine, boxes = np.zeros(11), np.empty((self.comm.size, 11))
-        mine[:3], mine[3:6] = own.min(axis=0, initial=np.inf), own.max(axis=0, initial=-np.inf)
-        mine[6:9] = span_along(own, self._aside)
-        mine[9] = np.linalg.norm(x[cells[:, 1]] - x[cells[:, 0]], axis=1).max(initial=0.0)
-        mine[10] = np.abs(own - self._last).max(initial=0.0)
+        mine, boxes = np.zeros(16), np.empty((self.comm.size, 16))
+        mine[:6], mine[6:12] = box_around(own), box_around(own - self._last)
+        mine[12:15] = span_along(own, self._aside)
+        mine[15] = np.linalg.norm(x[cells[:, 1]] - x[cells[:, 0]], axis=1).max(initial=0.0)
         self._last = own
         self.comm.Allgather(mine, boxes)
-        self._way += float(boxes[:, 10].max())
-        return boxes[:, :6].reshape(-1, 2, 3), boxes[:, 6:9].max(axis=0), float(boxes[:, 9].max())
+        self._way += float(np.linalg.norm(boxes[:, 9:12].max(axis=0) - boxes[:, 6:9].min(axis=0)))
+        return boxes[:, :6].reshape(-1, 2, 3), boxes[:, 12:15].max(axis=0), float(boxes[:, 15].max())
 
     def _near(self, rank: int, boxes: np.ndarray, rows: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
         """Which of the own stations another rank must know, bool; all for this rank itself."""
@@ -101,6 +100,11 @@ class Surroundings:
         out = np.empty((take.sum(), width))
         self.comm.Alltoallv((np.concatenate(sent), give * width), (out, take * width))
         return out
+
+
+def box_around(x: np.ndarray) -> np.ndarray:
+    """Lower and upper corner of the box around points, shape (n, 3) → (6,); infinite and reversed without any."""
+    return np.concatenate([x.min(axis=0, initial=np.inf), x.max(axis=0, initial=-np.inf)])
 
 
 def span_along(x: np.ndarray, stations: int) -> np.ndarray:

@@ -243,23 +243,23 @@ class System:
 
     def _out_of_balance(self, load: Load, load_factor: float, F: PETSc.Vec) -> None:
         values, x, weight = F.getArray(), self.last.increments, self.body.constraint_weight
-        load.out_of_balance(load_factor, self._reactions, x, weight, values)
         moments = self._rotating is not None and len(load.loaded) > 0 and self._is_rotation[load.loaded].any()
         if moments:
-            self._turn_moments(load, load_factor, values)
+            np.subtract(self._reactions.trial, self._forces_in_charts(load, load_factor), out=values)
+        else:
+            load.out_of_balance(load_factor, self._reactions, x, weight, values)
         if load.drag is not None:
             values += load.drag.forces(x)
         if moments or load.drag is not None:
             load.miss(load_factor, x, weight, values)
 
-    def _turn_moments(self, load: Load, load_factor: float, values: np.ndarray) -> None:
-        """Subtract moments of the fixed frame as the charts have them, where they have been subtracted as they are."""
+    def _forces_in_charts(self, load: Load, load_factor: float) -> np.ndarray:
+        """Forces on all of this rank's unknowns, moments of the fixed frame as the nodes' charts have them."""
         assert self._rotating is not None
-        outer = np.zeros(len(values))
-        outer[load.loaded] = load.forces_at(load_factor, self._reactions.equilibrium)
-        values += outer
-        self._rotating.to_charts(outer)
-        values -= outer
+        forces = np.zeros(self.layout.size_local)
+        forces[load.loaded] = load.forces_at(load_factor, self._reactions.equilibrium)
+        self._rotating.to_charts(forces)
+        return forces
 
     def stand(self) -> bool:
         """Let a body that Foresees stand at the last equilibrium; see there."""

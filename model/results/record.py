@@ -1,5 +1,6 @@
 """What a run has found, as frozen records: writers, figures and checkpoints take these and nothing else."""
 
+import math
 from dataclasses import asdict, dataclass, field, fields
 from functools import cached_property
 from typing import Any
@@ -244,6 +245,11 @@ class Setup:
     rates_at: tuple[float, ...] = ()
     warnings: tuple[Warning, ...] = ()
     coiling_diameter: float | None = None
+
+    @property
+    def slender(self) -> bool:
+        """Whether it can buckle."""
+        return math.isfinite(self.buckling_travel)
 
     @property
     def section_turns(self) -> np.ndarray:

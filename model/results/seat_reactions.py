@@ -32,6 +32,7 @@ def seat_reactions(
     step: int,
     greatest_force: float,
     before: tuple[float, np.ndarray],
+    now: tuple[float, np.ndarray],
 ) -> SeatReactions:
     """Reactions at the equilibrium just reached; collective.
 
@@ -42,19 +43,19 @@ def seat_reactions(
         step: number of the step.
         greatest_force: magnitude of the largest axial force so far, this one's included, N.
         before: axial force, N, and `mean_torque` of the last equilibrium but this.
+        now: those of this one.
 
     Returns:
         SeatReactions, the same on every rank.
     """
-    observer, force = _Observer(system, control), control.force
-    faint = faint_force(observer.layout.rod, greatest_force)
-    pressure = pressures(observer.on_wire)
+    observer = _Observer(system, control)
+    rod, pressure = observer.layout.rod, pressures(observer.on_wire)
+    faint = faint_force(rod, greatest_force)
     bottom, top = (observer.reaction(end, faint) for end in ENDS)
-    rod = observer.layout.rod
-    if abs(force) >= greatest_force:  # not loaded before: the whole force counts
-        before = 0.0, np.zeros_like(before[1])
-    change = force - before[0]
-    active = active_turns(rod, turns, change, before[1]) if min(abs(force), abs(change)) > faint else np.nan
+    force, torque = change = now
+    if abs(force) < greatest_force:  # it has borne more: only what has changed since counts
+        change = force - before[0], torque - before[1]
+    active = active_turns(rod, turns, *change) if min(abs(force), abs(change[0])) > faint else np.nan
     return SeatReactions(step, active, free_turns(observer.on_wire, pressure), bottom, top, pressure)
 
 
@@ -80,14 +81,14 @@ class _Observer:
         station, components = self.control.tips[end]
         held = np.zeros(6)
         held[components] = self.layout.values(self.system.internal, self.layout.station_dofs[station, components])
-        return Wrench.of_contacts(own, self.x, self.chart).with_force(self.x[station], held[:3], held[3:])
+        return Wrench.of_contacts(own, self.x, self.chart, station, held)
 
     def reaction(self, end: str, faint: float) -> SeatReaction:
         """The SeatReaction of an end."""
-        wrench, centre = self.wrench(end), self.control.centre(end, self.x)
+        wrench = self.wrench(end).about(self.control.centre(end, self.x))
         side = 1.0 if end == "bottom" else -1.0  # the bottom pushes up
         lateral_x, lateral_y, along = wrench.force.tolist()
-        crossing = wrench.crossing(centre) if abs(along) > faint else (math.nan, math.nan)
+        crossing = wrench.crossing() if abs(along) > faint else (math.nan, math.nan)
         spot, length, down = (np.nan, np.nan), 0.0, 0.0
         for _, contact, part in self.on_wire:
             if contact.end == end:
@@ -102,7 +103,7 @@ class _Observer:
         axial = side * along
         if not self.control.clamped and axial < -faint:
             axial = 0.0  # a seat cannot pull: tension comes from the spring that holds a lifted tip
-        mx, my, mz = wrench.about(centre).tolist()
+        mx, my, mz = wrench.moment.tolist()
         return SeatReaction(axial, lateral_x, lateral_y, mx, my, mz, *crossing, math.hypot(*crossing), *spot, length,
                             down, self.tilt(end))  # fmt: skip
 
@@ -119,25 +120,23 @@ def mean_torque(rod: Rod) -> np.ndarray:
     return 0.5 * (torque[:, 0] + torque[:, 1])
 
 
-def active_turns(rod: Rod, turns: np.ndarray, change: float, before: np.ndarray) -> float:
+def active_turns(rod: Rod, turns: np.ndarray, force: float, torque: np.ndarray) -> float:
     """∫ (ΔMt/(ΔF r))² dt over all turns, Mt the torque, r the distance of each element from the axis; collective.
 
     Args:
         rod: Rod.
         turns: of the stations, shape (n + 1,).
-        change: ΔF of the axial force, N.
-        before: `mean_torque` before the change.
+        force, torque: ΔF, change of the axial force, N, and that of `mean_torque`.
     """
     line = rod.line
-    active = _active_turns(mean_torque(rod), before, change, rod.x, rod.cells, turns, line.element)
+    active = _active_turns(torque, force, rod.x, rod.cells, turns, line.element)
     return rod.comm.allreduce(active) if rod.comm.size > 1 else active
 
 
 @njit(cache=True)
 def _active_turns(
     torque: np.ndarray,
-    before: np.ndarray,
-    change: float,
+    force: float,
     x: np.ndarray,
     cells: np.ndarray,
     turns: np.ndarray,
@@ -147,7 +146,7 @@ def _active_turns(
     active = 0.0
     for c in range(len(torque)):
         middle = 0.5 * (x[cells[c, 0]] + x[cells[c, 1]])
-        share = (torque[c] - before[c]) / (change * math.hypot(middle[0], middle[1]))
+        share = torque[c] / (force * math.hypot(middle[0], middle[1]))
         active += share * share * (turns[element[c] + 1] - turns[element[c]])
     return active
 

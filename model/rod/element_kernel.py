@@ -26,6 +26,7 @@ from dolfinx.jit import mpi_jit_decorator
 from llvmlite import binding
 
 from coilset.meshes.errors import CoilsetError
+from coilset.model.rod.blocks import blocks
 
 # As many as fill a register of 512 bits, or one of 256: with two registers for each value of FFCx's function, most of
 # which are live for long, more time goes into moving them to memory and back than the second one saves.
@@ -109,11 +110,10 @@ class ElementKernel:
         lengths = [int(np.prod(field.shape[1:])) for field in fields]
         fixed = self._ffi.new("long[]", lengths), sum(lengths), int(np.prod(shape)), self._pointer(self._out)
         self._blocks = []
-        for first in range(0, cells, BLOCK):
-            block = slice(first, min(first + BLOCK, cells))
+        for block in blocks(slice(0, cells), BLOCK):
             values = self._ffi.new("double *[]", [self._pointer(field[block]) for field in fields])
             places = self._pointer(x), self._pointer(nodes[block], "int32_t *")
-            self._blocks.append((block, (block.stop - first, *places, len(fields), values, *fixed)))
+            self._blocks.append((block, (block.stop - block.start, *places, len(fields), values, *fixed)))
 
     def _pointer(self, values: np.ndarray, kind: str = "double *") -> Any:
         if not values.flags.c_contiguous:

@@ -17,6 +17,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import numpy as np
 from numba import njit
 
+from coilset.model.rod.blocks import blocks
 from coilset.model.section.kinds import Sections
 from coilset.model.state import State, Where
 from coilset.model.threads import Threads
@@ -148,8 +149,7 @@ def _works(
 
 def in_blocks(sections: Sections, share: slice) -> Iterator[Block]:
     """Cells that are followed together, of a share of all cells, and their sections."""
-    for first in range(share.start, share.stop, BLOCK):
-        part = slice(first, min(first + BLOCK, share.stop))
+    for part in blocks(share, BLOCK):
         yield part, sections.part(part)
 
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
+from coilset.model.rod.blocks import blocks
 from coilset.model.rod.kinematics import GAUSS
 
 BLOCK = 4096  # cells that are taken together, so that no large arrays are made on the way
@@ -162,7 +163,6 @@ class Prediction:
 
         In an elastic rod they are the foreseen ones then; where the wire yields, the reduction by yielding remains.
         """
-        for first in range(0, len(forces), BLOCK):
-            part = slice(first, first + BLOCK)
+        for part in blocks(slice(0, len(forces)), BLOCK):
             second = strain[part] - self.strain[part] - length * self.change[part]
             forces[part] -= np.einsum("ngij,ngj->ngi", self.tangent[part], second)

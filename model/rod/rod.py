@@ -157,6 +157,16 @@ class Rod:
             known = {"section_forces": self.s.values, "section_tangents": self.D.values}
             self._forces = [state.add(name, values, Where.ELEMENT) for name, values in known.items()]
         self.state, self.chart = state, np.tile(np.eye(3), (len(x), 1, 1))
+        self._of_nodes = (
+            self._increment, self.u_dofs, self.rotation_dofs, self.shear_dofs, self.cells,
+            self._x.equilibrium, self._chord.equilibrium, self._R.equilibrium, self._shear.equilibrium,
+            self._x.trial, self._chord.trial, self._R.trial, self._shear.trial, self.chart, self.T.values,
+        )  # fmt: skip
+        self._of_cells = (
+            self.cells, self._chord.trial, self._R.trial, self.E0, self.l0, self._shear.trial,
+            self.timoshenko_factor.values[:, 0], GAUSS, self.triads.values, self.P.values, self.W.values,
+            self._strain.trial,
+        )  # fmt: skip
         self.rest()
 
     def rest(self) -> None:
@@ -222,16 +232,8 @@ class Rod:
 
     def _move(self) -> None:
         """Bring nodes, frames and strains to the increments."""
-        displace_nodes(
-            self._increment, self.u_dofs, self.rotation_dofs, self.shear_dofs, self.cells,
-            self._x.equilibrium, self._chord.equilibrium, self._R.equilibrium, self._shear.equilibrium,
-            self._x.trial, self._chord.trial, self._R.trial, self._shear.trial, self.chart, self.T.values,
-        )  # fmt: skip
-        section_strains(
-            self.cells, self._chord.trial, self._R.trial, self.E0, self.l0, self._shear.trial,
-            self.timoshenko_factor.values[:, 0], GAUSS, self.triads.values, self.P.values, self.W.values,
-            self._strain.trial,
-        )  # fmt: skip
+        displace_nodes(*self._of_nodes)
+        section_strains(*self._of_cells)
 
     def follow(self) -> None:
         """Update the points on the wire's surface to the end of the increment, and those of a long rod; see Body."""

@@ -35,14 +35,14 @@ def test_a_resultant_crosses_where_its_moments_vanish():
     x, up = np.array([[0.0, 6, 1], [3, 0, 1], [6, 3, 1]]), np.outer([1.0, 2, 3], [0, 0, 1])
     wrench = Wrench.of(up, x)
     np.testing.assert_allclose(wrench.force, [0, 0, 6])
-    np.testing.assert_allclose(wrench.crossing(np.array([0.0, 0, 7])), [4, 2.5], rtol=1e-14)
-    np.testing.assert_allclose(wrench.crossing(np.array([1.0, 1, 7])), [3, 1.5], rtol=1e-14)
+    np.testing.assert_allclose(wrench.about(np.array([0.0, 0, 7])).crossing(), [4, 2.5], rtol=1e-14)
+    np.testing.assert_allclose(wrench.about(np.array([1.0, 1, 7])).crossing(), [3, 1.5], rtol=1e-14)
     # a force that leans by 1 in 3 towards x crosses a plane 6 mm higher 2 mm farther on
     leaning = wrench + Wrench.of(np.array([[2.0, 0, 0]]), np.array([[4, 2.5, 1.0]]))
-    np.testing.assert_allclose(leaning.crossing(np.array([0.0, 0, 7])), [6, 2.5], rtol=1e-14)
+    np.testing.assert_allclose(leaning.about(np.array([0.0, 0, 7])).crossing(), [6, 2.5], rtol=1e-14)
     # a moment about z moves nothing, one about x by Mx/Fz along y
     turned = wrench + Wrench.of(np.zeros((1, 3)), np.zeros((1, 3)), np.array([[6.0, 0, 5]]))
-    np.testing.assert_allclose(turned.crossing(np.zeros(3)), [4, 3.5], rtol=1e-14)
+    np.testing.assert_allclose(turned.about(np.zeros(3)).crossing(), [4, 3.5], rtol=1e-14)
 
 
 def test_seats_contacts_and_sections_are_in_balance_in_every_step(example_runs):
