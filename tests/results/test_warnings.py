@@ -90,7 +90,7 @@ def test_warnings_of_steps(lifted):
 @pytest.mark.parametrize("critical", [math.inf, 8.0], ids=["stout", "slender"])
 def test_a_warning_is_logged_after_the_first_step_that_shows_it(lifted, caplog, critical):
     """Steps on both sides of all bounds at random: as if all steps so far had been looked through after each."""
-    recorder, rng, steps = copy.copy(lifted.recorder), np.random.default_rng(1), []
+    recorder, rng, steps = copy.copy(lifted.recorder), np.random.default_rng(4), []
     recorder.setup, limits = replace(lifted.setup, buckling_travel=critical), lifted.setup.limits
     recorder.resume(Result())
     wrong = [{"plastic_work_max_N_per_mm2": 1.5 * limits.plastic_work}, {"penetration_mm": 1.5 * limits.penetration},
@@ -102,7 +102,7 @@ def test_a_warning_is_logged_after_the_first_step_that_shows_it(lifted, caplog, 
         for number in range(1, 61):
             step = Step(number, 0, 0.5, 30.0, 0.2 * number, 10.0 * number, 3, 4, 0, 0, 2, 0.0)
             for changes in wrong:
-                early = number == 4 and "axis_offset_mm" in changes  # long before the eigenvalue vanishes
+                early = number == 12 and "axis_offset_mm" in changes  # long before the eigenvalue vanishes
                 step = replace(step, **changes) if rng.uniform() < 0.08 or early else step
             eigenvalue = None if critical == math.inf else 10.0 - 0.25 * number
             before, steps = Result(tuple(steps)), [*steps, replace(step, least_eigenvalue=eigenvalue)]
