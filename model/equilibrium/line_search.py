@@ -51,7 +51,10 @@ class WorkSearch:
 
     def __init__(self, system: System, limit: ContactLimit, control: NewtonControl, foresees: bool = False) -> None:
         self.system, self.limit, self.control, self.foresees = system, limit, control, foresees
-        self._direction, self._trial, self._force = (system.layout.vector() for _ in range(3))
+        # vectors around arrays, for it takes longer to ask a vector for its array than to go through it
+        self._along, self._forces = (np.zeros(system.layout.size_local) for _ in range(2))
+        self._direction, self._force = (system.layout.vector(values) for values in (self._along, self._forces))
+        self._trial = system.layout.vector()
 
     def __call__(self, x: PETSc.Vec, y: PETSc.Vec, F: PETSc.Vec, load: Load, load_factor: float) -> StepLength:
         """Step length from `x` along −y, with the residual `F` at x; the three are not changed; collective."""
@@ -72,7 +75,8 @@ class WorkSearch:
             length *= control.stress_backtrack
             work, norm = self._at(length)
         if work is not None and not pending:
-            start_work, start_norm = start = self._work_and_norm(F)
+            F.copy(self._force)
+            start_work, start_norm = start = self._work_and_norm()
             if not self._is_right(start, work, norm):
                 feigns = self._is_right(start, *self._without_turning(limit, length))
                 if not feigns:
@@ -93,7 +97,7 @@ class WorkSearch:
         if not self.foresees:
             return np.inf, np.inf
         self.system.residual_without_turning(self._load, self._load_factor, limit * length, self._force)
-        return self._work_and_norm(self._force)
+        return self._work_and_norm()
 
     def _at(self, length: float) -> tuple[float | None, float]:
         """Work and norm of the forces on the free unknowns at `length`; None if the law finds no stress."""
@@ -101,12 +105,11 @@ class WorkSearch:
         self.system.residual(self._trial, self._load, self._load_factor, self._force)
         if not self.system.last.has_stress:
             return None, np.inf
-        return self._work_and_norm(self._force)
+        return self._work_and_norm()
 
-    def _work_and_norm(self, F: PETSc.Vec) -> tuple[float, float]:
+    def _work_and_norm(self) -> tuple[float, float]:
         """Work along the direction and norm of the forces on the free unknowns; collective."""
-        forces, direction = F.getArray(readonly=True), self._direction.getArray(readonly=True)
-        found, comm = _work_and_square(forces, direction, self._load.is_held), self.system.comm
+        found, comm = _work_and_square(self._forces, self._along, self._load.is_held), self.system.comm
         work, square = found if comm.size == 1 else comm.allreduce(np.array(found))
         return float(work), math.sqrt(square)
 

@@ -78,7 +78,8 @@ class TangentMatrix:
             return
         own, others = self._entries.arrays()
         set_rows(*self._entries.own, held, self.body.constraint_weight, own)
-        set_rows(*self._entries.others, held, 0.0, others)
+        if len(others):
+            set_rows(*self._entries.others, held, 0.0, others)
 
     def _clear(self, contributions: Sequence[Contribution], exactly: bool) -> None:
         """Zero it, with room for the closed contacts; with `exactly`, for no others."""

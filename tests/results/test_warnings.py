@@ -1,8 +1,11 @@
 """What a run says about itself: each warning on either side of its bound, as data, on the screen and in the log."""
 
+import copy
 import json
+import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from mpi4py import MPI
 
@@ -82,6 +85,33 @@ def test_warnings_of_steps(lifted):
         found = step_warnings(setup, Result(steps=(step, replace(step, number=2, **wrong))))
         assert name in names(found)
         assert next(one for one in found if one.name == name).place.startswith("step 2, ") or name == "buckled"
+
+
+@pytest.mark.parametrize("critical", [math.inf, 8.0], ids=["stout", "slender"])
+def test_a_warning_is_logged_after_the_first_step_that_shows_it(lifted, caplog, critical):
+    """Steps on both sides of all bounds at random: as if all steps so far had been looked through after each."""
+    recorder, rng, steps = copy.copy(lifted.recorder), np.random.default_rng(4), []
+    recorder.setup, limits = replace(lifted.setup, buckling_travel=critical), lifted.setup.limits
+    recorder.resume(Result())
+    wrong = [{"plastic_work_max_N_per_mm2": 1.5 * limits.plastic_work}, {"penetration_mm": 1.5 * limits.penetration},
+             {"least_rise": 0.5}, {"lift_off_mm": 0.1}, {"negative_pivots": 1}, {"force_N": 1e4, "progress": 1.0},
+             {"left_branch": 1, "released_energy_Nmm": 1.0},
+             {"axis_offset_mm": 0.06 * lifted.setup.mean_diameter}]  # fmt: skip
+    expected = {}
+    with caplog.at_level("WARNING", "coilset.steps"):
+        for number in range(1, 61):
+            step = Step(number, 0, 0.5, 30.0, 0.2 * number, 10.0 * number, 3, 4, 0, 0, 2, 0.0)
+            for changes in wrong:
+                early = number == 12 and "axis_offset_mm" in changes  # long before the eigenvalue vanishes
+                step = replace(step, **changes) if rng.uniform() < 0.08 or early else step
+            eigenvalue = None if critical == math.inf else 10.0 - 0.25 * number
+            before, steps = Result(tuple(steps)), [*steps, replace(step, least_eigenvalue=eigenvalue)]
+            recorder.result = Result(tuple(steps))
+            recorder._announce(before)
+            for warning in step_warnings(recorder.setup, recorder.result):
+                expected.setdefault(warning.name, f"warning: {warning.message}")
+    assert caplog.messages == list(expected.values())
+    assert len(expected) == 8
 
 
 def test_a_force_on_a_wall_is_told(lifted):
