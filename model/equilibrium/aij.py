@@ -12,7 +12,9 @@ from numba import njit
 from petsc4py import PETSc
 
 _PETSC = ctypes.PyDLL(PETSc.__file__)  # finds what this module is linked with, so that it is the same PETSc
-for _function in (_PETSC.MatSeqAIJGetArray, _PETSC.MatSeqAIJRestoreArray):
+_WRITE = _PETSC.MatSeqAIJGetArray, _PETSC.MatSeqAIJRestoreArray
+_READ = _PETSC.MatSeqAIJGetArrayRead, _PETSC.MatSeqAIJRestoreArrayRead
+for _function in (*_WRITE, *_READ):
     _function.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
 _INT = np.ctypeslib.as_ctypes_type(PETSc.IntType)
 for _function in (_PETSC.MatGetRowIJ, _PETSC.MatRestoreRowIJ):
@@ -49,15 +51,19 @@ class AijEntries:
         """Where each entry of the pattern lies in the first of the `arrays`, or behind it, in the second."""
         return np.arange(len(self.pattern[1]), dtype=np.int32) if self._one else self._places
 
-    def arrays(self) -> tuple[np.ndarray, np.ndarray]:
-        """Where PETSc keeps the entries now: those of the rank's own columns, and the others."""
+    def arrays(self, only_read: bool = False) -> tuple[np.ndarray, np.ndarray]:
+        """Where PETSc keeps the entries now: those of the rank's own columns, and the others.
+
+        Unless they are `only_read`, PETSc takes them for changed.
+        """
+        way = _READ if only_read else _WRITE
         if self._one:
-            if self._address != (address := _address(self._handle, self._found)):
+            if self._address != (address := _address(self._handle, self._found, way)):
                 self._address, self._values = address, _at(address, len(self.pattern[1]))
             return self._values, NONE
         own, others, _ = self._parts()
-        values = _at(_address(own, self._found), len(self.own[1]))
-        return values, _at(_address(others, self._found), len(self.others[1]))
+        values = _at(_address(own, self._found, way), len(self.own[1]))
+        return values, _at(_address(others, self._found, way), len(self.others[1]))
 
     def room(self, own: np.ndarray) -> np.ndarray:
         """Where values in the order of the pattern can be added up: the first of the `arrays`, or zeros for `add`."""
@@ -150,12 +156,12 @@ def _pattern(part: ctypes.c_void_p) -> tuple[np.ndarray, np.ndarray]:
     return pattern
 
 
-def _address(part: ctypes.c_void_p, found: ctypes.c_void_p) -> int:
-    """Where a matrix of PETSc's type `seqaij` keeps its entries; PETSc takes them for changed from now on."""
-    place = ctypes.byref(found)
-    _check(_PETSC.MatSeqAIJGetArray(part, place))
+def _address(part: ctypes.c_void_p, found: ctypes.c_void_p, way: tuple[Any, Any]) -> int:
+    """Where a matrix of PETSc's type `seqaij` keeps its entries, by its functions that give and take them back."""
+    place, (give, take_back) = ctypes.byref(found), way
+    _check(give(part, place))
     address = found.value or 0
-    _check(_PETSC.MatSeqAIJRestoreArray(part, place))
+    _check(take_back(part, place))
     return address
 
 

@@ -9,7 +9,7 @@ At a cut of the wire, s are the unknowns of one node. Coils that touch across it
 which belong to the last rank, are included. S is gathered, and every rank eliminates it in the same order, so that the
 result is the same to the bit on all ranks and in every run.
 
-If most unknowns couple ranks, as in short springs of many elements whose coils touch, the blocks of S would cost more
+If many unknowns couple ranks, as in short springs of many elements whose coils touch, the blocks of S may cost more
 than they save. All unknowns then belong to the interface, and each rank eliminates the whole matrix.
 """
 
@@ -24,7 +24,9 @@ from coilset.model.equilibrium.aij import AijEntries, take
 from coilset.model.equilibrium.elimination import Plan, plan_elimination
 from coilset.model.equilibrium.multifrontal import PartialLU
 
-FEW = 200  # interface unknowns up to which eliminating the whole matrix is not considered
+# Interface unknowns, and their share of all, up to which eliminating the whole matrix is not considered. N windings on
+# R ranks have R − 1 of them in the interface, (R − 1)/N of all: if that is little, a rank has many windings of its own.
+FEW, SMALL_SHARE = 200, 0.05
 
 
 class ChainLU:
@@ -48,7 +50,7 @@ class ChainLU:
         coupled = self.start + coupled_rows(*self._entries.pattern, self.start)
         self.interface = np.concatenate(self.comm.allgather(coupled))
         self._divide()
-        if len(self.interface) > FEW and self._whole_is_cheaper():
+        if len(self.interface) > max(FEW, SMALL_SHARE * self.size) and self._whole_is_cheaper():
             self.interface = np.arange(self.size)
             self._divide()
         self._local, self._shared = PartialLU(self._local_plan), PartialLU(self._shared_plan)
@@ -76,7 +78,7 @@ class ChainLU:
         plan = plan_elimination(own_indptr, own_indices, keep)
         self._local_plan = replace(plan, entry=entries[plan.entry])
         self._inner, last = np.split(plan.order, [len(keep) - plan.kept])
-        self._kept = self._numbers[last]
+        self._kept, self._inner_rows = self._numbers[last], self._numbers[self._inner] - self.start
         self._shared_plan = self._plan_shared(mine[of_interface[indices[mine]]], places)
 
     def _unknowns(self, entries: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -145,7 +147,7 @@ class ChainLU:
 
     def factorise(self) -> bool:
         """Factorise the current matrix; False on every rank if a pivot is zero or NaN; collective."""
-        (own, others), behind = self._entries.arrays(), self._behind
+        (own, others), behind = self._entries.arrays(only_read=True), self._behind
         behind[: len(others)] = others
         sent = take(self._sent, own, behind)
         self.comm.Alltoallv((sent, self._give), (behind[len(others) : -1], self._take))
@@ -166,7 +168,7 @@ class ChainLU:
     def solve(self, right: np.ndarray, out: np.ndarray) -> None:
         """Write this rank's part of the solution into `out`, given that of the right side; collective."""
         b = np.zeros(len(self._numbers))
-        b[self._inner] = right[self._numbers[self._inner] - self.start]
+        b[self._inner] = right[self._inner_rows]
         mine = right[self.interface[self._rows] - self.start], self._local.forward(b)
         parts = self.comm.allgather(mine)
         x = np.zeros(len(self.interface))
@@ -175,7 +177,7 @@ class ChainLU:
                 x[place] += value
         self._shared.backward(self._shared.forward(x), x)
         self._local.backward(x[self._at], b)
-        out[self._numbers[self._inner] - self.start] = b[self._inner]
+        out[self._inner_rows] = b[self._inner]
         out[self.interface[self._rows] - self.start] = x[self._rows]
 
 

@@ -129,6 +129,11 @@ class Method:
         return self.options.get("snes_type") not in FORGETFUL
 
     @property
+    def chooses_factors(self) -> bool:
+        """Whether the user has said how matrices are to be factorised."""
+        return any(key.removeprefix("npc_").startswith("pc_") for key in self.of_the_user)
+
+    @property
     def factorisation(self) -> dict[str, Any]:
         """Options of its linear solver, or of that of its preconditioning step."""
         bare = {key.removeprefix("npc_"): value for key, value in self.options.items()}

@@ -12,6 +12,7 @@ ones of A_ii and of S add up to that of A (Haynsworth).
 import numpy as np
 from numba import njit
 
+from coilset.model.equilibrium.dense_front import PANEL, ROWS, TILE, eliminate_pivots
 from coilset.model.equilibrium.elimination import Plan
 
 NONE = np.empty(0)
@@ -83,6 +84,7 @@ def eliminate(
 ) -> int:
     """Factors of all fronts, each k rows of U over m rows of L; number of negative pivots, −1 if one is unusable."""
     fronts, top, written, negative = len(first) - 1, 0, 0, 0
+    tiles = np.empty((PANEL + ROWS) * TILE)
     for f in range(fronts):
         k, m = first[f + 1] - first[f], rest_start[f + 1] - rest_start[f]
         w, last = k + m, f == fronts - 1
@@ -102,7 +104,7 @@ def eliminate(
         if last:
             break
         block = F.reshape((w, w))
-        found = eliminate_pivots(block, k)
+        found = eliminate_pivots(block, k, tiles)
         if found < 0:
             return -1
         negative += found
@@ -117,45 +119,7 @@ def eliminate(
     return negative
 
 
-@njit(cache=True, error_model="numpy", fastmath={"contract"})
-def eliminate_pivots(F: np.ndarray, k: int) -> int:
-    """Eliminate the first k unknowns of a front, row after row; number of negative pivots, −1 if one is unusable."""
-    w, negative, inverse = len(F), 0, np.empty(k)  # a division takes as long as many products
-    for i in range(w):
-        row, p, stop = F[i], 0, min(i, k)
-        while p + 3 < stop:  # four pivot rows at a time, as each number of the row is read and written once then
-            one, two, three, four = F[p], F[p + 1], F[p + 2], F[p + 3]
-            a = row[p] * inverse[p]
-            b = (row[p + 1] - a * one[p + 1]) * inverse[p + 1]
-            c = (row[p + 2] - a * one[p + 2] - b * two[p + 2]) * inverse[p + 2]
-            d = (row[p + 3] - a * one[p + 3] - b * two[p + 3] - c * three[p + 3]) * inverse[p + 3]
-            row[p], row[p + 1], row[p + 2], row[p + 3] = a, b, c, d
-            for j in range(p + 4, w):
-                row[j] -= (a * one[j] + b * two[j]) + (c * three[j] + d * four[j])
-            p += 4
-        if p + 1 < stop:
-            one, two = F[p], F[p + 1]
-            a = row[p] * inverse[p]
-            b = (row[p + 1] - a * one[p + 1]) * inverse[p + 1]
-            row[p], row[p + 1] = a, b
-            for j in range(p + 2, w):
-                row[j] -= a * one[j] + b * two[j]
-            p += 2
-        if p < stop:
-            one = F[p]
-            a = row[p] * inverse[p]
-            row[p] = a
-            for j in range(p + 1, w):
-                row[j] -= a * one[j]
-        if i < k:
-            if not abs(row[i]) > 0.0 or not abs(row[i]) < np.inf:
-                return -1
-            inverse[i] = 1.0 / row[i]
-            negative += row[i] < 0.0
-    return negative
-
-
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
 def go_forward(first: np.ndarray, rest_start: np.ndarray, rest: np.ndarray, factors: np.ndarray, x: np.ndarray) -> None:
     """L⁻¹ b of the eliminated places, and what it leaves of the others, in place."""
     at = 0
@@ -176,7 +140,7 @@ def go_forward(first: np.ndarray, rest_start: np.ndarray, rest: np.ndarray, fact
         at += m * k
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath={"contract", "reassoc"})
 def go_backward(
     first: np.ndarray, rest_start: np.ndarray, rest: np.ndarray, factors: np.ndarray, x: np.ndarray
 ) -> None:

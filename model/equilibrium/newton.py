@@ -18,6 +18,7 @@ from petsc4py import PETSc
 
 from coilset.meshes.compat import NOT_A_NUMBER
 from coilset.model.body import Foresees
+from coilset.model.equilibrium.chain_lu import ChainPC
 from coilset.model.equilibrium.contact_limit import ContactLimit
 from coilset.model.equilibrium.convergence import EquilibriumTest, Outcome, Reason, imbalance, reason_in_words
 from coilset.model.equilibrium.line_search import WorkSearch
@@ -89,6 +90,7 @@ class Newton:
         self.load, self.load_factor = Load.of(system.layout, {}, {}), 1.0
         self.ratio, self._factorisations, self._at_step_start = np.inf, 0, True
         self._failed = 0
+        self._fitted: int | None = None  # version of the matrix that the linear solvers were last told of
         self._foreseen = False  # have tangents of the present attempt been built with foreseen forces?
         self._step_length: float | None = None  # of the last correction; None where there is none, or PETSc's own
         self._corrected: float | None = None  # share of the last correction, where it led to the present state
@@ -109,6 +111,7 @@ class Newton:
         self.method = method
         if self.snes is not None:
             self.snes.destroy()
+        self._fitted = None
         self.snes = self._factory.make("", method.options, method.of_the_user)
         me = weakref.proxy(self)
         if method.searches:
@@ -176,6 +179,7 @@ class Newton:
             # Quasi-Newton vectors belong to the free unknowns: a start that meets the prescribed increments keeps the
             # rows of these, and their weights, at zero.
             if self._first is None:
+                self._fitted = None
                 self._first = self._factory.make("first_", FIRST | method.factorisation)
             self._first.solve(None, X)
             first = 1
@@ -258,21 +262,27 @@ class Newton:
 
     def _tangent(self, snes: PETSc.SNES, X: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
         self._factorisations += 1
-        version = self.matrix.version
         self.system.tangent(X, self.load, self.matrix, self._at_step_start, self._corrected)
         self._foreseen |= self._corrected is not None
         self._at_step_start, self._corrected = False, None
         self.prepare(P)
-        if self.matrix.version != version:  # PETSc may take the new matrix for one with the old pattern
+        if self.matrix.version != self._fitted:  # PETSc may take the new matrix for one with the old pattern
+            self._fitted = self.matrix.version
             for each in (self.snes, self._first, self.snes.getNPC() if self.snes.hasNPC() else None):
                 if each is not None:
                     each.ksp.reset()
-                    self._order(each.ksp.pc)
+                    self._fit(each.ksp.pc)
 
-    def _order(self, pc: PETSc.PC) -> None:
-        """Let PETSc's LU eliminate in an order that fits the contacts, unless the user has named one."""
-        if pc.getType() == PETSc.PC.Type.LU and not any("mat_ordering_type" in key for key in self.method.of_the_user):
-            pc.setFactorOrdering(self.matrix.ordering)
+    def _fit(self, pc: PETSc.PC) -> None:
+        """On one rank let PETSc's LU factorise a band, and ChainPC what contacts join, unless the user has chosen."""
+        if self.system.comm.size > 1 or self.method.chooses_factors:
+            return
+        if self.matrix.is_banded and pc.getType() == PETSc.PC.Type.PYTHON:
+            pc.setType(PETSc.PC.Type.LU)
+            pc.setFromOptions()
+        elif not self.matrix.is_banded and pc.getType() == PETSc.PC.Type.LU:
+            pc.setType(PETSc.PC.Type.PYTHON)
+            pc.setPythonContext(ChainPC())
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Before a line search of type `basic`: scale the correction −y."""

@@ -6,15 +6,18 @@ Every contact that joins two parts is then evaluated on both ranks, from the sam
 forces and stiffness need not be exchanged.
 """
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
+from numba import njit
 
 from coilset.model.contact.base import ActsNearby, Contact, Known, TrialPositions
 from coilset.model.contact.curve import STENCIL
 from coilset.model.equilibrium.layout import LineLayout
 
 NUMBER, PLACE, ROTATION = 0, slice(1, 4), slice(4, 7)  # columns of what is sent for a station
+BOX, MOTION, SPAN, LONGEST = slice(6), slice(6, 12), slice(12, 15), 15  # in what a rank tells of its part
 
 
 class Surroundings:
@@ -53,15 +56,16 @@ class Surroundings:
         if self._all:
             turned = None if rotations is None else layout.gather(rotations)
             return TrialPositions(layout.gather(x), seats, turned)
-        own = len(self._own)
-        rows = np.column_stack([self._own, x[:own], *([] if rotations is None else [rotations[:own]])])
+        own = x[: len(self._own)]
+        columns = [self._own, own] if rotations is None else [self._own, own, rotations[: len(own)]]
         boxes, span, longest = self._boxes(x)
-        found = self._exchange(rows, [self._near(rank, boxes, rows, seats, span) for rank in range(self.comm.size)])
-        stations = found[:, NUMBER].astype(np.int64)
-        self._x[stations] = found[:, PLACE]
+        near = [self._near(rank, boxes, own, seats, span) for rank in range(self.comm.size)]
+        found = self._exchange([np.column_stack([values[each] for values in columns]) for each in near])
+        stations, is_known = found[:, NUMBER].astype(np.int64), self._is_own.copy()
+        self._x[self._own], self._x[stations], is_known[stations] = own, found[:, PLACE], True
         if rotations is not None:
-            self._rotations[stations] = found[:, ROTATION]
-        known = Known(whole_elements(np.sort(stations), len(self._x)), longest, self._way, self._is_own)
+            self._rotations[self._own], self._rotations[stations] = columns[2], found[:, ROTATION]
+        known = Known(whole_elements(np.flatnonzero(is_known), len(self._x)), longest, self._way, self._is_own)
         return TrialPositions(self._x, seats, None if rotations is None else self._rotations, known)
 
     def _boxes(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
@@ -71,30 +75,29 @@ class Surroundings:
             Corners of the boxes, shape (ranks, 2, 3); how far stations up to `aside` of each other are apart along each
             axis at most, shape (3,); the longest distance of neighbouring stations; mm.
         """
-        own, cells = x[: len(self._own)][self._along], self.layout.rod.cells
-        mine, boxes = np.zeros(16), np.empty((self.comm.size, 16))
-        mine[:6], mine[6:12] = box_around(own), box_around(own - self._last)
-        mine[12:15] = span_along(own, self._aside)
-        mine[15] = np.linalg.norm(x[cells[:, 1]] - x[cells[:, 0]], axis=1).max(initial=0.0)
+        own = x[self._along]
+        mine, told = np.empty(16), np.empty((self.comm.size, 16))
+        mine[BOX], mine[MOTION] = box_around(own).ravel(), box_around(own - self._last).ravel()
+        mine[SPAN], mine[LONGEST] = span_along(own, self._aside), longest_cell(x, self.layout.rod.cells)
         self._last = own
-        self.comm.Allgather(mine, boxes)
-        self._way += float(np.linalg.norm(boxes[:, 9:12].max(axis=0) - boxes[:, 6:9].min(axis=0)))
-        return boxes[:, :6].reshape(-1, 2, 3), boxes[:, 12:15].max(axis=0), float(boxes[:, 15].max())
+        self.comm.Allgather(mine, told)
+        motions = told[:, MOTION].reshape(-1, 2, 3)
+        self._way += float(np.linalg.norm(motions[:, 1].max(axis=0) - motions[:, 0].min(axis=0)))
+        return told[:, BOX].reshape(-1, 2, 3), told[:, SPAN].max(axis=0), float(told[:, LONGEST].max())
 
-    def _near(self, rank: int, boxes: np.ndarray, rows: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
-        """Which of the own stations another rank must know, bool; all for this rank itself."""
+    def _near(self, rank: int, boxes: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
+        """Which of the own stations, at `x`, another rank must be told, bool; none for this rank itself."""
         if rank == self.comm.rank:
-            return np.ones(len(rows), dtype=bool)
-        reach, x = max(contact.reach for contact in self._nearby) + 2.0 * span, rows[:, PLACE]
-        near = ((x >= boxes[rank, 0] - reach) & (x <= boxes[rank, 1] + reach)).all(axis=1)
+            return np.zeros(len(x), dtype=bool)
+        near = in_box(x, boxes[rank], max(contact.reach for contact in self._nearby) + 2.0 * span)
         if rank == self.comm.size - 1:
             for contact in self._nearby:
                 near |= contact.acts_on_seats(self._own, x, seats, span)
         return near
 
-    def _exchange(self, rows: np.ndarray, chosen: Sequence[np.ndarray]) -> np.ndarray:
-        """Rows that all ranks have for this one, its own among them; to each rank goes what is chosen for it."""
-        width, sent = rows.shape[1], [rows[each] for each in chosen]
+    def _exchange(self, sent: Sequence[np.ndarray]) -> np.ndarray:
+        """Rows that all ranks have for this one; `sent`: this one's for each rank."""
+        width = sent[0].shape[1]
         give, take = np.array([len(each) for each in sent]), np.empty(self.comm.size, np.int64)
         self.comm.Alltoall(give, take)
         out = np.empty((take.sum(), width))
@@ -102,9 +105,34 @@ class Surroundings:
         return out
 
 
+@njit(cache=True)
 def box_around(x: np.ndarray) -> np.ndarray:
-    """Lower and upper corner of the box around points, shape (n, 3) → (6,); infinite and reversed without any."""
-    return np.concatenate([x.min(axis=0, initial=np.inf), x.max(axis=0, initial=-np.inf)])
+    """Corners of the box around positions, shape (n, 3) → (2, 3), mm; infinitely far apart around none."""
+    box = np.empty((2, 3))
+    box[0], box[1] = np.inf, -np.inf
+    for i in range(len(x)):
+        for k in range(3):
+            box[0, k], box[1, k] = min(box[0, k], x[i, k]), max(box[1, k], x[i, k])
+    return box
+
+
+@njit(cache=True)
+def in_box(x: np.ndarray, box: np.ndarray, reach: np.ndarray) -> np.ndarray:
+    """Which of some positions, shape (n, 3), lie within `reach`, shape (3,), of a box; shape (n,), bool."""
+    inside = np.ones(len(x), np.bool_)
+    for i in range(len(x)):
+        for k in range(3):
+            inside[i] &= box[0, k] - reach[k] <= x[i, k] <= box[1, k] + reach[k]
+    return inside
+
+
+@njit(cache=True)
+def longest_cell(x: np.ndarray, cells: np.ndarray) -> float:
+    """Longest distance of two nodes that a cell joins, mm; 0 without cells."""
+    longest = 0.0
+    for a, b in cells:
+        longest = max(longest, (x[b, 0] - x[a, 0]) ** 2 + (x[b, 1] - x[a, 1]) ** 2 + (x[b, 2] - x[a, 2]) ** 2)
+    return math.sqrt(longest)
 
 
 def span_along(x: np.ndarray, stations: int) -> np.ndarray:

@@ -13,6 +13,7 @@ from scipy.optimize import brentq
 from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
+from coilset.model.equilibrium import matrix
 from coilset.model.equilibrium.methods import METHODS, rod_method
 from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.settings import MethodName
@@ -44,6 +45,27 @@ def test_every_method_passes_the_reversal_to_the_same_state(example, newtons, me
     ends, expected = newtons
     for values, reference in zip(final(example, ends, method), expected, strict=True):
         np.testing.assert_allclose(values, reference, rtol=0, atol=1e-6 * np.abs(reference).max())
+
+
+def pressed(example, method):
+    """Forces of a spring that is pressed to block and let go, and what has factorised its matrix in each step."""
+    program = "loading=[{to: block, steps: 8}, {to: {force: 0}, steps: 3}]"
+    settings = [*COARSE, "ends=clamped", program, f"solver.method={method}"]
+    analysis, kinds = Analysis(read_case(example, settings), MPI.COMM_SELF), []
+    result = analysis.run(report=lambda step: kinds.append(analysis.newton.snes.getKSP().getPC().getType()))
+    return np.array([step.force_N for step in result.steps]), kinds
+
+
+@pytest.mark.parametrize("method", ["newton", "modified-newton"])
+def test_what_contacts_join_is_factorised_by_the_multifrontal_method(example, method, monkeypatch):
+    """As on ranks, with the same forces as PETSc's LU; that is used again when the coils have come apart."""
+    expected, kinds = pressed(example, method)
+    assert set(kinds) == {PETSc.PC.Type.LU}
+    monkeypatch.setattr(matrix, "SMALL", 0)
+    found, kinds = pressed(example, method)
+    assert PETSc.PC.Type.PYTHON in kinds
+    assert kinds[0] == kinds[-1] == PETSc.PC.Type.LU
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-8 * expected.max())
 
 
 ALL_METHODS = f"""

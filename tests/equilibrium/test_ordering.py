@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from coilset.model.equilibrium import ordering
 from coilset.model.equilibrium.ordering import eliminate_chains, fill_reducing_order
 
 
@@ -51,8 +52,11 @@ def test_chains_are_eliminated_without_fill(touching, kept):
         assert np.array_equal(np.sort(neighbours[start:stop]), np.flatnonzero(found[i]))
 
 
+@pytest.mark.parametrize("name", [ordering.ORDERING, "qmd"])
 @pytest.mark.parametrize("touching", [False, True])
-def test_kept_vertices_come_last(touching):
+def test_kept_vertices_come_last(touching, name, monkeypatch):
+    """Also with PETSc's own minimum degree, where it has been built without SuiteSparse."""
+    monkeypatch.setattr(ordering, "ORDERING", name)
     pattern, kept = chain_with_sides(touching), np.array([3, 11])
     order = fill_reducing_order(*csr(pattern), kept)
     assert np.array_equal(np.sort(order), np.arange(len(pattern)))

@@ -61,6 +61,7 @@ def solved(factors: ChainLU, right: np.ndarray) -> np.ndarray:
 def test_solution_is_that_of_a_dense_solve(touching, symmetric, few, monkeypatch):
     """Also after the entries change; the two ways of dividing the work agree with NumPy."""
     monkeypatch.setattr(chain_lu, "FEW", few)
+    monkeypatch.setattr(chain_lu, "SMALL_SHARE", 0.0)
     matrix, right = made(touching, symmetric), np.random.default_rng(5).normal(size=SIZE)
     mat = distributed(matrix)
     factors = ChainLU(mat)
