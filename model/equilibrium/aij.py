@@ -107,15 +107,15 @@ def _side_by_side(
     out, columns = np.zeros_like(own_indptr), np.empty(size + len(indices), own_indices.dtype)
     places = np.empty(size + len(indices), np.int32)
     for row in range(len(out) - 1):
-        e, mine = indptr[row], own_indptr[row]
-        while e < indptr[row + 1] or mine < own_indptr[row + 1]:
-            below = e < indptr[row + 1] and (mine == own_indptr[row + 1] or numbers[indices[e]] < start)
-            if below:
-                columns[count], places[count] = numbers[indices[e]], size + e
-                e += 1
-            else:
-                columns[count], places[count] = start + own_indices[mine], mine
-                mine += 1
+        e = indptr[row]
+        while e < indptr[row + 1] and numbers[indices[e]] < start:
+            columns[count], places[count] = numbers[indices[e]], size + e
+            e, count = e + 1, count + 1
+        for mine in range(own_indptr[row], own_indptr[row + 1]):
+            columns[count], places[count] = start + own_indices[mine], mine
+            count += 1
+        for above in range(e, indptr[row + 1]):
+            columns[count], places[count] = numbers[indices[above]], size + above
             count += 1
         out[row + 1] = count
     return (out, columns), places
