@@ -16,10 +16,14 @@ from coilset.model.equilibrium.aij import AijEntries
 from coilset.model.equilibrium.element_entries import ElementEntries, set_rows
 from coilset.model.equilibrium.joined import add_matrices, join_patterns, number_pairs
 from coilset.model.equilibrium.layout import Layout, LineLayout
+from coilset.model.equilibrium.ordering import ORDERING
 
 # Contacts add entries outside the band of a line. Up to SMALL unknowns the fill of the natural order costs less than
-# finding a better one; with 2,560 elements in 2.5 windings a factorisation takes 2.8 s in band order, else 11 ms.
-SMALL = 1500
+# finding a better one; with 2,560 elements in 2.5 windings a factorisation takes 2.8 s in band order, else 11 ms. Up to
+# LARGE, the plan of a multifrontal elimination costs more than it saves: a tenth of the time with 320 elements in 20
+# windings, nothing with 2,560 in 160; with 20,000 in 253 it saves half of the time.
+SMALL, LARGE = 1500, 15_000
+NATURAL = "natural"
 
 
 class TangentMatrix:
@@ -43,9 +47,14 @@ class TangentMatrix:
         self._elements = ElementEntries(body, layout) if isinstance(body, OfElements) else None
 
     @property
-    def is_banded(self) -> bool:
-        """Whether no contacts lead far out of the band of a line, or these are few unknowns anyway."""
-        return not self._places or self.layout.size <= SMALL
+    def ordering(self) -> str:
+        """PETSc's name of the order in which its LU should eliminate, on one rank."""
+        return ORDERING if self._places and self.layout.size > SMALL else NATURAL
+
+    @property
+    def is_large(self) -> bool:
+        """Whether the multifrontal method should eliminate, on one rank."""
+        return self.ordering != NATURAL and self.layout.size > LARGE
 
     def fill(self, contributions: Sequence[Contribution], exactly: bool = False) -> None:
         """Set it to the body's tangent and the stiffness of contacts; collective.

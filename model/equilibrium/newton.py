@@ -274,15 +274,17 @@ class Newton:
                     self._fit(each.ksp.pc)
 
     def _fit(self, pc: PETSc.PC) -> None:
-        """On one rank let PETSc's LU factorise a band, and ChainPC what contacts join, unless the user has chosen."""
+        """On one rank let PETSc's LU, or ChainPC in a large matrix, fit the contacts, unless the user has chosen."""
         if self.system.comm.size > 1 or self.method.chooses_factors:
             return
-        if self.matrix.is_banded and pc.getType() == PETSc.PC.Type.PYTHON:
-            pc.setType(PETSc.PC.Type.LU)
-            pc.setFromOptions()
-        elif not self.matrix.is_banded and pc.getType() == PETSc.PC.Type.LU:
+        if self.matrix.is_large and pc.getType() == PETSc.PC.Type.LU:
             pc.setType(PETSc.PC.Type.PYTHON)
             pc.setPythonContext(ChainPC())
+        elif not self.matrix.is_large and pc.getType() == PETSc.PC.Type.PYTHON:
+            pc.setType(PETSc.PC.Type.LU)
+            pc.setFromOptions()
+        if pc.getType() == PETSc.PC.Type.LU:
+            pc.setFactorOrdering(self.matrix.ordering)
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Before a line search of type `basic`: scale the correction −y."""

@@ -16,6 +16,7 @@ from petsc4py import PETSc
 from coilset.model.equilibrium.chain_lu import ChainPC
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.matrix import NATURAL
 from coilset.model.equilibrium.newton import Newton
 
 BLOCK = 4  # vectors of the inverse iteration: a double eigenvalue and its neighbours
@@ -85,12 +86,12 @@ class Stability:
         matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)
         factors = PETSc.PC().create(self.system.comm)
         factors.setOperators(matrix)
-        if self.system.comm.size > 1 or not tangent.is_banded:
+        if self.system.comm.size > 1 or tangent.ordering != NATURAL:
             factors.setType(PETSc.PC.Type.PYTHON)
             factors.setPythonContext(ChainPC())
         else:
             factors.setType(PETSc.PC.Type.CHOLESKY)
-            factors.setFactorOrdering("natural")
+            factors.setFactorOrdering(NATURAL)
         factors.setUp()
         return factors
 
