@@ -90,7 +90,7 @@ class Newton:
         self.load, self.load_factor = Load.of(system.layout, {}, {}), 1.0
         self.ratio, self._factorisations, self._at_step_start = np.inf, 0, True
         self._failed = 0
-        self._fitted: int | None = None  # version of the matrix that the linear solvers were last told of
+        self._fitted = 0  # version of the matrix that the linear solvers were last told of; a solid's never changes
         self._foreseen = False  # have tangents of the present attempt been built with foreseen forces?
         self._step_length: float | None = None  # of the last correction; None where there is none, or PETSc's own
         self._corrected: float | None = None  # share of the last correction, where it led to the present state
@@ -111,7 +111,7 @@ class Newton:
         self.method = method
         if self.snes is not None:
             self.snes.destroy()
-        self._fitted = None
+        self._fitted = 0
         self.snes = self._factory.make("", method.options, method.of_the_user)
         me = weakref.proxy(self)
         if method.searches:
@@ -179,7 +179,7 @@ class Newton:
             # Quasi-Newton vectors belong to the free unknowns: a start that meets the prescribed increments keeps the
             # rows of these, and their weights, at zero.
             if self._first is None:
-                self._fitted = None
+                self._fitted = 0
                 self._first = self._factory.make("first_", FIRST | method.factorisation)
             self._first.solve(None, X)
             first = 1
