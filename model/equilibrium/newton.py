@@ -275,15 +275,17 @@ class Newton:
 
     def _fit(self, pc: PETSc.PC) -> None:
         """On one rank let PETSc's LU, or ChainPC in a large matrix, fit the contacts, unless the user has chosen."""
-        if self.system.comm.size > 1 or self.method.chooses_factors:
+        method = self.method
+        if self.system.comm.size > 1:
             return
-        if self.matrix.is_large and pc.getType() == PETSc.PC.Type.LU:
-            pc.setType(PETSc.PC.Type.PYTHON)
-            pc.setPythonContext(ChainPC())
-        elif not self.matrix.is_large and pc.getType() == PETSc.PC.Type.PYTHON:
-            pc.setType(PETSc.PC.Type.LU)
-            pc.setFromOptions()
-        if pc.getType() == PETSc.PC.Type.LU:
+        if not method.chooses_factors:
+            if self.matrix.is_large and pc.getType() == PETSc.PC.Type.LU:
+                pc.setType(PETSc.PC.Type.PYTHON)
+                pc.setPythonContext(ChainPC())
+            elif not self.matrix.is_large and pc.getType() == PETSc.PC.Type.PYTHON:
+                pc.setType(PETSc.PC.Type.LU)
+                pc.setFromOptions()
+        if pc.getType() == PETSc.PC.Type.LU and not any("mat_ordering_type" in key for key in method.of_the_user):
             pc.setFactorOrdering(self.matrix.ordering)
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
