@@ -8,7 +8,6 @@ import re
 import signal
 import subprocess
 import sys
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -65,6 +64,8 @@ def folder_of_mpirun() -> Iterator[dict[str, str]]:
 
     By itself it names that folder by its process number, and fails where a killed one has left a folder of that name.
     """
+    import tempfile  # which commands on one rank need not load
+
     with tempfile.TemporaryDirectory(prefix="coilset-", ignore_cleanup_errors=True) as folder:
         yield {"PRTE_MCA_prte_tmpdir_base" if _open_mpi() >= 5 else "OMPI_MCA_orte_tmpdir_base": folder}
 
