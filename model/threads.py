@@ -1,19 +1,18 @@
-"""Threads of one process, among which the sections of its rods are divided.
+"""Threads of one process, among which the sections of its rods are divided: numba's, of OpenMP or TBB.
 
-The law takes most of the time, and sections know nothing of each other. Its compiled loops let go of Python's lock, so
-that threads run side by side on as many cores. No number depends on how many there are: one of them computes all of a
-section.
+The law takes most of the time, and sections know nothing of each other. No number depends on how many threads there
+are: one of them computes all of a section, by the same compiled function.
 """
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor, wait
-from itertools import pairwise
-from typing import TypeVar
+from collections.abc import Callable
+from typing import Any
+
+import numba
+import numpy as np
 
 from coilset.model.processes import usable_cores
 
-T = TypeVar("T")
-R = TypeVar("R")
+LEAST = 512  # section points of a thread: they take the law some 50 µs, ten times as long as it takes to share them out
 
 
 def usual(ranks: int) -> int:
@@ -25,26 +24,38 @@ class Threads:
     """The calling thread and those that help it.
 
     Args:
-        number: of all of them.
+        number: of all of them. There are no more than cores, and the calling one alone where numba finds neither
+            OpenMP nor TBB: threads of its own take longer than they save.
     """
 
     def __init__(self, number: int = 1) -> None:
         self.number = number
-        self._helpers = ThreadPoolExecutor(number - 1, "sections") if number > 1 else None
+        if number > 1:
+            numba.config.THREADING_LAYER = "threadsafe"
+            try:
+                numba.get_num_threads()
+            except ValueError:
+                self.number = 1
 
-    def shares(self, count: int, least: int) -> list[slice]:
-        """As many equal parts of `count` things as there are threads, but each of `least` of them or all."""
-        parts = max(1, min(self.number, count // max(least, 1)))
-        ends = [count * part // parts for part in range(parts + 1)]
-        return [slice(*pair) for pair in pairwise(ends)]
+    def ends(self, count: int, points: int) -> np.ndarray:
+        """Where as many equal parts of `count` things begin and end as there are threads, shape (parts + 1,).
 
-    def map(self, work: Callable[[T], R], shares: Sequence[T]) -> list[R]:
-        """What `work` makes of each share; it raises what one of them raises, when none is at work any more."""
-        if self._helpers is None or len(shares) == 1:
-            return [work(share) for share in shares]
-        others = [self._helpers.submit(work, share) for share in shares[1:]]
-        try:
-            mine = work(shares[0])
-        finally:
-            wait(others)
-        return [mine, *(other.result() for other in others)]
+        Args:
+            points: of the sections in each of them, of which a part has LEAST, or it is all.
+        """
+        parts = max(1, min(self.number, count, count * points // LEAST))
+        return np.arange(parts + 1) * count // parts
+
+    def run(self, part: Callable[..., Any], parts: Callable[..., Any], count: int, points: int, *arguments: Any) -> Any:
+        """Have compiled functions do some work: all of it by `part`, or its parts side by side by `parts`.
+
+        Args:
+            part: called with the `ends`, the number of a part, and `arguments`.
+            parts: called with the `ends` and `arguments`.
+            count, points: as in `ends`.
+        """
+        ends = self.ends(count, points)
+        if len(ends) == 2:
+            return part(ends, 0, *arguments)
+        numba.set_num_threads(min(len(ends) - 1, numba.config.NUMBA_NUM_THREADS))
+        return parts(ends, *arguments)

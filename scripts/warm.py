@@ -13,8 +13,12 @@ SHORT = {"ck15_presetting.yaml": LOADING, "time/relaxation.yaml": CREEPING}  # e
 
 
 def warm() -> None:
-    """Compress an example until coils touch and yield, release it, let one creep, press a uniform rod; keep nothing."""
+    """Compress an example until coils touch and yield, release it, let one creep, press a uniform rod; keep nothing.
+
+    What several threads do is compiled beside what one does.
+    """
     cases = [read_case(EXAMPLES / example, ("mesh.elements_per_turn=8", loading)) for example, loading in SHORT.items()]
     for case in cases:
-        Analysis(case, MPI.COMM_SELF).run()
+        for threads in (1, 2):
+            Analysis(case, MPI.COMM_SELF, threads=threads).run()
     guess(cases[0], [])

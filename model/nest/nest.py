@@ -20,6 +20,7 @@ from coilset.model.nest.clearance import inside, outside
 from coilset.model.nest.file import NAMES, Nest
 from coilset.model.nest.plan import Plan, plan
 from coilset.model.results.record import Result, Setup, Step
+from coilset.model.threads import usual
 from coilset.model.warning import Warning
 
 NEAR = 1e-6  # mm, between a step's height and the plan's
@@ -106,7 +107,8 @@ def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: N
 def _run(name: str, case: Case, heights: Plan, told: Callable[[str, Step], object]) -> Member:
     """Run one spring's own program."""
     program = heights.program(case.spring.build().free_length)
-    analysis = Analysis(case.model_copy(update={"loading": program or case.loading}), MPI.COMM_SELF)
+    analysis = Analysis(case.model_copy(update={"loading": program or case.loading}), MPI.COMM_SELF,
+                        threads=usual(1))  # fmt: skip
     if not program:
         return Member(name, case, analysis.setup, None)
     analysis.run(lambda step: told(name, step))

@@ -12,7 +12,7 @@ four times as much. This divides the law's error and the area between path and c
 is the error of the section forces. Errors that plastic flow erases are erased here, too.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 from numba import njit
@@ -20,13 +20,11 @@ from numba import njit
 from coilset.model.rod.blocks import blocks
 from coilset.model.section.kinds import Sections
 from coilset.model.state import State, Where
-from coilset.model.threads import Threads
 
 BLOCK = 256  # cells that are followed together: only for these the state on the way is kept
 CLOCKS = "clock", "halfway_clock"  # of the whole rod, at the end of a step, and half way along its path
 KINK = 4.0  # of the parabola's height over the chord: after steps of one size, that of a kink in the middle of this one
 
-Arrays = dict[str, np.ndarray]
 Block = tuple[slice, Sections]  # of cells
 
 
@@ -39,12 +37,9 @@ class FinerPath:
             and in the first one of all, the sections' arrays with `finer_` before their names, and the error of the
             section forces.
         names: of the sections' arrays that are followed.
-        threads: Threads, and `shares`, the cells that each of them follows.
     """
 
-    def __init__(
-        self, sections: Sections, state: State, names: Iterable[str], threads: Threads, shares: Sequence[slice]
-    ) -> None:
+    def __init__(self, sections: Sections, state: State, names: Iterable[str]) -> None:
         self._state, self._strain = state, state["strain"]
         shape = self._strain.trial.shape
         self._increment = state.add("strain_increment", np.zeros(shape), Where.ELEMENT)
@@ -54,15 +49,13 @@ class FinerPath:
                         for name in names}  # fmt: skip
         # the path's end takes the place of its start, which is not needed any more then
         self._end = {name: field.equilibrium for name, field in self._fields.items()}
-        on_the_way = [{name: values[share][:BLOCK].copy() for name, values in self._end.items()} for share in shares]
+        self._on_the_way = {name: values[:BLOCK].copy() for name, values in self._end.items()}
         self._start = self._end | {"strain": self._strain.equilibrium}
         if "clock" in state:
             clock, halfway = (state[name] for name in CLOCKS)
             self._start["clock"], self._end["clock"] = clock.equilibrium, clock.trial
-            for half in on_the_way:
-                half["clock"] = halfway.trial
-        self._threads, self._lost = threads, False
-        self._parts = [(list(in_blocks(sections, share)), half) for share, half in zip(shares, on_the_way, strict=True)]
+            self._on_the_way["clock"] = halfway.trial
+        self._blocks, self._lost = list(in_blocks(sections)), False
 
     def follow(self, s: np.ndarray, ratio: float, kinked: bool = False, stands: bool = True) -> bool:
         """Advance the finer path to the trial strains.
@@ -87,7 +80,7 @@ class FinerPath:
         if not stands:
             for name in self._fields:
                 self._state.overwrite(f"finer_{name}")
-        good = all(self._threads.map(lambda part: self._follow_part(part, middle, s), self._parts))
+        good = all(self._follow(*block, middle, s) for block in self._blocks)
         self._lost = not good
         if self._lost:
             self._error.trial[:] = self._error.equilibrium
@@ -99,16 +92,12 @@ class FinerPath:
             for name, field in self._fields.items():
                 field.equilibrium[:] = self._state[name].trial
 
-    def _follow_part(self, part: tuple[list[Block], Arrays], middle: np.ndarray, s: np.ndarray) -> bool:
-        """Advance a thread's blocks of cells, one after the other, with its arrays for the state on the way."""
-        blocks, way = part
-        return all(self._follow(*block, of_cells(way, slice(len(block[1].radius))), middle, s) for block in blocks)
-
-    def _follow(self, cells: slice, sections: Sections, half: Arrays, middle: np.ndarray, s: np.ndarray) -> bool:
+    def _follow(self, cells: slice, sections: Sections, middle: np.ndarray, s: np.ndarray) -> bool:
         """Advance a block of cells over `middle`, all cells' strains there, and write their errors."""
         strain, size = self._strain, cells.stop - cells.start
         forces, D = np.empty((size, 2, 6)), np.empty((size, 2, 6, 6))
-        start, end, reached = of_cells(self._start, cells), of_cells(self._end, cells), middle[cells]
+        half, reached = of_cells(self._on_the_way, slice(size)), middle[cells]
+        start, end = of_cells(self._start, cells), of_cells(self._end, cells)
         good = sections.update(reached, start, half, forces, D, False)
         good = good and sections.update(strain.trial[cells], half | {"strain": reached}, end, forces, D, False)
         if good:
@@ -147,9 +136,9 @@ def _works(
     return own, new_own, left, error_left
 
 
-def in_blocks(sections: Sections, share: slice) -> Iterator[Block]:
-    """Cells that are followed together, of a share of all cells, and their sections."""
-    for part in blocks(share, BLOCK):
+def in_blocks(sections: Sections) -> Iterator[Block]:
+    """Cells that are followed together, and their sections."""
+    for part in blocks(slice(0, len(sections.radius)), BLOCK):
         yield part, sections.part(part)
 
 

@@ -82,7 +82,6 @@ class Rod:
         degree: int = 3,
         threads: Threads | None = None,
     ) -> None:
-        self.threads = threads or Threads()
         self.line, self.law, self.rule = line, law, rule
         mesh, n = line.mesh, line.owned_cells
         self.comm = mesh.comm
@@ -95,7 +94,7 @@ class Rod:
         if placement is not None:
             self.placement = placement.part(element)
         self.sections = make_sections(
-            kind, law, self.parameters, rule, self.radius, self.placement, temperature, degree
+            kind, law, self.parameters, rule, self.radius, self.placement, temperature, degree, threads
         )
 
         self.V = fem.functionspace(mesh, forms.rod_element())
@@ -150,8 +149,7 @@ class Rod:
         self._chord = state.add("chord", x[self.cells[:, 1]] - x[self.cells[:, 0]], Where.ELEMENT)
         self._shear = state.add("shear", np.zeros((n, 2)), Where.ELEMENT)
         self._strain = state.add("strain", self.e.values, Where.ELEMENT)
-        self._points = SectionStates(self.sections, state, self._strain, self.in_time, self.temperature,
-                                     self.threads)  # fmt: skip
+        self._points = SectionStates(self.sections, state, self._strain, self.in_time, self.temperature)
         self._forces: list[Field] = []  # at the last equilibrium; an element's tangents take 576 bytes
         if self.in_time is None and self.mesh.topology.index_map(1).size_global <= KEPT:
             known = {"section_forces": self.s.values, "section_tangents": self.D.values}
@@ -243,7 +241,7 @@ class Rod:
 
     def estimate_errors(self) -> None:
         """Follow every step on a finer path from now on; see EstimatesErrors."""
-        self._finer = FinerPath(self.sections, self.state, self._points.bearing, self.threads, self._points.shares)
+        self._finer = FinerPath(self.sections, self.state, self._points.bearing)
 
     def error_works(self, ratio: float, kinked: bool, stands: bool) -> tuple[float, float, float, float]:
         """Works of the errors of all steps so far and of the last one; see EstimatesErrors."""

@@ -5,9 +5,6 @@ Their states on trial would fill as much memory as those at the last equilibrium
 it. So an evaluation keeps one element's at a time, and a step's end finds them once more.
 """
 
-from collections.abc import Collection, Iterable, Mapping
-from typing import NamedTuple
-
 import numpy as np
 
 from coilset.model.material.creep_law import CreepLaw
@@ -15,26 +12,9 @@ from coilset.model.material.rate_law import RateLaw
 from coilset.model.rod.finer_path import CLOCKS, in_blocks, of_cells
 from coilset.model.section.kinds import Sections
 from coilset.model.state import Field, State, Where
-from coilset.model.threads import Threads
 
 POINTS, SURFACE = "point_state", "surface_state"
 KEPT = 4096  # elements up to which all points' states on trial are kept: as many as a processor's caches may hold
-LEAST = 4096  # points of a thread: they take the law 0.3 ms, and some 0.1 ms pass until another thread is at work
-
-
-class Share(NamedTuple):
-    """What one thread advances: some of the cells, their sections, and their part of the sections' arrays."""
-
-    cells: slice
-    sections: Sections
-    strain: np.ndarray
-    start: Mapping[str, np.ndarray]
-    trial: dict[str, np.ndarray]
-
-    def update(self, s: np.ndarray, D: np.ndarray) -> bool:
-        """Advance them, and write their part of the section forces and tangents of all cells."""
-        update = self.sections.update
-        return bool(update(self.strain, self.start, self.trial, s[self.cells], D[self.cells]))
 
 
 class SectionStates:
@@ -46,22 +26,12 @@ class SectionStates:
         strain: its field of section strains.
         in_time: the law in time, which has clocks; None without.
         temperature: of the clocks at the start, K.
-        threads: Threads that advance them.
-
-    Attributes:
-        shares: the cells that each of the threads takes.
     """
 
     def __init__(
-        self,
-        sections: Sections,
-        state: State,
-        strain: Field,
-        in_time: CreepLaw | RateLaw | None,
-        temperature: float,
-        threads: Threads,
+        self, sections: Sections, state: State, strain: Field, in_time: CreepLaw | RateLaw | None, temperature: float
     ) -> None:
-        self._threads, self._strain, cells = threads, strain, len(sections.radius)
+        self._sections, self._strain, cells = sections, strain, len(sections.radius)
         passing = sections.passing if cells > KEPT else ()
         self._in_place = (*passing, SURFACE)
         self._fields = {name: state.add(name, rows, Where.ELEMENT, in_place=name in self._in_place)
@@ -73,15 +43,10 @@ class SectionStates:
             for name in CLOCKS:
                 clock = state.add(name, in_time.clock(0.0, temperature), Where.SHARED)
                 self._start[name], self._trial[name] = clock.equilibrium, clock.trial
-        points = 2 * self._fields[POINTS].trial.shape[2]
-        self.shares = threads.shares(cells, -(-LEAST // points))
-        self._of_threads = [self._share(cells, sections.part(cells), passing) for cells in self.shares]
-        self._blocks = [list(in_blocks(sections, share)) for share in self.shares]
-
-    def _share(self, cells: slice, sections: Sections, passing: Collection[str]) -> Share:
-        start, trial = of_cells(self._start, cells), of_cells(self._trial, cells)
-        trial |= {name: np.empty_like(trial[name][:1]) for name in passing}
-        return Share(cells, sections, self._strain.trial[cells], start, trial)
+        # of what passes, each thread keeps an element's
+        self._on_the_way = self._trial | {name: np.empty((sections.threads.number, *self._trial[name].shape[1:]))
+                                          for name in passing}  # fmt: skip
+        self._blocks = list(in_blocks(sections))
 
     @property
     def bearing(self) -> list[str]:
@@ -94,14 +59,11 @@ class SectionStates:
 
     def update(self, s: np.ndarray, D: np.ndarray) -> bool:
         """Advance all sections to the trial strains; `s`, `D` and what it returns are those of `Sections.update`."""
-        return all(self._threads.map(lambda share: share.update(s, D), self._of_threads))
+        return bool(self._sections.update(self._strain.trial, self._start, self._on_the_way, s, D))
 
     def follow(self) -> None:
         """Bring what lies in place to the end of the step."""
-        self._threads.map(self._follow, self._blocks)
-
-    def _follow(self, blocks: Iterable[tuple[slice, Sections]]) -> None:
-        for cells, sections in blocks:
+        for cells, sections in self._blocks:
             start, reached = of_cells(self._start, cells), of_cells(self._trial, cells)
             reached |= {name: np.empty_like(start[name]) for name in self._in_place}
             strain, size = self._strain.trial[cells], cells.stop - cells.start

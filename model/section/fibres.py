@@ -3,12 +3,13 @@
 import copy
 import math
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
-from numba import njit
+from numba import njit, prange
 
 from coilset.meshes.placement import Placement
-from coilset.model.material.kernel import KERNEL, OF_THREADS
+from coilset.model.material.kernel import KERNEL, PARALLEL
 from coilset.model.material.law import Law
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.ground import ground_sections, rim_rule
@@ -17,6 +18,7 @@ from coilset.model.section.law_over_time import LawOverTime
 from coilset.model.section.rules import DiskRule, rim
 from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
 from coilset.model.section.wire import BEND
+from coilset.model.threads import Threads
 
 
 class FibreSections:
@@ -31,10 +33,12 @@ class FibreSections:
         curved: whether they include the wire's curvature, see `shape`; else they are the thesis's, plane, of a straight
             wire.
         temperature: K, of the points at the start; None: the material's first.
+        threads: Threads that advance them; None: the calling one alone.
 
     Attributes:
         components: names of the columns of a point's state.
-        passing: arrays of the state on trial in which `update` may write one element after the other in the same place.
+        passing: arrays of the state on trial in which `update` may write one element after the other in the same place,
+            of which each thread has one.
     """
 
     passing: tuple[str, ...] = ("point_state",)
@@ -50,7 +54,9 @@ class FibreSections:
         placement: Placement,
         curved: bool,
         temperature: float | None = None,
+        threads: Threads | None = None,
     ) -> None:
+        self.threads = threads or Threads()
         self.radius, self.placement, self.weights, self.curved = radius, placement, rule.weights, curved
         self.law_over_time = LawOverTime(law, parameters, temperature)
         self.components += self.law_over_time.columns(self.components[3:6])
@@ -123,8 +129,9 @@ class FibreSections:
             False if the law found no solution at some point or the strains are not finite.
         """
         place, law = self.placement, self.law_over_time.over(start, trial)
-        return bool(update_sections(
-            law, self.y, self.z, self.weights, tuple(self.ground), self.radius, place.curvature, self.curved,
+        return bool(self.threads.run(
+            update_sections, update_in_parts, len(self.radius), 2 * len(self.y),
+            law, tuple(self.ground), self.y, self.z, self.weights, self.radius, place.curvature, self.curved,
             self._increment(strain, start, trial), place.matrices, place.stretch, start["point_state"],
             trial["point_state"], s, D, with_tangent,
         ))  # fmt: skip
@@ -135,19 +142,31 @@ class FibreSections:
         If the law finds no solution the state becomes NaN.
         """
         place, law = self.placement, self.law_over_time.over(start, trial)
-        update_surface(
-            law, self.rim_y, self.rim_z, tuple(self.ground_rim), self.radius, place.curvature, self.curved,
+        self.threads.run(
+            update_surface, update_surface_in_parts, len(self.radius), 2 * len(self.rim_y),
+            law, tuple(self.ground_rim), self.rim_y, self.rim_z, self.radius, place.curvature, self.curved,
             self._increment(strain, start, trial), place.matrices, start["surface_state"], trial["surface_state"],
         )  # fmt: skip
 
 
-@njit(**OF_THREADS)
+@njit(**PARALLEL)
+def update_in_parts(ends: np.ndarray, p: Any, ground: Any, *rest: Any) -> bool:
+    """`update_sections` for all parts of the cells side by side."""
+    good = np.empty(len(ends) - 1, np.bool_)
+    for k in prange(len(good)):
+        good[k] = update_sections(ends, np.int64(k), p, ground, *rest)
+    return bool(good.all())
+
+
+@njit(**KERNEL)
 def update_sections(
+    ends: np.ndarray,
+    part: int,
     p: np.ndarray,
+    ground: tuple[np.ndarray, np.ndarray, np.ndarray],
     y: np.ndarray,
     z: np.ndarray,
     w: np.ndarray,
-    ground: tuple[np.ndarray, np.ndarray, np.ndarray],
     radius: np.ndarray,
     curvature: np.ndarray,
     curved: bool,
@@ -160,21 +179,24 @@ def update_sections(
     D: np.ndarray,
     with_tangent: bool,
 ) -> bool:
-    """Bring all sections to the end of the increment.
+    """Bring the sections of a part of the cells to the end of the increment.
 
     The strains of the chord axis are carried to the true section by `placement` (identity for a straight rod), the
     resultants back by its transpose; with ds/dx = `stretch` the virtual work is that of the true centre line.
 
     Args:
+        ends: where the parts of all cells begin and end, shape (parts + 1,).
+        part: number of the one that is brought there.
         p: parameters of the material law.
-        y, z, w: points of the unit disk and weights, shape (points,).
         ground: entries of Ground; as plain tuples they take numba 25 µs less.
+        y, z, w: points of the unit disk and weights, shape (points,).
         radius: wire radius of each element, shape (cells,), mm.
         curvature: κ of the wire, towards y, shape (cells, 2), 1/mm; curved: is it known to the sections?
         de: increments of the section strains ε, γ12, γ13, φ′, κ2 = −w″, κ3 = v″, shape (cells, 2, 6).
         placement: shape (cells, 2, 6, 6), stretch: ds/dx, shape (cells, 2).
         old: state at the last equilibrium, shape (cells, 2, points, n_state); not changed.
-        new: written, the state at the end of the increment; of the last section only, if it has room for one element.
+        new: written, the state at the end of the increment; of the last section only, in the place of the part, if it
+            has not room for all.
         s: written, N, Q2, Q3 in N and Mt, M2, M3 in N mm, shape (cells, 2, 6), about the chord axis.
         D: written if `with_tangent`, section tangent ds/de, shape (cells, 2, 6, 6).
 
@@ -187,8 +209,8 @@ def update_sections(
     disk, disk_shape = np.empty((FIBRES, points)), np.empty((SHAPE, points))
     straight_shape(disk_shape)
     last, last_bend, kept = 0.0, math.nan, len(new) == len(radius)
-    for c in range(len(radius)):
-        R, at = radius[c], c if kept else 0
+    for c in range(ends[part], ends[part + 1]):
+        R, at = radius[c], c if kept else part
         if last != R:
             last = R
             round_fibres(y, z, w, R, disk)
@@ -207,12 +229,21 @@ def update_sections(
     return True
 
 
-@njit(**OF_THREADS)
+@njit(**PARALLEL)
+def update_surface_in_parts(ends: np.ndarray, p: Any, ground: Any, *rest: Any) -> None:
+    """`update_surface` for all parts of the cells side by side."""
+    for k in prange(len(ends) - 1):
+        update_surface(ends, np.int64(k), p, ground, *rest)
+
+
+@njit(**KERNEL)
 def update_surface(
+    ends: np.ndarray,
+    part: int,
     p: np.ndarray,
+    ground: tuple[np.ndarray, np.ndarray, np.ndarray],
     y: np.ndarray,
     z: np.ndarray,
-    ground: tuple[np.ndarray, np.ndarray, np.ndarray],
     radius: np.ndarray,
     curvature: np.ndarray,
     curved: bool,
@@ -221,13 +252,13 @@ def update_surface(
     old: np.ndarray,
     new: np.ndarray,
 ) -> None:
-    """Bring the points y, z of the unit circle to the end of the increment; arguments as in `update_sections`."""
+    """Bring points y, z of the unit circle to the end of the increment; arguments as in `update_sections`."""
     points, (cut, cut_fibres, cut_shape) = len(y), ground
     d, weightless = np.empty(6), np.zeros(len(y))
     strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
     disk, disk_shape = np.empty((FIBRES, points)), np.empty((SHAPE, points))
     straight_shape(disk_shape)
-    for c in range(len(radius)):
+    for c in range(ends[part], ends[part + 1]):
         R = radius[c]
         round_fibres(y, z, weightless, R, disk)
         for g in range(2):

@@ -16,6 +16,7 @@ from coilset.model.section.fibres import FibreSections
 from coilset.model.section.law_over_time import LawOverTime
 from coilset.model.section.rules import DiskRule
 from coilset.model.section.warping import WarpingSections
+from coilset.model.threads import Threads
 
 KINDS = ("plane", "curved", "warping")
 
@@ -26,13 +27,16 @@ class Sections(Protocol):
     Attributes:
         radius, placement: of the cells.
         law_over_time: the law of their points.
-        passing: arrays of the state on trial in which `update` may write one element after the other in the same place.
+        passing: arrays of the state on trial in which `update` may write one element after the other in the same place,
+            of which each thread has one.
+        threads: Threads that advance them.
     """
 
     radius: np.ndarray
     placement: Placement
     law_over_time: LawOverTime
     passing: tuple[str, ...]
+    threads: Threads
 
     @property
     def components(self) -> tuple[str, ...]:
@@ -68,6 +72,7 @@ def make_sections(
     placement: Placement,
     temperature: float | None = None,
     degree: int = 3,
+    threads: Threads | None = None,
 ) -> Sections:
     """The sections of a kind; arguments as in `FibreSections` and, for the degree, `WarpingSections`.
 
@@ -77,5 +82,5 @@ def make_sections(
     if kind not in KINDS:
         raise ValueError(f"kind '{kind}' is none of {', '.join(KINDS)}")
     if kind == "warping":
-        return WarpingSections(law, parameters, rule, radius, placement, temperature, degree)
-    return FibreSections(law, parameters, rule, radius, placement, kind == "curved", temperature)
+        return WarpingSections(law, parameters, rule, radius, placement, temperature, degree, threads)
+    return FibreSections(law, parameters, rule, radius, placement, kind == "curved", temperature, threads)

@@ -18,11 +18,13 @@ of the state at the last equilibrium and of the strains, whatever was tried in b
 import copy
 import math
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
-from numba import njit
+from numba import njit, prange
 
 from coilset.meshes.placement import Placement
+from coilset.model.material.kernel import PARALLEL
 from coilset.model.material.law import Law
 from coilset.model.material.point_law import solid_point
 from coilset.model.section.chord import to_chord, to_section
@@ -31,6 +33,7 @@ from coilset.model.section.ground import segments
 from coilset.model.section.law_over_time import LawOverTime
 from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import DiskRule, rim
+from coilset.model.threads import Threads
 
 
 class WarpingSections:
@@ -59,7 +62,9 @@ class WarpingSections:
         placement: Placement,
         temperature: float | None = None,
         degree: int = 3,
+        threads: Threads | None = None,
     ) -> None:
+        self.threads = threads or Threads()
         self.radius, self.placement = radius, placement
         self.law_over_time = LawOverTime(law, parameters, temperature)
         self.components += self.law_over_time.columns(self.components[6:12])
@@ -70,7 +75,8 @@ class WarpingSections:
         self.weights = np.array([rule.weights, *(one.weights for one in left)])
         self.rim = _with_polynomials([rim(), *(one.rim() for one in cut)], [basis, *bases])
         self.unknowns = 3 + 3 * self.points[2].shape[3]
-        self.iterations = np.zeros(2, dtype=np.int64)  # sections brought up to date, local iterations on the way
+        # of each thread: sections brought up to date, local iterations on the way
+        self.iterations = np.zeros((self.threads.number, 2), dtype=np.int64)
 
     def part(self, cells: slice) -> "WarpingSections":
         """The sections of some of the cells."""
@@ -103,18 +109,19 @@ class WarpingSections:
     ) -> bool:
         """Bring all sections to the end of the increment; as `FibreSections.update`, but always with the tangent."""
         place, law = self.placement, self.law_over_time.over(start, trial)
-        status = update_sections(
+        return bool(self.threads.run(
+            update_sections, update_in_parts, len(self.radius), 2 * self.weights.shape[1],
             law, self.which, *self.points, self.weights, self.radius, place.curvature, place.torsion,
             strain - start["strain"], place.matrices, place.stretch, start["point_state"], start["warping"],
             start["warping_slope"], trial["point_state"], trial["warping"], trial["warping_slope"], s, D,
             self.iterations,
-        )  # fmt: skip
-        return status == 0
+        ))  # fmt: skip
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
         """Bring the points on the wire's surface to the end of the increment; as `FibreSections.update_surface`."""
         place, law = self.placement, self.law_over_time.over(start, trial)
-        update_surface(
+        self.threads.run(
+            update_surface, update_surface_in_parts, len(self.radius), 2 * self.rim[0].shape[1],
             law, self.which, *self.rim, self.radius, place.curvature, place.torsion, strain - start["strain"],
             place.matrices, start["surface_state"], trial["warping"] - start["warping"], trial["surface_state"],
         )  # fmt: skip
@@ -126,8 +133,19 @@ def _with_polynomials(points: Sequence[np.ndarray], bases: Sequence[Basis]) -> t
     return y, z, np.array([basis(one) for basis, one in zip(bases, points, strict=True)])
 
 
-@njit(cache=True, nogil=True)
+@njit(**PARALLEL)
+def update_in_parts(ends: np.ndarray, p: Any, *rest: Any) -> bool:
+    """`update_sections` for all parts of the cells side by side."""
+    good = np.empty(len(ends) - 1, np.bool_)
+    for k in prange(len(good)):
+        good[k] = update_sections(ends, np.int64(k), p, *rest)
+    return bool(good.all())
+
+
+@njit(cache=True)
 def update_sections(
+    ends: np.ndarray,
+    part: int,
     p: np.ndarray,
     which: np.ndarray,
     y: np.ndarray,
@@ -149,10 +167,11 @@ def update_sections(
     s: np.ndarray,
     D: np.ndarray,
     count: np.ndarray,
-) -> int:
-    """Bring all sections to the end of the increment.
+) -> bool:
+    """Bring the sections of a part of the cells to the end of the increment.
 
     Args:
+        ends, part: as in `fibres.update_sections`.
         p: parameters of the material law.
         which: number of each section among the ground ones, −1 if it is whole, shape (cells, 2).
         y, z, f, w: points, polynomials and weights, first of the unit disk and then of each ground section.
@@ -162,10 +181,10 @@ def update_sections(
             own strains, at the last equilibrium, shapes (cells, 2, points, n_state), (cells, 2, unknowns) and
             (cells, 2, unknowns, 6); not changed.
         new, a, slope: written, the same at the end of the increment.
-        count: sections and local iterations are added to it, shape (2,).
+        count: sections and local iterations are added to the row of the part, shape (parts, 2).
 
     Returns:
-        0, or -1 if the law or the warping found no solution, or the strains are no numbers.
+        False if the law or the warping found no solution, or the strains are no numbers.
     """
     n = a.shape[2]
     size = 6 + n
@@ -174,7 +193,7 @@ def update_sections(
     K, r, X = np.empty((size, size)), np.empty(size), np.empty((n, n + 7))
     step, C, dA = np.empty(size), np.empty((6, 6)), np.empty(points)
     resultant, tangent, work = np.empty(6), np.empty((6, 6)), np.empty((6, 6))
-    for c in range(len(radius)):
+    for c in range(ends[part], ends[part + 1]):
         R = radius[c]
         for g in range(2):
             P, i = placement[c, g], which[c, g] + 1
@@ -188,22 +207,32 @@ def update_sections(
                     a[c, g, m] = old_a[c, g, m]
                     for j in range(6):
                         a[c, g, m] += follow * old_slope[c, g, m, j] * step[j]
-                good = find_warping(p, B, dA, old[c, g], old_a[c, g], a[c, g], new[c, g], step, C, CB, K, r, X, count)
+                good = find_warping(p, B, dA, old[c, g], old_a[c, g], a[c, g], new[c, g], step, C, CB, K, r, X,
+                                    count[part])  # fmt: skip
                 if good:
                     break
             if not good:
-                return -1
+                return False
             condense(K, r, X, resultant, tangent)
             slope[c, g] = -X[:, n : n + 6]
             if not math.isfinite(resultant.sum()):
-                return -1
+                return False
             to_chord(P, stretch[c, g], resultant, tangent, work, s[c, g], D[c, g])
-            count[0] += 1
-    return 0
+            count[part, 0] += 1
+    return True
 
 
-@njit(cache=True, nogil=True)
+@njit(**PARALLEL)
+def update_surface_in_parts(ends: np.ndarray, p: Any, *rest: Any) -> None:
+    """`update_surface` for all parts of the cells side by side."""
+    for k in prange(len(ends) - 1):
+        update_surface(ends, np.int64(k), p, *rest)
+
+
+@njit(cache=True)
 def update_surface(
+    ends: np.ndarray,
+    part: int,
     p: np.ndarray,
     which: np.ndarray,
     y: np.ndarray,
@@ -218,11 +247,11 @@ def update_surface(
     da: np.ndarray,
     new: np.ndarray,
 ) -> None:
-    """Bring points on the surface to the end of the increment `de`, `da` of strains and warping."""
+    """Bring points on the surface of a part to the end of the increment `de`, `da` of strains and warping."""
     n = da.shape[2]
     B, C = np.zeros((y.shape[1], 6, 6 + n)), np.empty((6, 6))
     e, strain = np.empty(6), np.empty(6)
-    for c in range(len(radius)):
+    for c in range(ends[part], ends[part + 1]):
         for g in range(2):
             i = which[c, g] + 1
             strain_operator(y[i], z[i], f[i], radius[c], curvature[c, g], torsion[c, g], B)

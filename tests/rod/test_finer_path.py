@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from coilset.meshes.placement import straight
+from coilset.model import threads
 from coilset.model.material import library
 from coilset.model.rod import finer_path
 from coilset.model.rod.finer_path import FinerPath
@@ -25,12 +26,12 @@ def strains(time):
 class Path:
     """Sections of elements with these radii, brought along a path of strains."""
 
-    def __init__(self, radii=(2.5,), kind="plane", ground=(), threads=1):
-        self.threads = Threads(threads)
+    def __init__(self, radii=(2.5,), kind="plane", ground=(), number=1):
         law, place = library.load("ck15", spin=False), straight(len(radii))
         for cell in ground:
             place.flat[cell] = (0.2, 1.0, 0.0)
-        self.sections = make_sections(kind, law, law.parameters(), polar(), np.array(radii), place, degree=2)
+        self.sections = make_sections(kind, law, law.parameters(), polar(), np.array(radii), place, degree=2,
+                                      threads=Threads(number))  # fmt: skip
         self.state = State()
         self.strain = self.state.add("strain", np.zeros((len(radii), 2, 6)), Where.ELEMENT)
         self.points = {
@@ -47,7 +48,7 @@ class Path:
 
 def follower(path):
     """The finer path of all arrays of the path's sections."""
-    return FinerPath(path.sections, path.state, list(path.points), path.threads, path.threads.shares(len(path.s), 1))
+    return FinerPath(path.sections, path.state, list(path.points))
 
 
 @pytest.mark.parametrize("steps", [4, 8])
@@ -83,10 +84,11 @@ def test_what_stays_elastic_has_no_error():
 @pytest.mark.parametrize("kind", ["plane", "warping"])
 def test_many_elements_are_followed_block_by_block_and_side_by_side(monkeypatch, kind):
     """Also where grinding has cut the last sections, which no block begins with."""
+    monkeypatch.setattr(threads, "LEAST", 1)
     radii, errors = np.linspace(2.0, 3.0, 5), []
-    for block, threads in ((2, 1), (64, 1), (64, 2), (2, 2)):
+    for block, number in ((2, 1), (64, 1), (64, 2), (2, 2)):
         monkeypatch.setattr(finer_path, "BLOCK", block)
-        path = Path(radii, kind, ground=(3, 4), threads=threads)
+        path = Path(radii, kind, ground=(3, 4), number=number)
         finer = follower(path)
         for k in (1, 2):
             path.to(strains(0.5 * k))
