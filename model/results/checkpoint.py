@@ -3,7 +3,6 @@
 The arrays of a checkpoint belong to stations and elements, not to ranks, so that any number of ranks can resume.
 """
 
-import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -18,6 +17,7 @@ from coilset.model.case import Case
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.program import ProgramPosition, Stage
 from coilset.model.equilibrium.step_control import Position
+from coilset.model.results import state_file
 from coilset.model.results.folder import make, whole
 from coilset.model.results.provenance import changed, provenance
 from coilset.model.results.record import BucklingMode, Result, Snapshot
@@ -28,8 +28,6 @@ from coilset.model.warning import Warning
 
 # what must be unchanged to resume
 SPRING_ENTRIES = ("spring", "material", "temperature", "ends", "seats", "mesh", "contact")
-PREFIX = "state_"  # of the state's arrays
-MODE = "mode_"  # of the buckling mode's
 ANEW = "use --force instead of --resume to start again"
 
 
@@ -65,7 +63,7 @@ class Checkpoint:
 
     def save(self, state: State, layout: LineLayout, position: ProgramPosition, result: Result) -> None:
         """Write the state after a converged step; collective."""
-        arrays: dict[str, Any] = {PREFIX + name: layout.natural(field) for name, field in state.items()}
+        fields = {name: layout.natural(field) for name, field in state.items()}
         if layout.comm.rank:
             return
         about = {
@@ -77,14 +75,13 @@ class Checkpoint:
             "steps": len(result.steps),
             "snapshots": len(result.snapshots),
         }
-        if result.mode is not None:
-            arrays |= {MODE + name: value for name, value in asdict(result.mode).items()}
+        mode = asdict(result.mode) if result.mode is not None else {}
         make(self.folder)
         self.journal.append(result.steps, result.seats, result.frames)
         for number, snapshot in enumerate(result.snapshots):
             self._save_snapshot(number, snapshot)
         with self.state.next() as file:
-            np.savez(file, about=np.array(json.dumps(about)), **arrays)
+            state_file.write(file, about, fields, mode)
 
     def _save_snapshot(self, number: int, snapshot: Snapshot) -> None:
         path = self.folder / f"snapshot-{number:02d}.npz"
@@ -126,12 +123,10 @@ class Checkpoint:
         self.require()
         path = self.state.path
         try:
-            loaded = _arrays(path)
-            about = json.loads(str(loaded["about"]))
+            about, fields, mode = state_file.read(path)
             self._compare(about)
-            arrays = {name.removeprefix(PREFIX): values for name, values in loaded.items() if name.startswith(PREFIX)}
-            result = self._result(about, loaded)
-            return Saved(arrays, self._position(about, result), result)
+            result = self._result(about, mode)
+            return Saved(fields, self._position(about, result), result)
         except InputError:
             raise
         except (KeyError, TypeError):  # an entry that is missing or unknown
@@ -141,17 +136,15 @@ class Checkpoint:
             reason = str(error).partition("\n")[0] or type(error).__name__
             raise InputError(f"the checkpoint is not readable: {reason}; {ANEW}", "", path) from None
 
-    def _result(self, about: Mapping[str, Any], loaded: Mapping[str, np.ndarray]) -> Result:
-        kept: dict[str, Any] = {name.removeprefix(MODE): values for name, values in loaded.items()
-                                if name.startswith(MODE)}  # fmt: skip
-        kept = {name: values if values.ndim else float(values) for name, values in kept.items()}
+    def _result(self, about: Mapping[str, Any], of_mode: Mapping[str, np.ndarray]) -> Result:
+        kept: dict[str, Any] = {name: values if values.ndim else float(values) for name, values in of_mode.items()}
         mode = BucklingMode(**kept) if kept else None
         snapshots = tuple(self._snapshot(number) for number in range(about["snapshots"]))
         warnings = tuple(Warning(**warning) for warning in about["warnings"])
         return Result(*self.journal.read(about["steps"]), snapshots, about["rate"], warnings=warnings, mode=mode)
 
     def _snapshot(self, number: int) -> Snapshot:
-        found: dict[str, Any] = _arrays(self.folder / f"snapshot-{number:02d}.npz")
+        found: dict[str, Any] = state_file.read_arrays(self.folder / f"snapshot-{number:02d}.npz")
         for name, kind in (("name", str), ("height", float), ("force", float)):
             found[name] = kind(found[name])
         found["components"] = tuple(str(name) for name in found["components"])
@@ -193,11 +186,6 @@ class Checkpoint:
         behind = about["position"]["stage"]
         if old["loading"][:behind] != new["loading"][:behind]:
             raise InputError(f"its first {behind} phases are finished and must not change", "loading", self.folder)
-
-
-def _arrays(path: Path) -> dict[str, np.ndarray]:
-    with open(path, "rb") as content, np.load(content, allow_pickle=False) as file:
-        return {name: file[name] for name in file.files}
 
 
 def _without_cells(result: Result) -> Result:

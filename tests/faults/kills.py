@@ -137,8 +137,8 @@ def found(name: str, folder: Path) -> dict[str, object]:
         tables |= {f"{path} {column}": np.array([float(row[column] or "nan") for row in rows]) for column in rows[0]}
     summary = json.loads((out / "summary.json").read_text())
     with np.load(out / "checkpoint" / "state.npz") as state:
-        arrays = {entry: state[entry] for entry in state.files if entry.startswith("state_")}
-    return {**tables, **arrays, **{entry: value for entry, value in summary.items() if entry != "origin"}}
+        numbers = state["state"]
+    return {**tables, "state": numbers, **{entry: value for entry, value in summary.items() if entry != "origin"}}
 
 
 def differing(wanted: dict[str, object], now: dict[str, object], to_the_bit: bool) -> set[str]:

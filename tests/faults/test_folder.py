@@ -15,7 +15,7 @@ from coilset.meshes.errors import CoilsetError, InputError, SolveError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.results import folder as folders
-from coilset.model.results import provenance
+from coilset.model.results import provenance, state_file
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.scripts.log import run_log
 from coilset.scripts.solve import solve
@@ -76,6 +76,15 @@ def rewrite(path, change):
     np.savez(path, **arrays)
 
 
+def rewrite_fields(path, change):
+    """Change the fields of the state, which are kept as one array."""
+
+    about, fields, others = state_file.read(path)
+    change(fields)
+    with open(path, "wb") as file:
+        state_file.write(file, about, fields, others)
+
+
 def flip(path):
     content = bytearray(path.read_bytes())
     for place in range(len(content) // 5, len(content), len(content) // 5):
@@ -111,9 +120,10 @@ DAMAGES = {
     "truncated": (STATE, lambda path: path.write_bytes(path.read_bytes()[:-300])),
     "flipped": (STATE, flip),
     "empty": (STATE, lambda path: path.write_bytes(b"")),
-    "array missing": (STATE, lambda path: rewrite(path, lambda arrays: arrays.pop("state_x"))),
-    "wrong shape": (STATE, lambda path: rewrite(path, lambda arrays: arrays.update(state_x=np.zeros((3, 3))))),
-    "not a number": (STATE, lambda path: rewrite(path, lambda arrays: arrays["state_x"].fill(np.nan))),
+    "array missing": (STATE, lambda path: rewrite_fields(path, lambda fields: fields.pop("x"))),
+    "wrong shape": (STATE, lambda path: rewrite_fields(path, lambda fields: fields.update(x=np.zeros((3, 3))))),
+    "not a number": (STATE, lambda path: rewrite_fields(path, lambda fields: fields["x"].fill(np.nan))),
+    "numbers missing": (STATE, lambda path: rewrite(path, lambda arrays: arrays.update(state=arrays["state"][:-1]))),
     "older version": (STATE, lambda path: rewrite(path, older)),
     "other layout": (STATE, other_layout("position", "on_path")),
     "other position": (STATE, other_layout("position", "on_path", "size")),
@@ -156,34 +166,51 @@ def members(folder):
                 yield path, member.filename.removesuffix(".npy"), member.header_offset + 200, member.file_size
 
 
+def changes_of(name):
+    """Without an array, with another shape of it, and with a number that is none."""
+    return [lambda arrays: arrays.pop(name),
+            lambda arrays: arrays.update({name: arrays[name][1:]}),
+            lambda arrays: arrays[name].flat.__setitem__(0, np.nan)]  # fmt: skip
+
+
+def spoilt_at(path, name, place, size):
+    """Contents of a checkpoint's file that are wrong at one of its arrays."""
+    whole = path.read_bytes()
+    if size > 400:
+        turned = bytearray(whole)
+        turned[place] ^= 1
+        yield bytes(turned)
+    with np.load(path) as file:
+        is_numbers = file[name].dtype.kind == "f" and file[name].ndim
+    for change in changes_of(name)[: None if is_numbers else 1]:
+        yield rewritten(path, rewrite, change)
+
+
+def rewritten(path, how, change):
+    """What a file would be with a change."""
+    whole = path.read_bytes()
+    how(path, change)
+    content = path.read_bytes()
+    path.write_bytes(whole)
+    return content
+
+
 def test_damage_at_every_array_gets_one_line(example, folder):
     """Missing, of another shape, not a number, or with one bit turned; the analysis that refuses it stays as it was."""
     case = read_case(example, SMALL)
     analysis = Analysis(case, COMM)
-    before, found = analysis.system.state["x"].trial.copy(), list(members(folder))
-    assert len(found) > 25
-    for path, name, place, size in found:
-        whole, spoilt = path.read_bytes(), []
-        with np.load(path) as file:
-            values = file[name]
-        if size > 400:
-            turned = bytearray(whole)
-            turned[place] ^= 1
-            spoilt.append(bytes(turned))
-        changes = [lambda arrays, name=name: arrays.pop(name)]
-        if values.dtype.kind == "f" and values.ndim:
-            changes += [lambda arrays, name=name: arrays.update({name: arrays[name][1:]}),
-                        lambda arrays, name=name: arrays[name].flat.__setitem__(0, np.nan)]  # fmt: skip
-        for change in changes:
-            rewrite(path, change)
-            spoilt.append(path.read_bytes())
-            path.write_bytes(whole)
-        for content in spoilt:
-            path.write_bytes(content)
-            with pytest.raises(InputError) as caught:
-                analysis.resume(Checkpoint(folder, case).load(COMM))
-            assert "\n" not in str(caught.value)
-            assert "--force" in str(caught.value)
+    before, state = analysis.system.state["x"].trial.copy(), folder / "checkpoint" / STATE
+    spoilt = [(member[0], content) for member in members(folder) for content in spoilt_at(*member)]
+    spoilt += [(state, rewritten(state, rewrite_fields, change))
+               for name, _ in analysis.system.state.items() for change in changes_of(name)]  # fmt: skip
+    assert len(spoilt) > 75
+    for path, content in spoilt:
+        whole = path.read_bytes()
+        path.write_bytes(content)
+        with pytest.raises(InputError) as caught:
+            analysis.resume(Checkpoint(folder, case).load(COMM))
+        assert "\n" not in str(caught.value)
+        assert "--force" in str(caught.value)
         path.write_bytes(whole)
     np.testing.assert_array_equal(analysis.system.state["x"].trial, before)
     analysis.resume(Checkpoint(folder, case).load(COMM))
