@@ -25,13 +25,14 @@ class Threads:
 
     Args:
         number: of all of them. There are no more than cores, and the calling one alone where numba finds neither
-            OpenMP nor TBB: threads of its own take longer than they save.
+            OpenMP nor TBB: its own threads take longer than they save.
     """
 
     def __init__(self, number: int = 1) -> None:
         self.number = number
         if number > 1:
-            numba.config.THREADING_LAYER = "threadsafe"
+            if numba.config.THREADING_LAYER == "default":  # which may be threads of numba's own
+                numba.config.THREADING_LAYER = "threadsafe"
             try:
                 numba.get_num_threads()
             except ValueError:
