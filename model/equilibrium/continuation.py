@@ -98,7 +98,7 @@ class Continuation:
         """
         if outcome.converged and self.step_error is not None:
             outcome = self._estimated(outcome, self.step_error, size, accurately)
-        self.guess.too_far = None
+        self.guess.too_far = self.guess.probed = None
         if outcome.converged:
             self.guess.remember()
             self.system.commit()
@@ -110,9 +110,14 @@ class Continuation:
         return outcome
 
     def probe(self, load: Load, read: Callable[[], Reading]) -> tuple[Outcome, Reading]:
-        """Solve a step, evaluate its state, and return to the last equilibrium; collective."""
+        """Solve a step, evaluate its state, and return to the last equilibrium; collective.
+
+        The first step then starts in proportion to it.
+        """
         outcome = self._solve(load, (Start(),))
         reading = read()
+        if outcome.converged:
+            self.guess.probed = self.system.increments.copy(), load
         self.system.restore()
         return outcome, reading
 

@@ -27,11 +27,13 @@ class Guess:
 
     Attributes:
         too_far: increments of a step that was given up for its error only, and its length.
+        probed: increments under a load that was only tried from the last equilibrium, and that load.
     """
 
     def __init__(self, system: System, bend: float) -> None:
         self.system, self.bend = system, bend
         self.too_far: tuple[PETSc.Vec, float] | None = None
+        self.probed: tuple[PETSc.Vec, Load] | None = None
         self._last = system.state["increments"]
         self._before = system.state["increments_before"]
 
@@ -52,7 +54,7 @@ class Guess:
         does not yet: that with less force out of balance is taken.
         """
         if self.too_far is None:
-            return self._along_path(position, size) if position.last else None
+            return self._along_path(position, size) if position.last else self._as_probed(load)
         guess, length = self.too_far
         shorter = guess.copy()
         shorter.scale(size / length)
@@ -60,6 +62,15 @@ class Guess:
             return shorter
         along = self._along_path(position, size)
         return min(shorter, along, key=lambda start: self._out_of_balance(load, start))
+
+    def _as_probed(self, load: Load) -> PETSc.Vec | None:
+        """In proportion to what was probed, if the load prescribes an increment as that one did; collective."""
+        if self.probed is None or not load.prescribed:
+            return None
+        guess, probe = self.probed
+        guess = guess.copy()
+        guess.scale(load.multiple_of(probe))
+        return guess
 
     def _along_path(self, position: Position, size: float) -> PETSc.Vec:
         guess = self.scaled_last(size / position.before)

@@ -113,6 +113,10 @@ class Load:
         """Norm of the prescribed increments; collective when it is first asked for."""
         return float(np.sqrt(self._sum(self.increments @ self.increments)))
 
+    def multiple_of(self, other: "Load") -> float:
+        """The factor by which it prescribes what another load on the same unknowns does; collective."""
+        return self._sum(self.increments @ other.increments) / other.prescribed**2
+
     @cached_property
     def _greatest(self) -> float:
         """The greatest of the prescribed increments of all ranks; collective when it is first asked for."""

@@ -50,9 +50,9 @@ class NewtonControl:
     smallest_part: Fraction = 0.1
     augmentations: Count = 40
     accepted_work: Fraction = 0.3
-    sought_work: Fraction = 0.3
+    sought_work: Fraction = 0.7
     search_trials: Count = 6
-    bracket_margin: Fraction = 0.1
+    bracket_margin: Fraction = 0.15
     backtrack: Fraction = 0.4
     smallest_step_length: Fraction = 1e-3
     stress_backtrack: Fraction = 0.25

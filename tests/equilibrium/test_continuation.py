@@ -156,6 +156,25 @@ def test_a_solve_that_stagnates_says_so(make):
     assert (outcome.converged, outcome.left_branch, outcome.negative_pivots) == (False, False, 0)
 
 
+def test_the_first_step_takes_the_way_of_the_initial_rate_and_no_later_one_does(make):
+    """As long as the spring is elastic, that is nearly the solution; what is probed later would be of another state."""
+    told, alone = (make("[{to: {travel: 2}, steps: 1}, {to: {travel: 0}, steps: 1}]") for _ in range(2))
+    after, initial_rate = [], alone.initial_rate
+
+    def forgotten():
+        rate = initial_rate()
+        alone.continuation.guess.probed = None
+        return rate
+
+    alone.initial_rate = forgotten
+    steps = [run.run(lambda _: after.append(told.continuation.guess.probed)).steps for run in (told, alone)]
+    assert after == 4 * [None]
+    assert steps[0][0].evaluations < steps[1][0].evaluations
+    assert steps[0][1].evaluations == steps[1][1].evaluations
+    for one, other in zip(*steps, strict=True):
+        assert one.force_N == pytest.approx(other.force_N, rel=1e-8, abs=1e-8)
+
+
 def test_an_initial_rate_without_equilibrium_is_no_end(make):
     """Measured at nine tenths of the free length, where the wires lie in each other: a warning, and the run goes on."""
     analysis = make("[{to: {travel: 2}, steps: 1}]", "solver.control.steps.probe=0.9")

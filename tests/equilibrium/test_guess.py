@@ -8,6 +8,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from coilset.model.equilibrium.guess import Guess
+from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.step_control import Position
 from coilset.model.state import State, Where
 
@@ -67,6 +68,22 @@ def test_the_first_step_of_a_path_has_no_guess_and_the_second_has_one_step_behin
     assert guess.of(LOAD, Position(), 1.0) is None
     position = line.walk(guess, [1.0])
     assert guess.of(LOAD, position, 2.0).getArray() == pytest.approx(2.0 * (parabola(1.0) - parabola(0.0)))
+
+
+def test_the_first_step_starts_in_proportion_to_what_was_probed_if_it_goes_to_a_height():
+    layout, none = SimpleNamespace(comm=MPI.COMM_SELF), np.empty(0, int)
+
+    def pressed(height):
+        return Load(layout, np.array([0, 2]), np.array([0.0, height]), none, np.empty(0))
+
+    line = Line(parabola)
+    guess, tried = Guess(line, bend=0.2), np.array([0.0, 0.4, -0.02])
+    guess.probed = line.layout.vector(tried.copy()), pressed(-0.02)
+    for height in (-0.5, 0.3):
+        found = guess.of(pressed(height), Position(), 1.0).getArray()
+        assert found == pytest.approx(height / -0.02 * tried, rel=1e-14)
+    pulled = Load(layout, np.array([0]), np.zeros(1), np.array([2]), np.array([-3.0]))
+    assert guess.of(pulled, Position(), 1.0) is None
 
 
 def test_after_a_step_with_too_great_an_error_the_start_with_less_force_is_taken():
