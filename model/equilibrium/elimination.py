@@ -6,11 +6,12 @@ the front that eliminates the first of them. Fronts are ordered so that pending 
 """
 
 from dataclasses import dataclass
+from operator import itemgetter
 
 import numpy as np
 from numba import njit
 
-from coilset.model.equilibrium.ordering import fill_reducing_order
+from coilset.model.equilibrium.ordering import NARROW, fill_reducing_order, narrow_fronts, swept_order
 
 # Fraction of zeros accepted for larger fronts: small fronts cost more to move than to eliminate.
 ZEROS = 0.15
@@ -66,9 +67,14 @@ def plan_elimination(indptr: np.ndarray, indices: np.ndarray, keep: np.ndarray) 
     kept = np.zeros(len(size), dtype=bool)
     kept[group[keep]] = True
     order = fill_reducing_order(graph[0], graph[1], np.flatnonzero(kept))
-    sequence, eliminated = np.concatenate([order[~kept[order]], order[kept[order]]]), int((~kept).sum())
-    fronts = find_fronts(*graph, sequence, eliminated, size)
-    order, first, rest_start, rest, child_start, child, stack, multiplications = number_places(*fronts, size, members)
+    eliminated = int((~kept).sum())
+    fronts = find_fronts(*graph, order, eliminated, size)
+    places, narrow = number_places(*fronts, size, members), narrow_fronts(*fronts, size, NARROW)
+    if narrow.sum() < eliminated:
+        order = swept_order(order, narrow, kept, along=members[np.cumsum(size) - size])
+        swept = number_places(*find_fronts(*graph, order, eliminated, size), size, members)
+        places = min(places, swept, key=itemgetter(-1))
+    order, first, rest_start, rest, child_start, child, stack, multiplications = places
     into, entry_start, entry, position = place_entries(
         indptr, indices, mirror, order, first, rest_start, rest, child_start, child
     )

@@ -5,6 +5,11 @@ and nothing else: no order does with less, and none is found faster. What is lef
 to minimum degree: approximate minimum degree (Amestoy, Davis and Duff 1996) where PETSc has SuiteSparse, else PETSc's
 own. With 20,000 elements in 253 windings the former takes a quarter of the time, and its factors three quarters of
 the multiplications.
+
+Windings that all touch form a tube, with many more of them along it than stations around it. Minimum degree dissects a
+tube into pieces with a ring at either end, and its widest fronts hold two or three rings. A front that sweeps along the
+tube holds one ring and its pivots. So narrow fronts are those of minimum degree, and what is left of the wire then is
+swept from end to end, wherever this takes fewer multiplications: 5.6 instead of 7.8 billion with 20,000 elements.
 """
 
 import numpy as np
@@ -12,6 +17,7 @@ from numba import njit
 from petsc4py import PETSc
 
 ORDERING = "amd" if PETSc.Sys.hasExternalPackage("amd") else "qmd"
+NARROW = 80  # rows of a front; with 40 or 100 there are as few multiplications to 8 %
 
 
 def fill_reducing_order(indptr: np.ndarray, indices: np.ndarray, kept: np.ndarray) -> np.ndarray:
@@ -39,6 +45,49 @@ def fill_reducing_order(indptr: np.ndarray, indices: np.ndarray, kept: np.ndarra
     order = left[matrix.getOrdering(ORDERING)[0].getIndices()]
     matrix.destroy()
     return np.concatenate([first, order[~stays[order]], order[stays[order]]])
+
+
+def swept_order(order: np.ndarray, narrow: np.ndarray, kept: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """An order of vertices in which all but those in narrow fronts follow the wire, towards the kept ones.
+
+    Args:
+        order: of all vertices.
+        narrow: which of them it eliminates in narrow fronts, see `narrow_fronts`.
+        kept: which are not eliminated.
+        along: number of each vertex along the wire.
+    """
+    wide = np.flatnonzero(~narrow & ~kept)
+    wide = wide[np.argsort(along[wide])]
+    if kept.any() and along[kept].mean() < along[wide].mean():
+        wide = wide[::-1]
+    return np.concatenate([order[narrow[order]], wide, order[kept[order]]])
+
+
+@njit(cache=True)
+def narrow_fronts(
+    own_start: np.ndarray,
+    own: np.ndarray,
+    rest_start: np.ndarray,
+    rest: np.ndarray,
+    takes: np.ndarray,
+    size: np.ndarray,
+    most: int,
+) -> np.ndarray:
+    """Which groups are eliminated in narrow fronts that take no updates of wider ones, bool.
+
+    Args:
+        own_start, own, rest_start, rest, takes: see `find_fronts`.
+        size: unknowns in each group.
+        most: rows of a narrow front.
+    """
+    narrow, is_narrow = np.zeros(len(size), np.bool_), np.ones(len(takes), np.bool_)
+    for f in range(len(takes) - 1):
+        pivots, others = own[own_start[f] : own_start[f + 1]], rest[rest_start[f] : rest_start[f + 1]]
+        is_narrow[f] &= np.sum(size[pivots]) + np.sum(size[others]) <= most
+        if takes[f] >= 0:
+            is_narrow[takes[f]] &= is_narrow[f]
+        narrow[pivots] = is_narrow[f]
+    return narrow
 
 
 @njit(cache=True)
