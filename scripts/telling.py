@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from coilset.model.analysis import Analysis
@@ -36,11 +37,11 @@ class Lines:
 
     def say(self, text: str) -> None:
         """A line about the run."""
-        self.console.print(text)
+        self.console.print(text, markup=False)
 
     def warn(self, text: str) -> None:
         """A warning."""
-        self.console.print(f"[yellow]warning:[/] {text}")
+        self.console.print(f"[yellow]warning:[/] {escape(text)}")
 
     def begin(self, analysis: Analysis, case_file: str | Path, resumed: bool) -> None:
         """The run begins or continues."""
@@ -101,8 +102,8 @@ class Lines:
         table.add_row("maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2))
         inside = quantity(summary["residual_shear_inside_MPa"], "MPa", 2)
         table.add_row("residual shear stress, inside of coil", inside)
-        table.add_row("results in", f"{out}{os.sep}")
         self.console.print(table)
+        self.console.print(f"  results in {out}{os.sep}", markup=False, soft_wrap=True)  # a path stays whole
         for warning in summary["warnings"]:
             self.warn(warning["message"])
 

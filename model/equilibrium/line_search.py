@@ -114,8 +114,13 @@ class WorkSearch:
         return float(work), math.sqrt(square)
 
     def _zero(self, start_work: float, length: float, work: float) -> float:
-        """Step length at which the work is near zero, by the Illinois rule."""
+        """Step length at which the work is near zero, by the Illinois rule.
+
+        Where contacts close on the way, the work falls ever more steeply: to find its zero well takes more states than it
+        saves.
+        """
         control, low, low_work, high, high_work, side = self.control, 0.0, start_work, length, work, 0
+        sought = start_work * (control.sought_work if self.system.touches else control.accepted_work)
         for _trial in range(control.search_trials):
             margin, secant = control.bracket_margin * (high - low), (low * high_work - high * low_work)
             length = min(max(secant / (high_work - low_work), low + margin), high - margin)
@@ -123,7 +128,7 @@ class WorkSearch:
             if found is None:
                 high, high_work = length, -start_work
                 continue
-            if abs(found) <= control.sought_work * start_work:
+            if abs(found) <= sought:
                 break
             if found > 0.0:
                 low, low_work, high_work, side = length, found, high_work * (0.5 if side > 0 else 1.0), 1

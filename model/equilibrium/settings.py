@@ -30,7 +30,8 @@ class NewtonControl:
         augmentations: maximum number of augmentations of the contacts in a step.
         accepted_work: |s(λ)/s(0)| of the out-of-balance work up to which a full correction is accepted although the
             norm grows.
-        sought_work: |s(λ)/s(0)| at which the search for a zero of the work ends.
+        sought_work: |s(λ)/s(0)| at which the search for a zero of the work ends where something touches; elsewhere it
+            ends at `accepted_work`.
         search_trials: maximum number of trials of that search.
         bracket_margin: distance that a trial keeps from both ends of the bracket, as a share of its width.
         backtrack: factor on the step length where the work has no zero.

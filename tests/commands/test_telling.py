@@ -8,7 +8,7 @@ import pytest
 from mpi4py import MPI
 
 from coilset.scripts.solve import solve
-from coilset.scripts.telling import duration
+from coilset.scripts.telling import Lines, duration
 
 SEATS = ["both seats"]
 CASE = """
@@ -23,11 +23,11 @@ mesh: {elements_per_turn: 8, section: {kind: curved, radial: 2, angular: 6}}
 def said(tmp_path, capsys):
     """What a run prints, and its folder."""
 
-    def run(**voice):
-        path = tmp_path / "spring.yaml"
+    def run(name="spring", **voice):
+        path = tmp_path / f"{name}.yaml"
         path.write_text(CASE)
-        solve(path, tmp_path / "out", True, [], pictures=False, comm=MPI.COMM_SELF, **voice)
-        return capsys.readouterr().out.splitlines(), tmp_path / "out"
+        solve(path, tmp_path / name, True, [], pictures=False, comm=MPI.COMM_SELF, **voice)
+        return capsys.readouterr().out.splitlines(), tmp_path / name
 
     return run
 
@@ -73,6 +73,16 @@ def test_verbose_tells_each_iteration(said):
             assert told[-1] < 1e-6 <= max(told)
     assert steps == 5
     assert "iteration 0" not in "".join(said()[0])
+
+
+def test_names_are_printed_as_they_are(said, capsys):
+    """Brackets in them are no markup, and a path stays whole however long it is."""
+    name = "a[bold]" + 100 * "x"
+    lines, folder = said(name=name)
+    assert f"  results in {folder}/" in lines
+    assert any(line.startswith(f"{name}.yaml: ") for line in lines)
+    Lines().warn("see [red] there")
+    assert capsys.readouterr().out == "warning: see [red] there\n"
 
 
 @pytest.mark.parametrize(("seconds", "words"), [(40.4, "40 s"), (99.6, "100 s"), (150.0, "2 min"), (9000.0, "2.5 h")])
