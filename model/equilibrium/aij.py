@@ -5,6 +5,7 @@ others. In both, entries lie row by row with ascending columns, as they do on on
 """
 
 import ctypes
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -30,26 +31,43 @@ class AijEntries:
         mat: of PETSc's type `seqaij` or `mpiaij`.
 
     Attributes:
-        pattern: of this rank's rows, CSR with global, ascending columns: indptr and indices; on one rank PETSc's own.
         own, others: PETSc's patterns of the rank's own columns, numbered from the first of these, and of the others.
+        columns: numbers of the others, ascending.
     """
 
     def __init__(self, mat: PETSc.Mat) -> None:
-        self._mat, self._one = mat, mat.getComm().size == 1
+        self._mat, self._one, self._range = mat, mat.getComm().size == 1, mat.getOwnershipRange()
         own, others, columns = self._parts()
         self._address, self._values = 0, NONE  # of the last time, on one rank
         self._handle, self._found = own, ctypes.c_void_p()
-        self.own = self.pattern = _pattern(own)
-        self.others = np.zeros_like(self.own[0]), self.own[1][:0]
-        self._places, self._room = np.empty(0, np.int32), NONE
+        self.own = _pattern(own)
+        self.others, self.columns = (np.zeros_like(self.own[0]), self.own[1][:0]), np.empty(0, PETSc.IntType)
         if not self._one:
             self.others = _pattern(others)
-            numbers = _numbers(columns, int(self.others[1].max(initial=-1)) + 1)
-            self.pattern, self._places = _side_by_side(*self.own, *self.others, numbers, mat.getOwnershipRange()[0])
+            self.columns = _numbers(columns, int(self.others[1].max(initial=-1)) + 1)
+
+    @cached_property
+    def _merged(self) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
+        """See `_side_by_side`."""
+        return _side_by_side(*self.own, *self.others, self.columns, self._range[0])
+
+    @property
+    def pattern(self) -> tuple[np.ndarray, np.ndarray]:
+        """Of this rank's rows, CSR with global, ascending columns: indptr and indices; on one rank PETSc's own."""
+        return self.own if self._one else self._merged[0]
 
     def places(self) -> np.ndarray:
         """Where each entry of the pattern lies in the first of the `arrays`, or behind it, in the second."""
-        return np.arange(len(self.pattern[1]), dtype=np.int32) if self._one else self._places
+        return np.arange(len(self.own[1]), dtype=np.int32) if self._one else self._merged[1]
+
+    def local(self, unknowns: np.ndarray) -> np.ndarray:
+        """Numbers of unknowns by this rank's columns: its own from 0 on, behind them the others, and then the rest."""
+        if self._one:
+            return unknowns
+        (start, stop), at = self._range, np.searchsorted(self.columns, unknowns)
+        known = np.append(self.columns, -1)[at] == unknowns
+        mine = (unknowns >= start) & (unknowns < stop)
+        return np.where(mine, unknowns - start, stop - start + np.where(known, at, len(self.columns)))
 
     def arrays(self, only_read: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """Where PETSc keeps the entries now: those of the rank's own columns, and the others.
@@ -64,20 +82,6 @@ class AijEntries:
         own, others, _ = self._parts()
         values = _at(_address(own, self._found, way), len(self.own[1]))
         return values, _at(_address(others, self._found, way), len(self.others[1]))
-
-    def room(self, own: np.ndarray) -> np.ndarray:
-        """Where values in the order of the pattern can be added up: the first of the `arrays`, or zeros for `add`."""
-        if self._one:
-            return own
-        if not len(self._room):
-            self._room = np.empty(len(self.pattern[1]))
-        self._room[:] = 0.0
-        return self._room
-
-    def add(self, room: np.ndarray) -> None:
-        """Add what is in the `room`."""
-        if not self._one:
-            _add(room, self._places, *self.arrays())
 
     def _parts(self) -> tuple[ctypes.c_void_p, ctypes.c_void_p, Any]:
         """PETSc's matrices of the own columns and of the others, and where it keeps the numbers of these."""
@@ -119,16 +123,6 @@ def _side_by_side(
             count += 1
         out[row + 1] = count
     return (out, columns), places
-
-
-@njit(cache=True)
-def _add(values: np.ndarray, places: np.ndarray, own: np.ndarray, others: np.ndarray) -> None:
-    for e in range(len(places)):
-        place = places[e]
-        if place < len(own):
-            own[place] += values[e]
-        else:
-            others[place - len(own)] += values[e]
 
 
 @njit(cache=True)

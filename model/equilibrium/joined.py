@@ -28,27 +28,32 @@ def join_patterns(
 
 
 def add_matrices(
-    pattern: tuple[np.ndarray, np.ndarray],
+    own: tuple[np.ndarray, np.ndarray],
+    others: tuple[np.ndarray, np.ndarray],
     unknowns: np.ndarray,
     numbers: np.ndarray,
     matrices: np.ndarray,
-    start: int,
-    values: np.ndarray,
+    values: tuple[np.ndarray, np.ndarray],
 ) -> None:
-    """Add small matrices to a range of rows.
+    """Add small matrices to some rows of a matrix, which is kept in two parts: see `AijEntries`.
 
     Args:
-        pattern: indptr and indices of the rows, which have room for them.
-        unknowns: by what the small matrices call them.
-        numbers: what these call their unknowns, shape (m, k).
+        own: indptr and indices of the rows in their own columns, numbered from 0 on; they have room for the matrices.
+        others: of the rows in the other columns, as well.
+        unknowns: by what the small matrices call them: numbers of own columns, behind them of the others, and behind
+            these any number for those that are in neither.
+        numbers: what the small matrices call their unknowns, shape (m, k).
         matrices: shape (m, k, k).
-        start: number of the first row.
-        values: of the rows' entries.
+        values: of the entries of both parts.
 
     Raises:
         ValueError: if there is no room for them.
     """
-    if not _add(*pattern, unknowns, numbers, matrices, start, values):
+    n, end = len(own[0]) - 1, int(unknowns.max(initial=-1)) + 1
+    found = _add(*own, unknowns, numbers, matrices, 0, n, values[0])
+    if end > n:
+        found &= _add(*others, unknowns, numbers, matrices, n, end, values[1])
+    if not found:
         raise ValueError("the matrix has no entries for some of the contacts")
 
 
@@ -112,15 +117,21 @@ def _join(
 
 
 @njit(cache=True)
-def _find_runs(columns: np.ndarray, length: np.ndarray) -> None:
-    """Write how many neighbouring columns begin at each place that is not in such a run already."""
-    b = 0
+def _find_runs(
+    columns: np.ndarray, start: int, stop: int, begin: np.ndarray, length: np.ndarray, first: np.ndarray
+) -> int:
+    """Runs of neighbouring columns from `start` to `stop`: write at which places they begin, how long they are, and
+    their first columns, counted from `start`; their number."""
+    runs, b = 0, 0
     while b < len(columns):
-        stop = b + 1
-        while stop < len(columns) and columns[stop] == columns[stop - 1] + 1:
-            stop += 1
-        length[b] = stop - b
-        b = stop
+        end = b + 1
+        if start <= columns[b] < stop:
+            while end < len(columns) and columns[end] == columns[end - 1] + 1 and columns[end] < stop:
+                end += 1
+            begin[runs], length[runs], first[runs] = b, end - b, columns[b] - start
+            runs += 1
+        b = end
+    return runs
 
 
 @njit(cache=True)
@@ -131,29 +142,30 @@ def _add(
     numbers: np.ndarray,
     matrices: np.ndarray,
     start: int,
+    stop: int,
     values: np.ndarray,
 ) -> bool:
-    """As `add_matrices`; False if some entry has no place."""
+    """As `add_matrices`, to the part of the columns from `start` to `stop`; False if some entry has no place."""
     n, k = len(indptr) - 1, numbers.shape[1]
-    offset, length = np.zeros(k, np.int64), np.empty(k, np.int64)  # of each run: its place in a row, and its columns
-    columns = np.empty(k, np.int64)
+    columns, begin, length, first = np.empty((4, k), np.int64)
+    offset = np.zeros(k, np.int64)  # of each run: its place in a row
     for m in range(len(numbers)):
         for a in range(k):
             columns[a] = unknowns[numbers[m, a]]
-        _find_runs(columns, length)
+        runs = _find_runs(columns, start, stop, begin, length, first)
         for a in range(k):
-            row, b = columns[a] - start, 0
+            row = columns[a]
             if row < 0 or row >= n:
                 continue
             low, high, of_row = indptr[row], indptr[row + 1], matrices[m, a]
-            while b < k:
-                p, many = low + offset[b], length[b]
-                if p + many > high or indices[p] != columns[b]:
-                    p = low + np.searchsorted(indices[low:high], columns[b])
-                    if p + many > high or indices[p] != columns[b]:
+            for run in range(runs):
+                b, many, column, p = begin[run], length[run], first[run], low + offset[run]
+                if p + many > high or indices[p] != column:
+                    p = low + np.searchsorted(indices[low:high], column)
+                    if p + many > high or indices[p] != column:
                         return False
-                    offset[b] = p - low
-                if indices[p + many - 1] != columns[b + many - 1]:  # columns ascend: those between are right, too
+                    offset[run] = p - low
+                if indices[p + many - 1] != column + many - 1:  # columns ascend: those between are right, too
                     return False
                 if many == 3:  # a station's displacements
                     values[p] += of_row[b]
@@ -162,7 +174,6 @@ def _add(
                 else:
                     for j in range(many):
                         values[p + j] += of_row[b + j]
-                b += many
     return True
 
 

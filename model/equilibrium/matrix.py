@@ -44,6 +44,7 @@ class TangentMatrix:
         self._places, self._known = list[int](), set[int]()
         self._bare: tuple[np.ndarray, np.ndarray] | None = None  # the pattern without contacts, while there are some
         self._entries: AijEntries | None = None
+        self._unknowns = np.empty(0, PETSc.IntType)  # of contacts, in the entries' numbers
         self._elements = ElementEntries(body, layout) if isinstance(body, OfElements) else None
 
     @property
@@ -68,7 +69,7 @@ class TangentMatrix:
             assert self._entries is not None
             own, _ = self._entries.arrays()
             self._elements.add(self.mat, own)
-            self._add_contacts(contributions, own)
+            self._add_contacts(contributions)
             return
         assert isinstance(self.body, FillsMatrix)
         self.body.tangent(self.mat)
@@ -101,17 +102,15 @@ class TangentMatrix:
             self._make_room(contributions)
             self._places, self._known = places, set(places)
 
-    def _add_contacts(self, contributions: Sequence[Contribution], own: np.ndarray) -> None:
-        """Add the stiffness of contacts; `own` are the entries of the rank's own columns."""
-        layout, entries, acting = self.layout, self._entries, [part for part in contributions if len(part.dofs)]
+    def _add_contacts(self, contributions: Sequence[Contribution]) -> None:
+        """Add the stiffness of contacts."""
+        entries, acting = self._entries, [part for part in contributions if len(part.dofs)]
         if not acting:
             return
-        assert isinstance(layout, LineLayout)
         assert entries is not None
-        room = entries.room(own)
+        values = entries.arrays()
         for part in acting:
-            add_matrices(entries.pattern, layout.contact_dofs, part.dofs, part.stiffness, layout.start, room)
-        entries.add(room)
+            add_matrices(entries.own, entries.others, self._unknowns, part.dofs, part.stiffness, values)
 
     def _make_room(self, contributions: Sequence[Contribution]) -> None:
         """Allocate the rows anew: those of the body, and what the contacts join."""
@@ -129,6 +128,9 @@ class TangentMatrix:
         self.mat.setPreallocationCSR(pattern)
         self.mat.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
         self._entries = AijEntries(self.mat)
+        if tables:
+            assert isinstance(layout, LineLayout)
+            self._unknowns = self._entries.local(layout.contact_dofs).astype(PETSc.IntType)  # as on one rank
         elements.find(self._entries)
         self.version += 1
 

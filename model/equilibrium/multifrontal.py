@@ -145,15 +145,17 @@ def go_backward(
     first: np.ndarray, rest_start: np.ndarray, rest: np.ndarray, factors: np.ndarray, x: np.ndarray
 ) -> None:
     """U⁻¹ of the eliminated places, where the others are known, in place."""
-    at = len(factors)
+    at, beyond = len(factors), np.empty(len(x))
     for f in range(len(first) - 3, -1, -1):
         begin, k, m = first[f], first[f + 1] - first[f], rest_start[f + 1] - rest_start[f]
         w = k + m
         at -= k * (w + m)
+        for j in range(m):  # side by side, as registers take them
+            beyond[j] = x[rest[rest_start[f] + j]]
         for i in range(k - 1, -1, -1):
             row, total = at + i * w, x[begin + i]
             for j in range(m):
-                total -= factors[row + k + j] * x[rest[rest_start[f] + j]]
+                total -= factors[row + k + j] * beyond[j]
             for j in range(i + 1, k):
                 total -= factors[row + j] * x[begin + j]
             x[begin + i] = total / factors[row + i]

@@ -29,6 +29,15 @@ def csr(pattern):
     return np.append(0, np.cumsum(rows.sum(axis=1))).astype(np.int32), np.nonzero(rows)[1].astype(np.int32)
 
 
+def parts(pattern):
+    """CSR of the rows in their own columns, and in the others, which follow behind these; where unknowns are then."""
+    here = np.isin(NUMBERS, NUMBERS[RANGE])
+    numbers = np.append(NUMBERS[RANGE], NUMBERS[~here])
+    own, others = pattern[RANGE, RANGE], pattern[RANGE, ~here]
+    both = [(np.append(0, np.cumsum(part.sum(axis=1))), np.nonzero(part)[1]) for part in (own, others)]
+    return *[tuple(array.astype(np.int32) for array in part) for part in both], np.argsort(numbers).astype(np.int32)
+
+
 def test_pattern_and_sum_are_those_of_dense_matrices():
     rng, pattern, total, forces = np.random.default_rng(5), bare(), np.zeros((SIZE, SIZE)), np.zeros(SIZE)
     matrices = [rng.normal(size=(*table.shape, table.shape[1])) for table in tables()]
@@ -40,15 +49,29 @@ def test_pattern_and_sum_are_those_of_dense_matrices():
             forces[unknowns] += load
     found = join_patterns(csr(bare()), tables(), RANGE.start, SIZE)
     assert all(np.array_equal(*pair) for pair in zip(found, csr(pattern), strict=True))
-    values, added = np.zeros(len(found[1])), np.zeros(RANGE.stop - RANGE.start)
+    own, others, unknowns = parts(pattern)
+    values, added = (np.zeros(len(own[1])), np.zeros(len(others[1]))), np.zeros(RANGE.stop - RANGE.start)
     for table, of_table, loads in zip(tables(), matrices, vectors, strict=True):
-        add_matrices(found, NUMBERS, table, of_table, RANGE.start, values)
+        add_matrices(own, others, unknowns, table, of_table, values)
         add_vectors(NUMBERS, table, loads, RANGE.start, added)
-    np.testing.assert_allclose(values, total[RANGE][pattern[RANGE]], rtol=0, atol=1e-13)
+    here = np.isin(NUMBERS, NUMBERS[RANGE])
+    for columns, of_part in zip((here, ~here), values, strict=True):
+        expected = total[RANGE][:, columns][pattern[RANGE][:, columns]]
+        np.testing.assert_allclose(of_part, expected, rtol=0, atol=1e-13)
     np.testing.assert_allclose(added, forces[RANGE], rtol=0, atol=1e-13)
 
 
-def test_matrix_without_room_is_refused():
-    """The pattern has no entries for what is added: nothing is written beside it."""
-    with pytest.raises(ValueError, match="no entries"):
-        add_matrices(csr(bare()), NUMBERS, tables()[1], np.ones((5, 6, 6)), RANGE.start, np.zeros(csr(bare())[0][-1]))
+@pytest.mark.parametrize("lacking", [(10, 20), (10, 3), (32, 39)], ids=["own", "before", "behind"])
+def test_matrix_without_room_is_refused(lacking):
+    """The pattern has no entry for one of what is added, in the rows' own columns or in others."""
+    pattern, table = bare(), np.array([lacking], dtype=np.int32)
+    pattern[np.ix_(lacking, lacking)] = True
+    for expected in (True, False):
+        own, others, unknowns = parts(pattern)
+        values = np.zeros(len(own[1])), np.zeros(len(others[1]))
+        if expected:
+            add_matrices(own, others, unknowns, table, np.ones((1, 2, 2)), values)
+        else:
+            with pytest.raises(ValueError, match="no entries"):
+                add_matrices(own, others, unknowns, table, np.ones((1, 2, 2)), values)
+        pattern[lacking] = False
