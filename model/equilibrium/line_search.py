@@ -116,8 +116,8 @@ class WorkSearch:
     def _zero(self, start_work: float, length: float, work: float) -> float:
         """Step length at which the work is near zero, by the Illinois rule.
 
-        Where contacts close on the way, the work falls ever more steeply: to find its zero well takes more states than it
-        saves.
+        Where contacts close on the way, the work falls ever more steeply,
+        and to find its zero well takes more states than it saves.
         """
         control, low, low_work, high, high_work, side = self.control, 0.0, start_work, length, work, 0
         sought = start_work * (control.sought_work if self.system.touches else control.accepted_work)
