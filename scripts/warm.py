@@ -15,9 +15,9 @@ SHORT = {"ck15_presetting.yaml": LOADING, "time/relaxation.yaml": CREEPING}  # e
 def warm() -> None:
     """Compress an example until coils touch and yield, release it, let one creep, press a uniform rod; keep nothing.
 
-    What several threads do is compiled beside what one does.
+    What several threads do is compiled beside what one does: there are points enough for two, on the surface too.
     """
-    cases = [read_case(EXAMPLES / example, ("mesh.elements_per_turn=8", loading)) for example, loading in SHORT.items()]
+    cases = [read_case(EXAMPLES / example, ("mesh.elements_per_turn=16", loading)) for example, loading in SHORT.items()]
     for case in cases:
         for threads in (1, 2):
             Analysis(case, MPI.COMM_SELF, threads=threads).run()
