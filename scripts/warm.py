@@ -17,7 +17,8 @@ def warm() -> None:
 
     What several threads do is compiled beside what one does: there are points enough for two, on the surface too.
     """
-    cases = [read_case(EXAMPLES / example, ("mesh.elements_per_turn=16", loading)) for example, loading in SHORT.items()]
+    mesh = "mesh.elements_per_turn=16"
+    cases = [read_case(EXAMPLES / example, (mesh, loading)) for example, loading in SHORT.items()]
     for case in cases:
         for threads in (1, 2):
             Analysis(case, MPI.COMM_SELF, threads=threads).run()
