@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
 from rich.table import Table
 
 from coilset.model.results.folder import make, whole
+from coilset.scripts.console import Console
 from coilset.verification.benchmarks.run import bench as measure_all
 from coilset.verification.benchmarks.target import ITERATION, per_element, seconds
 
@@ -26,7 +26,7 @@ def bench(out: str, full: bool, cold: bool, against: str | None = None) -> None:
         InputError: if `against` is not a checkout.
     """
     environment = dict(os.environ)  # as it was before MPI
-    console = Console(highlight=False, width=None if sys.stdout.isatty() else WIDTH)
+    console = Console(width=None if sys.stdout.isatty() else WIDTH)
     began, folder = time.perf_counter(), Path(out)
     with console.status("") as status:
         record = measure_all(full, cold, environment, lambda name: status.update(f"measuring: {name}"),

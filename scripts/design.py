@@ -5,7 +5,6 @@ import time
 from contextlib import closing
 from pathlib import Path
 
-from rich.console import Console
 from rich.table import Table
 
 from coilset.meshes.errors import CoilsetError, InputError
@@ -17,6 +16,7 @@ from coilset.model.design.search import Found, Search
 from coilset.model.design.trade_offs import TradeOff, trade_offs
 from coilset.model.design.wish import Wish, read_wish
 from coilset.model.sweep.journal import Journal, read_records
+from coilset.scripts.console import Console
 from coilset.scripts.log import run_log
 from coilset.scripts.target import results_folder
 
@@ -30,9 +30,9 @@ def design(wish_file: str, out: str | None, force: bool, resume: bool) -> None:
         InputError: the wish is wrong or cannot be met; then nothing is written.
         SolveError: the search does not converge; --resume continues it.
     """
-    console = Console(highlight=False)
+    console = Console()
     if not console.is_terminal:
-        console = Console(highlight=False, width=WIDTH)
+        console = Console(width=WIDTH)
     wish = read_wish(wish_file)
     try:
         make_search(wish)
@@ -63,7 +63,7 @@ def _design(console: Console, wish: Wish, folder: Path, journal: Journal) -> Non
     progress = Progress(console)
     search = make_search(wish, known, journal.append, progress)
     progress.search = search
-    console.print(f"{wish.file.name}: {len(search.width)} unknown(s), {len(search.conditions)} condition(s)")
+    console.say(f"{wish.file.name}: {len(search.width)} unknown(s), {len(search.conditions)} condition(s)")
     found = find(search)
     rows = list(trade_offs(search, found, wish.spec.trade_offs))
     output.write(folder, wish, search, found, rows, time.perf_counter() - began)
@@ -119,8 +119,8 @@ def _conclude(
         table.add_row(f"{row.of} {value}", *cells, "" if row.possible else "out of reach")
     console.print(table)
     for warning in found.best.summary["warnings"]:
-        console.print(f"[yellow]warning:[/] {warning['message']}")
-    console.print(f"{search.evaluator.count} evaluations in {seconds:.1f} s; solve {folder}{os.sep}found.yaml for all "
+        console.warn(warning["message"])
+    console.say(f"{search.evaluator.count} evaluations in {seconds:.1f} s; solve {folder}{os.sep}found.yaml for all "
                   "results of this spring (also there: design.json, trade_offs.csv)")  # fmt: skip
 
 

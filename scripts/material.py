@@ -14,12 +14,12 @@ from coilset.scripts.target import folder_target, results_folder
 
 if TYPE_CHECKING:  # commands load what they need
     from matplotlib.figure import Figure
-    from rich.console import Console
     from rich.table import Table
 
     from coilset.model.material.identification.cyclic import CyclicFit
     from coilset.model.material.law import Law
     from coilset.model.material.programs import History, Program
+    from coilset.scripts.console import Console
 
 app = typer.Typer(help="Show a material, test it at one point, or fit it to test data.", no_args_is_help=True)
 MATERIAL = typer.Argument(help="name in the library, or path of a material file")
@@ -32,13 +32,12 @@ FORCE = typer.Option(False, "--force", help="overwrite existing files")
 @app.command()
 def show(material: str = MATERIAL, out: str = OUT, force: bool = FORCE) -> None:
     """Print a material's constants and draw k², ζ and 2Gκ over the plastic work."""
-    from rich.console import Console
-
     from coilset.model.material import figures, library
+    from coilset.scripts.console import Console
 
     law = library.load(material)
     folder = _folder(out, law.name)
-    console = Console(highlight=False)
+    console = Console()
     console.print(f"[bold]{law.name}[/]: {law.description}\nsource: {law.source}\nvalid: {law.validity.remark}")
     console.print(_constants(law))
     _save(figures.material_functions(law), folder / "functions.png", force, console)
@@ -54,10 +53,9 @@ def run_program(
     force: bool = FORCE,
 ) -> None:
     """Drive one material point through a program of strain and stress, and draw the result."""
-    from rich.console import Console
-
     from coilset.model.material import figures, library, points, programs
     from coilset.model.results.folder import make
+    from coilset.scripts.console import Console
 
     announce_compiling()
     if integrator not in points.INTEGRATORS:
@@ -65,7 +63,7 @@ def run_program(
     law, steps = library.load(material, spin=spin), programs.read(program)
     folder = _folder(out, law.name)
     name = Path(program).stem
-    console = Console(highlight=False)
+    console = Console()
     try:
         history = programs.run(law, steps, integrator)
     except InputError as error:
@@ -101,7 +99,6 @@ def fit(
     With --back-stresses: a yield stress, its rise, and several back stresses from cyclic tests in one direction.
     """
     import yaml
-    from rich.console import Console
     from rich.table import Table
 
     from coilset.model.material import figures
@@ -109,6 +106,7 @@ def fit(
     from coilset.model.material.identification import cyclic, experiments
     from coilset.model.material.identification import fit as fitting
     from coilset.model.results.folder import make, whole
+    from coilset.scripts.console import Console
 
     announce_compiling()
     folder = _folder(out, name)
@@ -118,7 +116,7 @@ def fit(
         result = fitting.fit(tests, shear_modulus, poisson, saturation, temperature)
     else:
         result = cyclic.fit_back_stresses(tests, shear_modulus, poisson, back_stresses, temperature)
-    console = Console(highlight=False)
+    console = Console()
     table = Table("constant", "value", "standard deviation", "± (95 %, all together)", "unit", box=None, padding=(0, 2))
     for key, value in result.constants.items():
         unit = UNITS[re.sub(r"_\d+$", "", key)]  # C_1, C_2, ...
@@ -131,7 +129,7 @@ def fit(
     make(folder)
     with whole(folder / f"{name}.yaml") as path:
         path.write_text(yaml.safe_dump(result.material(name), sort_keys=False, allow_unicode=True), encoding="utf-8")
-    console.print(f"material file in {folder / name}.yaml")
+    console.say(f"material file in {folder / name}.yaml")
     _save(figures.fit(result, name), folder / "fit.png", force, console)
 
 
@@ -155,7 +153,6 @@ def creep(
 ) -> None:
     """Fit the constants of creep to relaxation tests, and write the material with them."""
     import yaml
-    from rich.console import Console
     from rich.table import Table
 
     from coilset.model.material import library
@@ -163,6 +160,7 @@ def creep(
     from coilset.model.material.identification.creep_fit import UNITS, fit_creep
     from coilset.model.material.identification.relaxation_tests import read_relaxation
     from coilset.model.results.folder import make, whole
+    from coilset.scripts.console import Console
 
     for value, known, option in ((form, ("norton_bailey", "garofalo"), "--form"),
                                  (hardening, ("strain", "time"), "--hardening")):  # fmt: skip
@@ -171,7 +169,7 @@ def creep(
     folder = _folder(out, name)
     _refuse([folder / f"{name}.yaml"], force)
     result = fit_creep(library.load(material), tuple(read_relaxation(path) for path in data), form, hardening)
-    console = Console(highlight=False)
+    console = Console()
     table = Table("constant", "value", "from", "to (95 %)", "unit", box=None, padding=(0, 2))
     for key, (low, high) in result.interval.items():
         table.add_row(key, f"{result.constants[key]:.4g}", f"{low:.4g}", f"{high:.4g}", UNITS[key])
@@ -182,7 +180,7 @@ def creep(
     with whole(folder / f"{name}.yaml") as path:
         content = result.material(name, "coilset material creep, " + ", ".join(Path(one).name for one in data))
         path.write_text(yaml.safe_dump(content, sort_keys=False, allow_unicode=True), encoding="utf-8")
-    console.print(f"material file in {folder / name}.yaml")
+    console.say(f"material file in {folder / name}.yaml")
     _save(creep_figure(result), folder / f"{name}.png", force, console)
 
 
@@ -203,7 +201,7 @@ def _save(figure: "Figure", path: Path, force: bool, console: "Console") -> None
     _refuse([path], force)
     make(path.parent)
     save(figure, path)
-    console.print(f"picture in {path.parent}{os.sep}{path.name}")
+    console.say(f"picture in {path.parent}{os.sep}{path.name}")
 
 
 def _write_csv(path: Path, history: "History") -> None:

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
-from rich.console import Console
 from rich.table import Table
 
 from coilset.meshes.errors import InputError
@@ -17,6 +16,7 @@ from coilset.model.standards.data import SpringData, spring_data
 from coilset.model.standards.steel import STEEL, Elastic
 from coilset.model.standards.warnings import spring_warnings
 from coilset.model.standards.wires.law import case_law
+from coilset.scripts.console import Console
 from coilset.scripts.target import results_folder
 
 FILES = ("drawing.png", "spring.png")
@@ -45,7 +45,7 @@ def mesh(
     """
     if MPI.COMM_WORLD.rank:
         return  # too little work to be worth distributing
-    console = Console(highlight=False)
+    console = Console()
     case = read_case(case_file, settings)
     if write:
         from coilset.meshes.export import check_format, write_mesh
@@ -62,7 +62,7 @@ def mesh(
         raise InputError(error.problem, error.place, error.file or case_file) from None
     console.print(_table(spring_data(spring, Elastic(law.G, law.E, getattr(law, "density", STEEL.density))), turns))
     for warning in spring_warnings(spring):
-        console.print(f"[yellow]warning:[/] {warning.message}")
+        console.warn(warning.message)
     for path in write:
         make(Path(path).parent)
         try:
@@ -70,11 +70,11 @@ def mesh(
                 write_mesh(spring, turns, partial)
         except InputError as error:
             raise InputError(error.problem, error.place, path) from None
-        console.print(f"mesh in {path}")
+        console.say(f"mesh in {path}")
     if pictures:
         make(folder)
         _draw(spring, folder, Path(case_file).stem, console)
-        console.print(f"pictures in {folder}{os.sep}")
+        console.say(f"pictures in {folder}{os.sep}")
 
 
 def _refuse_to_replace(paths: Iterable[Path], force: bool) -> None:
@@ -104,7 +104,7 @@ def _draw(spring: Spring, out: Path, name: str, console: Console) -> None:
     with mpl.rc_context(STYLE):
         save(drawing.drawing(spring, f"{name}: {size}"), out / FILES[0])
     if not display.ensure():
-        console.print(f"[yellow]warning:[/] {FILES[1]} is not drawn: there is no display and no Xvfb")
+        console.warn(f"{FILES[1]} is not drawn: there is no display and no Xvfb")
         return
     with whole(out / FILES[1]) as path:
         view.picture(spring, path)

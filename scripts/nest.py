@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any
 
 from mpi4py import MPI
-from rich.console import Console
 from rich.table import Table
 
 from coilset.model.nest import output
@@ -15,6 +14,7 @@ from coilset.model.results.folder import make, prepare, write_summary
 from coilset.model.results.provenance import origin
 from coilset.model.results.record import Step
 from coilset.model.results.summary import summarise
+from coilset.scripts.console import Console
 from coilset.scripts.solve import write_run
 from coilset.scripts.step_words import quantity, without_minus
 from coilset.scripts.target import results_folder
@@ -28,7 +28,7 @@ def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool) 
     """
     if MPI.COMM_WORLD.rank:
         return  # both springs are run by one process
-    console, wanted = Console(highlight=False), read_nest(file)
+    console, wanted = Console(), read_nest(file)
     folder = results_folder(out, Path(file).stem)
 
     def told(name: str, step: Step) -> None:
@@ -62,8 +62,8 @@ def _conclude(console: Console, pressed: Pressed, found: dict[str, Any], folder:
     table.add_row("least room between them", quantity(found["clearance_min_mm"], "mm"), "", "")
     console.print(table)
     for warning in pressed.warnings:
-        console.print(f"[yellow]warning:[/] {warning.message}")
+        console.warn(warning.message)
     for member in pressed.members:
         for warning in (found[member.name] or {"warnings": []})["warnings"]:
-            console.print(f"[yellow]warning:[/] {member.name}: {warning['message']}")
-    console.print(f"results in {folder}{os.sep}")
+            console.warn(f"{member.name}: {warning['message']}")
+    console.say(f"results in {folder}{os.sep}")

@@ -3,13 +3,12 @@
 import os
 from pathlib import Path
 
-from rich.console import Console
-
 from coilset.meshes.errors import InputError
 from coilset.model.report import design_page, sweep_page
 from coilset.model.report.page import write_report
 from coilset.model.report.render import NAME
 from coilset.model.results.opened import open_run
+from coilset.scripts.console import Console
 
 
 def report(folder: str | Path) -> None:
@@ -27,7 +26,7 @@ def report(folder: str | Path) -> None:
     else:
         path = write_report(open_run(folder))
     size = path.stat().st_size / 1e6
-    Console(highlight=False).print(f"{path}: {size:.1f} MB; open it in a browser")
+    Console().say(f"{path}: {size:.1f} MB; open it in a browser")
 
 
 def _check(folder: Path) -> None:

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import get_args
 
 from mpi4py import MPI
-from rich.console import Console
 
 from coilset.meshes.errors import InputError
 from coilset.meshes.spring import Spring
@@ -25,6 +24,7 @@ from coilset.model.standards.wires.library import files
 from coilset.model.standards.wires.words import described
 from coilset.model.standards.working import presetting_warning
 from coilset.model.warning import Warning
+from coilset.scripts.console import Console
 from coilset.scripts.target import results_folder
 
 FIGURE = "goodman.png"
@@ -51,7 +51,7 @@ def sheet(
     """
     if MPI.COMM_WORLD.rank:
         return  # too little work to be worth distributing
-    console = Console(highlight=False)
+    console = Console()
     if case_file is None:
         raise InputError("name a case file, or give --wires to list the wires", "coilset sheet")
     case = read_case(case_file, settings)
@@ -72,11 +72,11 @@ def sheet(
     if run and made.wire and not str(run.summary.get("material")).startswith(made.wire.name):
         console.print(f"the run was made with the material {run.summary.get('material')}, not with {made.wire.name}")
     for warning in _warnings(spring, made):
-        console.print(f"[yellow]warning:[/] {warning.message}")
+        console.warn(warning.message)
     if diagram is not None:
         make(folder)
         goodman_figure.draw(folder / FIGURE, *diagram, run.residual if run else None)
-        console.print(f"Goodman diagram in {folder}{os.sep}{FIGURE}")
+        console.say(f"Goodman diagram in {folder}{os.sep}{FIGURE}")
 
 
 def list_wires(name: str | None = None) -> None:
@@ -85,7 +85,7 @@ def list_wires(name: str | None = None) -> None:
     Raises:
         InputError: if there is no wire of this name.
     """
-    console = Console(highlight=False)
+    console = Console()
     if name is not None:
         known = wire(name)
         console.print(f"[bold]{known.name}[/], d in mm")

@@ -2,9 +2,8 @@
 
 from pathlib import Path
 
-from rich.console import Console
-
 from coilset.model.results.opened import open_run
+from coilset.scripts.console import Console
 
 
 def fields(folder: str | Path) -> None:
@@ -16,7 +15,7 @@ def fields(folder: str | Path) -> None:
     from coilset.model.results.series import write_series
 
     for path in write_series(open_run(folder)):
-        Console(highlight=False).print(f"{path}")
+        Console().say(f"{path}")
 
 
 def animate(folder: str | Path) -> None:
@@ -28,4 +27,4 @@ def animate(folder: str | Path) -> None:
     from coilset.model.results.animation import animate as draw
 
     path = draw(open_run(folder))
-    Console(highlight=False).print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
+    Console().say(f"{path}: {path.stat().st_size / 1e6:.1f} MB")

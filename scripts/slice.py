@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 from mpi4py import MPI
-from rich.console import Console
 from rich.table import Table
 
 from coilset.meshes.errors import InputError, SolveError
@@ -17,6 +16,7 @@ from coilset.model.results.provenance import origin
 from coilset.model.slice.analysis import ACROSS, SliceAnalysis, SliceStep
 from coilset.model.slice.summary import summarise, write_history
 from coilset.model.standards.case_warnings import case_warnings
+from coilset.scripts.console import Console
 from coilset.scripts.step_words import HEAD, quantity, step_row
 from coilset.scripts.target import results_folder
 
@@ -46,7 +46,7 @@ def slice_case(
     """
     if MPI.COMM_WORLD.rank:
         return  # a section is too small to be distributed
-    console = Console(highlight=False)
+    console = Console()
     case = read_case(case_file, settings)
     folder = results_folder(out, f"{Path(case_file).stem}-slice")
     try:
@@ -57,9 +57,9 @@ def slice_case(
         raise InputError(error.problem, error.place, error.file or case_file) from None
     prepare(folder, force)
     for warning in case_warnings(case, analysis.spring, analysis.law):
-        console.print(f"[yellow]warning:[/] {warning.message}")
+        console.warn(warning.message)
     targets = ", ".join(phase.label for phase in case.loading)
-    console.print(f"{Path(case_file).name}: slice with {analysis.body.u.size + 2} unknowns, to {targets}")
+    console.say(f"{Path(case_file).name}: slice with {analysis.body.u.size + 2} unknowns, to {targets}")
     console.print(f"{HEAD}  touching")
     failure = None
     try:
@@ -102,4 +102,4 @@ def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
     table.add_row("results in", f"{out}{os.sep}")
     console.print(table)
     for warning in summary["warnings"]:
-        console.print(f"[yellow]warning:[/] {warning['message']}")
+        console.warn(warning["message"])

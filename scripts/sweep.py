@@ -8,7 +8,6 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
@@ -18,6 +17,7 @@ from coilset.model.sweep.journal import Journal
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.pools import Pool, Workers
 from coilset.model.sweep.run import finished, missing, run
+from coilset.scripts.console import Console
 from coilset.scripts.target import results_folder
 
 if TYPE_CHECKING:  # at run time only after the environment is saved
@@ -43,7 +43,7 @@ def sweep(
     comm = MPI.COMM_WORLD
     folder = results_folder(out, Path(sweep_file).stem)
     plan = _on_first_rank(comm, lambda: _prepare(sweep_file, folder, force, resume or retry))
-    console = Console(highlight=False)
+    console = Console()
     interrupted = False
     try:
         with _pool(comm, workers, ranks_per_case, folder) as pool:
@@ -110,8 +110,8 @@ def _lead(plan: Plan, out: Path, retry: bool, pool: Pool, console: Console) -> N
         todo = list(missing(plan, finished(path, retry)))
         there = len(set(plan.keys)) - len(todo)
         for notice in plan.notices:
-            console.print(f"[yellow]warning:[/] {notice}")
-        console.print(f"{plan.path.name}: {len(plan)} cases, {there} done already, {pool.workers} at a time")
+            console.warn(notice)
+        console.say(f"{plan.path.name}: {len(plan)} cases, {there} done already, {pool.workers} at a time")
         progress = Bar(len(todo), console)
         with progress.bar:
             run(plan, todo, pool, journal, progress.report)
@@ -167,9 +167,9 @@ def _conclude(plan: Plan, out: Path, pictures: bool, console: Console) -> int:
     failures = data.where(data.status == "failed", drop=True)
     for k in range(min(failures.sizes["case"], SHOWN_FAILURES)):
         inputs = ", ".join(f"{name} = {failures[name].values[k]}" for name in plan.names)
-        console.print(f"[yellow]failed:[/] {inputs}: {failures.reason.values[k]}")
+        console.warn(f"{inputs}: {failures.reason.values[k]}", "failed")
     console.print(", ".join(f"{count} {status}" for status, count in counts.items() if count or status == "done"))
-    console.print(f"results in {out}{os.sep} (sweep.nc, journal.jsonl{''.join(', ' + name for name in files)})")
+    console.say(f"results in {out}{os.sep} (sweep.nc, journal.jsonl{''.join(', ' + name for name in files)})")
     for problem in problems:
-        console.print(f"[yellow]warning:[/] {problem}")
+        console.warn(str(problem))
     return counts["failed"]

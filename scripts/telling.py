@@ -11,13 +11,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
 
 from coilset.model.analysis import Analysis
 from coilset.model.results.contact_state import contact_words
 from coilset.model.results.record import Step
+from coilset.scripts.console import Console
 from coilset.scripts.step_words import HEAD, quantity, step_row
 
 SOON = 5.0  # seconds; with less elapsed or left, the remaining time is not printed
@@ -32,16 +31,16 @@ class Lines:
     """
 
     def __init__(self, talks: bool = True, verbose: bool = False) -> None:
-        self.console, self.verbose = Console(quiet=not talks, highlight=False), verbose
+        self.console, self.verbose = Console(quiet=not talks), verbose
         self._began, self._from = time.monotonic(), 0.0
 
     def say(self, text: str) -> None:
         """A line about the run."""
-        self.console.print(text, markup=False)
+        self.console.say(text)
 
     def warn(self, text: str) -> None:
         """A warning."""
-        self.console.print(f"[yellow]warning:[/] {escape(text)}")
+        self.console.warn(text)
 
     def begin(self, analysis: Analysis, case_file: str | Path, resumed: bool) -> None:
         """The run begins or continues."""
@@ -103,7 +102,7 @@ class Lines:
         inside = quantity(summary["residual_shear_inside_MPa"], "MPa", 2)
         table.add_row("residual shear stress, inside of coil", inside)
         self.console.print(table)
-        self.console.print(f"  results in {out}{os.sep}", markup=False, soft_wrap=True)  # a path stays whole
+        self.console.say(f"  results in {out}{os.sep}", whole=True)
         for warning in summary["warnings"]:
             self.warn(warning["message"])
 

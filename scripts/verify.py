@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from mpi4py import MPI
-from rich.console import Console
 from rich.table import Table
 
 from coilset.meshes.errors import CoilsetError, InputError
 from coilset.model.results.folder import whole
+from coilset.scripts.console import Console
 from coilset.verification import registry
 from coilset.verification.page import page, percent
 from coilset.verification.study import Check, Study
@@ -38,7 +38,7 @@ def verify(names: Sequence[str] | None, out: str | Path, fast: bool, page_file: 
     cases = [registry.load(name) for name in names or registry.names()]
     if fast:
         cases = [case for case in cases if case.fast]
-    console = Console(highlight=False, width=None if sys.stdout.isatty() else WIDTH)
+    console = Console(width=None if sys.stdout.isatty() else WIDTH)
     began = time.perf_counter()
     found = {case.name: _run(case, Path(out) / case.name, console) for case in cases}
     console.print(_all_checks(found))
@@ -63,7 +63,7 @@ def show() -> None:
         table.add_column(column)
     for case in map(registry.load, registry.names()):
         table.add_row(case.name, "" if case.fast else "slow", case.title)
-    Console(highlight=False).print(table)
+    Console().print(table)
 
 
 def _run(case: registry.Case, folder: Path, console: Console) -> tuple[Study, str]:
