@@ -7,8 +7,7 @@ more by their number than by their size. They are written one after the other, w
 import json
 import math
 import zipfile
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import IO, Any, BinaryIO
 
@@ -39,10 +38,8 @@ def write(file: BinaryIO, about: Mapping[str, Any], fields: Mapping[str, np.ndar
                 entry.write(np.ascontiguousarray(values, dtype=float).data)
 
 
-@contextmanager
-def _entry(archive: zipfile.ZipFile, name: str) -> Iterator[IO[bytes]]:
-    with archive.open(f"{name}.npy", "w", force_zip64=True) as entry:
-        yield entry
+def _entry(archive: zipfile.ZipFile, name: str) -> IO[bytes]:
+    return archive.open(f"{name}.npy", "w", force_zip64=True)
 
 
 def read(path: Path) -> tuple[dict[str, Any], dict[str, np.ndarray], dict[str, np.ndarray]]:
