@@ -35,12 +35,21 @@ make_it_anew() {
     local release=${COILSET_RELEASE:-trixie} partial=$private_root.partial
     say "making a private Debian ($release) with DOLFINx and the rest in"
     say "$private_root (once, some minutes, 3.5 GB; delete the folder to be rid of it) ..."
-    rm -rf "$partial"
+    discard "$partial"
     quietly mmdebstrap --variant=minbase --aptopt="$may_be_old" --include="$(packages | tr ' ' ',')" "$release" "$partial"
     cp "$scripts/packages.txt" "$partial$record"
     rm -rf "$private_root"
     mv "$partial" "$private_root"
     say "the environment is ready"
+}
+
+discard() { # a folder in which one that was killed may have left file systems of this machine mounted
+    local place
+    while read -r _ place _; do
+        printf -v place '%b' "$place" # a space is \040 there
+        [[ $place != "$1"/* ]] || umount "$place"
+    done < <(tac /proc/mounts)
+    rm -rf --one-file-system "$1"
 }
 
 add_packages() { # to a private root that is there: a minute at most, where a new one takes several

@@ -128,3 +128,19 @@ def test_each_environment_has_a_log_of_its_own(tmp_path):
         log = cache / "debian-nowhere.log"
         assert done.stderr.endswith(f"broken\ncoilset: that failed; the whole log is {log}\n")
         assert log.read_text() == "broken\n"
+
+
+def test_what_a_killed_making_of_the_environment_left_mounted_is_no_obstacle(tmp_path):
+    apart = ["unshare", "--user", "--map-root-user", "--mount"]
+    if subprocess.run([*apart, "true"], capture_output=True, check=False).returncode:
+        pytest.skip("mounting is not permitted here")
+    left, beside = tmp_path / "a folder" / "debian.partial", tmp_path / "a folder" / "debian"
+    mounts = [f"mkdir -p '{place}' && mount -t tmpfs none '{place}'"
+              for place in (beside, left / "proc", left / "dev", left / "dev" / "shm")]  # fmt: skip
+    script = f"""set -eu; {"; ".join(mounts)}
+        COILSET_CACHE=unused; source {LAUNCHER.parent / "private_root.sh"}; discard '{left}'
+        grep -c debian /proc/mounts"""
+    done = subprocess.run([*apart, "bash", "-c", script], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "1\n", "")
+    assert beside.exists()
+    assert not left.exists()
