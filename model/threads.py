@@ -5,6 +5,7 @@ are: one of them computes all of a section, by the same compiled function.
 """
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import Any
 
 import numba
@@ -44,8 +45,7 @@ class Threads:
         Args:
             points: of the sections in each of them, of which a part has LEAST, or it is all.
         """
-        parts = max(1, min(self.number, count, count * points // LEAST))
-        return np.arange(parts + 1) * count // parts
+        return _ends(max(1, min(self.number, count, count * points // LEAST)), count)
 
     def run(self, part: Callable[..., Any], parts: Callable[..., Any], count: int, points: int, *arguments: Any) -> Any:
         """Have compiled functions do some work: all of it by `part`, or its parts side by side by `parts`.
@@ -60,3 +60,9 @@ class Threads:
             return part(ends, 0, *arguments)
         numba.set_num_threads(min(len(ends) - 1, numba.config.NUMBA_NUM_THREADS))
         return parts(ends, *arguments)
+
+
+@lru_cache
+def _ends(parts: int, count: int) -> np.ndarray:
+    """Where equal parts begin and end; the same few are asked for at every evaluation."""
+    return np.arange(parts + 1) * count // parts

@@ -33,6 +33,7 @@ def add_matrices(
     unknowns: np.ndarray,
     numbers: np.ndarray,
     matrices: np.ndarray,
+    stop: int,
     values: tuple[np.ndarray, np.ndarray],
 ) -> None:
     """Add small matrices to some rows of a matrix, which is kept in two parts: see `AijEntries`.
@@ -44,15 +45,16 @@ def add_matrices(
             these any number for those that are in neither.
         numbers: what the small matrices call their unknowns, shape (m, k).
         matrices: shape (m, k, k).
+        stop: one more than the greatest of the unknowns.
         values: of the entries of both parts.
 
     Raises:
         ValueError: if there is no room for them.
     """
-    n, end = len(own[0]) - 1, int(unknowns.max(initial=-1)) + 1
+    n = len(own[0]) - 1
     found = _add(*own, unknowns, numbers, matrices, 0, n, values[0])
-    if end > n:
-        found &= _add(*others, unknowns, numbers, matrices, n, end, values[1])
+    if stop > n:
+        found &= _add(*others, unknowns, numbers, matrices, n, stop, values[1])
     if not found:
         raise ValueError("the matrix has no entries for some of the contacts")
 

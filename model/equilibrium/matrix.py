@@ -44,7 +44,7 @@ class TangentMatrix:
         self._places, self._known = list[int](), set[int]()
         self._bare: tuple[np.ndarray, np.ndarray] | None = None  # the pattern without contacts, while there are some
         self._entries: AijEntries | None = None
-        self._unknowns = np.empty(0, PETSc.IntType)  # of contacts, in the entries' numbers
+        self._unknowns, self._stop = np.empty(0, PETSc.IntType), 0  # of contacts, in the entries' numbers, all below
         self._elements = ElementEntries(body, layout) if isinstance(body, OfElements) else None
 
     @property
@@ -110,7 +110,7 @@ class TangentMatrix:
         assert entries is not None
         values = entries.arrays()
         for part in acting:
-            add_matrices(entries.own, entries.others, self._unknowns, part.dofs, part.stiffness, values)
+            add_matrices(entries.own, entries.others, self._unknowns, part.dofs, part.stiffness, self._stop, values)
 
     def _make_room(self, contributions: Sequence[Contribution]) -> None:
         """Allocate the rows anew: those of the body, and what the contacts join."""
@@ -131,6 +131,7 @@ class TangentMatrix:
         if tables:
             assert isinstance(layout, LineLayout)
             self._unknowns = self._entries.local(layout.contact_dofs).astype(PETSc.IntType)  # as on one rank
+            self._stop = int(self._unknowns.max()) + 1
         elements.find(self._entries)
         self.version += 1
 

@@ -52,7 +52,7 @@ def test_pattern_and_sum_are_those_of_dense_matrices():
     own, others, unknowns = parts(pattern)
     values, added = (np.zeros(len(own[1])), np.zeros(len(others[1]))), np.zeros(RANGE.stop - RANGE.start)
     for table, of_table, loads in zip(tables(), matrices, vectors, strict=True):
-        add_matrices(own, others, unknowns, table, of_table, values)
+        add_matrices(own, others, unknowns, table, of_table, SIZE, values)
         add_vectors(NUMBERS, table, loads, RANGE.start, added)
     here = np.isin(NUMBERS, NUMBERS[RANGE])
     for columns, of_part in zip((here, ~here), values, strict=True):
@@ -70,8 +70,8 @@ def test_matrix_without_room_is_refused(lacking):
         own, others, unknowns = parts(pattern)
         values = np.zeros(len(own[1])), np.zeros(len(others[1]))
         if expected:
-            add_matrices(own, others, unknowns, table, np.ones((1, 2, 2)), values)
+            add_matrices(own, others, unknowns, table, np.ones((1, 2, 2)), SIZE, values)
         else:
             with pytest.raises(ValueError, match="no entries"):
-                add_matrices(own, others, unknowns, table, np.ones((1, 2, 2)), values)
+                add_matrices(own, others, unknowns, table, np.ones((1, 2, 2)), SIZE, values)
         pattern[lacking] = False
