@@ -11,10 +11,8 @@ from operator import itemgetter
 import numpy as np
 from numba import njit
 
+from coilset.model.equilibrium.fronts import find_fronts
 from coilset.model.equilibrium.ordering import NARROW, fill_reducing_order, narrow_fronts, swept_order
-
-# Fraction of zeros accepted for larger fronts: small fronts cost more to move than to eliminate.
-ZEROS = 0.15
 
 
 @dataclass(frozen=True)
@@ -129,136 +127,6 @@ def group_graph(
                 out_ptr[g + 1] += 1
         row += size[g]
     return out_ptr, out[: out_ptr[n]].copy()
-
-
-@njit(cache=True)
-def find_fronts(
-    indptr: np.ndarray, indices: np.ndarray, sequence: np.ndarray, eliminated: int, size: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Fronts by groups.
-
-    A group joins the front of one eliminated before it if both are then coupled with the same groups, or nearly so:
-    with at most a fraction ZEROS of zeros in the front's rows.
-
-    Args:
-        indptr, indices: neighbours of the groups.
-        sequence: groups in the order of their elimination, the kept ones last.
-        eliminated: number of groups that are not kept.
-        size: unknowns in each group.
-
-    Returns:
-        Groups of each front in ranges, with those that are kept in the last front; groups of each front's rest in
-        ranges; the front that takes its update.
-    """
-    n = len(sequence)
-    at, before = np.empty(n, np.int64), np.full(eliminated, -1)
-    at[sequence] = np.arange(n)
-    start, beyond, count = np.zeros(eliminated + 1, np.int64), np.empty(4 * len(indices) + 16, np.int64), 0
-    first_child, sibling, weight = np.full(n, -1), np.full(eliminated, -1), np.zeros(eliminated, np.int64)
-    seen, absorbed = np.full(n, -1), np.zeros(eliminated, np.bool_)
-    pivots, zeros = np.zeros(eliminated, np.int64), np.zeros(eliminated, np.int64)
-    for j in range(eliminated):
-        seen[j] = j
-        need = indptr[sequence[j] + 1] - indptr[sequence[j]]
-        c = first_child[j]
-        while c >= 0:
-            need += start[c + 1] - start[c]
-            c = sibling[c]
-        if count + need > len(beyond):
-            grown = np.empty(2 * (count + need), np.int64)
-            grown[:count] = beyond[:count]
-            beyond = grown
-        for e in range(indptr[sequence[j]], indptr[sequence[j] + 1]):
-            k = at[indices[e]]
-            if k > j and seen[k] != j:
-                seen[k] = j
-                beyond[count] = k
-                count += 1
-        c = first_child[j]
-        while c >= 0:
-            for e in range(start[c], start[c + 1]):
-                k = beyond[e]
-                if seen[k] != j:
-                    seen[k] = j
-                    beyond[count] = k
-                    count += 1
-            c = sibling[c]
-        start[j + 1] = count
-        parent = n
-        for e in range(start[j], count):
-            weight[j] += size[sequence[beyond[e]]]
-            parent = min(parent, beyond[e])
-        pivots[j] = size[sequence[j]]
-        c, best, least = first_child[j], -1, 0
-        while c >= 0:
-            rows, added = pivots[c] + size[sequence[j]], pivots[c] * (size[sequence[j]] + weight[j] - weight[c])
-            if zeros[c] + added <= ZEROS * rows * (0.5 * rows + weight[j]) and (best < 0 or added < least):
-                best, least = c, added
-            c = sibling[c]
-        if best >= 0:
-            before[j], absorbed[best] = best, True
-            pivots[j], zeros[j] = pivots[j] + pivots[best], zeros[best] + least
-        if parent < n:
-            sibling[j], first_child[parent] = first_child[parent], j
-    # the fronts, each after those whose updates it takes
-    fronts = eliminated - np.sum(absorbed) + 1
-    own_start, own, rest_start = np.zeros(fronts + 1, np.int64), np.empty(n, np.int64), np.zeros(fronts + 1, np.int64)
-    total = 0
-    for j in range(eliminated):
-        if not absorbed[j]:
-            total += start[j + 1] - start[j]
-    rest, takes = np.empty(total, np.int64), np.full(fronts, -1)
-    stack, height, front_of = np.empty(n + 1, np.int64), 0, np.full(n, fronts - 1)
-    last = np.empty(fronts, np.int64)  # group of each front that is eliminated last
-    number = 0
-    for root in range(eliminated - 1, -1, -1):
-        above = beyond[start[root] : start[root + 1]]
-        if absorbed[root] or (len(above) and np.min(above) < eliminated):
-            continue
-        stack[height] = root
-        height += 1
-    # depth first: a front is numbered when it is met the second time
-    met = np.zeros(eliminated, np.bool_)
-    while height:
-        j = stack[height - 1]
-        if not met[j]:
-            met[j] = True
-            g = j
-            while g >= 0:
-                c = first_child[g]
-                while c >= 0:
-                    if not absorbed[c]:
-                        stack[height] = c
-                        height += 1
-                    c = sibling[c]
-                g = before[g]
-            continue
-        height -= 1
-        g, length = j, 0
-        while g >= 0:
-            length += 1
-            front_of[g] = number
-            g = before[g]
-        own_start[number + 1] = own_start[number] + length
-        g, place = j, own_start[number + 1]
-        while g >= 0:
-            place -= 1
-            own[place] = sequence[g]
-            g = before[g]
-        size_of_rest = start[j + 1] - start[j]
-        rest_start[number + 1] = rest_start[number] + size_of_rest
-        rest[rest_start[number] : rest_start[number + 1]] = np.sort(beyond[start[j] : start[j + 1]])
-        last[number] = j
-        number += 1
-    own_start[fronts] = n
-    own[own_start[fronts - 1] :] = sequence[eliminated:]
-    rest_start[fronts] = rest_start[fronts - 1]
-    for f in range(fronts - 1):
-        if rest_start[f + 1] > rest_start[f]:
-            takes[f] = front_of[rest[rest_start[f]]]
-    for e in range(len(rest)):
-        rest[e] = sequence[rest[e]]
-    return own_start, own, rest_start, rest, takes
 
 
 @njit(cache=True)
