@@ -16,6 +16,7 @@ from coilset.model.design.search import Found, Search
 from coilset.model.design.trade_offs import TradeOff, trade_offs
 from coilset.model.design.wish import Wish, read_wish
 from coilset.model.sweep.journal import Journal, read_records
+from coilset.model.threads import usual
 from coilset.scripts.console import Console
 from coilset.scripts.log import run_log
 from coilset.scripts.target import results_folder
@@ -23,7 +24,7 @@ from coilset.scripts.target import results_folder
 WIDTH = 150  # width of printed lines without a terminal
 
 
-def design(wish_file: str, out: str | None, force: bool, resume: bool) -> None:
+def design(wish_file: str, out: str | None, force: bool, resume: bool, threads: int | None = None) -> None:
     """Find what a wish requires; see `coilset design --help`.
 
     Raises:
@@ -47,7 +48,7 @@ def design(wish_file: str, out: str | None, force: bool, resume: bool) -> None:
                 log.stream.truncate(0)
                 _clear(folder)
             with closing(Journal(folder / "evaluations.jsonl")) as journal:
-                _design(console, wish, folder, journal)
+                _design(console, wish, folder, journal, threads or usual(1))
     except InputError as error:
         if error.place != "--out":  # with --out, another run uses the folder
             _forget(folder, new)
@@ -57,11 +58,11 @@ def design(wish_file: str, out: str | None, force: bool, resume: bool) -> None:
         raise
 
 
-def _design(console: Console, wish: Wish, folder: Path, journal: Journal) -> None:
+def _design(console: Console, wish: Wish, folder: Path, journal: Journal, threads: int) -> None:
     began = time.perf_counter()
     known = {record["key"]: record for record in read_records(journal.path)}
     progress = Progress(console)
-    search = make_search(wish, known, journal.append, progress)
+    search = make_search(wish, known, journal.append, progress, threads)
     progress.search = search
     console.say(f"{wish.file.name}: {len(search.width)} unknown(s), {len(search.conditions)} condition(s)")
     found = find(search)

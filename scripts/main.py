@@ -47,6 +47,9 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 app.add_typer(material, name="material")
+THREADS = typer.Option(
+    None, min=1, envvar="COILSET_THREADS", help="threads [default: as many as cores, on several ranks one for each]"
+)
 
 
 def _show_version(wanted: bool) -> None:
@@ -89,9 +92,7 @@ def solve(
     json: bool = typer.Option(False, "--json", help="print a line of JSON a step, for scripts"),
     verbose: bool = typer.Option(False, "--verbose", help="also print each iteration: norm, step length"),
     method: str = typer.Option(None, help="iteration method: newton, modified-newton, bfgs, broyden, arc-length, ..."),
-    threads: int = typer.Option(
-        None, min=1, envvar="COILSET_THREADS", help="threads [default: as many as cores, on several ranks one for each]"
-    ),
+    threads: int = THREADS,
 ) -> None:
     """Take a spring through its load program and write the results."""
     from coilset.scripts.drawing import Drawings
@@ -143,12 +144,13 @@ def nest(
     out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-FILE]"),
     force: bool = typer.Option(False, "--force", help="overwrite existing results"),
     pictures: bool = typer.Option(True, help="draw the characteristic"),
+    threads: int = THREADS,
 ) -> None:
     """Press two nested springs together between the same seats: summed force, set and stress of each, their room."""
     from coilset.scripts.nest import nest as press
 
     announce_compiling()
-    press(file, out, force, pictures)
+    press(file, out, force, pictures, threads)
 
 
 @app.command()
@@ -261,6 +263,7 @@ def design(
     out: str = typer.Option(None, callback=folder_target, help="results folder; default results/NAME-OF-WISH"),
     force: bool = typer.Option(False, "--force", help="replace an existing design"),
     resume: bool = typer.Option(False, "--resume", help="continue an unfinished search"),
+    threads: int = THREADS,
 ) -> None:
     """Find entries of a case, such as pitch and preset height, for which its run meets conditions."""
     from coilset.model.design.wish import read_wish
@@ -269,7 +272,7 @@ def design(
     announce_compiling()
     from coilset.scripts.design import design as run_design
 
-    run_design(wish, out, force, resume)
+    run_design(wish, out, force, resume, threads)
 
 
 @app.command()

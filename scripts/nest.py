@@ -14,13 +14,14 @@ from coilset.model.results.folder import make, prepare, write_summary
 from coilset.model.results.provenance import origin
 from coilset.model.results.record import Step
 from coilset.model.results.summary import summarise
+from coilset.model.threads import usual
 from coilset.scripts.console import Console
 from coilset.scripts.solve import write_run
 from coilset.scripts.step_words import quantity, without_minus
 from coilset.scripts.target import results_folder
 
 
-def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool) -> None:
+def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool, threads: int | None = None) -> None:
     """Press a nest; see `coilset nest --help`.
 
     Raises:
@@ -34,7 +35,7 @@ def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool) 
     def told(name: str, step: Step) -> None:
         console.print(f"{name:6}{step.number:6d}{step.seat_height_mm:14.4f} mm{without_minus(step.force_N, 3):>14} N")
 
-    pressed = press(wanted, told)
+    pressed = press(wanted, told, threads or usual(1))
     prepare(folder, force)
     found = output.summary(pressed)
     for member in pressed.members:

@@ -19,6 +19,7 @@ def make_search(
     known: Mapping[str, Mapping[str, Any]] | None = None,
     keep: Callable[[dict[str, Any]], object] = lambda record: None,
     report: Callable[[Evaluation, bool], object] = lambda evaluation, known: None,
+    threads: int = 1,
 ) -> Search:
     """The Search of a wish; the arguments are those of `Evaluator`.
 
@@ -26,7 +27,7 @@ def make_search(
         InputError: a condition that the load program cannot meet.
     """
     sought, data = conditions(wish.spec, wish.base)
-    evaluator = Evaluator(wish, sought, data, known, keep, report)
+    evaluator = Evaluator(wish, sought, data, known, keep, report, threads)
     bounds = np.array([[one.low, one.high] for one in wish.spec.find.values()])
     start = np.array([_given(data, name) for name in wish.spec.find])
     search = Search(evaluator, bounds, sought, start)

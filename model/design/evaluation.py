@@ -67,6 +67,7 @@ class Evaluator:
         known: records of earlier evaluations by their keys.
         keep: writes the record of a new one.
         report: called with every Evaluation, and whether it was known.
+        threads: of each run.
 
     Attributes:
         names: of the unknowns.
@@ -81,11 +82,12 @@ class Evaluator:
         known: Mapping[str, Mapping[str, Any]] | None = None,
         keep: Callable[[dict[str, Any]], object] = lambda record: None,
         report: Callable[[Evaluation, bool], object] = lambda evaluation, known: None,
+        threads: int = 1,
     ) -> None:
         self.wish, self.conditions, self._data = wish, conditions, data
         self.names = list(wish.spec.find)
         self._known, self._keep, self._report = dict(known or {}), keep, report
-        self.count, self.solves = 0, 0
+        self.count, self.solves, self._threads = 0, 0, threads
 
     def data(self, x: np.ndarray, plan: Plan | None = None, others: Mapping[str, Any] | None = None) -> dict[str, Any]:
         """Raw data of the case.
@@ -126,7 +128,7 @@ class Evaluator:
             known, self.solves = False, self.solves + 1
             analysis = None
             try:
-                analysis = Analysis(case, MPI.COMM_SELF, detailed=False)
+                analysis = Analysis(case, MPI.COMM_SELF, detailed=False, threads=self._threads)
                 found = self._read(x, analysis.setup, analysis.run(), began)
             except CoilsetError as error:
                 found = _failed(x, error, began)

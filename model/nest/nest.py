@@ -20,7 +20,6 @@ from coilset.model.nest.clearance import inside, outside
 from coilset.model.nest.file import NAMES, Nest
 from coilset.model.nest.plan import Plan, plan
 from coilset.model.results.record import Result, Setup, Step
-from coilset.model.threads import usual
 from coilset.model.warning import Warning
 
 NEAR = 1e-6  # mm, between a step's height and the plan's
@@ -74,12 +73,13 @@ class Pressed:
         return float(member.setup.outer_length(member.result.snapshots[-1].x))
 
 
-def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: None) -> Pressed:
+def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: None, threads: int = 1) -> Pressed:
     """Press both springs through the heights of the nest, and let them go.
 
     Args:
         nest: Nest.
         told: called with the name of a spring and each of its steps.
+        threads: of each run.
 
     Raises:
         InputError: if the inner spring has no room in the outer one, or a case is wrong.
@@ -96,7 +96,7 @@ def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: N
         heights = plan(nest.loading, springs)
     except InputError as error:
         raise InputError(error.problem, error.place, nest.path) from None
-    members = tuple(_run(name, case, heights, told) for name, case in zip(NAMES, nest.cases, strict=True))
+    members = tuple(_run(name, case, heights, told, threads) for name, case in zip(NAMES, nest.cases, strict=True))
     steps = [_steps(member, heights) for member in members]
     forces = np.array([[0.0 if step is None else step.force_N for step in one] for one in steps])
     clearance = _clearance(members, steps)
@@ -104,11 +104,11 @@ def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: N
     return Pressed(heights, (members[0], members[1]), forces, clearance, tuple(_hands(springs)))
 
 
-def _run(name: str, case: Case, heights: Plan, told: Callable[[str, Step], object]) -> Member:
+def _run(name: str, case: Case, heights: Plan, told: Callable[[str, Step], object], threads: int) -> Member:
     """Run one spring's own program."""
     program = heights.program(case.spring.build().free_length)
     analysis = Analysis(case.model_copy(update={"loading": program or case.loading}), MPI.COMM_SELF,
-                        threads=usual(1))  # fmt: skip
+                        threads=threads)  # fmt: skip
     if not program:
         return Member(name, case, analysis.setup, None)
     analysis.run(lambda step: told(name, step))
