@@ -148,16 +148,14 @@ class Newton:
         """
         self.load = load
         self.system.reset_contacts()
-        outcome = self._solve(start or Start())
-        for _attempt in range(self.control.augmentations):
-            if not outcome.converged or self.system.max_penetration <= self.augmentation_tolerance:
-                break
+        outcome, augmentations = self._solve(start or Start()), 0
+        while outcome.converged and (left := self.system.max_penetration) > self.augmentation_tolerance:
+            if augmentations == self.control.augmentations:
+                reason = f"a penetration of {left:.3g} mm is left after {augmentations} augmentations"
+                return replace(outcome, converged=False, reason=reason)
             self.system.augment()
             outcome = outcome + self._solve(Start(self.system.increments.copy()))
-        else:
-            left, count = self.system.max_penetration, self.control.augmentations
-            outcome = replace(outcome, converged=False,
-                              reason=f"a penetration of {left:.3g} mm is left after {count} augmentations")  # fmt: skip
+            augmentations += 1
         return outcome
 
     def _solve(self, start: Start) -> Outcome:
@@ -240,12 +238,14 @@ class Newton:
                 log.info("no equilibrium of the whole step yet: first %.3g of it", self.load_factor)
 
     def negative_pivots(self) -> int | None:
-        """Number of negative pivots of the last factors L U; None where PETSc does not show them or they are old."""
+        """Number of negative pivots of the last factors L U; None where they are not shown or not of the last solve."""
         pc = self.snes.getKSP().getPC()
-        if not self.method.searches or pc.getType() not in (PETSc.PC.Type.LU, PETSc.PC.Type.PYTHON):
+        if not self.method.searches or not self._factorisations:  # a state that is in equilibrium asks for no factors
             return None
         if pc.getType() == PETSc.PC.Type.PYTHON:
             return pc.getPythonContext().factors.negative_pivots
+        if pc.getType() != PETSc.PC.Type.LU or pc.getFactorSolverType() != PETSc.Mat.SolverType.PETSC:
+            return None
         return int(np.count_nonzero(pc.getFactorMatrix().getDiagonal().getArray(readonly=True) < 0.0))
 
     def _set_arc_load(self) -> None:

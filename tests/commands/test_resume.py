@@ -154,6 +154,16 @@ def test_every_step_can_be_the_last_one_before_a_crash(example, tmp_path, more):
     np.testing.assert_array_equal(resumed.rod.point_state, whole.rod.point_state)
 
 
+def test_a_run_goes_on_with_a_step_that_needs_no_iteration(example, tmp_path):
+    """Nothing was factorised yet whose pivots could tell whether its state is stable."""
+    case = read_case(example, [*CLAMPED, "loading=[{to: {force: 0}, steps: 2}]"])
+    run_until(Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case), 1)
+    resumed = Analysis(case, MPI.COMM_SELF)
+    resumed.resume(Checkpoint(tmp_path, case).load(resumed.comm))
+    last = resumed.run().steps[-1]
+    assert (last.iterations, last.negative_pivots) == (0, 0)
+
+
 def test_automatic_steps_go_on_where_they_stopped(example, tmp_path):
     """What the step control knows belongs to the state: cut, grown and estimated to the same bits."""
     case = read_case(example, ["mesh.section.rule=abramowitz9", "mesh.elements_per_turn=10"])

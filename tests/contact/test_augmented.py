@@ -1,5 +1,7 @@
 """Augmented Lagrange: penetration as small as is asked for, whatever the bedding; part of the state."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -37,6 +39,22 @@ def test_penetration_is_as_small_as_asked_for_whatever_the_bedding():
     soft, hard = found[1000.0, 5e-4], found[3000.0, 5e-4]
     assert soft["set_mm"] == pytest.approx(hard["set_mm"], rel=4e-4)
     assert soft["force_max_N"] == pytest.approx(hard["force_max_N"], rel=1e-3)
+
+
+def test_as_many_augmentations_as_are_allowed_are_made(monkeypatch):
+    """A step whose last one brings the penetration down has arrived; with one less allowed it is given up."""
+    analysis, made = analyse(bedding=300.0, penetration=1e-6), []
+    augment = analysis.system.augment
+    monkeypatch.setattr(analysis.system, "augment", lambda: (made.append(1), augment()))
+    load = analysis.control.to_height(analysis.control.height - 10.0)
+    assert analysis.newton.solve(load).converged
+    needed = len(made)
+    assert needed > 1
+    for allowed in (needed, needed - 1):
+        monkeypatch.setattr(analysis.newton, "control", replace(analysis.newton.control, augmentations=allowed))
+        outcome = analysis.newton.solve(load)
+        assert outcome.converged == (allowed == needed)
+    assert outcome.reason.endswith(f"is left after {needed - 1} augmentations")
 
 
 def test_stiffness_is_the_derivative_of_the_forces_of_offset_points(points, helix, dense):

@@ -53,6 +53,14 @@ def test_negative_pivots_are_negative_eigenvalues(travel):
     assert negative_pivots(analysis.stability._factors(analysis.newton.load)) == expected
 
 
+def test_factors_of_other_libraries_show_no_pivots():
+    """PETSc cannot ask MUMPS for them: the symmetric part is factorised as with methods that keep a matrix."""
+    analysis = pressed(20.0, 1, mesh=4, solver={"options": {"pc_factor_mat_solver_type": "mumps"}})
+    force = analysis.run().steps[-1].force_N
+    assert analysis.newton.negative_pivots() is None
+    assert force == pytest.approx(pressed(20.0, 1, mesh=4).run().steps[-1].force_N, rel=1e-9)
+
+
 def test_few_steps_end_on_the_stable_branch():
     """One and four steps to one and a half times the critical travel: the same force, and no word of doubt."""
     forces = []
