@@ -202,7 +202,7 @@ class Analysis:
             for number in range(self.program.number, len(self.case.loading)):
                 phase = self.case.loading[number]
                 for taken in self.program.run(self.stage(phase)):
-                    self._flow_of_heat(number, taken.progress)
+                    self._flow_of_heat(number, taken.part)
                     step = self.recorder.record(number, taken, self.case.loading)
                     self._keep(save)
                     report(step)
@@ -220,15 +220,14 @@ class Analysis:
         start = self.rod.temperature if spec.surroundings is None else spec.surroundings
         return WireHeat(self.rod, heat_constants(self.law, spec.conductivity, spec.convection, spec.tips, start))
 
-    def _flow_of_heat(self, number: int, progress: float) -> None:
+    def _flow_of_heat(self, number: int, part: float) -> None:
         """Let heat flow for the part of the phase's time that the last step took."""
         phase = self.case.loading[number]
         if self.heat is not None and self.heat.creeps:
             self.heat.catch_up()
             self.program.settle()
         elif self.heat is not None and isinstance(phase, Phase) and phase.seconds is not None:
-            before = max((step.progress for step in self.result.steps if step.phase == number), default=0.0)
-            self.heat.advance((progress - before) * phase.seconds)
+            self.heat.advance(part * phase.seconds)
 
     def redirect(self, phase: Phase) -> None:
         """Change the target of the phase in progress; the case holds the new one from now on.
@@ -255,7 +254,11 @@ class Analysis:
         for name, field in self.system.state.items():
             self.layout.take(field, saved.arrays[name])
         self.system.restore()
-        self.program.position, self.continuation.number = saved.position, len(saved.result.steps)
+        steps, continuation = saved.result.steps, self.continuation
+        continuation.number, continuation.negative_pivots = len(steps), steps[-1].negative_pivots if steps else 0
+        self.program.position = saved.position
+        if saved.changed:
+            self.program.begin(saved.position.stage)
         self.recorder.resume(saved.result)
 
     def _check(self, saved: Saved) -> None:

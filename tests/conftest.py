@@ -37,19 +37,19 @@ def make_rod(ck15):
 
 @pytest.fixture
 def resumed_after(tmp_path):
-    """A new analysis of a case, with the state that another one left when it was stopped after some step."""
+    """A new analysis of a case, with the state that one left when it was stopped after some step of it, or `before`."""
 
-    def resume(case, number):
-        checkpoint = Checkpoint(tmp_path, case)
+    def resume(case, number, before=None):
+        begun = before or case
 
         def stop(step):
             if step.number == number:
                 raise KeyboardInterrupt
 
         with pytest.raises(KeyboardInterrupt):
-            Analysis(case, MPI.COMM_SELF).run(stop, checkpoint.save)
+            Analysis(begun, MPI.COMM_SELF).run(stop, Checkpoint(tmp_path, begun).save)
         resumed = Analysis(case, MPI.COMM_SELF)
-        resumed.resume(checkpoint.load(MPI.COMM_SELF))
+        resumed.resume(Checkpoint(tmp_path, case).load(MPI.COMM_SELF))
         return resumed
 
     return resume

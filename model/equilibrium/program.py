@@ -66,10 +66,19 @@ class ProgramPosition:
 
 @dataclass(frozen=True)
 class StepTaken:
-    """One converged step: its number from 1, the part of the stage that is behind, how often it was cut, Outcome."""
+    """One converged step.
+
+    Attributes:
+        number: from 1.
+        progress: part of the stage that is behind.
+        part: part of the stage that it took.
+        cuts: how often it was cut.
+        outcome: Outcome.
+    """
 
     number: int
     progress: float
+    part: float
     cuts: int
     outcome: Outcome
 
@@ -119,16 +128,16 @@ class LoadProgram:
             SolveError: as Continuation.advance.
         """
         self.stage, continuation = self.redirected or stage, self.continuation
-        while continuation.steps.position.done < (regular := self._regular(self.stage)):
+        while continuation.steps.position.done < self._regular(self.stage):
             path = self._path(self.stage)
+            before = path.progress(continuation.steps.position.done)
             outcome, cuts = continuation.advance(path)
             error = outcome.estimate.force if outcome.estimate is not None else math.nan
             log.info("step %d: %.6g mm, %.6g N, %d iterations, out of balance %.1e, error about %.2g N; next %.4g of a "
                      "regular step", continuation.number, self.control.height, self.control.force, outcome.iterations,
                      outcome.ratio, error, continuation.steps.position.size)  # fmt: skip
-            done = continuation.steps.position.done
-            progress = (done if path.length is None else path.length(done)) / regular
-            yield StepTaken(continuation.number, progress, cuts, outcome)
+            progress = path.progress(continuation.steps.position.done)
+            yield StepTaken(continuation.number, progress, progress - before, cuts, outcome)
 
     def settle(self) -> None:
         """Find equilibrium again at the same height or force, after something else has changed the body; collective.

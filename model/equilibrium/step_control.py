@@ -42,6 +42,10 @@ class Path:
         """Of a step of a size from a place on the path, both in regular steps; in their mean length."""
         return size if self.length is None else self.length(done + size) - self.length(done)
 
+    def progress(self, done: float) -> float:
+        """Part of the path up to a place on it, which is counted in regular steps."""
+        return self.step_length(0.0, done) / self.regular
+
 
 @dataclass(frozen=True)
 class Position:

@@ -39,11 +39,13 @@ class Saved:
         arrays: name → array of the state in natural order.
         position: ProgramPosition.
         result: Result so far.
+        changed: whether the target of the stage in progress is another one now: the stage begins anew from the state.
     """
 
     arrays: Mapping[str, np.ndarray]
     position: ProgramPosition
     result: Result
+    changed: bool = False
 
 
 class Checkpoint:
@@ -58,6 +60,7 @@ class Checkpoint:
         self.folder = Path(folder) / "checkpoint"
         self.case, self.provenance = case.model_dump(mode="json"), provenance(case)
         self.journal, self.state = StepJournal(self.folder / "steps.jsonl"), Turns(self.folder / "state.npz")
+        self._snapshots = 0  # that are written, or were read
 
     # ---- saving ----------------------------------------------------------------------------------------------------
 
@@ -78,16 +81,15 @@ class Checkpoint:
         mode = asdict(result.mode) if result.mode is not None else {}
         make(self.folder)
         self.journal.append(result.steps, result.seats, result.frames)
-        for number, snapshot in enumerate(result.snapshots):
+        for number, snapshot in enumerate(result.snapshots[self._snapshots :], self._snapshots):
             self._save_snapshot(number, snapshot)
+        self._snapshots = len(result.snapshots)
         with self.state.next() as file:
             state_file.write(file, about, fields, mode)
 
     def _save_snapshot(self, number: int, snapshot: Snapshot) -> None:
-        path = self.folder / f"snapshot-{number:02d}.npz"
-        if not path.exists():
-            with whole(path) as partial, open(partial, "wb") as file:
-                np.savez(file, **asdict(snapshot))
+        with whole(self.folder / f"snapshot-{number:02d}.npz") as partial, open(partial, "wb") as file:
+            np.savez(file, **asdict(snapshot))
 
     def over(self) -> None:
         """Nothing more will be saved."""
@@ -126,7 +128,7 @@ class Checkpoint:
             about, fields, mode = state_file.read(path)
             self._compare(about)
             result = self._result(about, mode)
-            return Saved(fields, self._position(about, result), result)
+            return Saved(fields, _position(about["position"]), result, self._changed(about))
         except InputError:
             raise
         except (KeyError, TypeError):  # an entry that is missing or unknown
@@ -140,6 +142,7 @@ class Checkpoint:
         kept: dict[str, Any] = {name: values if values.ndim else float(values) for name, values in of_mode.items()}
         mode = BucklingMode(**kept) if kept else None
         snapshots = tuple(self._snapshot(number) for number in range(about["snapshots"]))
+        self._snapshots = len(snapshots)
         warnings = tuple(Warning(**warning) for warning in about["warnings"])
         return Result(*self.journal.read(about["steps"]), snapshots, about["rate"], warnings=warnings, mode=mode)
 
@@ -150,22 +153,9 @@ class Checkpoint:
         found["components"] = tuple(str(name) for name in found["components"])
         return Snapshot(**found)
 
-    def _position(self, about: Mapping[str, Any], result: Result) -> ProgramPosition:
-        """Where to resume; a changed target starts its phase from the current state of the spring."""
-        saved = about["position"]
-        redirected = saved["redirected"] and Stage(**saved["redirected"])
-        if redirected and isinstance(redirected.steps, list):  # JSON has no tuples
-            redirected = replace(redirected, steps=tuple(redirected.steps))
-        begun = Moment(*saved["begun"])
-        parts = {"on_path": Position(**saved["on_path"]), "redirected": redirected, "begun": begun}
-        position = ProgramPosition(**{**saved, **parts})
-        stage, old, new = position.stage, about["case"]["loading"], self.case["loading"]
-        if old[stage : stage + 1] == new[stage : stage + 1]:
-            return position
-        last = result.steps[-1] if result.steps else None
-        height, force = (last.seat_height_mm, last.force_N) if last else (position.height, position.force)
-        now = Moment(last.hours, last.temperature_K) if last else begun
-        return replace(position, height=height, force=force, on_path=Position(), redirected=None, begun=now)
+    def _changed(self, about: Mapping[str, Any]) -> bool:
+        stage, old, new = about["position"]["stage"], about["case"]["loading"], self.case["loading"]
+        return bool(old[stage : stage + 1] != new[stage : stage + 1])
 
     def _compare(self, about: Mapping[str, Any]) -> None:
         """Spring, files and version must be the same, and so must the finished phases; the rest may have changed."""
@@ -186,6 +176,14 @@ class Checkpoint:
         behind = about["position"]["stage"]
         if old["loading"][:behind] != new["loading"][:behind]:
             raise InputError(f"its first {behind} phases are finished and must not change", "loading", self.folder)
+
+
+def _position(saved: Mapping[str, Any]) -> ProgramPosition:
+    redirected = saved["redirected"] and Stage(**saved["redirected"])
+    if redirected and isinstance(redirected.steps, list):  # JSON has no tuples
+        redirected = replace(redirected, steps=tuple(redirected.steps))
+    parts = {"on_path": Position(**saved["on_path"]), "redirected": redirected, "begun": Moment(*saved["begun"])}
+    return ProgramPosition(**{**saved, **parts})
 
 
 def _without_cells(result: Result) -> Result:

@@ -2,10 +2,12 @@
 
 import json
 import random
+import shutil
 import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -215,6 +217,30 @@ def test_a_changed_program_goes_on_and_a_changed_spring_does_not(example, tmp_pa
     thicker = read_case(example, [*SETTINGS, "loading.0.to={travel: 8}", "spring.wire_diameter=5.1"])
     with pytest.raises(InputError, match="spring"):
         Checkpoint(tmp_path, thicker).load(MPI.COMM_SELF)
+
+
+def test_a_run_goes_on_from_an_unstable_state_as_it_would_have(example, tmp_path):
+    """Where no stable state was found, the next step may be as unstable; no other branch is looked for."""
+    case = read_case(example, CLAMPED)
+    run_until(Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case), 2)
+    resumed = Analysis(case, MPI.COMM_SELF)
+    saved = Checkpoint(tmp_path, case).load(resumed.comm)
+    first, last = saved.result.steps
+    resumed.resume(replace(saved, result=replace(saved.result, steps=(first, replace(last, negative_pivots=2)))))
+    assert resumed.continuation.negative_pivots == 2
+
+
+def test_a_snapshot_behind_the_last_state_is_written_anew(example, tmp_path):
+    """A run was killed between the snapshot at the end of a phase and its state, and the target is another one now."""
+    case = read_case(example, CLAMPED)
+    checkpoint = Checkpoint(tmp_path, case)
+    run_until(Analysis(case, MPI.COMM_SELF), checkpoint, 2)
+    shutil.copy(checkpoint.folder / "snapshot-00.npz", checkpoint.folder / "snapshot-01.npz")
+    resumed, checkpoint = Analysis(case, MPI.COMM_SELF), Checkpoint(tmp_path, case)
+    resumed.resume(checkpoint.load(resumed.comm))
+    resumed.run(save=checkpoint.save)
+    saved = Checkpoint(tmp_path, case).load(resumed.comm)
+    assert [shot.name for shot in saved.result.snapshots] == ["start", "travel 12 mm", "force 0 N"]
 
 
 def test_no_checkpoint_and_a_broken_one_are_said(example, tmp_path):

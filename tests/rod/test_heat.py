@@ -51,6 +51,14 @@ def test_heat_that_is_generated_is_in_the_wire_or_given_off_and_a_run_goes_on(wa
         assert (field.equilibrium == resumed.system.state[name].equilibrium).all(), name
 
 
+def test_heat_flows_for_the_seconds_of_each_phase_whatever_came_before_it(warming, resumed_after):
+    """Half of 2 s, then another target in 2 s more."""
+    there, elsewhere = ([{"to": {"travel": travel}, "steps": 4, "seconds": 2.0}] for travel in (8.0, 6.0))
+    before, after = (check(CASE | {"material": warming, "loading": loading}) for loading in (there, elsewhere))
+    steps = resumed_after(after, 2, before).run().steps
+    assert [3600.0 * step.hours for step in steps] == pytest.approx([0.5, 1.0, 1.5, 2.0, 2.5, 3.0])
+
+
 def test_expansion_of_a_free_wire_bears_no_stress(warming, tmp_path):
     """Heated evenly by 100 K and grown by α ΔT in all directions a spring has no stress; held, its wire has E α ΔT."""
     data = yaml.safe_load(Path(warming).read_text(encoding="utf-8"))

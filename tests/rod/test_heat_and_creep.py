@@ -131,6 +131,18 @@ def test_it_goes_on_after_a_stop(files, resumed_after):
     assert resumed.heat.equation.surroundings.value == WARM
 
 
+def test_another_target_leaves_the_surroundings_as_warm_as_they_are(files, resumed_after):
+    """The wire is colder than its oven when the hold is made longer: the oven does not get as cold as the wire."""
+    press, holds = {"to": {"travel": 9.0}, "steps": 1, "seconds": 1.0}, ({"hold": {"minutes": m}} for m in (5, 10))
+    heat = {"conductivity": 50.0, "convection": 20.0, "surroundings": WARM}
+    about = SPRING | {"material": files["both"], "temperature": COLD, "heat": heat}
+    before, after = (check(about | {"loading": [press, hold | {"steps": 2}]}) for hold in holds)
+    resumed = resumed_after(after, 2, before)
+    assert COLD < resumed.rod.hottest < WARM
+    assert resumed.program.position.begun == resumed.program.now
+    assert resumed.program.now.temperature == WARM
+
+
 def test_coiled_wire_is_as_warm_as_the_spring(files):
     """Coiling, relief and peening leave no heat behind, and the relief is that of the law without heating."""
     past = {"made_by": "coiling", "relieved": {"temperature": 523.15, "minutes": 30},
