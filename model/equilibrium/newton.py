@@ -106,13 +106,12 @@ class Newton:
         """Go on with another method.
 
         Raises:
-            InputError: if PETSc refuses an option.
+            InputError: if PETSc refuses an option; the method is then unchanged.
         """
-        self.method = method
-        if self.snes is not None:
-            self.snes.destroy()
-        self._fitted = 0
-        self.snes = self._factory.make("", method.options, method.of_the_user)
+        before, self.snes = self.snes, self._factory.make("", method.options, method.of_the_user)
+        if before is not None:
+            before.destroy()
+        self.method, self._fitted = method, 0
         me = weakref.proxy(self)
         if method.searches:
             self.snes.setLineSearchPreCheck(lambda *args: me._shorten(*args))

@@ -30,20 +30,22 @@ class SnesFactory:
         self, comm: MPI.Comm, residual: Callable[..., Any], tangent: Callable[..., Any], F: PETSc.Vec, matrix: PETSc.Mat
     ) -> None:
         self.comm, self.residual, self.tangent, self.F, self.matrix = comm, residual, tangent, F, matrix
-        self.prefix, self._keys = f"coilset_{next(numbers)}_", set[str]()
-        weakref.finalize(self, forget, self._keys).atexit = False
+        self.prefix = f"coilset_{next(numbers)}_"
+        self._keys: dict[str, set[str]] = {}  # of each part, in PETSc's database
+        weakref.finalize(self, _forget_all, self._keys).atexit = False
 
     def make(self, part: str, settings: Mapping[str, Any], of_the_user: Collection[str] = ()) -> PETSc.SNES:
-        """A SNES with PETSc's options `settings`; `part` tells it from others of this factory.
+        """A SNES with PETSc's options `settings`, in place of the one that was made for this `part` before.
 
         Raises:
             InputError: if PETSc refuses an option.
         """
-        database = PETSc.Options()
+        database, keys = PETSc.Options(), self._keys.setdefault(part, set())
+        forget(keys)  # of the one before: it had options that this one leaves to PETSc
         for key, value in settings.items():
             database[self.prefix + part + key] = value
             if key not in of_the_user:  # those stay, so that PETSc names those at its end which it did not know
-                self._keys.add(self.prefix + part + key)
+                keys.add(self.prefix + part + key)
         snes = PETSc.SNES().create(self.comm)
         snes.setOptionsPrefix(self.prefix + part)
         snes.setFunction(self.residual, self.F)
@@ -55,8 +57,13 @@ class SnesFactory:
         return snes
 
 
-def forget(keys: Collection[str]) -> None:
+def forget(keys: set[str]) -> None:
     """Take options out of PETSc's database."""
     database = PETSc.Options()
-    for key in keys:
-        database.delValue(key)
+    while keys:
+        database.delValue(keys.pop())
+
+
+def _forget_all(parts: Mapping[str, set[str]]) -> None:
+    for keys in parts.values():
+        forget(keys)

@@ -133,6 +133,20 @@ def test_a_line_search_may_lengthen_a_correction(search):
     assert x.getValue(0) == pytest.approx(3.0, rel=1e-12)
 
 
+@pytest.mark.parametrize("before", ["modified-newton", "broyden", "arc-length"])
+def test_a_method_keeps_nothing_of_the_one_before(example, before):
+    """Newton's has a new tangent in each iteration also after one that keeps it, and needs as many as from the start."""
+    costs = []
+    for first in ("newton", before):
+        settings = [*COARSE, "ends=clamped", f"solver.method={first}"]
+        analysis = Analysis(read_case(example, settings), MPI.COMM_SELF)
+        analysis.use_method("newton")
+        outcome = analysis.newton.solve(analysis.control.to_height(analysis.control.height - 4.0))
+        costs.append((outcome.converged, outcome.iterations, outcome.factorisations))
+    assert costs[0][0]
+    assert costs[1] == costs[0]
+
+
 def test_a_residual_that_is_not_a_number_is_said(example, monkeypatch):
     analysis = Analysis(read_case(example, COARSE), MPI.COMM_SELF)
     monkeypatch.setattr(analysis.rod, "update", lambda: False)
