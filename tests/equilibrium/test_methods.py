@@ -135,7 +135,7 @@ def test_a_line_search_may_lengthen_a_correction(search):
 
 @pytest.mark.parametrize("before", ["modified-newton", "broyden", "arc-length"])
 def test_a_method_keeps_nothing_of_the_one_before(example, before):
-    """Newton's has a new tangent in each iteration also after one that keeps it, and needs as many as from the start."""
+    """Newton's has a new tangent in each iteration, also after one that keeps it."""
     costs = []
     for first in ("newton", before):
         settings = [*COARSE, "ends=clamped", f"solver.method={first}"]
