@@ -282,16 +282,10 @@ class Analysis:
         if isinstance(phase, TimePhase):
             time = phase.duration
             return Stage(time.keep, None, steps, phase.label, time.length, phase.temperature)
-        to, free_length = phase.to, self.spring.free_length
         timeless = self.heat is not None and not self.heat.creeps  # heat flows after each step
         hours = 0.0 if timeless else (phase.seconds or 0.0) / 3600.0
-        if to == "block":
-            kind, value = "height", self.spring.block_height
-        elif to.force is not None:
-            kind, value = "force", to.force
-        else:
-            kind, value = "height", to.height if to.height is not None else free_length - (to.travel or 0.0)
-        return Stage(kind, value, steps, phase.label, hours, even=True)  # type: ignore[arg-type]
+        kind, value = phase.goal(self.spring.free_length, self.spring.block_height)
+        return Stage(kind, value, steps, phase.label, hours, even=True)
 
     def _keep(self, save: Save | None) -> None:
         if save is not None:

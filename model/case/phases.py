@@ -90,6 +90,14 @@ class Phase(Stepped):
         name, value = next((name, value) for name, value in self.to.model_dump().items() if value is not None)
         return f"{name} {value:g} {'N' if name == 'force' else 'mm'}"
 
+    def goal(self, free_length: float, block_height: float) -> tuple[Literal["height", "force"], float]:
+        """What is driven, the height between the seats, mm, or the axial force, N, and its value at the end."""
+        if self.to == "block":
+            return "height", block_height
+        if self.to.force is not None:
+            return "force", self.to.force
+        return "height", self.to.height if self.to.height is not None else free_length - (self.to.travel or 0.0)
+
 
 class Duration(Strict):
     """How long, and what stays as it was meanwhile."""

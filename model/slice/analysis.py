@@ -151,7 +151,7 @@ class SliceAnalysis:
     def _phase(self, index: int, phase: Phase, report: Callable[[SliceStep], object]) -> None:
         steps = phase.count(AUTOMATIC)
         marks = phase.steps if isinstance(phase.steps, list) else np.arange(1, steps + 1) / steps
-        kind, end = self._target(phase)
+        kind, end = phase.goal(self.spring.free_length, self.spring.block_height)
         begin = self.problem.force if kind == "force" else self.height
         for k, mark in enumerate(marks, 1):
             value = end if k == steps else begin + mark * (end - begin)
@@ -173,18 +173,6 @@ class SliceAnalysis:
     def _rise(self, height: float) -> float:
         return self.coil.rise - (self.spring.free_length - height) / (2.0 * np.pi * self.turns)
 
-    def _target(self, phase: Phase) -> tuple[str, float]:
-        """Kind (`force` or `height`) and value of a phase's target, N or mm."""
-        to = phase.to
-        if to == "block":
-            return "height", self.spring.block_height
-        if to.force is not None:
-            return "force", to.force
-        if to.height is not None:
-            return "height", to.height
-        assert to.travel is not None  # a target has one entry
-        return "height", self.spring.free_length - to.travel
-
     def check_targets(self) -> None:
         """Reject a load program with a height below that at which the coils touch.
 
@@ -197,7 +185,7 @@ class SliceAnalysis:
                 raise InputError(
                     "the slice does not model time; leave it out, or use coilset solve", f"loading.{index}"
                 )
-            kind, value = self._target(phase)
+            kind, value = phase.goal(self.spring.free_length, block)
             if kind == "height" and value < block * (1.0 - SAME):
                 raise InputError(f"a height of {value:.6g} mm is below block, {block:.6g} mm; give to: block",
                                  f"loading.{index}.to")  # fmt: skip
