@@ -1,6 +1,5 @@
 """`coilset material`: draw a material's functions, drive one point through a program, fit constants to tests."""
 
-import csv
 import os
 import re
 from collections.abc import Iterable
@@ -205,13 +204,10 @@ def _save(figure: "Figure", path: Path, force: bool, console: "Console") -> None
 
 
 def _write_csv(path: Path, history: "History") -> None:
-    from coilset.model.results.folder import whole
+    from coilset.model.results.folder import write_table
 
     names, values = zip(*history.columns(), strict=True)
-    with whole(path) as partial, open(partial, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(names)
-        writer.writerows(zip(*(column.tolist() for column in values), strict=True))
+    write_table(path, names, zip(*(column.tolist() for column in values), strict=True))
 
 
 def _constants(law: "Law") -> "Table":

@@ -3,7 +3,7 @@
 import os
 import signal
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -40,9 +40,11 @@ def sweep(
     """
     from mpi4py import MPI
 
+    from coilset.model.agreement import on_first_rank
+
     comm = MPI.COMM_WORLD
     folder = results_folder(out, Path(sweep_file).stem)
-    plan = _on_first_rank(comm, lambda: _prepare(sweep_file, folder, force, resume or retry))
+    plan = on_first_rank(comm, lambda: _prepare(sweep_file, folder, force, resume or retry))
     console = Console()
     interrupted = False
     try:
@@ -57,20 +59,6 @@ def sweep(
         raise KeyboardInterrupt
     if failed:
         raise SolveError(f"{failed} case(s) failed; their reasons are in the journal, --retry runs them again")
-
-
-def _on_first_rank(comm: "MPI.Comm", prepare: Callable[[], Plan]) -> Plan | None:
-    """The result of `prepare` on rank 0, None elsewhere; its InputError is raised on all ranks."""
-    plan, problem = None, None
-    if comm.rank == 0:
-        try:
-            plan = prepare()
-        except InputError as error:
-            problem = error.problem, error.place, str(error.file)
-    problem = comm.bcast(problem)
-    if problem:
-        raise InputError(*problem)
-    return plan
 
 
 def _prepare(sweep_file: str, out: Path, force: bool, resume: bool) -> Plan:

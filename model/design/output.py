@@ -1,6 +1,5 @@
 """Files of a search: found.yaml, design.json and trade_offs.csv."""
 
-import csv
 import json
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -13,7 +12,7 @@ from coilset.model.design.conditions import Condition
 from coilset.model.design.search import TOLERANCE, Found, Search
 from coilset.model.design.trade_offs import TradeOff
 from coilset.model.design.wish import Wish
-from coilset.model.results.folder import whole
+from coilset.model.results.folder import whole, write_table
 from coilset.model.results.provenance import origin
 
 FILES = (
@@ -72,14 +71,10 @@ def write(folder: Path, wish: Wish, search: Search, found: Found, rows: Sequence
         data = yaml.safe_dump(found_data(search, found), sort_keys=False, allow_unicode=True, default_flow_style=None,
                               width=120)  # fmt: skip
         path.write_text(HEAD.format(file=wish.file.name, found=words) + data, encoding="utf-8")
-    with whole(folder / "trade_offs.csv") as path, open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        names = search.evaluator.names
-        rest = ("off", "possible", "wire_length_mm", "free_length_before_mm", "torque")
-        writer.writerow(["of", "value", *names, *rest])
-        for row in rows:
-            writer.writerow([row.of, row.value, *(row.unknowns[name] for name in names),
-                             *(getattr(row, name) for name in rest)])  # fmt: skip
+    names, rest = search.evaluator.names, ("off", "possible", "wire_length_mm", "free_length_before_mm", "torque")
+    write_table(folder / "trade_offs.csv", ["of", "value", *names, *rest],
+                ([row.of, row.value, *(row.unknowns[name] for name in names), *(getattr(row, name) for name in rest)]
+                 for row in rows))  # fmt: skip
     with whole(folder / "design.json") as path:
         content = report(wish, search, found, rows, seconds)
         path.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")

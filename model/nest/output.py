@@ -1,6 +1,5 @@
 """Files of a nest: summary.json, nest.csv and characteristic.png; each spring has a folder of its own beside them."""
 
-import csv
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,7 @@ from matplotlib.figure import Figure
 
 from coilset.model.nest.nest import Pressed
 from coilset.model.results.figures import save
-from coilset.model.results.folder import whole
+from coilset.model.results.folder import write_table
 from coilset.model.results.provenance import origin
 from coilset.model.results.summary import summarise
 from coilset.model.style import STYLE
@@ -43,10 +42,7 @@ def summary(pressed: Pressed) -> dict[str, Any]:
 def write_steps(path: Path, pressed: Pressed) -> None:
     """nest.csv: one row a step of the seats, the start first."""
     rows = zip(pressed.plan.heights, pressed.force, *pressed.forces, pressed.clearance, strict=True)
-    with whole(path) as partial, open(partial, "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(COLUMNS)
-        writer.writerows([number, *(float(value) for value in row)] for number, row in enumerate(rows))
+    write_table(path, COLUMNS, ([number, *(float(value) for value in row)] for number, row in enumerate(rows)))
 
 
 def draw(path: Path, pressed: Pressed, found: dict[str, Any]) -> None:

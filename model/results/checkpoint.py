@@ -12,6 +12,7 @@ import numpy as np
 from mpi4py import MPI
 
 from coilset.meshes.errors import InputError
+from coilset.model.agreement import on_first_rank
 from coilset.model.body import Moment
 from coilset.model.case import Case
 from coilset.model.equilibrium.layout import LineLayout
@@ -108,15 +109,7 @@ class Checkpoint:
         Raises:
             InputError: if there is no checkpoint, it is broken, or it belongs to another spring or load program.
         """
-        saved = problem = None
-        if comm.rank == 0:
-            try:
-                saved = self._read()
-            except InputError as error:
-                problem = error
-        problem = comm.bcast(problem and (problem.problem, problem.place, str(problem.file)))
-        if problem:
-            raise InputError(*problem)
+        saved = on_first_rank(comm, self._read)
         shared = comm.bcast(saved and replace(saved, result=_without_cells(saved.result)))
         return saved or shared
 

@@ -142,17 +142,23 @@ def write_summary(folder: str | Path, summary: Mapping[str, Any]) -> None:
 
 def write_history(folder: str | Path, steps: Sequence[Step]) -> None:
     """history.csv: one row per step; numbers with all their digits."""
-    _write_table(Path(folder) / "history.csv", [item.name for item in fields(Step)], [asdict(step) for step in steps])
+    write_table(Path(folder) / "history.csv", [item.name for item in fields(Step)],
+                (asdict(step).values() for step in steps))  # fmt: skip
 
 
 def write_seats(folder: str | Path, seats: Sequence[SeatReactions]) -> None:
     """seats.csv: one row per step."""
     rows = [one.row() for one in seats]
-    _write_table(Path(folder) / "seats.csv", list(rows[0]) if rows else ["step"], rows)
+    write_table(Path(folder) / "seats.csv", list(rows[0]) if rows else ["step"], (row.values() for row in rows))
 
 
-def _write_table(target: Path, columns: Sequence[str], rows: Sequence[Mapping[str, Any]]) -> None:
+def write_table(target: Path, columns: Sequence[str], rows: Iterable[Iterable[object]]) -> None:
+    """A file of comma-separated values: a line of names, then the rows, numbers with all their digits.
+
+    Raises:
+        CoilsetError: if it cannot be written.
+    """
     with whole(target) as path, open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, columns)
-        writer.writeheader()
+        writer = csv.writer(file)
+        writer.writerow(columns)
         writer.writerows(rows)

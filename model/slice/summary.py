@@ -1,12 +1,11 @@
 """The main numbers of a slice's run, under the names used for a spring's run, and some more."""
 
-import csv
 from dataclasses import asdict, fields
 from pathlib import Path
 
 import numpy as np
 
-from coilset.model.results.folder import whole
+from coilset.model.results.folder import write_table
 from coilset.model.results.warnings import beyond_validity
 from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot, SliceStep
 from coilset.model.slice.watch import equivalent, shear
@@ -100,7 +99,5 @@ def at_surface(analysis: SliceAnalysis, shot: SliceSnapshot) -> dict:
 
 def write_history(folder: Path, steps: list[SliceStep]) -> None:
     """history.csv: one row per step, numbers with all digits."""
-    with whole(Path(folder) / "history.csv") as path, open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, [column.name for column in fields(SliceStep)])
-        writer.writeheader()
-        writer.writerows(asdict(step) for step in steps)
+    write_table(Path(folder) / "history.csv", [column.name for column in fields(SliceStep)],
+                (asdict(step).values() for step in steps))  # fmt: skip
