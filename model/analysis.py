@@ -19,6 +19,7 @@ from coilset.model.contact.base import BearsOnWire
 from coilset.model.contact.build import build_contacts, seats_at
 from coilset.model.contact.coarse_mesh import coarse_mesh_warnings
 from coilset.model.effort import Effort, machine_memory
+from coilset.model.entries.entry import check_entries
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
 from coilset.model.equilibrium.continuation import Continuation
@@ -233,12 +234,12 @@ class Analysis:
         """Change the target of the phase in progress; the case holds the new one from now on.
 
         Raises:
-            InputError: if no spring can reach it, or its steps are automatic and errors are not estimated; then nothing
-                changes.
+            InputError: if no spring can reach it, its steps are automatic and errors are not estimated, or it takes no
+                time although heat flows; then nothing changes.
         """
         number = min(self.program.number, len(self.case.loading) - 1)
         loading = [phase if k == number else other for k, other in enumerate(self.case.loading)]
-        case = self.case.model_copy(update={"loading": loading})
+        case = check_entries(dict(self.case) | {"loading": loading}, Case)
         check_steps(case)
         check_targets(case, self.spring, self.law.G)
         self.case = case

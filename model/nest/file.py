@@ -83,5 +83,7 @@ def read_nest(path: str | Path) -> Nest:
         if case.seats.bottom.moves or case.seats.top.moves:
             raise InputError("seats that tilt or move aside are shared by both springs of a nest, which is not known; "
                              "give rigid ones", "seats", file)  # fmt: skip
+        if case.heat is not None:
+            raise InputError("takes time to flow, and the seats of a nest take none; leave it out", "heat", file)
         cases.append(case)
     return Nest((cases[0], cases[1]), tuple(data.loading), path)

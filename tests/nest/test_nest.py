@@ -122,6 +122,16 @@ def test_wrong_nests(change, message, tmp_path):
     assert message in str(error.value)
 
 
+def test_heat_flows_in_no_nest(tmp_path):
+    """Its seats take no time, so that all of it would stay where the wire has flowed."""
+    nest, file = write(tmp_path), tmp_path / "outer.yaml"
+    case = yaml.safe_load(file.read_text(encoding="utf-8")) | {"heat": {"conductivity": 50.0}}
+    case["loading"] = [{"to": {"travel": 1.0}, "seconds": 1.0}]
+    file.write_text(yaml.safe_dump(case), encoding="utf-8")
+    with pytest.raises(InputError, match=r"outer.yaml: heat: takes time to flow, and the seats of a nest take none"):
+        read_nest(nest)
+
+
 def test_the_command_writes_the_nest_and_each_spring(tmp_path, capsys):
     out = tmp_path / "results"
     nest_command(

@@ -10,6 +10,7 @@ from mpi4py import MPI
 from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case.case import check
+from coilset.model.case.phases import Phase
 from coilset.verification.cases.heat_along_wire import exact, fin, material
 from coilset.verification.study import Study
 
@@ -57,6 +58,14 @@ def test_heat_flows_for_the_seconds_of_each_phase_whatever_came_before_it(warmin
     before, after = (check(CASE | {"material": warming, "loading": loading}) for loading in (there, elsewhere))
     steps = resumed_after(after, 2, before).run().steps
     assert [3600.0 * step.hours for step in steps] == pytest.approx([0.5, 1.0, 1.5, 2.0, 2.5, 3.0])
+
+
+def test_another_target_takes_time_too(warming):
+    """Chosen in the middle of a run, without seconds: heat would stand still."""
+    analysis = Analysis(check(CASE | {"material": warming}), MPI.COMM_SELF)
+    with pytest.raises(InputError, match="takes no time, but heat flows"):
+        analysis.redirect(check({"to": {"travel": 5.0}}, model=Phase))
+    assert analysis.case.loading[0].to.travel == 45.0
 
 
 def test_expansion_of_a_free_wire_bears_no_stress(warming, tmp_path):
