@@ -174,17 +174,19 @@ class SliceAnalysis:
         return self.coil.rise - (self.spring.free_length - height) / (2.0 * np.pi * self.turns)
 
     def check_targets(self) -> None:
-        """Reject a load program with a height below that at which the coils touch.
+        """Reject a load program in time, or with a height below that at which the coils touch.
 
         Raises:
             InputError: with the phase.
         """
-        block = self.spring.block_height
+        block, timeless = self.spring.block_height, "the slice does not model time; leave it out, or use coilset solve"
+        if self.case.heat is not None:
+            raise InputError(timeless, "heat")
         for index, phase in enumerate(self.case.loading):
             if not isinstance(phase, Phase):
-                raise InputError(
-                    "the slice does not model time; leave it out, or use coilset solve", f"loading.{index}"
-                )
+                raise InputError(timeless, f"loading.{index}")
+            if phase.seconds is not None:
+                raise InputError(timeless, f"loading.{index}.seconds")
             kind, value = phase.goal(self.spring.free_length, block)
             if kind == "height" and value < block * (1.0 - SAME):
                 raise InputError(f"a height of {value:.6g} mm is below block, {block:.6g} mm; give to: block",

@@ -66,6 +66,8 @@ def test_block_is_where_the_coils_touch(example):
         (["spring.end_coils=closed", "spring.turns=6"], None, "spring.pitch: .*leave end_coils out"),
         (["loading=[{to: {height: 17}}]"], None, "loading.0.to: .*below block"),
         (["loading=[{to: {travel: 30}}]"], None, "loading.0.to: .*below block"),
+        (["loading=[{to: {travel: 1}, seconds: 2}]"], None, "loading.0.seconds: the slice does not model time"),
+        (["heat={conductivity: 50}", "loading=[{to: {travel: 1}, seconds: 2}]"], None, "heat: the slice .* time"),
         ([], "oval:4:6", "spring.wire_diameter: 5 mm, but the section is 6 mm high"),
         ([], "ring", "--section"),
         (["material=none"], None, "material"),
