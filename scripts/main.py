@@ -31,6 +31,7 @@ Debian 13 or Ubuntu 25.04, or in a private Debian 13 on older releases (scripts/
 docs/install.md."""
 NO_ROOM = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT, errno.EROFS)
 TOGETHER = 10.0  # seconds within which all ranks meet an error that concerns them all
+SOON_TOGETHER = 2.0  # and an interruption
 HEARD = 0.5  # seconds for mpirun to pass on the output of a rank, before it ends the ranks and drops the rest
 LONGEST_MESSAGE = 400  # characters of a wrong command line that a message repeats
 INTERRUPTED = 128 + signal.SIGINT
@@ -378,7 +379,7 @@ def run() -> None:
         status = app(prog_name="coilset", standalone_mode=False) or 0
     except CoilsetError as error:
         status = error.exit_code
-        _leave_together(error)
+        _leave_together(status, TOGETHER, str(error))
         _complain(str(error))
     except OSError as error:
         if error.errno not in NO_ROOM:
@@ -399,10 +400,8 @@ def run() -> None:
             raise
         status = getattr(error, "exit_code", 1)
         _complain(command_line_message(error))
-    if status == INTERRUPTED and output_closed():
-        status = 128 + signal.SIGPIPE  # like any program whose reader has gone
-    elif status == INTERRUPTED:  # typer may have converted the exception to an exit code
-        _complain("interrupted")
+    if status == INTERRUPTED:  # typer may have converted the exception to an exit code
+        status = _interrupted()
     ending.status = status
     sys.exit(status)
 
@@ -460,15 +459,38 @@ def _crash() -> None:
         _abort(world, 1)
 
 
-def _leave_together(error: CoilsetError) -> None:
-    """An error on all ranks is reported by the first; an error on only some of them ends them all."""
+def _interrupted() -> int:
+    """An interruption, told in one line; its exit code.
+
+    A rank that waits for another one inside MPI hears of no signal: if it does not come within SOON_TOGETHER, all end.
+    """
+    closed = output_closed()  # like any program whose reader has gone
+    status = 128 + signal.SIGPIPE if closed else INTERRUPTED
+    if not closed:
+        _complain("interrupted")
+    if _several_ranks():
+        for number in (signal.SIGINT, signal.SIGUSR1, signal.SIGALRM):
+            signal.signal(number, signal.SIG_IGN)  # the end is near
+        _leave_together(status, SOON_TOGETHER)
+    return status
+
+
+def _leave_together(exit_code: int, seconds: float, line: str = "") -> None:
+    """An error on all ranks is reported by the first; an error on only some of them ends them all.
+
+    Args:
+        exit_code: of ranks that end without the others.
+        seconds: that a rank waits for the others.
+        line: that it reports then; empty: it has been told.
+    """
     if (world := _several_ranks()) is None:
         return
-    arrived, until = world.Ibarrier(), time.monotonic() + TOGETHER
+    arrived, until = world.Ibarrier(), time.monotonic() + seconds
     while not arrived.Test():
         if time.monotonic() > until:
-            print(f"coilset: {error}", file=sys.stderr, flush=True)
-            _abort(world, error.exit_code)
+            if line:
+                print(f"coilset: {line}", file=sys.stderr, flush=True)
+            _abort(world, exit_code)
         time.sleep(0.01)
 
 

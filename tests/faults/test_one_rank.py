@@ -46,3 +46,13 @@ def test_an_unforeseen_error_on_one_rank_ends_all(tmp_path):
     done = fail(1, tmp_path, PROGRAM.replace('InputError("is wrong", "place")', 'IndexError("unforeseen")'))
     assert done.returncode == 1
     assert "IndexError: unforeseen" in done.stderr
+
+
+@pytest.mark.parametrize("where", [-1, 0, 1])
+def test_an_interruption_of_one_rank_ends_all(tmp_path, where):
+    """The other one waits inside MPI, as for the pictures, where Python hears of no signal."""
+    done = fail(where, tmp_path, PROGRAM.replace('InputError("is wrong", "place")', "KeyboardInterrupt"))
+    assert done.returncode == 130
+    lines = [line for line in done.stderr.splitlines() if line.startswith("coilset:")]
+    assert lines == ([] if where == 1 else ["coilset: interrupted"])
+    assert "Traceback" not in done.stderr
