@@ -1,6 +1,7 @@
 """Rates of a spring from its characteristic: as spring makers measure it, and at given travels."""
 
 from collections.abc import Sequence
+from itertools import dropwhile
 
 import numpy as np
 
@@ -10,9 +11,9 @@ MAKERS = (0.3, 0.7)  # of the travel to block, between which EN 15800 measures t
 
 
 def first_compression(steps: Sequence[Step]) -> tuple[np.ndarray, np.ndarray]:
-    """Travel, mm, and force, N, from the start to the first release."""
+    """Travel, mm, and force, N, from the start to the first release; a free spring may be heated before."""
     travel, force = [0.0], [0.0]
-    for step in steps:
+    for step in dropwhile(lambda step: step.travel_mm <= 0.0, steps):
         if step.travel_mm <= travel[-1]:
             break
         travel.append(step.travel_mm)

@@ -15,6 +15,7 @@ SLIPPED = 0.7  # of the rise to touch: coils of one wire that lie so are shifted
 # spring of constant rate has 1, the example at block 1.1, the cone 160.
 WALL = 20.0
 WALL_FORCE = 0.002  # of the force, for which the warning tells the height where no accuracy is asked for
+FREE = 1e-6  # of the greatest force: a spring that bears no more is free of load
 Check = Callable[[Setup, Result], Iterator[Warning]]
 
 
@@ -94,11 +95,11 @@ def _slipped(setup: Setup, result: Result) -> Iterator[Warning]:
 
 
 def _wall(setup: Setup, result: Result) -> Iterator[Warning]:
-    """At the end of a compression."""
-    accuracy = setup.limits.accuracy or WALL_FORCE
+    """At the end of a compression; a free spring that cools also gets shorter."""
+    accuracy, free = setup.limits.accuracy or WALL_FORCE, FREE * _greatest(result)
     for before, step in pairwise(result.steps):
         travel = step.travel_mm - before.travel_mm
-        if step.phase != before.phase or step.progress < 1.0 or travel <= 0.0 or step.force_N <= 0.0:
+        if step.phase != before.phase or step.progress < 1.0 or travel <= 0.0 or step.force_N <= free:
             continue
         rate = (step.force_N - before.force_N) / travel
         percent = abs(rate) * step.travel_mm / step.force_N
@@ -217,10 +218,14 @@ def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
 
 def released(result: Result) -> bool:
     """Whether the spring is free of load now; one that has left a seat is held by its tip springs only."""
-    greatest = max((abs(step.force_N) for step in result.steps), default=0.0)
     if not result.steps or result.steps[-1].lift_off_mm:
         return False
-    return abs(result.snapshots[-1].force) <= 1e-6 * greatest
+    return abs(result.snapshots[-1].force) <= FREE * _greatest(result)
+
+
+def _greatest(result: Result) -> float:
+    """The greatest force of any step, N."""
+    return max((abs(step.force_N) for step in result.steps), default=0.0)
 
 
 SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _wall, _penetration, _buckled, _unstable, _snapped)

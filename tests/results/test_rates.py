@@ -33,6 +33,8 @@ def test_branches_of_a_characteristic():
     there = [step(k, travel, 2 * travel) for k, travel in enumerate((2.0, 4.0, 6.0))]
     back = [step(3 + k, travel, 3 * (travel - 2.0)) for k, travel in enumerate((4.0, 2.0))]
     assert first_compression([*there, *back])[0].tolist() == [0.0, 2.0, 4.0, 6.0]
+    grown = [step(k, -0.1 * k, 0.0) for k in range(3)]  # by heat
+    assert first_compression([*grown, *there, *back])[0].tolist() == [0.0, 2.0, 4.0, 6.0]
     travel, force = last_release([*there, *back], 48.0)
     assert travel.tolist() == [0.0, 2.0, 4.0]
     assert force.tolist() == [0.0, 6.0, 12.0]

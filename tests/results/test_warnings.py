@@ -126,6 +126,9 @@ def test_a_force_on_a_wall_is_told(lifted):
             assert walls[0].value == pytest.approx(abs(force - 100.0) / 0.1 * 10.1 / force, rel=1e-9)
     back = replace(first, number=2, travel_mm=9.9, force_N=60.0, progress=1.0)
     assert "wall" not in names(step_warnings(lifted.setup, Result(steps=(first, back))))
+    hot, cold = (replace(first, phase=1, travel_mm=travel, force_N=force, progress=progress)
+                 for travel, force, progress in ((10.0, -1e-10, 0.5), (10.01, 1e-10, 1.0)))  # fmt: skip
+    assert "wall" not in names(step_warnings(lifted.setup, Result(steps=(first, hot, cold))))  # free of load
 
 
 def test_the_steps_error_is_held_against_the_accuracy_asked_for():
