@@ -186,3 +186,14 @@ def test_the_error_of_fast_steps_is_known(viscous):
     error = fine.force_N + fine.estimated_force_error_N - coarse.force_N
     assert coarse.estimated_force_error_N == pytest.approx(error, rel=0.15)
     assert coarse.estimated_force_error_N > 5.0 * still.estimated_force_error_N
+
+
+def test_the_error_of_steps_without_time_is_known_after_a_heating():
+    """No time passes in them, half way neither: it is that of a spring that was warm before, but for its expansion."""
+    press = {"to": {"travel": 14}, "steps": 8}
+    heat = {"heat": {"to": 423.15, "minutes": 20, "keep": "force"}, "steps": 2}
+    heated, warm = (analysis_of(loading, temperature=start).run().steps[-8:]
+                    for loading, start in (([heat, press], 373.15), ([press], 423.15)))  # fmt: skip
+    errors = [[step.estimated_force_error_N for step in steps] for steps in (heated, warm)]
+    assert None not in errors[0]
+    assert errors[0] == pytest.approx(errors[1], abs=0.02 * errors[1][-1])
