@@ -134,7 +134,7 @@ class WorkSearch:
                 low, low_work, high_work, side = length, found, high_work * (0.5 if side > 0 else 1.0), 1
             else:
                 high, high_work, low_work, side = length, found, low_work * (0.5 if side < 0 else 1.0), -1
-        return length
+        return length if found is not None else low or length  # where there is stress, if anywhere
 
     def _back(self, start_norm: float, length: float, norm: float) -> float:
         """Step length at which the norm is smaller than at the start, or the smallest that was found."""
