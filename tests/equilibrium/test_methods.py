@@ -156,7 +156,7 @@ def test_a_residual_that_is_not_a_number_is_said(example, monkeypatch):
 
 
 def test_a_search_ends_where_there_is_stress(example, monkeypatch):
-    """The work falls little up to a part of the correction, and the law finds no stress beyond, as at the last trial."""
+    """The work falls little, and beyond a part of the correction, as at the last trial, the law finds no stress."""
     search = Analysis(read_case(example, COARSE), MPI.COMM_SELF).newton.search
     monkeypatch.setattr(search, "_at", lambda length: (0.9, 1.0) if length < 0.7 else (None, np.inf))
     assert 0.69 < search._zero(1.0, 1.0, -1.0) < 0.7
