@@ -15,7 +15,6 @@ from coilset.meshes.placement import Placement, straight
 from coilset.model.body import Moment
 from coilset.model.extremes import largest
 from coilset.model.material.law import Law
-from coilset.model.material.rate_law import law_in_time
 from coilset.model.rod import forms
 from coilset.model.rod.assembly import add_element_vectors
 from coilset.model.rod.compiled import compiled_forms
@@ -87,7 +86,6 @@ class Rod:
         self.comm = mesh.comm
         self.mesh, self.parameters = mesh, law.parameters(temperature)
         self.temperature = law.reference_temperature if temperature is None else temperature
-        self.in_time = law_in_time(law, self.parameters)
         element = line.element[:n]
         self.radius = np.ascontiguousarray(np.asarray(radius, float)[element])
         self.placement = straight(n)
@@ -96,6 +94,7 @@ class Rod:
         self.sections = make_sections(
             kind, law, self.parameters, rule, self.radius, self.placement, temperature, degree, threads
         )
+        self.in_time = self.sections.law_over_time.in_time
 
         self.V = fem.functionspace(mesh, forms.rod_element())
         self.increment = fem.Function(self.V)
