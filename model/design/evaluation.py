@@ -5,6 +5,7 @@ import json
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -16,10 +17,11 @@ from coilset.model.case.settings import put
 from coilset.model.design.conditions import Condition
 from coilset.model.design.surrogate import Guess, guess
 from coilset.model.design.wish import Wish
+from coilset.model.material import library
 from coilset.model.results.record import Result, Setup
 from coilset.model.results.summary import summarise
 from coilset.model.sweep.evaluate import plain
-from coilset.model.sweep.plan import key
+from coilset.model.sweep.plan import Keys
 
 Plan = tuple[tuple[float, ...] | None, ...]
 """For each phase: the parts of it at which its steps end; None: automatic, or as the case says."""
@@ -87,6 +89,7 @@ class Evaluator:
         self.wish, self.conditions, self._data = wish, conditions, data
         self.names = list(wish.spec.find)
         self._known, self._keep, self._report = dict(known or {}), keep, report
+        self._key, self._load = Keys(), cache(library.load)
         self.count, self.solves, self._threads = 0, 0, threads
 
     def data(self, x: np.ndarray, plan: Plan | None = None, others: Mapping[str, Any] | None = None) -> dict[str, Any]:
@@ -110,7 +113,7 @@ class Evaluator:
 
     def guess(self, x: np.ndarray, others: Mapping[str, Any] | None = None) -> Guess:
         """The uniform rod's estimate; raises InputError if there is no such spring."""
-        return guess(self.wish.check(self.data(x, None, others)), self.conditions)
+        return guess(self.wish.check(self.data(x, None, others)), self.conditions, self._load)
 
     def run(self, x: np.ndarray, plan: Plan | None = None) -> Evaluation:
         """Run it, or take its result from the journal."""
@@ -118,7 +121,7 @@ class Evaluator:
         began = time.perf_counter()
         try:
             case = self.wish.check(self.data(x, plan))
-            name = key(case)
+            name = self._key(case)
         except InputError as error:
             found = _failed(x, error, began)
             self._report(found, False)

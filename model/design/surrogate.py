@@ -4,9 +4,8 @@ A spring of another shape is replaced by the cylinder with the same compliance a
 bowing are neglected; the search learns their effect on the results.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from math import isfinite, pi, sqrt
 
 import numpy as np
@@ -57,14 +56,18 @@ def coil(spring: Spring) -> np.ndarray:
     return np.array([mean, D, pitch, end - start])
 
 
-def guess(case: Case, conditions: Sequence[Condition]) -> Guess:
+def guess(case: Case, conditions: Sequence[Condition], load: Callable[[str], Law] = library.load) -> Guess:
     """Take the uniform rod through the load program of a case.
+
+    Args:
+        case, conditions: what is run, and what is asked for.
+        load: gives the law of a material's name.
 
     Raises:
         InputError: if spring or material cannot be built, or the spring cannot reach a target.
     """
     spring = case.spring.build()
-    law = _law(case.material) if isinstance(case.material, str) else case_law(case, spring)
+    law = load(case.material) if isinstance(case.material, str) else case_law(case, spring)
     check_targets(case, spring, law.G)
     unknown = np.full(len(conditions), np.nan)
     try:
@@ -74,12 +77,6 @@ def guess(case: Case, conditions: Sequence[Condition]) -> Guess:
     values = [found.get(one.name.removeprefix("such_that.") if one.phase is None else f"force {one.phase}", np.nan)
               for one in conditions]  # fmt: skip
     return Guess(np.array(values), torque)
-
-
-@lru_cache
-def _law(material: str) -> Law:
-    """A material, read once for all guesses."""
-    return library.load(material)
 
 
 def _press(case: Case, spring: Spring, law: Law) -> tuple[dict[str, float], float]:
@@ -93,13 +90,11 @@ def _press(case: Case, spring: Spring, law: Law) -> tuple[dict[str, float], floa
     for number, phase in enumerate(case.loading):
         if not isinstance(phase, Phase):  # time passes: the uniform rod has no time
             continue
-        by_force, end = _target(phase, spring)
-        begin = force if by_force else travel
+        kind, end = phase.goal(length, spring.block_height)
+        begin, end = (force, end) if kind == "force" else (travel, length - end)
         way = np.linspace(begin, end, STEPS + 1)[1:]
-        if by_force:
-            _, state = press(state, law, forces=way, rule=RULE, free_ends=free, temperature=temperature)
-        else:
-            _, state = press(state, law, travels=way, rule=RULE, free_ends=free, temperature=temperature)
+        travels, forces = (None, way) if kind == "force" else (way, None)
+        _, state = press(state, law, travels, forces, RULE, free, temperature)
         travel, force = float(state.travel[0]), float(state.force[0])
         greatest = max(greatest, abs(force))
         torque = max(torque, abs(float(state.sections[0, TORSION])))
@@ -110,13 +105,3 @@ def _press(case: Case, spring: Spring, law: Law) -> tuple[dict[str, float], floa
     # τ = √(k²/2) in torsion (3.1.4), T = π d³ τ / 16
     yielding = law.yield_stress / sqrt(3.0) * pi * one[0] ** 3 / 16.0
     return found, torque / yielding if isfinite(yielding) else 0.0
-
-
-def _target(phase: Phase, spring: Spring) -> tuple[bool, float]:
-    """Whether a phase is controlled by force, and its target force, N, or travel, mm."""
-    to, length = phase.to, spring.free_length
-    if to == "block":
-        return False, length - spring.block_height
-    if to.force is not None:
-        return True, to.force
-    return False, to.travel if to.travel is not None else length - (to.height or 0.0)

@@ -4,7 +4,7 @@ import copy
 import hashlib
 import json
 from collections.abc import Iterator
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -96,7 +96,7 @@ class Plan:
 
     def _check_cases(self) -> Iterator[str]:
         """The keys, one after the other."""
-        rehearsal = Rehearsal(self.spec)
+        rehearsal, keys = Rehearsal(self.spec), Keys()
         self.notices: list[str] = []
         for row in self.rows:
             try:
@@ -106,33 +106,37 @@ class Plan:
                 raise InputError(f"{error.problem} (in the case {inputs})", error.place) from None
             self.notices = self.notices or list(case.notices())
             rehearsal.try_case(row, case)
-            yield key(case)
+            yield keys(case)
         rehearsal.conclude()
 
 
-def key(case: Case) -> str:
-    """Digest of a case: its entries, its material's constants, the file of a measured spring, and the version."""
-    content = {"version": __version__} | case.model_dump(mode="json")
-    content["material"] = material_digest(case.material)
-    if "file" in content["spring"]:
-        content["spring"]["file"] = file_digest(Path(content["spring"]["file"]))
-    return _digest(json.dumps(content, sort_keys=True).encode())
+class Keys:
+    """Keys of the cases of one sweep or search, for all of which a file is read once."""
+
+    def __init__(self) -> None:
+        self._of_material, self._of_file = cache(_material_digest), cache(_file_digest)
+
+    def __call__(self, case: Case) -> str:
+        """Digest of a case: its entries, its material's constants, the file of a measured spring, and the version."""
+        content = {"version": __version__} | case.model_dump(mode="json")
+        content["material"] = self._of_material(case.material)
+        if "file" in content["spring"]:
+            content["spring"]["file"] = self._of_file(Path(content["spring"]["file"]))
+        return _digest(json.dumps(content, sort_keys=True).encode())
 
 
 def _digest(content: bytes) -> str:
     return hashlib.blake2b(content, digest_size=KEY_BYTES).hexdigest()
 
 
-@lru_cache
-def material_digest(material: str | NamedWire) -> str:
+def _material_digest(material: str | NamedWire) -> str:
     """Digest of a material's constants, so that a changed material file makes new cases."""
     if isinstance(material, NamedWire):  # its diameter is that of the spring, which is in the digest of the case
         return _digest(wire(material.wire).entry.model_dump_json().encode())
     return _digest(library.load(material).content())
 
 
-@lru_cache
-def file_digest(path: Path) -> str:
+def _file_digest(path: Path) -> str:
     """Digest of a file; that of an empty one if it cannot be read, which its case will report."""
     try:
         return _digest(path.read_bytes())
