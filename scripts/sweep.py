@@ -12,7 +12,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from coilset.meshes.errors import InputError, SolveError
-from coilset.model.results.folder import refuse_obstacles
+from coilset.model.results.folder import clear, refuse_obstacles
 from coilset.model.sweep.journal import Journal
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.pools import Pool, Workers
@@ -74,7 +74,7 @@ def _prepare(sweep_file: str, out: Path, force: bool, resume: bool) -> Plan:
     except OSError as error:
         raise InputError(f"cannot be made: {error.strerror}", "--out", out) from None
     if force:
-        journal.unlink(missing_ok=True)
+        clear(out, ("sweep.nc", "report.html", journal.name))
     return plan
 
 
@@ -135,10 +135,10 @@ class Bar:
 def _conclude(plan: Plan, out: Path, pictures: bool, console: Console) -> int:
     """Data set, figures and a summary in words; returns the number of failed cases."""
     from coilset.model.sweep import dataset  # not before the cases run: xarray and matplotlib take half a second
-    from coilset.model.sweep.figures import draw
+    from coilset.model.sweep.figures import FILES, draw
 
     data = dataset.collect(plan, out / "journal.jsonl")
-    (out / "report.html").unlink(missing_ok=True)  # of other cases
+    clear(out, ("report.html", *FILES))  # of other cases
     dataset.write(out / "sweep.nc", data)
     files, problems = draw(out, plan, data) if pictures else ([], [])
     counts = {status: int((data.status == status).sum()) for status in ("done", "failed", "missing")}

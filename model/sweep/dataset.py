@@ -14,6 +14,7 @@ from coilset.model.case.settings import located
 from coilset.model.results.folder import reserve, whole
 from coilset.model.sweep.journal import read_records
 from coilset.model.sweep.plan import Plan
+from coilset.model.sweep.spec import are_numbers
 from coilset.model.version import versions
 
 UNITS = {"_N_per_mm2": "N/mm²", "_N_per_mm": "N/mm", "_deg": "degrees", "_MPa": "MPa", "_mm": "mm", "_N": "N"}
@@ -87,7 +88,7 @@ def _recipe(plan: Plan) -> dict[str, str]:
     folder = plan.case_path.parent.absolute()
     base = {name: located(name, value, folder) for name, value in plan.base.items()}
     choices = {name: {str(row[k]): row[k] for row in plan.rows}
-               for k, name in enumerate(plan.names) if not _numeric([row[k] for row in plan.rows])}  # fmt: skip
+               for k, name in enumerate(plan.names) if not are_numbers([row[k] for row in plan.rows])}  # fmt: skip
     entries = {name: plan.entries(name) for name in plan.names}
     return {name: json.dumps(value) for name, value in (("base", base), ("entries", entries), ("choices", choices))}
 
@@ -100,7 +101,7 @@ def _input(plan: Plan, k: int) -> tuple[Any, dict[str, str]]:
     """Values of an input for all cases, words where they are not all numbers, and its attributes."""
     vary, values = plan.spec.vary[plan.names[k]], [row[k] for row in plan.rows]
     words = vary.label or _plain_words(plan.names)[k]
-    if not _numeric(values):
+    if not are_numbers(values):
         return np.array([str(value) for value in values], dtype=object), _attributes(words, vary.unit or "")
     units = {entry_unit(Case, entry) for entry in vary.entries or [plan.names[k]]}
     own = units.pop() if len(units) == 1 else ""
@@ -111,10 +112,6 @@ def _plain_words(names: Sequence[str]) -> list[str]:
     """Names of inputs in words; the entries themselves if two of them had the same."""
     found = [entry_words(name) for name in names]
     return found if len(set(found)) == len(found) else list(names)
-
-
-def _numeric(values: Sequence[Any]) -> bool:
-    return all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values)
 
 
 def write(path: str | Path, data: xr.Dataset) -> None:

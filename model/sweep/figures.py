@@ -129,6 +129,8 @@ def contours(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
     x, y = (data[name].to_numpy() for name in (figure.x, figure.y))
     if good.sum() < 4 or min(len(np.unique(x[good])), len(np.unique(y[good]))) < 2:
         return None
+    if _on_a_line(x[good], y[good]):
+        raise InputError("the cases lie on one line, and a map needs an area; give kind: lines, or design: grid", place)
     drawn = Figure(figsize=(5.6, 4.4), layout="constrained")
     axes = drawn.add_subplot()
     shown = axes.tricontourf(x[good], y[good], values[good], levels=16, cmap=COLOURS)
@@ -142,6 +144,12 @@ def contours(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
     axes.set(xlabel=_axis(data, figure.x), ylabel=_axis(data, figure.y))
     drawn.suptitle(findings.extent(data, figure.of))
     return drawn
+
+
+def _on_a_line(x: np.ndarray, y: np.ndarray) -> bool:
+    """Whether places, neither of whose coordinates is constant, lie on one line, which encloses no triangle."""
+    across = np.stack([(one - one.mean()) / np.ptp(one) for one in (x, y)])
+    return bool(np.linalg.matrix_rank(across, tol=1e-9 * len(x)) < 2)
 
 
 def characteristics(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
@@ -209,6 +217,8 @@ def sensitivity(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any
     numeric = [name for name in plan.names if data[name].dtype.kind == "f"]
     sobol = plan.spec.design == "sobol_indices"
     names = plan.names if sobol else numeric
+    if not names:
+        return None
     words = [findings.words(data, name) for name in names]
     drawn = Figure(figsize=(6.4, 0.9 + 0.45 * len(names) * len(figure.of) + 0.8 * len(figure.of)), layout="constrained")
     panels = drawn.subplots(len(figure.of), 1, squeeze=False).ravel()
@@ -219,7 +229,8 @@ def sensitivity(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any
             assert plan.spec.samples is not None
             found = sobol_indices(values, len(names), plan.spec.samples, plan.spec.seed)
             if found is None:
-                return None
+                panel.set_title(f"No indices of the {findings.words(data, of)} are known")
+                continue
             _bars(panel, place_y - 0.2, 0.38, found.first, found.first_interval, "C0", "first order: the input alone")
             _bars(panel, place_y + 0.2, 0.38, found.total, found.total_interval, "C1", "total: with its interactions")
             panel.set(xlabel=f"share of the variance of {data[of].attrs['long_name']} ({found.samples} base samples)")
@@ -234,7 +245,10 @@ def sensitivity(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any
         panel.axvline(0.0, color="k", lw=0.6)
         panel.set_yticks(place_y, words)
         panel.invert_yaxis()
-    panels[0].legend(fontsize=7)
+    drawn_one = next((panel for panel in panels if panel.patches), None)
+    if drawn_one is None:
+        return None
+    drawn_one.legend(fontsize=7)
     return drawn
 
 
@@ -249,6 +263,8 @@ def _bars(
 def convergence(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:
     """Relative distance of each response from its value at the maximum value of the input, over that input."""
     names = [name for name in plan.names if data[name].dtype.kind == "f"]
+    if not names:
+        return None
     drawn = Figure(figsize=(1.2 + 2.9 * len(names), 3.6), layout="constrained")
     panels = drawn.subplots(1, len(names), sharey=True, squeeze=False).ravel()
     inputs, last = np.array(plan.rows, dtype=object), []
@@ -276,3 +292,5 @@ def convergence(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any
 
 DRAW = {"lines": lines, "map": contours, "characteristics": characteristics, "scatter": scatter,
         "sensitivity": sensitivity, "convergence": convergence}  # fmt: skip
+FILES = tuple(f"[0-9][0-9]_{kind}.png" for kind in DRAW)
+"""Patterns of their names."""

@@ -58,6 +58,8 @@ def strongest(of: str, names: Sequence[str], correlation: np.ndarray, interval: 
         names: the inputs in words.
         correlation: shape (inputs,); interval: shape (inputs, 2).
     """
+    if np.isnan(correlation).all():
+        return f"No rank correlation with the {of} is known"
     first = int(np.nanargmax(np.abs(correlation)))
     if interval[first, 0] <= 0.0 <= interval[first, 1]:
         return f"No input moves the {of} more than chance would"

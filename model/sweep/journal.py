@@ -53,7 +53,10 @@ class Journal:
             self._sync()
 
     def _sync(self) -> None:
-        os.fsync(self._file.fileno())
+        try:
+            os.fsync(self._file.fileno())
+        except OSError as error:
+            raise CoilsetError(f"{self.path}: cannot be written: {error.strerror}") from None
         self._synced = time.monotonic()
 
     def close(self) -> None:

@@ -37,7 +37,7 @@ def sobol_indices(values: np.ndarray, inputs: int, samples: int, seed: int = 0) 
         seed: of the bootstrap.
 
     Returns:
-        Indices; None if fewer than 2 base samples are left.
+        Indices; None if fewer than 2 base samples are left, or the response is constant: no variance has a share.
     """
     blocks = np.asarray(values, dtype=float).reshape(inputs + 2, samples)
     good = np.flatnonzero(np.isfinite(blocks).all(axis=0))
@@ -45,6 +45,8 @@ def sobol_indices(values: np.ndarray, inputs: int, samples: int, seed: int = 0) 
         return None
     n = 2 ** int(np.log2(len(good)))
     blocks = blocks[:, good[:n]]
+    if np.ptp(blocks[:2]) == 0.0:
+        return None
     parts = {"f_A": blocks[:1], "f_B": blocks[1:2], "f_AB": blocks[2:, None, :]}
     found = stats.sobol_indices(func=parts, n=n, rng=np.random.default_rng(seed))
     spread = found.bootstrap(confidence_level=CONFIDENCE, n_resamples=RESAMPLES)

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self
 
 import numpy as np
 from annotated_types import Unit
-from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
 from scipy import stats
 
 from coilset.model.entries.entry import Strict, Whole, shortened
@@ -29,6 +29,11 @@ RESPONSES = (
 )  # fmt: skip
 
 
+def are_numbers(values: Sequence[Any]) -> bool:
+    """Whether values are all numbers, and none of them true or false."""
+    return all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in values)
+
+
 class Input(Strict):
     """Entries common to all varied inputs."""
 
@@ -39,11 +44,21 @@ class Input(Strict):
     label: Annotated[str | None, Field(description="label in figures")] = None
     unit: Annotated[str | None, Field(description="unit in figures; default: that of the entries")] = None
 
+    @property
+    def is_numeric(self) -> bool:
+        """Whether all its values are numbers."""
+        return True
+
 
 class Values(Input):
     """A list of values; a sampling design picks each equally often."""
 
     values: Annotated[list[Any], Field(min_length=1, description="numbers, words or any other YAML values")]
+
+    @property
+    def is_numeric(self) -> bool:
+        """Whether all its values are numbers."""
+        return are_numbers(self.values)
 
     def grid(self) -> list[Any]:
         """The values."""
@@ -185,7 +200,19 @@ AnyFigure = Annotated[
     ),
 ]
 
-Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_.]*$")]  # of a variable in the data set
+# of the data set itself, besides `curve_...`
+TAKEN = ("case", "step", "key", "status", "reason", "warnings", "seconds")
+
+
+def _free(name: str) -> str:
+    """Not the name of something else in the data set."""
+    if name in TAKEN or name.startswith("curve_"):
+        raise ValueError(f"'{shortened(name)}' is a name of the results; give another one, with entries:")
+    return name
+
+
+Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_.]*$"), AfterValidator(_free)]
+"""Of a variable in the data set."""
 
 GRIDS = ("grid", "together", "one_at_a_time")
 SAMPLES = ("latin_hypercube", "sobol", "random", "sobol_indices")
@@ -237,6 +264,9 @@ class SweepSpec(Strict):
                         there = f"there are {', '.join(known)}" if len(known) <= LISTED else f"one is {known[0]}"
                         hint = f"is {near[0]} meant?" if near else there
                         raise ValueError(f"figures.{number}.{role}: '{shortened(name)}' is {what}; {hint}")
+                    if figure.kind == "map" and role in ("x", "y") and not self.vary[name].is_numeric:
+                        raise ValueError(f"figures.{number}.{role}: '{shortened(name)}' has values that are no "
+                                         "numbers, and a map needs numbers; give kind: lines")  # fmt: skip
         return self
 
 

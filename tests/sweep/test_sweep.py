@@ -21,6 +21,7 @@ from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case import check
 from coilset.model.material.library import FOLDER
+from coilset.model.report.sweep_page import write_sweep_report
 from coilset.model.results.summary import summarise
 from coilset.model.sweep import dataset, pools
 from coilset.model.sweep.evaluate import evaluate
@@ -209,6 +210,39 @@ def test_figures_of_each_kind_and_one_without_a_response(write_sweep, tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("text", "value", "drawn", "problem"),
+    [
+        ("design: random\nsamples: 3\nvary: {spring.pitch: {from: 11, to: 12}}", float, "sensitivity", ""),
+        ("design: random\nsamples: 6\nvary: {spring.pitch: {from: 11, to: 12}}", lambda _: 0.0, "sensitivity", ""),
+        ("design: sobol_indices\nsamples: 2\nvary: {spring.pitch: {from: 11, to: 12}}", lambda _: 0.0, "scatter", ""),
+        ("design: latin_hypercube\nsamples: 4\nvary: {material: [ck15, voce]}", float, "scatter", ""),
+        ("design: one_at_a_time\nchange: {material: ck15}\nvary: {material: [ck15, voce]}", float, None, ""),
+        (
+            "design: together\nvary: {spring.pitch: [11, 11.5, 12, 12.5], spring.wire_diameter: [4, 4.5, 5, 5.5]}\n"
+            "figures: [{kind: map, x: spring.pitch, y: spring.wire_diameter}]",
+            float, None, "the cases lie on one line",
+        ),
+    ],
+    ids=["three cases", "constant", "constant, Sobol", "words", "words, one at a time", "on a line"],
+)  # fmt: skip
+def test_what_cannot_be_drawn_does_not_end_a_sweep(write_sweep, tmp_path, text, value, drawn, problem):
+    """Responses that never change, too few cases, inputs in words: the other figures and the page are there."""
+    plan = Plan(write_sweep(text))
+    with closing(Journal(tmp_path / "journal.jsonl")) as journal:
+        for number, key in enumerate(plan.keys):
+            steps = {name: [1.0] * (number + 1) for name in ("travel_mm", "seat_height_mm", "force_N", "phase")}
+            summary = {"set_mm": value(number), "force_max_N": 10.0 + number, "warnings": []}
+            journal.append({"key": key, "status": "done", "reason": "", "seconds": 1.0, "summary": summary,
+                            "steps": steps})  # fmt: skip
+    data = dataset.collect(plan, tmp_path / "journal.jsonl")
+    dataset.write(tmp_path / "sweep.nc", data)
+    files, problems = draw(tmp_path, plan, data)
+    assert (files[-1].split("_")[1] if files else None) == (drawn and f"{drawn}.png")
+    assert [problem in error.problem for error in problems] == [True] * bool(problem)
+    assert write_sweep_report(tmp_path).is_file()
+
+
+@pytest.mark.parametrize(
     ("text", "words"),
     [
         ("vary: {spring.wire_diametre: [5.0]}", "unknown entry"),
@@ -237,6 +271,13 @@ def test_figures_of_each_kind_and_one_without_a_response(write_sweep, tmp_path):
             "vary: {spring.wire_diameter: [5.0]}\nfigures: [{kind: characteristics, colour: pitch}]",
             "figures.0.colour: 'pitch' is no response of a case",
         ),
+        (
+            "vary: {material: [ck15, voce], spring.pitch: [9.0, 12.0]}\n"
+            "figures: [{kind: map, x: spring.pitch, y: material}]",
+            "figures.0.y: 'material' has values that are no numbers, and a map needs numbers; give kind: lines",
+        ),
+        ("vary: {status: {entries: [spring.pitch], values: [9.0]}}", "'status' is a name of the results"),
+        ("vary: {curve_force_N: {entries: [spring.pitch], values: [9.0]}}", "is a name of the results"),
     ],
 )
 def test_wrong_entries_are_refused_before_anything_runs(write_sweep, text, words):
