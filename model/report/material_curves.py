@@ -1,6 +1,7 @@
 """The material of the wire: one point under reversed torsion."""
 
 import json
+from math import isfinite
 
 from coilset.model.material.file import MaterialFile
 from coilset.model.material.law import Law
@@ -12,9 +13,11 @@ FAR = 12.0  # yield strains of torsion to which the point is twisted
 INCREMENTS = 60
 
 
-def material_curve(results: Run) -> Panel:
-    """Shear stress over shear strain, forwards and back."""
+def material_curve(results: Run) -> Panel | None:
+    """Shear stress over shear strain, forwards and back; None of a law that never yields."""
     law = Law(MaterialFile.model_validate(json.loads(results.data.attrs["material_file"])))
+    if not isfinite(law.yield_stress):
+        return None
     far = FAR * law.yield_stress / (3.0**0.5 * law.G)
     steps = [Step(to={"gamma12": to}, increments=number * INCREMENTS) for number, to in ((1, far), (2, -far), (2, far))]
     history = run(law, Program(name="there and back", steps=tuple(steps)))

@@ -14,8 +14,13 @@ GAUSS = 0.5 / np.sqrt(3.0)  # from the middle of an element to its sections, ove
 
 def inside(run: Run) -> Inside:
     """Where the inside of the coil is on the surface."""
-    hand = 1 if run.case["spring"].get("hand", "right") == "right" else -1
-    return Inside.of(run.summary["section_kind"] != "plane", hand)
+    return Inside.of(run.summary["section_kind"] != "plane", hand(run))
+
+
+def hand(run: Run) -> int:
+    """+1 of a right-handed coil, −1 of a left-handed one, by its wire: the file of a measured one does not say it."""
+    x, y = run.data["position"].values[0, :, :2].T
+    return 1 if np.sum(x[:-1] * y[1:] - y[:-1] * x[1:]) > 0.0 else -1  # twice the area that the radius passes over
 
 
 def shear_around(run: Run) -> np.ndarray:

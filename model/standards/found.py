@@ -124,9 +124,9 @@ def _residual(data: "Dataset") -> tuple[float | None, float | None]:
     distance = np.hypot(y, z)
     round_one = distance[len(distance) // 2, 0]  # of mid height, which no grinding has touched
     outer = round_one > (1 - 1e-6) * round_one.max()
-    state = data["history"].values[[loaded, -1]]
+    t12, t13 = (data["history"].sel(component=name).values[[loaded, -1]] for name in ("t12", "t13"))
     weight = data["weight"].values[len(distance) // 2, 0]
-    across = (state[..., 2] * y - state[..., 1] * z) / np.maximum(distance, 1e-300)
+    across = (t13 * y - t12 * z) / np.maximum(distance, 1e-300)
     at_load, released = across[:, body][..., outer].mean(axis=(1, 2, 3))
     # the rule's points on the unit disk: Σ w r² = ½ for a wire of radius 1
     radius = np.sqrt(2 * float((weight * round_one**2).sum()))

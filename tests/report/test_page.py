@@ -13,8 +13,10 @@ import numpy as np
 import pytest
 
 from coilset.meshes.errors import InputError
+from coilset.model.material import library
 from coilset.model.report.characteristic import characteristic, phases
 from coilset.model.report.glossary import GLOSSARY
+from coilset.model.report.material_curves import material_curve
 from coilset.model.report.page import CHAPTERS, write_report
 from coilset.model.results.opened import open_run
 from coilset.model.results.wire import closed, moments, shear_around, tubes
@@ -109,6 +111,22 @@ def test_the_tube_is_round_the_wire(folder):
     assert np.ptp(ends[:, [0, -1]], axis=2) == pytest.approx(0.0, abs=1e-12)  # a point, in the middle of the ring
     assert np.linalg.norm(ends[:, [0, -1]] - places[:, [0, -1]], axis=-1) == pytest.approx(2.5, rel=1e-9)
     assert stress[4].min() > 0.0 > stress[-1].min()  # with the load at block; against it, somewhere, after
+
+
+def test_shear_with_the_load_is_positive_in_a_left_handed_coil(folder):
+    """A mirror image has the mirrored wire, and the opposite shear in its sections, whose axis y points inwards."""
+    run = open_run(folder)
+    mirrored = run.data.assign(position=run.data["position"] * [1.0, -1.0, 1.0], surface=-run.data["surface"])
+    case = {"spring": {"file": "measured.csv"}}  # which does not say the hand
+    left = replace(run, data=mirrored, summary={**run.summary, "origin": {"case": case}})
+    assert np.array_equal(shear_around(left), shear_around(run))
+
+
+def test_a_law_that_never_yields_has_no_curve(folder):
+    run = open_run(folder)
+    assert material_curve(run) is not None
+    elastic = library.load("elastic").data.model_dump_json()
+    assert material_curve(replace(run, data=run.data.assign_attrs(material_file=elastic))) is None
 
 
 def test_each_step_can_be_slid_to(folder, page):

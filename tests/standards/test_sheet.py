@@ -41,7 +41,11 @@ def test_printed_sheet_of_another_program():
     assert all(row.sure or row.value is None for row in shown.values())
 
 
-def run_folder(folder, residual=-60.0):
+FIBRES = ("s11", "t12", "t13", "B11", "B12", "B13", "b")
+WARPING = ("s11", "s22", "s33", "t12", "t13", "t23", "B11", "B22", "B33", "B12", "B13", "B23", "b")
+
+
+def run_folder(folder, residual=-60.0, components=FIBRES):
     """A results folder with a spring that was pressed to 60 mm and released to 100 mm, as `coilset solve` writes it."""
     folder.mkdir()
     summary = {"free_length_before_mm": 105.8, "free_length_after_mm": 100.0, "set_mm": 5.8, "rate_N_per_mm": 16.0,
@@ -53,9 +57,9 @@ def run_folder(folder, residual=-60.0):
     angle = np.arange(4) * np.pi / 2
     y, z = (np.broadcast_to(2.25 * one, (46, 1, 4)) for one in (np.cos(angle), np.sin(angle)))
     of_points = ("element", "gauss", "point")
-    state = np.zeros((2, 46, 1, 4, 7))
+    state, (t12, t13) = np.zeros((2, 46, 1, 4, len(components))), map(components.index, ("t12", "t13"))
     for i, shear in enumerate((-400.0, -residual)):  # about the axis; the load's is negative here
-        state[i, ..., 1], state[i, ..., 2] = -shear * np.sin(angle), shear * np.cos(angle)
+        state[i, ..., t12], state[i, ..., t13] = -shear * np.sin(angle), shear * np.cos(angle)
     state[:, [0, -1]] = 1e3  # the ends do not count
     turn = np.linspace(0, 11.5, 47)
     radius = np.array([17.3, 17.4])[:, None] + np.where(np.abs(turn - 5.75) > 4, 1.0, 0.0) * [[0], [1]]
@@ -66,13 +70,14 @@ def run_folder(folder, residual=-60.0):
          "y": (of_points, y), "z": (of_points, z), "force": ("snapshot", [700.0, 0.0]),
          "height": ("snapshot", [105.8, 60.0]), "position": (("snapshot", "station", "axis"), position),
          "weight": (of_points, np.full((46, 1, 4), 0.25 * 0.5 / 0.9**2))},
-        coords={"turn": ("station", turn)},
+        coords={"turn": ("station", turn), "component": list(components)},
     ).to_netcdf(folder / "points.nc", engine="h5netcdf")  # fmt: skip
     return folder
 
 
-def test_what_a_run_found(tmp_path):
-    run = found.read(run_folder(tmp_path / "run"))
+@pytest.mark.parametrize("components", [FIBRES, WARPING], ids=["fibres", "warping"])
+def test_what_a_run_found(tmp_path, components):
+    run = found.read(run_folder(tmp_path / "run", components=components))
     assert run.residual == pytest.approx(-60.0)
     assert run.ring == pytest.approx(0.9)
     assert run.growth == pytest.approx(0.2)
