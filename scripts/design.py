@@ -50,7 +50,7 @@ def design(wish_file: str, out: str | None, force: bool, resume: bool, threads: 
             with closing(Journal(folder / "evaluations.jsonl")) as journal:
                 _design(console, wish, folder, journal, threads or usual(1))
     except InputError as error:
-        if error.place != "--out":  # with --out, another run uses the folder
+        if error.place != "--out" and (new or not resume):  # with --out, another run uses the folder
             _forget(folder, new)
         raise InputError(error.problem, error.place, error.file or wish_file) from None
     except KeyboardInterrupt:

@@ -34,6 +34,11 @@ class Condition:
         return self.name if self.height is None else f"force at {self.height:g} mm"
 
     @property
+    def asks(self) -> str | float:
+        """What its value is, whatever is wished of it: a name of the summary, or the height of a force, mm."""
+        return self.name if self.height is None else self.height
+
+    @property
     def unit(self) -> str:
         """Of its value."""
         if self.height is not None:

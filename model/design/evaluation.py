@@ -66,7 +66,7 @@ class Evaluator:
     Args:
         wish: Wish.
         conditions, data: see `coilset.model.design.conditions.conditions`.
-        known: records of earlier evaluations by their keys.
+        known: records of earlier evaluations by their keys; those of another wish do not count.
         keep: writes the record of a new one.
         report: called with every Evaluation, and whether it was known.
         threads: of each run.
@@ -88,7 +88,9 @@ class Evaluator:
     ) -> None:
         self.wish, self.conditions, self._data = wish, conditions, data
         self.names = list(wish.spec.find)
-        self._known, self._keep, self._report = dict(known or {}), keep, report
+        self._asked = [*self.names, *(one.asks for one in conditions)]  # what `x` and `values` of a record are of
+        self._known = {name: record for name, record in (known or {}).items() if record.get("of") == self._asked}
+        self._keep, self._report = keep, report
         self._key, self._load = Keys(), cache(library.load)
         self.count, self.solves, self._threads = 0, 0, threads
 
@@ -136,7 +138,8 @@ class Evaluator:
             except CoilsetError as error:
                 found = _failed(x, error, began)
             del analysis
-            record = {"key": name, "status": "failed" if found.failed else "done", **_plain(found)}
+            status = "failed" if found.failed else "done"
+            record = {"key": name, "status": status, "of": self._asked, **_plain(found)}
             self._keep(record)
             self._known[name] = json.loads(json.dumps(record))
         found = _of_record(self._known[name])

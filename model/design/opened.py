@@ -46,14 +46,16 @@ def open_design(folder: str | Path) -> xr.Dataset:
 
 
 def read_design(folder: Path) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """The content of design.json, and the record of each evaluation.
+    """The content of design.json, and the record of each evaluation; the journal may hold those of other wishes.
 
     Raises:
         InputError: if a file cannot be read.
     """
     with reading(folder / FILE):
         design = json.loads((folder / FILE).read_text(encoding="utf-8"))
-    return design, list(read_records(folder / "evaluations.jsonl"))
+        heights = {one["name"]: one["height_mm"] for one in design["conditions"]}
+        asked = [*design["found"], *(name if height is None else height for name, height in heights.items())]
+    return design, [one for one in read_records(folder / "evaluations.jsonl") if one.get("of", asked) == asked]
 
 
 def _searched(design: dict[str, Any], records: list[dict[str, Any]]) -> xr.Dataset:

@@ -82,3 +82,30 @@ def test_nothing_is_left_of_a_wish_that_is_refused(wish, tmp_path):
     with pytest.raises(InputError, match="no condition depends on it"):
         design(path, str(out), False, False)
     assert not out.exists()
+
+
+def test_a_journal_of_another_wish_is_kept_and_not_read_as_of_this_one(wish, tmp_path):
+    """The same springs, asked for the same two numbers in the other order, and then for what cannot be had."""
+    out, heights = tmp_path / "out", [{"height": 24.0, "N": 100.0}, {"height": 20.0, "N": 160.0}]
+    loading = [{"to": {"height": 24.0}, "steps": 1}, {"to": {"height": 20.0}, "steps": 1},
+               {"to": {"force": 0}, "steps": 1}]  # fmt: skip
+
+    def found(force_at, resume):
+        path = wish({"spring.wire_diameter": [4.9, 5.0]}, {"force_at": force_at}, loading=loading, material="elastic",
+                    accuracy="none")  # fmt: skip
+        design(str(path), str(out), False, resume)
+        (out / "design.json").rename(out / "was.json")
+        return {one["height_mm"]: one["value"] for one in json.loads((out / "was.json").read_text())["conditions"]}
+
+    first = found(heights, False)
+    journal = (out / "evaluations.jsonl").read_text()
+    assert first[24.0] < first[20.0]
+    assert found(heights[::-1], True) == pytest.approx(first, rel=1e-6)
+    (out / "was.json").rename(out / "design.json")
+    new = (out / "evaluations.jsonl").read_text()[len(journal) :]
+    assert len(coilset.open(out)["evaluation"]) == len(new.splitlines())
+    path = wish({"spring.wire_diameter": [4.9, 5.0]}, {"free_length_after_mm": 200.0})
+    with pytest.raises(InputError, match="out of reach"):
+        design(str(path), str(out), False, True)
+    assert (out / "evaluations.jsonl").read_text().startswith(journal)
+    assert (out / "design.json").exists()
