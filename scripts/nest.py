@@ -8,9 +8,9 @@ from mpi4py import MPI
 from rich.table import Table
 
 from coilset.model.nest import output
-from coilset.model.nest.file import read_nest
+from coilset.model.nest.file import NAMES, read_nest
 from coilset.model.nest.nest import Pressed, press
-from coilset.model.results.folder import make, prepare, write_summary
+from coilset.model.results.folder import RESULTS, clear, make, prepare, refuse_results, write_summary
 from coilset.model.results.provenance import origin
 from coilset.model.results.record import Step
 from coilset.model.results.summary import summarise
@@ -31,19 +31,22 @@ def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool, 
         return  # both springs are run by one process
     console, wanted = Console(), read_nest(file)
     folder = results_folder(out, Path(file).stem)
+    refuse_results(folder, force)
 
     def told(name: str, step: Step) -> None:
         console.print(f"{name:6}{step.number:6d}{step.seat_height_mm:14.4f} mm{without_minus(step.force_N, 3):>14} N")
 
     pressed = press(wanted, told, threads or usual(1))
     prepare(folder, force)
+    for one in (folder, *(folder / name for name in NAMES)):  # of a spring that the seats no longer reach, too
+        clear(one, (*RESULTS, output.STEPS))
     found = output.summary(pressed)
     for member in pressed.members:
         if member.result is not None:
             make(folder / member.name)
             own = summarise(member.setup, member.result)
             write_run(folder / member.name, member.setup, member.result, own, origin(member.case))
-    output.write_steps(folder / "nest.csv", pressed)
+    output.write_steps(folder / output.STEPS, pressed)
     if pictures:
         output.draw(folder / "characteristic.png", pressed, found)
     write_summary(folder, found)

@@ -14,6 +14,7 @@ from coilset.model.results.provenance import origin
 from coilset.model.results.summary import summarise
 from coilset.model.style import STYLE
 
+STEPS = "nest.csv"
 COLUMNS = ("step", "seat_height_mm", "force_N", "outer_force_N", "inner_force_N", "clearance_mm")
 
 

@@ -92,11 +92,11 @@ def refuse_obstacles(folder: str | Path, files: Iterable[str], folders: Iterable
                              "--out", "--out", folder)  # fmt: skip
 
 
-def prepare(folder: str | Path, force: bool) -> Path:
-    """Make the results folder.
+def refuse_results(folder: str | Path, force: bool) -> None:
+    """Check whether a run may write into a folder, and leave it as it is.
 
     Raises:
-        InputError: if it already holds results or an interrupted run and `force` is not given, or cannot be made.
+        InputError: if it already holds results or an interrupted run and `force` is not given.
     """
     plain = [name for name in RESULTS if "*" not in name]
     refuse_obstacles(folder, [*plain, "log.txt", "checkpoint/state.npz", "checkpoint/steps.jsonl"],
@@ -108,6 +108,19 @@ def prepare(folder: str | Path, force: bool) -> Path:
         if (folder / "checkpoint" / "state.npz").exists() and not force:
             raise InputError("holds an interrupted run; use --resume to continue it, --force to start again, or "
                              "another --out", "--out", folder)  # fmt: skip
+    except OSError as error:
+        raise InputError(f"cannot be made: {error.strerror}", "--out", folder) from None
+
+
+def prepare(folder: str | Path, force: bool) -> Path:
+    """Make the results folder.
+
+    Raises:
+        InputError: if it already holds results or an interrupted run and `force` is not given, or cannot be made.
+    """
+    refuse_results(folder, force)
+    folder = Path(folder)
+    try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot be made: {error.strerror}", "--out", folder) from None

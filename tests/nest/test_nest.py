@@ -147,8 +147,15 @@ def test_the_command_writes_the_nest_and_each_spring(tmp_path, capsys):
         assert (out / name / "summary.json").is_file()
         assert (out / name / "points.nc").is_file()
     assert (out / "characteristic.png").stat().st_size > 10_000
+    capsys.readouterr()
     with pytest.raises(InputError, match="already holds results"):
         nest_command(tmp_path / "nest.yaml", out, False, False)
+    assert not capsys.readouterr().out  # before a step is solved
+    short = write(tmp_path, loading=[{"to": {"height": 36.0}, "steps": 1}], outer={"turns": 4.5})
+    nest_command(short, out, True, False)  # which does not reach the inner spring
+    assert (out / "outer" / "summary.json").is_file()
+    assert not any((out / "inner").glob("*.*"))
+    assert not (out / "characteristic.png").exists()
     page = (REPOSITORY / "docs/reference/results.md").read_text(encoding="utf-8")
     table = page[page.index("## Nests") :]
     for key in (*summary, *COLUMNS):
