@@ -2,7 +2,6 @@
 
 import os
 import re
-from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,11 +34,11 @@ def show(material: str = MATERIAL, out: str = OUT, force: bool = FORCE) -> None:
     from coilset.scripts.console import Console
 
     law = library.load(material)
-    folder = _folder(out, law.name)
+    picture = _free(_folder(out, law.name), force, "functions.png")[0]
     console = Console()
     console.print(f"[bold]{law.name}[/]: {law.description}\nsource: {law.source}\nvalid: {law.validity.remark}")
     console.print(_constants(law))
-    _save(figures.material_functions(law), folder / "functions.png", force, console)
+    _save(figures.material_functions(law), picture, console)
 
 
 @app.command("test")
@@ -60,18 +59,17 @@ def run_program(
     if integrator not in points.INTEGRATORS:
         raise InputError(f"'{integrator}' is none of {', '.join(points.INTEGRATORS)}", "--integrator")
     law, steps = library.load(material, spin=spin), programs.read(program)
-    folder = _folder(out, law.name)
     name = Path(program).stem
+    table, picture = _free(_folder(out, law.name), force, f"{name}.csv", f"{name}.png")
     console = Console()
     try:
         history = programs.run(law, steps, integrator)
     except InputError as error:
         raise InputError(error.problem, error.place, error.file or program) from None
     console.print(_ends(steps, history))
-    _refuse([folder / f"{name}.csv"], force)
-    make(folder)
-    _write_csv(folder / f"{name}.csv", history)
-    _save(figures.program(law, steps, history), folder / f"{name}.png", force, console)
+    make(table.parent)
+    _write_csv(table, history)
+    _save(figures.program(law, steps, history), picture, console)
 
 
 @app.command()
@@ -108,8 +106,7 @@ def fit(
     from coilset.scripts.console import Console
 
     announce_compiling()
-    folder = _folder(out, name)
-    _refuse([folder / f"{name}.yaml"], force)
+    file, picture = _free(_folder(out, name), force, f"{name}.yaml", "fit.png")
     tests = [experiments.read_test(path, engineering) for path in data]
     if back_stresses is None:
         result = fitting.fit(tests, shear_modulus, poisson, saturation, temperature)
@@ -125,11 +122,11 @@ def fit(
         _say_what_is_told(result, console)
     for test, scatter in zip(result.tests, result.scatter, strict=True):
         console.print(f"{test.name} ({test.kind}): rms residual {scatter:.3g} N/mm²")
-    make(folder)
-    with whole(folder / f"{name}.yaml") as path:
+    make(file.parent)
+    with whole(file) as path:
         path.write_text(yaml.safe_dump(result.material(name), sort_keys=False, allow_unicode=True), encoding="utf-8")
-    console.say(f"material file in {folder / name}.yaml")
-    _save(figures.fit(result, name), folder / "fit.png", force, console)
+    console.say(f"material file in {file}")
+    _save(figures.fit(result, name), picture, console)
 
 
 def _say_what_is_told(fit: "CyclicFit", console: "Console") -> None:
@@ -165,8 +162,7 @@ def creep(
                                  (hardening, ("strain", "time"), "--hardening")):  # fmt: skip
         if value not in known:
             raise InputError(f"'{value}' is none of {', '.join(known)}", option)
-    folder = _folder(out, name)
-    _refuse([folder / f"{name}.yaml"], force)
+    file, picture = _free(_folder(out, name), force, f"{name}.yaml", f"{name}.png")
     result = fit_creep(library.load(material), tuple(read_relaxation(path) for path in data), form, hardening)
     console = Console()
     table = Table("constant", "value", "from", "to (95 %)", "unit", box=None, padding=(0, 2))
@@ -175,29 +171,31 @@ def creep(
     console.print(table)
     console.print(f"at {result.constants['temperature']:g} K and, of strain, {result.constants['stress']:g} N/mm²; "
                   f"residual {result.scatter:.2g} % of the load")  # fmt: skip
-    make(folder)
-    with whole(folder / f"{name}.yaml") as path:
+    make(file.parent)
+    with whole(file) as path:
         content = result.material(name, "coilset material creep, " + ", ".join(Path(one).name for one in data))
         path.write_text(yaml.safe_dump(content, sort_keys=False, allow_unicode=True), encoding="utf-8")
-    console.say(f"material file in {folder / name}.yaml")
-    _save(creep_figure(result), folder / f"{name}.png", force, console)
+    console.say(f"material file in {file}")
+    _save(creep_figure(result), picture, console)
 
 
 def _folder(out: str | None, name: str) -> Path:
     return results_folder(out, name, "material")
 
 
-def _refuse(paths: Iterable[Path], force: bool) -> None:
+def _free(folder: Path, force: bool, *names: str) -> list[Path]:
+    """Files that a command will write, none of which is there unless forced: found before it computes or writes any."""
+    paths = [folder / name for name in names]
     for path in paths:
         if path.exists() and not force:
             raise InputError("already exists; use --force to overwrite it", "", path)
+    return paths
 
 
-def _save(figure: "Figure", path: Path, force: bool, console: "Console") -> None:
+def _save(figure: "Figure", path: Path, console: "Console") -> None:
     from coilset.model.results.figures import save
     from coilset.model.results.folder import make
 
-    _refuse([path], force)
     make(path.parent)
     save(figure, path)
     console.say(f"picture in {path.parent}{os.sep}{path.name}")

@@ -94,6 +94,7 @@ def test_tension_alone_gives_isotropic_hardening(tmp_path):
     found = fit.fit([test], 81500, 0.26)
     assert list(found.constants) == ["k0_squared", "a1", "a2", "a3"]
     assert found.constants["k0_squared"] == pytest.approx(2 / 3 * 1250**2, rel=0.01)
+    assert found.scatter[0] == pytest.approx(4.0, rel=0.15)  # of the readings; there are none of shear
     (tmp_path / "wire.yaml").write_text(yaml.safe_dump(found.material("wire")), encoding="utf-8")
     law = library.load(tmp_path / "wire.yaml")
     state = points.initial_state(law, 1)
@@ -180,3 +181,7 @@ def test_the_command_reports_and_writes(fitted, tmp_path, monkeypatch):
     assert (tmp_path / "fit.png").stat().st_size > 50_000
     again = CliRunner().invoke(app, arguments)
     assert isinstance(again.exception, InputError)
+    (tmp_path / "mine.yaml").unlink()
+    picture = CliRunner().invoke(app, arguments)  # which is in the way, too
+    assert str(picture.exception).startswith(f"{tmp_path / 'fit.png'}: already exists")
+    assert not (tmp_path / "mine.yaml").exists()

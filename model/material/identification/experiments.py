@@ -12,6 +12,7 @@ from coilset.model.material.columns import read_columns
 COLUMNS = ("eps11", "gamma12", "sigma11", "tau12")
 SHEAR = ("gamma12", "tau12")  # a tension test may leave these columns out
 PLAIN = {"eps11": "strain", "sigma11": "stress"}  # and may have these names, which a table of hardening has
+COMPONENTS = {"tension": [0], "torsion": [1], "combined": [0, 1]}  # of strain and stress that a kind of test loads
 LARGEST_STRAIN = 2.0  # of a test; above it the numbers are per cent
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.optimize import least_squares
 
 from coilset.meshes.errors import InputError
-from coilset.model.material.identification.experiments import Test
+from coilset.model.material.identification.experiments import COMPONENTS, Test
 from coilset.model.material.identification.fitted_law import KINEMATIC, NORMALITY, FittedLaw, moved_by
 from coilset.model.material.identification.hardening import (
     NO_BACK_STRESS,
@@ -28,7 +28,6 @@ from coilset.model.material.identification.hardening import (
 from coilset.model.material.identification.result import Fit, Minimum, result
 
 STEP = 1e-4  # of the logarithms of the variables, for derivatives
-COMPONENTS = {"tension": (0,), "torsion": (1,), "combined": (0, 1)}  # of strain and stress that a kind of test loads
 LOADED = 0.1  # of the maximum stress: readings below it may be of a machine that settles
 SOFTEST = 0.03  # of the elastic modulus, at the first reading above that; strain in per cent gives 0.01
 

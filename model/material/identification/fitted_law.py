@@ -12,13 +12,12 @@ from numba import njit
 
 from coilset.model.material import functions as fn
 from coilset.model.material.heun import ROD_METRIC, integrate
-from coilset.model.material.identification.experiments import Test
+from coilset.model.material.identification.experiments import COMPONENTS, Test
 
 SUBSTEP = 1e-3  # maximum strain increment of the simulation
 LARGE = 1e3  # residual of a law that cannot follow a test
 # The variables. gain: k∞² − k1²; start, rest: a5 a7 and a5 a6, ζ over sqrt(6 k²) at b* = 0 and for large b*.
 HARDENING, KINEMATIC, NORMALITY = ("k0", "a1", "a2", "a3", "b1", "gain"), ("start", "rest", "a7"), ("a",)
-COLUMNS_USED = {"tension": [0], "torsion": [1], "combined": [0, 1]}
 
 Variables = Mapping[str, float]
 
@@ -94,7 +93,7 @@ class FittedLaw:
         """Difference of stress to the tests over the maximum stress of each, all in one vector."""
         parts = [(self.follow(values, test)[0] - test.stress) / np.abs(test.stress).max() for test in tests]
         # A tension test's zero shear stress carries no information; a torsion test's axial one depends on κ, of step 3.
-        used = [part[:, COLUMNS_USED[test.kind]] for part, test in zip(parts, tests, strict=True)]
+        used = [part[:, COMPONENTS[test.kind]] for part, test in zip(parts, tests, strict=True)]
         return np.nan_to_num(np.concatenate([part.ravel() for part in used]), nan=LARGE, posinf=LARGE, neginf=-LARGE)
 
 

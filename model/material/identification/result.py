@@ -10,7 +10,7 @@ from scipy.stats import norm
 
 from coilset.meshes.errors import SolveError
 from coilset.model.material import functions as fn
-from coilset.model.material.identification.experiments import Test
+from coilset.model.material.identification.experiments import COMPONENTS, Test
 from coilset.model.material.identification.fitted_law import LARGE, FittedLaw, Variables, moved_by
 
 CONFIDENCE = 0.95
@@ -28,7 +28,7 @@ class Fit:
         uncertainty: all constants lie within these distances with 95 % confidence.
         tests: as given.
         stress: of the law along each test, shape (rows, 2), N/mm².
-        scatter: rms residual of each test, N/mm².
+        scatter: rms residual of the readings of each test that are fitted, N/mm².
         work: maximum b* of the tests, N/mm².
     """
 
@@ -89,7 +89,8 @@ def result(model: FittedLaw, minima: Sequence[Minimum], tests: tuple[Test, ...],
             uncertainty = np.maximum(uncertainty, away + covers * _spread(model, other, local))
     followed = [model.follow(best, test) for test in tests]
     stress = tuple(stress for stress, _ in followed)
-    scatter = tuple(float(np.sqrt(np.mean((s - t.stress) ** 2))) for s, t in zip(stress, tests, strict=True))
+    away = ((s - t.stress)[:, COMPONENTS[t.kind]] for s, t in zip(stress, tests, strict=True))
+    scatter = tuple(float(np.sqrt(np.mean(one**2))) for one in away)
     standard, reach = (dict(zip(constants, values.tolist(), strict=True)) for values in (spread, uncertainty))
     work = max(work for _, work in followed)
     return Fit(model.G, model.nu, temperature, constants, standard, reach, tests, stress, scatter, work)
