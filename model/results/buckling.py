@@ -46,12 +46,14 @@ def buckling(steps: Sequence[Step], diameter: float) -> Buckling | None:
     seen = next((k for k, step in enumerate(steps) if _has_buckled(step, diameter, critical)), None)
     if seen is None:
         return None
-    before = steps[seen - 1].travel_mm if seen else 0.0
-    travel = critical
-    if not isfinite(travel) or not before <= travel <= steps[seen].travel_mm + (steps[seen].travel_mm - before):
-        travel = steps[seen].travel_mm
-    place = np.array([[0.0, 0.0], *((step.travel_mm, step.force_N) for step in steps[: seen + 1])])
-    force = float(np.interp(travel, *place.T))
+    now, (before, force_before) = steps[seen], (0.0, 0.0)
+    if seen:
+        before, force_before = steps[seen - 1].travel_mm, steps[seen - 1].force_N
+    travel, force = critical, now.force_N
+    if not isfinite(travel) or not before <= travel <= now.travel_mm + (now.travel_mm - before):
+        travel = now.travel_mm
+    elif travel < now.travel_mm:  # between these two steps: an earlier loading may have passed it too
+        force = float(np.interp(travel, [before, now.travel_mm], [force_before, now.force_N]))
     return Buckling(travel, force, max(step.axis_offset_mm for step in steps[seen:]))
 
 

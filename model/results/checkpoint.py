@@ -28,7 +28,7 @@ from coilset.model.state import State
 from coilset.model.warning import Warning
 
 # what must be unchanged to resume
-SPRING_ENTRIES = ("spring", "material", "temperature", "ends", "seats", "mesh", "contact")
+SPRING_ENTRIES = ("spring", "material", "temperature", "ends", "seats", "mesh", "contact", "heat")
 ANEW = "use --force instead of --resume to start again"
 
 

@@ -16,6 +16,7 @@ from mpi4py import MPI
 from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
+from coilset.model.case.heat import HeatSpec
 from coilset.model.results import state_file
 from coilset.model.results.checkpoint import Checkpoint
 
@@ -217,6 +218,9 @@ def test_a_changed_program_goes_on_and_a_changed_spring_does_not(example, tmp_pa
     thicker = read_case(example, [*SETTINGS, "loading.0.to={travel: 8}", "spring.wire_diameter=5.1"])
     with pytest.raises(InputError, match="spring"):
         Checkpoint(tmp_path, thicker).load(MPI.COMM_SELF)
+    conducting = case.model_copy(update={"heat": HeatSpec(conductivity=50.0)})
+    with pytest.raises(InputError, match="heat: differs from that of the checkpoint"):
+        Checkpoint(tmp_path, conducting).load(MPI.COMM_SELF)
 
 
 def test_a_run_goes_on_from_an_unstable_state_as_it_would_have(example, tmp_path):

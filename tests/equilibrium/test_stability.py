@@ -120,6 +120,16 @@ def test_an_axis_pushed_off_long_before_has_not_buckled():
     assert buckling([replace(late, least_eigenvalue=3.0)], 40.0).travel_mm == 9.8  # one eigenvalue tells no better
 
 
+def test_the_force_of_buckling_is_that_of_its_own_loading():
+    """A spring that was pressed to 14 mm and let go before it buckles at 10 mm, softer by then."""
+    step = Step(1, 0, 1.0, 90.0, 0.0, 0.0, 3, 4, 0, 0, 2, 0.0)
+    first = [replace(step, travel_mm=s, force_N=10.0 * s) for s in (1, 2, 4, 6, 8, 9, 11, 12, 13, 14)]
+    back = [replace(step, travel_mm=s, force_N=9.0 * s) for s in (5.0, 1.0)]
+    again = [replace(step, travel_mm=s, force_N=9.0 * s, least_eigenvalue=10.0 - s) for s in (3.0, 6.0, 9.0)]
+    found = buckling([*first, *back, *again, replace(step, travel_mm=12.0, force_N=108.0, negative_pivots=1)], 40.0)
+    assert (found.travel_mm, found.force_N) == pytest.approx((10.0, 90.0), rel=1e-9)
+
+
 @pytest.mark.parametrize("push", [0.0, 1e-4, 6e-4])
 @pytest.mark.parametrize("number", [12, 16, 40])
 def test_critical_travel_of_a_column_that_is_pushed_aside(push, number):
