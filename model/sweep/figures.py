@@ -257,7 +257,8 @@ def _bars(
 ) -> None:
     reach = np.abs(interval.T - values)
     thin = {"lw": 0.8, "capsize": 2}
-    axes.barh(y, values, height, xerr=np.nan_to_num(reach), color=colour, label=label, error_kw=thin)
+    # lists: of an array with one column matplotlib takes a row for a number
+    axes.barh(y, values, height, xerr=np.nan_to_num(reach).tolist(), color=colour, label=label, error_kw=thin)
 
 
 def convergence(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any:

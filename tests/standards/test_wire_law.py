@@ -9,7 +9,7 @@ from coilset.model.material.points import initial_state, update
 from coilset.model.standards.wires import wire
 from coilset.model.standards.wires.hardening import curve
 from coilset.model.standards.wires.law import case_law, wire_law
-from coilset.model.sweep.plan import key
+from coilset.model.sweep.plan import Keys
 
 
 def tensile_test(law, strain_end=0.04, steps=4000):
@@ -79,9 +79,9 @@ def test_wire_of_a_case_takes_its_diameter_from_the_spring():
 
 
 def test_cases_of_a_sweep_are_told_apart_by_their_wires():
-    keys = [key(case(material)) for material in ({"wire": "EN 10270-1 SH"}, {"wire": "EN 10270-1 SM"}, "ck15")]
+    keys = [Keys()(case(material)) for material in ({"wire": "EN 10270-1 SH"}, {"wire": "EN 10270-1 SM"}, "ck15")]
     assert len(set(keys)) == 3
-    assert key(case({"wire": "EN 10270-1 SH"})) == keys[0]
+    assert Keys()(case({"wire": "EN 10270-1 SH"})) == keys[0]
 
 
 def test_wire_that_changes_its_diameter_has_no_law():
