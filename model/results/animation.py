@@ -52,7 +52,7 @@ def _draw(labels: tuple[str, ...], places: np.ndarray, stress: np.ndarray) -> li
         plotter.set_background("white")
         wire = pv.StructuredGrid(*np.moveaxis(places[0], -1, 0))
         wire["MPa"] = stress[0].ravel(order="F")
-        bar = {"title": f"{BAR}\n", "color": "black", "n_labels": 5, "fmt": "%.3g", "title_font_size": 14,
+        bar = {"title": f"{BAR}\n", "color": "black", "n_labels": 5, "fmt": "%.5g", "title_font_size": 14,
                "label_font_size": 13, "position_x": 0.2, "width": 0.6, "position_y": 0.02, "height": 0.12}  # fmt: skip
         plotter.add_mesh(
             wire, scalars="MPa", clim=(-end, end), cmap=DIVERGING, smooth_shading=False, scalar_bar_args=bar, **LIGHT

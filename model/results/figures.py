@@ -19,6 +19,7 @@ from coilset.model.style import DIVERGING, STYLE, levels
 
 NAMED = 6  # targets in a legend, at most
 LETTERS = 14  # of a title, on an inch of a figure
+LARGE = 10  # the same in the size of a single diagram's title
 COMPRESSION = 3  # of PNG, from 1 to 9: files 8 % larger than by 6, in half of the time
 BESIDE = 4  # lines of a legend that fit beside a characteristic
 
@@ -38,9 +39,13 @@ def save(figure: Figure, path: str | Path) -> None:
 
 def add_title(figure: Figure, text: str) -> None:
     """Put a line below the title that a figure has, all of it broken to the figure's width."""
-    width = int(LETTERS * figure.get_figwidth())
-    lines = [part for line in f"{figure.get_suptitle()}\n{text}".split("\n") for part in textwrap.wrap(line, width)]
-    figure.suptitle("\n".join(lines), fontsize=9)
+    figure.suptitle(_broken(figure, f"{figure.get_suptitle()}\n{text}", LETTERS), fontsize=9)
+
+
+def _broken(figure: Figure, text: str, letters: int) -> str:
+    """Lines of a title that are not wider than the figure, with so many letters on an inch of it."""
+    width = int(letters * figure.get_figwidth())
+    return "\n".join(part for line in text.split("\n") for part in textwrap.wrap(line, width))
 
 
 def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapping[str, Any]) -> None:
@@ -68,9 +73,9 @@ def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapp
         if summary["set_mm"] is not None:
             set_mm = summary["set_mm"]
             axes.annotate("", (0, 0), (set_mm, 0), arrowprops={"arrowstyle": "<->", "lw": 0.9, "color": "0.3"})
-            axes.annotate(f"set {set_mm:.3f} mm", (0.5 * set_mm, 0.02 * greatest), ha="center", va="bottom",
+            axes.annotate(f"set {plain(set_mm)} mm", (0.5 * set_mm, 0.02 * greatest), ha="center", va="bottom",
                           bbox={"fc": "w", "ec": "none", "pad": 0.5, "alpha": 0.8})  # fmt: skip
-        axes.set(xlabel="travel in mm", ylabel="axial force in N", title=_found(summary))
+        axes.set(xlabel="travel in mm", ylabel="axial force in N", title=_broken(figure, _found(summary), LARGE))
         if len(axes.get_legend_handles_labels()[1]) <= BESIDE:
             axes.legend(fontsize=8)
         else:

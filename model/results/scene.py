@@ -103,7 +103,7 @@ def _bar(frame: Frame, title: str) -> dict[str, Any]:
     """The colour bar, of the same size in all pictures; an empty line separates its title from the numbers."""
     bar = BAR - 28.0
     return {
-        "title": f"{title}\n", "color": "black", "n_labels": 5, "fmt": "%.3g", "title_font_size": 17,
+        "title": f"{title}\n", "color": "black", "n_labels": 5, "fmt": "%.5g", "title_font_size": 17,
         "label_font_size": 16, "position_x": 0.3, "width": 0.4, "position_y": 12 / frame.height,
         "height": bar / frame.height,
     }  # fmt: skip

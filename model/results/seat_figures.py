@@ -133,7 +133,7 @@ def seat_pressure(path: str | Path, setup: Setup, result: Result) -> bool:
         for axes, (end, (kind, contact)) in zip(maps, seats.items(), strict=False):
             shown = draw_pressure(axes, result, kind, contact, greatest) or shown
             there = rows[rows[:, 0] == kind, 2].max(initial=0.0)
-            pressed = f"Up to {there:.3g} N/mm press" if there else "Nothing presses"
+            pressed = f"Up to {plain(there, 3)} N/mm press" if there else "Nothing presses"
             axes.set_title(f"{pressed} the {end} seat")
         if shown is not None:
             figure.colorbar(shown, ax=maps, label="force per length of wire in N/mm", format="{x:g}")

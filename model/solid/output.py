@@ -14,7 +14,7 @@ from coilset.model.solid.solid import Solid
 from coilset.model.style import QUARTERED, round_end
 
 BAR = {
-    "color": "black", "n_labels": 5, "fmt": "%.3g", "title_font_size": 22, "label_font_size": 18,
+    "color": "black", "n_labels": 5, "fmt": "%.5g", "title_font_size": 22, "label_font_size": 18,
     "position_x": 0.2, "width": 0.6, "position_y": 0.02, "height": 0.16,
 }  # fmt: skip
 
