@@ -53,13 +53,13 @@ def mesh(
         for path in write:
             check_format(path)
     folder = results_folder(out, Path(case_file).stem)
-    _refuse_to_replace([folder / name for name in FILES if pictures] + [Path(path) for path in write], force)
     try:
         spring = case.spring.build()
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
         law = case_law(case, spring)
     except InputError as error:
         raise InputError(error.problem, error.place, error.file or case_file) from None
+    _refuse_to_replace([folder / name for name in FILES if pictures] + [Path(path) for path in write], force)
     console.print(_table(spring_data(spring, Elastic(law.G, law.E, getattr(law, "density", STEEL.density))), turns))
     for warning in spring_warnings(spring):
         console.warn(warning.message)

@@ -54,18 +54,16 @@ def check_steps(case: Case) -> None:
 
 
 def check_times(case: Case, law: Law) -> None:
-    """Refuse phases in time of a material that knows no time, or not the temperature.
+    """Refuse a temperature that the material does not know, and phases in time of one that knows no time.
 
     Raises:
-        InputError: with the phase.
+        InputError: with the entry.
     """
+    _check_known(law, case.temperature, "temperature")
     if case.heat and not law.is_adiabatic:
         raise InputError(f"plastic work does not warm '{law.name}'; give a material with heating", "heat")
-    if case.heat and case.heat.surroundings is not None:
-        try:
-            law.known(case.heat.surroundings)
-        except InputError as error:
-            raise InputError(error.problem, "heat.surroundings") from None
+    if case.heat:
+        _check_known(law, case.heat.surroundings, "heat.surroundings")
     for number, phase in enumerate(case.loading):
         if isinstance(phase, Phase) and phase.seconds is not None and not case.heat and law.data.rate is None:
             raise InputError(f"no heat flows, and '{law.name}' does not depend on the rate; give the entry heat, or "
@@ -83,10 +81,16 @@ def check_times(case: Case, law: Law) -> None:
             raise InputError(f"'{law.name}' does not creep, so that time changes nothing; give a material with creep",
                              f"loading.{number}.{word}")  # fmt: skip
         if phase.heat:
-            try:
-                law.known(phase.heat.to)
-            except InputError as error:
-                raise InputError(error.problem, f"loading.{number}.heat.to") from None
+            _check_known(law, phase.heat.to, f"loading.{number}.heat.to")
+
+
+def _check_known(law: Law, temperature: float | None, place: str) -> None:
+    """Name the entry of the case, where the law would name its own file."""
+    if temperature is not None:
+        try:
+            law.known(temperature)
+        except InputError as error:
+            raise InputError(error.problem, place) from None
 
 
 def closing_force(spring: Spring, shear_modulus: float) -> float:

@@ -62,7 +62,7 @@ def read_columns(path: str | Path) -> Columns:
             else:
                 line = ""
             reader = csv.DictReader(itertools.chain([line], file), strict=True)
-            names = tuple(reader.fieldnames or ())
+            reader.fieldnames = names = tuple(name.strip() for name in reader.fieldnames or ())
             _check_separator(names, comments + 1, path)
             rows = tuple((comments + reader.line_num, row) for row in reader)
     except UnicodeDecodeError:

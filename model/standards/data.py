@@ -58,7 +58,7 @@ class SpringData:
             ("block length", f"{self.block_length:.5g}", "mm"),
             ("travel to block", f"{self.free_length - self.block_length:.5g}", "mm"),
             ("wire length", f"{self.wire_length:.5g}", "mm"),
-            ("mass", f"{self.mass * 1e3:.4g}", "g"),
+            ("mass", *((f"{self.mass:.4g}", "kg") if self.mass >= 1.0 else (f"{self.mass * 1e3:.4g}", "g"))),
             ("spring index D/d", span(self.index), ""),
             ("slenderness L0/D", f"{self.slenderness:.3g}", ""),
             ("travel to buckling, parallel seats", buckling, "mm" if np.isfinite(self.buckling_travel) else ""),

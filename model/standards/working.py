@@ -8,6 +8,7 @@ from coilset.model.standards.goodman import Cycle, Line
 from coilset.model.standards.wires.wire import Wire
 from coilset.model.warning import Warning
 
+ROUNDING = 1e-6  # of the travel to block: what a spring sets by less is none
 PRESETTING_LEAST = 0.1  # of the travel to block; a rule of thumb without a source
 
 
@@ -62,7 +63,9 @@ def presetting_warning(set_mm: float, travel: float) -> Warning | None:
     """
     if set_mm >= PRESETTING_LEAST * travel:
         return None
-    share = set_mm / travel
-    return Warning("presetting", "loading", f"presetting takes {set_mm:.3g} mm, {100 * share:.2g} % of the travel to "
-                   f"block; {100 * PRESETTING_LEAST:g} % or more is usual",
-                   set_mm, PRESETTING_LEAST * travel, "mm")  # fmt: skip
+    share = set_mm / travel if abs(set_mm) > ROUNDING * travel else 0.0
+    message = (
+        f"presetting takes {share * travel:.3g} mm, {100 * share:.2g} % of the travel to block; "
+        f"{100 * PRESETTING_LEAST:g} % or more is usual"
+    )
+    return Warning("presetting", "loading", message, set_mm, PRESETTING_LEAST * travel, "mm")

@@ -46,9 +46,13 @@ def draw(folder: Path, plan: Plan, data: xr.Dataset) -> tuple[list[str], list[In
         data: data set of coilset.model.sweep.dataset.collect.
 
     Returns:
-        Names of the files, and an InputError for each figure of a response that the cases do not have.
+        Names of the files, and an InputError for each figure of a response that the cases do not have; nothing of a
+        sweep in which no case is done.
     """
-    files, problems = [], []
+    files: list[str] = []
+    problems: list[InputError] = []
+    if not (data.status == "done").any():
+        return files, problems
     with mpl.rc_context(STYLE):
         for number, figure in enumerate(chosen(plan)):
             try:

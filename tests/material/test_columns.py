@@ -15,6 +15,12 @@ def test_comments_a_byte_order_mark_and_line_endings_of_spreadsheets(tmp_path):
     np.testing.assert_array_equal(table.numbers("stress"), [205.5, 411.0])
 
 
+def test_spaces_after_the_commas(tmp_path):
+    path = tmp_path / "test.csv"
+    path.write_text("strain, stress\n0.001, 205.5\n", encoding="utf-8")
+    np.testing.assert_array_equal(read_columns(path).numbers("stress"), [205.5])
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [

@@ -145,7 +145,7 @@ def test_too_few_readings_of_flow_are_counted():
     with pytest.raises(InputError, match=r"flowing: 5 readings beyond a plastic strain of 0\.05 %, and 10 are needed"):
         fit.fit([flowing], 84000, 0.28989)
     elastic = experiments.Test("elastic", rows, young * rows)
-    with pytest.raises(InputError, match="elastic: no yielding is seen; is G right"):
+    with pytest.raises(InputError, match="elastic: no yielding is seen; are G and the unit of stress"):
         fit.fit([elastic], 84000, 0.28989)
 
 

@@ -144,6 +144,7 @@ def test_a_fast_press_bears_more_and_then_relaxes(viscous):
          "loading.0.hold: 'ck15' does not creep, so that time changes nothing; give a material with creep"),
         ([{"heat": {"to": 700, "hours": 1}}], {},
          "loading.0.heat.to: 700 K is outside the table of 'creeping', known for 293.15 to 573.15 K"),
+        (HOLD, {"temperature": 20.0}, "temperature: 20 K is outside the table of 'creeping', known for"),
         ([{"hold": {"hours": 1, "minutes": 2}}], {}, "give exactly one of hours or minutes, as in {hours: 48}"),
         ([{"hold": {"hours": 1}, "heat": {"to": 300, "hours": 1}}], {}, "give exactly one of hold or heat"),
         ([{"hold": {"hours": -1}}], {}, "loading.0.hold.hours: -1: must be greater than 0"),
@@ -155,6 +156,7 @@ def test_what_time_cannot_be(loading, changes, message):
     with pytest.raises(InputError) as caught:
         analysis_of(loading, **changes)
     assert message in str(caught.value)
+    assert ".yaml" not in str(caught.value)  # the entry is one of the case, not of the material's file
 
 
 COARSE = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9"]

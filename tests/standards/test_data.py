@@ -24,6 +24,16 @@ def test_rate_of_a_cylinder_is_that_of_the_standard():
     assert data.index == pytest.approx((8, 8))
 
 
+def test_a_heavy_spring_is_weighed_in_kilograms():
+    """Ten times as large in each direction, a thousand times as heavy."""
+    light, heavy = (
+        {name: (value, unit) for name, value, unit in spring_data(build(**lengths)).rows()}["mass"]
+        for lengths in ({}, {"wire_diameter": 40.0, "mean_diameter": 320.0, "pitch": 100.0})
+    )
+    assert light[1] == "g"
+    assert heavy == (light[0], "kg")
+
+
 def test_rate_of_a_cone_is_wahls():
     # Wahl, Mechanical Springs: δ = 16 P n (r1 + r2)(r1² + r2²)/(G d⁴)
     cone = build(mean_diameter={"shape": "cone", "bottom": 60.0, "top": 30.0}, turns=5.0, pitch=14.0)

@@ -77,3 +77,6 @@ def test_presetting():
     found = presetting_warning(1.6, 32.0)
     assert isinstance(found, Warning)
     assert found.message == "presetting takes 1.6 mm, 5 % of the travel to block; 10 % or more is usual"
+    elastic = presetting_warning(-9e-15, 32.0)  # by rounding
+    assert elastic is not None
+    assert elastic.message.startswith("presetting takes 0 mm, 0 % of")
