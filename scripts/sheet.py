@@ -112,7 +112,7 @@ def _warnings(spring: Spring, made: Sheet) -> list[Warning]:
     cylinder = made.spring
     warnings = [*spring_warnings(spring), *sheet_warnings(made, [cylinder.solid])]
     set_mm = made.at_run("set_mm")
-    if set_mm is not None:
+    if set_mm is not None and made.was_at_block:  # any other run is no presetting
         warnings += filter(None, [presetting_warning(set_mm, cylinder.length - cylinder.solid)])
     return warnings
 

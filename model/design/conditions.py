@@ -7,9 +7,9 @@ from typing import Any
 
 from coilset.meshes.errors import InputError
 from coilset.model.design.wish import Conditions, WishSpec
+from coilset.model.results.units import unit_of
 
 MEASURING_STEPS = 2  # equal steps to a height at which a force is measured, and back: the path is elastic, or nearly so
-UNITS = {"_mm": "mm", "_N": "N", "_MPa": "MPa", "_N_per_mm": "N/mm", "_N_per_mm2": "N/mm²"}
 
 
 @dataclass(frozen=True)
@@ -41,10 +41,7 @@ class Condition:
     @property
     def unit(self) -> str:
         """Of its value."""
-        if self.height is not None:
-            return "N"
-        return next(unit for ending, unit in sorted(UNITS.items(), key=lambda pair: -len(pair[0]))
-                    if self.name.endswith(ending))  # fmt: skip
+        return unit_of(self.name) if self.height is None else "N"
 
     def off(self, value: float) -> float:
         """Deviation of a value from its target, relative to the target."""

@@ -11,7 +11,7 @@ from coilset.meshes.errors import reading
 from coilset.model.case import Case
 from coilset.model.case.reference import entry_unit
 from coilset.model.results.labelled import add_summary
-from coilset.model.results.opened import unit_of
+from coilset.model.results.units import unit_of
 from coilset.model.sweep.journal import read_records
 
 FILE = "design.json"

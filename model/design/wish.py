@@ -52,9 +52,9 @@ Stress = Annotated[float, Unit("MPa"), AfterValidator(_not_zero)]
 
 
 class ForceAt(Strict):
-    """A force at a height, after the load program.
+    """A force at a height.
 
-    It is read where the program last passes this height; if it never does, the spring goes to this height afterwards.
+    It is read where the program's last phase to this height ends; without one, the spring goes there afterwards.
     """
 
     height: Annotated[Millimetres, Field(description="distance between the seats, mm")]

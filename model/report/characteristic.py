@@ -31,7 +31,7 @@ def phases(run: Run) -> list[tuple[str, np.ndarray, np.ndarray]]:
 
 def _times(number: int) -> str:
     """Of equal phases, such as first and second loading."""
-    return {1: "first time", 2: "second time", 3: "third time"}.get(number, f"{number}th time")
+    return {1: "first time", 2: "second time", 3: "third time"}.get(number, f"time {number}")
 
 
 def characteristic(run: Run) -> Panel:

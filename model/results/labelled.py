@@ -8,7 +8,8 @@ from typing import Any
 import xarray as xr
 
 from coilset.meshes.errors import reading
-from coilset.model.results.opened import open_run, unit_of
+from coilset.model.results.opened import open_run
+from coilset.model.results.units import unit_of
 
 
 def labelled(folder: str | Path) -> xr.Dataset:

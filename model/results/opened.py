@@ -9,22 +9,7 @@ import numpy as np
 import xarray as xr
 
 from coilset.meshes.errors import InputError, unreadable
-
-UNITS = {
-    "_N_per_mm2": "N/mm²",
-    "_N_per_mm": "N/mm",
-    "_Nmm": "N mm",
-    "_mm": "mm",
-    "_MPa": "MPa",
-    "_N": "N",
-    "_rad": "rad",
-    "_turns": "1",
-    "hours": "h",
-    "_K": "K",
-    "_deg": "degrees",
-    "_turn": "1",
-    "_percent": "%",
-}
+from coilset.model.results.units import unit_of
 
 
 @dataclass(frozen=True)
@@ -87,8 +72,3 @@ def _table(path: Path) -> xr.Dataset:
     number = names[0]  # of the step
     columns = {name: ("step", rows[name], {"units": unit_of(name)}) for name in names if name != number}
     return xr.Dataset(columns, coords={"step": rows[number].astype(int)})
-
-
-def unit_of(name: str) -> str:
-    """Unit of a number by its name, as in `set_mm`; 1 where it has none."""
-    return next((unit for end, unit in UNITS.items() if name.endswith(end)), "1")

@@ -7,12 +7,11 @@ from math import degrees, isfinite, sqrt
 from coilset.model.standards import en13906, en15800
 from coilset.model.standards.buckling import critical_travel
 from coilset.model.standards.rate import pitch_compliance
-from coilset.model.standards.sheet import Sheet
+from coilset.model.standards.sheet import AT_BLOCK, Sheet
 from coilset.model.standards.wires.law import poisson_ratio
 
 DERIVED, TWO, ONE, GIVEN = "derived", "two sources", "one source", "given"
 SHORT = {"checked against a second source": TWO, "one source": ONE, "estimate": "estimate"}
-AT_BLOCK = 0.01  # of the wire diameter: a run closer than this to the block length of the geometry reached block
 
 
 @dataclass(frozen=True)
@@ -65,7 +64,7 @@ def _dimensions(sheet: Sheet) -> Iterator[Row]:
     yield Row("wire length l", nominal, "mm", "π D n_t", DERIVED, helix, "the helix is longer by 1/cos α")
     yield Row("mass m", 1e3 * en13906.mass(ρ, s.d, nominal), "g", "ρ π d² l/4", DERIVED, mass, "as the wire length")
     growth = en13906.outer_diameter_growth(s.d, s.D, s.pitch)
-    grown = sheet.found.growth if sheet.found and _was_at_block(sheet) else None
+    grown = sheet.found.growth if sheet.found and sheet.was_at_block else None
     yield Row("growth of D to block", growth, "mm", "(m² − 0.8 m d − 0.2 d²)/(π² D)", DERIVED, grown,
               f"mean of the body; the formula is for ends that turn{', these are held' * sheet.clamped}")  # fmt: skip
 
@@ -84,7 +83,7 @@ def _spring(sheet: Sheet) -> Iterator[Row]:
     if sheet.block is None:
         why = f"EN 13906-1 has none for {s.ends} ends"
     yield Row("block length Lc", sheet.block, "mm", formula, TWO, sheet.at_run("block_height_mm"), why)
-    force = sheet.at_run("force_max_N") if _was_at_block(sheet) else None
+    force = sheet.at_run("force_max_N") if sheet.was_at_block else None
     yield Row("force at block Fc", rate * (s.length - solid), "N", f"R (L0 − {solid:.4g} mm)", DERIVED, force,
               _why_block(sheet))  # fmt: skip
     travel = critical_travel(s.length, s.D, e.shear_modulus / e.young_modulus)
@@ -95,12 +94,8 @@ def _spring(sheet: Sheet) -> Iterator[Row]:
               sheet.at_run("buckling_travel_mm"), why)  # fmt: skip
 
 
-def _was_at_block(sheet: Sheet) -> bool:
-    return sheet.found is not None and sheet.found.heights.min() < sheet.spring.solid + AT_BLOCK * sheet.spring.d
-
-
 def _why_block(sheet: Sheet) -> str:
-    if not _was_at_block(sheet) or not sheet.yield_stress:
+    if not sheet.was_at_block or not sheet.yield_stress:
         return ""
     first = sheet.yield_stress / sqrt(3)
     if sheet.stress(sheet.spring.solid) <= first:
@@ -111,7 +106,7 @@ def _why_block(sheet: Sheet) -> str:
 def _stresses(sheet: Sheet) -> Iterator[Row]:
     s, wire = sheet.spring, sheet.wire
     k, τ = en13906.stress_correction(s.index), sheet.stress(s.solid)
-    found = sheet.at_run("shear_max_MPa") if _was_at_block(sheet) else None
+    found = sheet.at_run("shear_max_MPa") if sheet.was_at_block else None
     yield Row("stress τc", τ, "MPa", "8 D Fc/(π d³)", DERIVED, found,
               "maximum true shear stress on the surface of the middle turns")  # fmt: skip
     yield Row("stress correction k", k, "", "(w + 0.5)/(w − 0.75)", TWO)
@@ -155,7 +150,7 @@ def _dynamics(sheet: Sheet) -> Iterator[Row]:
     f = en13906.natural_frequency(e.shear_modulus, e.density, s.d, s.D, s.n)
     yield Row("natural frequency", f, "Hz", "d/(2π n D²) √(G/(2ρ)), ends held", DERIVED, _frequency(sheet),
               "½ √(R/m) with the rate found and the helix's mass")  # fmt: skip
-    work = sheet.found.work_to(s.solid + AT_BLOCK * s.d) if sheet.found and _was_at_block(sheet) else None
+    work = sheet.found.work_to(s.solid + AT_BLOCK * s.d) if sheet.found and sheet.was_at_block else None
     yield Row("work to block", 1e-3 * en13906.energy(sheet.rate, s.length - s.solid), "J", "R s²/2", DERIVED,
               None if work is None else 1e-3 * work, "∫ F ds of the first compression, plastic work in it")  # fmt: skip
 

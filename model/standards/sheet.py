@@ -10,6 +10,8 @@ from coilset.model.standards.found import Found
 from coilset.model.standards.steel import Elastic
 from coilset.model.standards.wires.wire import Wire
 
+AT_BLOCK = 0.01  # of the wire diameter: a run closer than this to the block length of the geometry reached block
+
 
 @dataclass(frozen=True)
 class Sheet:
@@ -80,6 +82,13 @@ class Sheet:
         """Endurance of the wire; None if unknown."""
         endurance = self.wire.endurance(self.surface) if self.wire else None
         return goodman.line(endurance, self.spring.d) if endurance else None
+
+    @property
+    def was_at_block(self) -> bool:
+        """Whether the run came to the block length of the geometry."""
+        if self.found is None:
+            return False
+        return bool(self.found.heights.min() < self.spring.solid + AT_BLOCK * self.spring.d)
 
     def at_run(self, name: str) -> float | None:
         """An entry of the run's summary; None without a run, or if the run did not get that far."""

@@ -12,19 +12,19 @@ from coilset.model.case import Case
 from coilset.model.case.reference import entry_unit, entry_words
 from coilset.model.case.settings import located
 from coilset.model.results.folder import reserve, whole
+from coilset.model.results.units import without_unit
 from coilset.model.sweep.journal import read_records
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.spec import are_numbers
 from coilset.model.version import versions
 
-UNITS = {"_N_per_mm2": "N/mm²", "_N_per_mm": "N/mm", "_deg": "degrees", "_MPa": "MPa", "_mm": "mm", "_N": "N"}
 CURVE = {"travel_mm": "mm", "seat_height_mm": "mm", "force_N": "N", "phase": "1"}
 
 
 def quantity(name: str) -> tuple[str, str]:
     """Description and unit of a response from its name, as in `set_mm`."""
-    ending, unit = next(((one, unit) for one, unit in UNITS.items() if name.endswith(one)), ("", ""))
-    words = name.removesuffix(ending).replace("_", " ")
+    stem, unit = without_unit(name)
+    words = stem.replace("_", " ")
     return f"maximum {words.removesuffix(' max')}" if words.endswith(" max") else words, unit
 
 

@@ -158,6 +158,15 @@ def test_command_prints_and_draws(case, tmp_path, capsys):
         sheet(case, wire_name="EN 10270-1 SH", surface="shot peened", out=tmp_path / "out")
 
 
+@pytest.mark.parametrize(("least", "said"), [(60.0, False), (1.0, True)], ids=["above block", "at block"])
+def test_a_set_is_held_against_presetting_where_the_run_was_at_block(case, tmp_path, capsys, least, said):
+    folder = run_folder(tmp_path / "run")
+    (folder / "summary.json").write_text(json.dumps({"free_length_before_mm": 105.8, "set_mm": 1.0}), encoding="utf-8")
+    (folder / "history.csv").write_text(f"seat_height_mm,force_N\n{least},700\n104.8,0\n", encoding="utf-8")
+    sheet(case, folder, pictures=False)
+    assert ("presetting takes 1 mm" in " ".join(capsys.readouterr().out.split())) == said
+
+
 def test_command_draws_nothing_without_a_wire(case, tmp_path, capsys):
     sheet(case, out=tmp_path / "out")
     assert "the material is not a standard wire; give --wire" in capsys.readouterr().out

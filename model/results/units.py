@@ -1,0 +1,30 @@
+"""Units of the numbers of results, which their names end with."""
+
+UNITS = {
+    "_N_per_mm2": "N/mm²",
+    "_N_per_mm": "N/mm",
+    "_Nmm": "N mm",
+    "_mm": "mm",
+    "_MPa": "MPa",
+    "_N": "N",
+    "_rad": "rad",
+    "_turns": "1",
+    "hours": "h",
+    "_K": "K",
+    "_deg": "degrees",
+    "_turn": "1",
+    "_percent": "%",
+    "least_eigenvalue": "N/mm",
+}
+
+
+def unit_of(name: str) -> str:
+    """Unit of a number by its name, as in `set_mm`; 1 where it has none."""
+    return next((unit for end, unit in UNITS.items() if name.endswith(end)), "1")
+
+
+def without_unit(name: str) -> tuple[str, str]:
+    """A name without the unit that it ends with, and that unit; `plastic_work_max_turn` is whole, and has none."""
+    found = ((name.removesuffix(end), unit) for end, unit in UNITS.items() if name.endswith(end) and end[0] == "_")
+    stem, unit = next(found, (name, "1"))
+    return (name, "") if unit == "1" else (stem, unit)
