@@ -6,11 +6,13 @@ import json
 import re
 from contextlib import closing
 
+import numpy as np
 import pytest
 import yaml
 from mpi4py import MPI
 
 from coilset.model.case.settings import put
+from coilset.model.report.packed import packed
 from coilset.model.report.sweep_page import write_sweep_report
 from coilset.model.sweep import dataset
 from coilset.model.sweep.evaluate import evaluate
@@ -54,6 +56,21 @@ def data(folder):
     page = write_sweep_report(folder).read_text(encoding="utf-8")
     kept = re.search(r'<script type="text/plain" id="data">(.*?)</script>', page).group(1)
     return json.loads(gzip.decompress(base64.b64decode(kept)))
+
+
+@pytest.mark.parametrize("shape", [(2, 3), (6,), (40,)])
+def test_a_page_holds_no_number_that_json_has_not(shape):
+    """Characteristics that are shorter than the longest end with NaN: None in text, its bits in a long array."""
+    values = np.ones(shape)
+    values[..., -1] = np.nan
+    kept = packed({"curve": values, "height": np.float64("inf")})
+    json.dumps(kept, allow_nan=False)
+    assert kept["height"] is None
+    if values.size < 24:
+        assert kept["curve"] == np.where(np.isnan(values), None, values).tolist()
+    else:
+        bits = np.frombuffer(base64.b64decode(kept["curve"]["f4"]), "<f4")
+        assert np.array_equal(bits, values.ravel(), equal_nan=True)
 
 
 def test_every_case_has_the_numbers_of_its_record(folder, data):
