@@ -10,7 +10,6 @@ import json
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 
 import basix.ufl
@@ -25,6 +24,7 @@ from coilset.model.rod import element_kernel, forms
 from coilset.model.rod.element_kernel import PROCESSOR, ElementKernel, Loop
 
 UNKNOWNS = 14  # of an element: two nodes with 6, and two shear angles
+_kept: list["CompiledForms"] = []  # one, as soon as this process has needed them
 SOURCES = (Path(__file__), Path(forms.__file__), Path(element_kernel.__file__))
 
 
@@ -73,25 +73,33 @@ class CompiledForms:
 def compiled_forms(comm: MPI.Comm) -> CompiledForms:
     """The forms for rods of a communicator; collective.
 
-    On several ranks they are looked up each time, since one rank's cache may hold forms that another's does not.
+    Where one rank does not have them, all ranks compile them together.
 
     Args:
         comm: communicator of the rods' mesh.
     """
-    return _kept() if comm.size == 1 else _loaded(*_compile(comm))
+    if not _kept:
+        _kept.extend(_recorded())
+    if not comm.allreduce(len(_kept), op=MPI.MIN):
+        compiled = _compile(comm)
+        _kept[:] = [_loaded(*compiled)]
+        _write(compiled)
+    return _kept[0]
 
 
-@lru_cache
-def _kept() -> CompiledForms:
+def _recorded() -> list[CompiledForms]:
+    """What an earlier process has compiled; nothing if there is no record, or none of use."""
+    with contextlib.suppress(OSError, ImportError, ValueError, KeyError, TypeError):
+        return [_loaded(*(Compiled(one["module"], tuple(one["fields"])) for one in json.loads(_record().read_text())))]
+    return []
+
+
+def _write(compiled: tuple[Compiled, Compiled]) -> None:
     record = _record()
-    with contextlib.suppress(OSError, ImportError, ValueError, KeyError, TypeError):  # there is none, or none of use
-        return _loaded(*(Compiled(one["module"], tuple(one["fields"])) for one in json.loads(record.read_text())))
-    compiled = _compile(MPI.COMM_SELF)
     with contextlib.suppress(OSError):  # the next process compiles again
         partial = record.with_suffix(f".{os.getpid()}")
         partial.write_text(json.dumps([vars(one) for one in compiled]))
         os.replace(partial, record)
-    return _loaded(*compiled)
 
 
 def _record() -> Path:

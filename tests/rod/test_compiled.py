@@ -16,11 +16,11 @@ def record(tmp_path, monkeypatch):
     monkeypatch.setattr(compiled, "_record", lambda: tmp_path / "forms.json")
     monkeypatch.setattr(compiled, "_compile", lambda comm: built.append(comm) or build(comm))
     yield tmp_path / "forms.json", built
-    compiled._kept.cache_clear()
+    compiled._kept.clear()
 
 
 def forms_of_a_new_process():
-    compiled._kept.cache_clear()
+    compiled._kept.clear()
     return compiled.compiled_forms(MPI.COMM_SELF)
 
 
