@@ -314,9 +314,10 @@ def bench(
 def compile_() -> None:
     """Compile forms and kernels now, which takes some minutes, so that the first run need not wait."""
     announce_compiling(notice=NOTICE)
-    from coilset.scripts.warm import warm
+    from coilset.scripts.warm import warm, warm_ranks
 
     warm()
+    warm_ranks()
     compiled().touch()
 
 

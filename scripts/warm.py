@@ -1,15 +1,25 @@
 """`coilset compile`: compile in advance what a first run would compile."""
 
+import contextlib
+import subprocess
+import sys
+
 from mpi4py import MPI
 
 from coilset.model.analysis import Analysis
-from coilset.model.case import read_case
+from coilset.model.case import Case, read_case
 from coilset.model.design.surrogate import guess
 from coilset.model.examples import EXAMPLES
+from coilset.model.processes import end_with_parent, folder_of_mpirun, mpi_environment, mpirun
 
 LOADING = "loading=[{to: {travel: 16}, steps: 4}, {to: {force: 0}, steps: 1}]"
 CREEPING = "loading=[{to: {force: 650}, steps: 2}, {hold: {hours: 1}, steps: 1}]"
-SHORT = {"ck15_presetting.yaml": LOADING, "time/relaxation.yaml": CREEPING}  # examples, and what they go through
+PRESSED, HELD = ("ck15_presetting.yaml", LOADING), ("time/relaxation.yaml", CREEPING)
+
+
+def short_case(example: str, loading: str) -> Case:
+    """An example in few elements, and what it goes through."""
+    return read_case(EXAMPLES / example, ("mesh.elements_per_turn=16", loading))
 
 
 def warm() -> None:
@@ -17,9 +27,20 @@ def warm() -> None:
 
     What several threads do is compiled beside what one does: there are points enough for two, on the surface too.
     """
-    mesh = "mesh.elements_per_turn=16"
-    cases = [read_case(EXAMPLES / example, (mesh, loading)) for example, loading in SHORT.items()]
+    cases = [short_case(*PRESSED), short_case(*HELD)]
     for case in cases:
         for threads in (1, 2):
             Analysis(case, MPI.COMM_SELF, threads=threads).run()
     guess(cases[0], [])
+
+
+def warm_ranks() -> None:
+    """Let two ranks press the example: they factorise in another way. Where no mpirun starts them, nothing is done."""
+    with folder_of_mpirun() as folder, contextlib.suppress(OSError):
+        subprocess.run([*mpirun(2), sys.executable, "-m", __name__], env=mpi_environment() | folder, check=False,
+                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                       preexec_fn=end_with_parent)  # fmt: skip
+
+
+if __name__ == "__main__":
+    Analysis(short_case(*PRESSED), MPI.COMM_WORLD).run()

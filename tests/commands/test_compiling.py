@@ -12,7 +12,8 @@ import numba
 import pytest
 
 from coilset.meshes.errors import InputError
-from coilset.scripts import compiling
+from coilset.model.processes import mpi_environment, mpirun
+from coilset.scripts import compiling, warm
 from coilset.scripts.compiling import NOTICE, NOTICE_OF_PART, announce_compiling, compile_first, compiled
 
 SMALL = ["--set", "loading=[{to: {travel: 2}, steps: 1}]", "--set", "mesh.elements_per_turn=8", "--no-pictures"]
@@ -109,8 +110,8 @@ def test_a_folder_that_cannot_be_made_hinders_nobody(monkeypatch, tmp_path):
     compile_first(say=lambda line: None)
 
 
-KERNELS = """
-import gc, sys
+USED = """
+import gc, runpy, sys
 from mpi4py import MPI
 from numba.core.dispatcher import Dispatcher
 from coilset.model.analysis import Analysis
@@ -122,6 +123,8 @@ def used():
     kernels = [thing for thing in gc.get_objects() if isinstance(thing, Dispatcher)]
     return {f"{kernel.py_func.__qualname__} {signature}" for kernel in kernels for signature in kernel.overloads}
 
+"""
+KERNELS = """
 warm()
 compiled = used()
 for file in sys.argv[1:]:
@@ -137,10 +140,37 @@ print(len(compiled), *sorted(used() - compiled), sep="\\n")
 def test_shipped_examples_need_no_kernel_that_is_not_compiled_before(example):
     springs, time = (example.parent / name for name in ("springs", "time"))
     files = [example, springs / "closed_and_ground.yaml", time / "relaxation.yaml"]
-    done = subprocess.run([sys.executable, "-c", KERNELS, *files], capture_output=True, text=True, check=True)
+    done = subprocess.run([sys.executable, "-c", USED + KERNELS, *files], capture_output=True, text=True, check=True)
     count, *missing = done.stdout.splitlines()
     assert int(count) > 8  # those that are called by Python; the others are in them
     assert missing == []
+
+
+KERNELS_OF_RANKS = """
+runpy.run_module("coilset.scripts.warm", run_name="__main__")
+compiled = used()
+Analysis(read_case(sys.argv[1], ["mesh.section={radial: 2, angular: 8}"]), MPI.COMM_WORLD).run()
+missing = MPI.COMM_WORLD.gather(sorted(used() - compiled))
+if missing is not None:
+    print(sum("eliminate" in kernel for kernel in compiled), missing)
+"""
+
+
+def test_ranks_need_no_kernel_that_is_not_compiled_before(example):
+    command = [*mpirun(2), sys.executable, "-c", USED + KERNELS_OF_RANKS, str(example)]
+    done = subprocess.run(command, env=mpi_environment(), capture_output=True, text=True, check=True)
+    count, missing = done.stdout.strip().split(maxsplit=1)
+    assert int(count) > 0
+    assert missing == "[[], []]"
+
+
+def test_two_ranks_compile_too(monkeypatch, tmp_path):
+    """What is started runs to its end, without a word; a system without mpirun is left alone."""
+    monkeypatch.setattr(warm, "mpirun", lambda ranks: ["sh", "-c", f'echo {ranks} "$@" > {tmp_path}/started', "sh"])
+    warm.warm_ranks()
+    assert (tmp_path / "started").read_text().split() == ["2", sys.executable, "-m", "coilset.scripts.warm"]
+    monkeypatch.setattr(warm, "mpirun", lambda ranks: ["/no/mpirun"])
+    warm.warm_ranks()
 
 
 def test_a_warm_solve_does_not_say_it(example, tmp_path):
