@@ -18,6 +18,7 @@ from numba import njit
 from petsc4py import PETSc
 
 from coilset.model.equilibrium.contact_limit import ContactLimit
+from coilset.model.equilibrium.foreseeing import Foreseeing
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.settings import NewtonControl
 from coilset.model.equilibrium.system import System
@@ -46,23 +47,28 @@ class WorkSearch:
         system: System; it is evaluated at the trial points.
         limit: ContactLimit.
         control: NewtonControl.
-        foresees: whether the body predicts its forces for the correction (Foresees).
     """
 
-    def __init__(self, system: System, limit: ContactLimit, control: NewtonControl, foresees: bool = False) -> None:
-        self.system, self.limit, self.control, self.foresees = system, limit, control, foresees
+    def __init__(self, system: System, limit: ContactLimit, control: NewtonControl) -> None:
+        self.system, self.limit, self.control = system, limit, control
         # vectors around arrays, for it takes longer to ask a vector for its array than to go through it
         self._along, self._forces = (np.zeros(system.layout.size_local) for _ in range(2))
         self._direction, self._force = (system.layout.vector(values) for values in (self._along, self._forces))
         self._trial = system.layout.vector()
 
-    def __call__(self, x: PETSc.Vec, y: PETSc.Vec, F: PETSc.Vec, load: Load, load_factor: float) -> StepLength:
-        """Step length from `x` along −y, with the residual `F` at x; the three are not changed; collective."""
+    def __call__(
+        self, x: PETSc.Vec, y: PETSc.Vec, F: PETSc.Vec, load: Load, load_factor: float, foreseeing: Foreseeing | None
+    ) -> StepLength:
+        """Step length from `x` along −y, with the residual `F` at x; the three are not changed; collective.
+
+        Args:
+            foreseeing: predicts the forces after the whole correction; None: they are not foreseen.
+        """
         system, control = self.system, self.control
-        self._x, self._load, self._load_factor = x, load, load_factor
+        self._x, self._load, self._load_factor, self._foreseeing = x, load, load_factor, foreseeing
         system.evaluate(x)
-        if self.foresees:
-            system.predict(y)
+        if foreseeing is not None:
+            foreseeing.predict(y)
         allowed = self.limit.allowed(system.max_penetration)
         pending = load.misses(x.getArray(readonly=True), load_factor)
         y.copy(self._direction)
@@ -94,9 +100,9 @@ class WorkSearch:
 
         In a slender rod these grow over a correction that is nevertheless right; the next one removes them.
         """
-        if not self.foresees:
+        if self._foreseeing is None:
             return np.inf, np.inf
-        self.system.residual_without_turning(self._load, self._load_factor, limit * length, self._force)
+        self._foreseeing.residual_without_turning(self._load, self._load_factor, limit * length, self._force)
         return self._work_and_norm()
 
     def _at(self, length: float) -> tuple[float | None, float]:

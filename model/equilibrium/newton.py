@@ -17,10 +17,10 @@ import numpy as np
 from petsc4py import PETSc
 
 from coilset.meshes.compat import NOT_A_NUMBER
-from coilset.model.body import Foresees
 from coilset.model.equilibrium.chain_lu import ChainPC
 from coilset.model.equilibrium.contact_limit import ContactLimit
 from coilset.model.equilibrium.convergence import EquilibriumTest, Outcome, Reason, imbalance, reason_in_words
+from coilset.model.equilibrium.foreseeing import Foreseeing
 from coilset.model.equilibrium.line_search import WorkSearch
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import TangentMatrix
@@ -59,7 +59,7 @@ class Newton:
         InputError: if PETSc refuses an option.
 
     Attributes:
-        foresees: may tangents be built with the forces that the last correction foresees?
+        foreseeing: Foreseeing; None where the body does not foresee, or the control says so.
         snes: PETSc's solver.
         matrix: TangentMatrix.
     """
@@ -81,19 +81,16 @@ class Newton:
         self.system, self.control = system, control or NewtonControl()
         self.augmentation_tolerance, self.prepare = augmentation_tolerance, prepare
         self.limit = limit or ContactLimit(system, self.control, np.inf)
-        self.foresees = isinstance(system.body, Foresees) and self.control.foreseen_forces is not False
-        self._feigned = system.body.axial_force if isinstance(system.body, Foresees) else 0.0
+        self.foreseeing = self._foreseeing = Foreseeing.of(system, self.control.foreseen_forces)
         self.test = EquilibriumTest(tolerance, self.control.stagnation)
-        self.search = WorkSearch(system, self.limit, self.control, self.foresees)
+        self.search = WorkSearch(system, self.limit, self.control)
         self.F = system.layout.vector()
         self.matrix = TangentMatrix(system.body, system.layout)
         self.load, self.load_factor = Load.of(system.layout, {}, {}), 1.0
         self.ratio, self._factorisations, self._at_step_start = np.inf, 0, True
         self._failed = 0
         self._fitted = 0  # version of the matrix that the linear solvers were last told of; a solid's never changes
-        self._foreseen = False  # have tangents of the present attempt been built with foreseen forces?
         self._step_length: float | None = None  # of the last correction; None where there is none, or PETSc's own
-        self._corrected: float | None = None  # share of the last correction, where it led to the present state
         me = weakref.proxy(self)
         self._factory = SnesFactory(
             system.comm, lambda *args: me._residual(*args), lambda *args: me._tangent(*args), self.F, self.matrix.mat
@@ -125,27 +122,26 @@ class Newton:
 
         What fails where something touches has had the true ones nearly all the way, and fails again.
         """
-        self._foreseen = False
-        outcome = self._attempt(load, start)
-        if outcome.converged or not self._foreseen or self.system.touches:
+        foreseeing = self.foreseeing
+        outcome = self._attempt(load, start, foreseeing)
+        if outcome.converged or foreseeing is None or not foreseeing.used or self.system.touches:
             return outcome
-        self.foresees = self.search.foresees = False
-        try:
-            return outcome + self._attempt(load, start)
-        finally:
-            self.foresees = self.search.foresees = True
+        return outcome + self._attempt(load, start, None)
 
-    def _attempt(self, load: Load, start: Start | None = None) -> Outcome:
+    def _attempt(self, load: Load, start: Start | None, foreseeing: Foreseeing | None) -> Outcome:
         """Solve one step; the system is left at the last iterate; collective.
 
         Args:
             load: what the step asks for.
             start: where to start; from the last equilibrium if None.
+            foreseeing: for tangents with foreseen forces; None: with the true ones only.
 
         Returns:
             Outcome; its counts are those of all solves where contacts are augmented.
         """
-        self.load = load
+        self.load, self._foreseeing = load, foreseeing
+        if foreseeing is not None:
+            foreseeing.begin()
         self.system.reset_contacts()
         outcome, augmentations = self._solve(start or Start()), 0
         while outcome.converged and (left := self.system.max_penetration) > self.augmentation_tolerance:
@@ -160,11 +156,12 @@ class Newton:
     def _solve(self, start: Start) -> Outcome:
         system, method, X, guess, first = self.system, self.method, self.system.increments, start.increments, 0
         self.ratio, self._factorisations, self._failed, evaluations = np.inf, 0, 0, system.evaluations
-        self.load_factor, self._at_step_start, self._corrected = 1.0, True, None
+        self.load_factor, self._at_step_start = 1.0, True
         if guess is None or method.is_arc_length:
             X.set(0.0)
         elif method.searches:
-            self._foresee_start(guess)
+            if self._foreseeing is not None:
+                self._foreseeing.start(guess)
             self.limit.limit_start(guess, X)
         else:
             guess.copy(X)
@@ -195,21 +192,11 @@ class Newton:
             stagnated=reason == Reason.DIVERGED_LOCAL_MIN,
         )
 
-    def _foresee_start(self, guess: PETSc.Vec) -> None:
-        """Take a start for a correction of the last equilibrium: its finite turns feign forces like any other's."""
-        if not self.foresees or self.system.touches:
-            return
-        correction = guess.duplicate()
-        correction.set(0.0)
-        if not self.system.stand():
-            self.system.evaluate(correction)
-        correction.axpy(-1.0, guess)
-        self.system.predict(correction)
-        self._corrected = 1.0
-
     def _once(self) -> tuple[int, int]:
         """Numbers of iterations, and of linear ones in them."""
         self.snes.solve(self._arc_load if self.method.is_arc_length else None, self.system.increments)
+        if self._foreseeing is not None:
+            self._foreseeing.forget()
         return self.snes.getIterationNumber(), self.snes.getLinearSolveIterations()
 
     def _in_parts(self) -> tuple[int, int]:
@@ -221,7 +208,6 @@ class Newton:
         good: PETSc.Vec | None = None  # at `reached`; None: the last equilibrium
         while True:
             counts += self._once()
-            self._corrected = None
             if self.snes.getConvergedReason() > 0:
                 if self.load_factor == 1.0:
                     return int(counts[0]), int(counts[1])
@@ -261,9 +247,8 @@ class Newton:
 
     def _tangent(self, snes: PETSc.SNES, X: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
         self._factorisations += 1
-        self.system.tangent(X, self.load, self.matrix, self._at_step_start, self._corrected)
-        self._foreseen |= self._corrected is not None
-        self._at_step_start, self._corrected = False, None
+        (self._foreseeing or self.system).tangent(X, self.load, self.matrix, self._at_step_start)
+        self._at_step_start = False
         self.prepare(P)
         if self.matrix.version != self._fitted:  # PETSc may take the new matrix for one with the old pattern
             self._fitted = self.matrix.version
@@ -289,10 +274,10 @@ class Newton:
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Before a line search of type `basic`: scale the correction −y."""
-        step = self.search(x, y, self.F, self.load, self.load_factor)
+        step = self.search(x, y, self.F, self.load, self.load_factor, self._foreseeing)
         self._step_length = step.contact_limit * step.value
-        ahead = self.foresees and (step.feigns or self.control.foreseen_forces or not self.system.touches)
-        self._corrected = step.contact_limit * step.value if ahead else None
+        if self._foreseeing is not None:
+            self._foreseeing.correct(self._step_length, step.feigns)
         for factor in (step.contact_limit, step.value):
             if factor != 1.0:
                 y.scale(factor)
@@ -306,7 +291,7 @@ class Newton:
         norm, X = norms[2], self.system.increments
         if iteration == 0:
             self._step_length = None
-            self.test.begin(norm, self._feigned if self.foresees else 0.0)
+            self.test.begin(norm, 0.0 if self._foreseeing is None else self._foreseeing.axial_force)
         if not math.isfinite(norm):
             return NOT_A_NUMBER
         if self.method.is_arc_length and iteration == 0:

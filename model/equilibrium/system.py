@@ -8,7 +8,7 @@ import numpy as np
 from dolfinx import la
 from petsc4py import PETSc
 
-from coilset.model.body import Body, Foresees, HasRotations, Moment, PassesTime
+from coilset.model.body import Body, HasRotations, Moment, PassesTime
 from coilset.model.contact.base import BearsOnWire, Contact, Contribution, HasMemory
 from coilset.model.equilibrium.contact_parts import ContactParts
 from coilset.model.equilibrium.joined import add_vectors
@@ -77,8 +77,6 @@ class System:
         self._body_increments = body.increment.x.array
         # asked once, for the test of a protocol takes longer than what it guards
         self._rotating = body if isinstance(body, HasRotations) else None
-        self._foreseeing = body if isinstance(body, Foresees) else None
-        self._correction = body.correction.x.array if isinstance(body, Foresees) else np.empty(0)
         self.bearing = [isinstance(contact, BearsOnWire) for contact in self.contacts]
         if self.contacts:
             self.touching = ContactParts(self.line, self.contacts)
@@ -139,7 +137,7 @@ class System:
         else:
             self.last = Evaluation(values, True, *self._touch())
         if has_stress:
-            self._assemble_internal()
+            self._assemble_internal(self.body.internal_forces)
 
     def _touch(self) -> tuple[list[Contribution], float, int]:
         """Contributions, penetration and number of closed elements of an Evaluation."""
@@ -148,9 +146,9 @@ class System:
             rotations = self._body_increments[self.line.rod.rotation_dofs]
         return self.touching.evaluate(self.state["x"].trial, self.seats, rotations)
 
-    def _assemble_internal(self, add_forces: Callable[[np.ndarray], None] | None = None) -> None:
-        """Into `internal`; `add_forces` in place of the body's own `internal_forces`."""
-        add, values = add_forces or self.body.internal_forces, self._reactions.trial
+    def _assemble_internal(self, add: Callable[[np.ndarray], None]) -> None:
+        """Into `internal`, with the body's forces that `add` adds to this rank's unknowns and the ghosts'."""
+        values = self._reactions.trial
         values[:] = 0.0
         if self.comm.size == 1:
             add(values)
@@ -177,6 +175,11 @@ class System:
     def expire(self) -> None:
         """The next evaluation is to be made, wherever it is: something else than the increments has changed."""
         self._evaluated = EXPIRED
+
+    def expire_at_equilibrium(self) -> None:
+        """As `expire`, with the body's increments those of the last equilibrium: none."""
+        self._body_increments[:] = 0.0
+        self.expire()
 
     def pass_time(self, middle: Moment, end: Moment) -> None:
         """Let the step that begins take time; see PassesTime."""
@@ -206,8 +209,7 @@ class System:
         if self.contacts:
             self.touching.share_memories()
         self.state.commit()
-        self._body_increments[:] = 0.0
-        self.expire()
+        self.expire_at_equilibrium()
 
     def restore(self) -> None:
         """Go back to the last equilibrium; collective."""
@@ -241,6 +243,20 @@ class System:
             return
         self._out_of_balance(load, load_factor, F)
 
+    def residual_with(
+        self, add_forces: Callable[[np.ndarray], None], load: Load, load_factor: float, F: PETSc.Vec
+    ) -> None:
+        """As `residual` at the last evaluation, with other forces than the body's `internal_forces`; collective.
+
+        Args:
+            add_forces: adds them to this rank's unknowns and the ghosts'.
+        """
+        internal = self._reactions.trial.copy()
+        self._assemble_internal(add_forces)
+        self._out_of_balance(load, load_factor, F)
+        self._reactions.trial[:] = internal
+        self.internal.stateIncrease()
+
     def _out_of_balance(self, load: Load, load_factor: float, F: PETSc.Vec) -> None:
         values, x, weight = F.getArray(), self.last.increments, self.body.constraint_weight
         moments = self._rotating is not None and len(load.loaded) > 0 and self._is_rotation[load.loaded].any()
@@ -261,57 +277,14 @@ class System:
         self._rotating.to_charts(forces)
         return forces
 
-    def stand(self) -> bool:
-        """Let a body that Foresees stand at the last equilibrium; see there."""
-        assert self._foreseeing is not None
-        self.expire()
-        self._body_increments[:] = 0.0
-        return self._foreseeing.stand()
-
-    def predict(self, correction: PETSc.Vec) -> None:
-        """Let a body that Foresees predict its forces after the increments change by −correction; collective.
-
-        The last evaluation is that of the increments before it, or the body stands at the last equilibrium.
-        """
-        body, owned = self._foreseeing, self.layout.owned
-        assert body is not None
-        np.negative(correction.getArray(readonly=True)[:owned], out=self._correction[:owned])
-        if self.comm.size > 1:
-            body.correction.x.scatter_forward()
-        body.predict()
-
-    def residual_without_turning(self, load: Load, load_factor: float, length: float, F: PETSc.Vec) -> None:
-        """As `residual` at the last evaluation, `length` of the predicted correction away, for a body that Foresees."""
-        internal, body = self._reactions.trial.copy(), self._foreseeing
-        assert body is not None
-        self._assemble_internal(lambda vector: body.forces_without_turning(vector, length))
-        self._out_of_balance(load, load_factor, F)
-        self._reactions.trial[:] = internal
-        self.internal.stateIncrease()
-
-    def tangent(
-        self,
-        increments: PETSc.Vec,
-        load: Load,
-        matrix: TangentMatrix,
-        at_step_start: bool = False,
-        length: float | None = None,
-    ) -> None:
+    def tangent(self, increments: PETSc.Vec, load: Load, matrix: TangentMatrix, at_step_start: bool = False) -> None:
         """Derivative of the residual into `matrix`; collective.
 
         Args:
             at_step_start: begin with a matrix that has places for the contacts as they are now only.
-            length: share of the predicted correction that led here, where its forces are to be taken; else None.
         """
         self.evaluate(increments)
-        if length is None:
-            self.last_tangent(load, matrix, at_step_start)
-            return
-        body = self._foreseeing
-        assert body is not None
-        body.foresee(length)
         self.last_tangent(load, matrix, at_step_start)
-        body.stop_foreseeing()
 
     def last_tangent(self, load: Load, matrix: TangentMatrix, at_step_start: bool = False) -> None:
         """As `tangent`, with the moduli of the last evaluation, at the state as it is now; collective."""
