@@ -110,7 +110,7 @@ class Analysis:
             (case.seats.bottom.held(), case.seats.top.held()),
         )  # fmt: skip
         limit = case.contact.penetration_limit * 2.0 * float(radius.min())
-        self.stability = Stability(self.newton)
+        self.stability = Stability(self.newton.iteration)
         steps = case.solver.control.steps
         accuracy = case.steps_error
         self.step_error = None if accuracy is None else StepError(self.control, accuracy, steps)
@@ -128,7 +128,7 @@ class Analysis:
                            buckling_travel(spring, self.law.G / self.law.E), self._limits(float(radius.min())),
                            tuple(case.rates_at), warnings, coiling_diameter)  # fmt: skip
         self.recorder = Recorder(
-            self.setup, self.rod, self.system, self.control, self.newton, self.stability, detailed
+            self.setup, self.rod, self.system, self.control, self.stability, detailed
         )  # fmt: skip
 
     @property
@@ -173,7 +173,7 @@ class Analysis:
         Raises:
             InputError: if there is no such method, or PETSc rejects an option; the method is then unchanged.
         """
-        self.newton.use(self._method(name))
+        self.newton.iteration.use(self._method(name))
 
     # ---- the run ---------------------------------------------------------------------------------------------------
 

@@ -10,7 +10,6 @@ import numpy as np
 from coilset.model.case.phases import AnyPhase, TimePhase
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.convergence import Outcome
-from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.program import StepTaken
 from coilset.model.equilibrium.stability import Stability, Weakest
 from coilset.model.equilibrium.system import System
@@ -32,7 +31,7 @@ class Recorder:
 
     Args:
         setup: what the records refer to.
-        rod, system, control, newton, stability: of the analysis.
+        rod, system, control, stability: of the analysis.
         detailed: record SeatReactions and Frames, too, and log warnings as soon as a step shows them.
 
     Attributes:
@@ -40,11 +39,11 @@ class Recorder:
     """
 
     def __init__(
-        self, setup: Setup, rod: Rod, system: System, control: AxialControl, newton: Newton, stability: Stability,
+        self, setup: Setup, rod: Rod, system: System, control: AxialControl, stability: Stability,
         detailed: bool = True,
     ) -> None:  # fmt: skip
         self.setup, self.rod, self.system, self.control = setup, rod, system, control
-        self.layout, self._newton, self._stability, self._detailed = system.line, newton, stability, detailed
+        self.layout, self._stability, self._detailed = system.line, stability, detailed
         self.torque = system.state.add("torque", mean_torque(rod), Where.ELEMENT)
         self.torque_force = system.state.add("torque_force", np.zeros(1), Where.SHARED)
         self.result, self._least_rise = Result(), LeastRise(setup.turns, setup.spring)
@@ -157,7 +156,7 @@ class Recorder:
         setup = self.setup
         if not setup.slender or buckling(self.result.steps, setup.mean_diameter) is not None:
             return None
-        return self._stability.weakest(self._newton.load)
+        return self._stability.weakest(self._stability.iteration.load)
 
     def add_snapshot(self, name: str) -> None:
         """Record the spring in its current state; collective."""

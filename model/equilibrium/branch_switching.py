@@ -122,7 +122,7 @@ class Snap:
             self.system.commit()
         else:
             self.system.restore()
-            weakest = self.stability.weakest(self.stability.newton.load)
+            weakest = self.stability.weakest(self.stability.iteration.load)
         advance = self.control.snap_advance * radius
         return Descent(holding(weakest), origin, weights, advance, weakest, np.zeros_like(origin))
 

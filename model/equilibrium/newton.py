@@ -1,36 +1,26 @@
-"""One step to equilibrium: SNES, with the thesis's test (6.3.1), augmentation of contacts, and parts of a step.
+"""One step to equilibrium: what is tried if it is not found at once, augmentation of contacts, and parts of a step.
 
-This is the one place that knows the load factor. A step that contacts stop on its way is balanced roughly at the part
-of its load that it has reached, and goes on from there. The law is integrated over the whole step in any case: parts
-change how a state is found, not the state.
+A step that contacts stop on its way is balanced roughly at the part of its load that it has reached, and goes on from
+there. The law is integrated over the whole step in any case: parts change how a state is found, not the state.
 """
 
 import logging
-import math
-import weakref
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import Any
 
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.meshes.compat import NOT_A_NUMBER
-from coilset.model.equilibrium.chain_lu import ChainPC
 from coilset.model.equilibrium.contact_limit import ContactLimit
-from coilset.model.equilibrium.convergence import EquilibriumTest, Outcome, Reason, imbalance, reason_in_words
+from coilset.model.equilibrium.convergence import Outcome, Reason, reason_in_words
 from coilset.model.equilibrium.foreseeing import Foreseeing
-from coilset.model.equilibrium.line_search import WorkSearch
+from coilset.model.equilibrium.iteration import Iteration
 from coilset.model.equilibrium.load import Load
-from coilset.model.equilibrium.matrix import TangentMatrix
-from coilset.model.equilibrium.methods import ARC_LENGTH, FIRST, Method
+from coilset.model.equilibrium.methods import Method
 from coilset.model.equilibrium.settings import NewtonControl
-from coilset.model.equilibrium.snes import SnesFactory
 from coilset.model.equilibrium.system import System
 
 log = logging.getLogger("coilset.steps")
-each_iteration = logging.getLogger("coilset.iterations")  # silent unless its level is set
 
 
 @dataclass(frozen=True)
@@ -60,13 +50,8 @@ class Newton:
 
     Attributes:
         foreseeing: Foreseeing; None where the body does not foresee, or the control says so.
-        snes: PETSc's solver.
-        matrix: TangentMatrix.
+        iteration: Iteration.
     """
-
-    # a step's load on an arc, and the forces where SNES's function is another one: made where a method needs them
-    _arc_load = cached_property(lambda self: self.system.layout.vector())
-    _balance = cached_property(lambda self: self.system.layout.vector())
 
     def __init__(
         self,
@@ -79,43 +64,10 @@ class Newton:
         prepare: Callable[[PETSc.Mat], object] = lambda matrix: None,
     ) -> None:
         self.system, self.control = system, control or NewtonControl()
-        self.augmentation_tolerance, self.prepare = augmentation_tolerance, prepare
+        self.augmentation_tolerance = augmentation_tolerance
         self.limit = limit or ContactLimit(system, self.control, np.inf)
-        self.foreseeing = self._foreseeing = Foreseeing.of(system, self.control.foreseen_forces)
-        self.test = EquilibriumTest(tolerance, self.control.stagnation)
-        self.search = WorkSearch(system, self.limit, self.control)
-        self.F = system.layout.vector()
-        self.matrix = TangentMatrix(system.body, system.layout)
-        self.load, self.load_factor = Load.of(system.layout, {}, {}), 1.0
-        self.ratio, self._factorisations, self._at_step_start = np.inf, 0, True
-        self._failed = 0
-        self._fitted = 0  # version of the matrix that the linear solvers were last told of; a solid's never changes
-        self._step_length: float | None = None  # of the last correction; None where there is none, or PETSc's own
-        me = weakref.proxy(self)
-        self._factory = SnesFactory(
-            system.comm, lambda *args: me._residual(*args), lambda *args: me._tangent(*args), self.F, self.matrix.mat
-        )
-        self.snes: PETSc.SNES = None  # until `use` makes it
-        self._first: PETSc.SNES | None = None
-        self.use(method)
-
-    def use(self, method: Method) -> None:
-        """Go on with another method.
-
-        Raises:
-            InputError: if PETSc refuses an option; the method is then unchanged.
-        """
-        before, self.snes = self.snes, self._factory.make("", method.options, method.of_the_user)
-        if before is not None:
-            before.destroy()
-        self.method, self._fitted = method, 0
-        me = weakref.proxy(self)
-        if method.searches:
-            self.snes.setLineSearchPreCheck(lambda *args: me._shorten(*args))
-        if not method.own_test:
-            self.snes.setConvergenceTest(lambda *args: me._judge(*args))
-
-    # ---- solve -----------------------------------------------------------------------------------------------------
+        self.foreseeing = Foreseeing.of(system, self.control.foreseen_forces)
+        self.iteration = Iteration(system, method, tolerance, self.control, self.limit, prepare)
 
     def solve(self, load: Load, start: Start | None = None) -> Outcome:
         """As `_attempt`; where tangents with foreseen forces fail, once more with the true ones; collective.
@@ -139,9 +91,7 @@ class Newton:
         Returns:
             Outcome; its counts are those of all solves where contacts are augmented.
         """
-        self.load, self._foreseeing = load, foreseeing
-        if foreseeing is not None:
-            foreseeing.begin()
+        self.iteration.begin(load, foreseeing)
         self.system.reset_contacts()
         outcome, augmentations = self._solve(start or Start()), 0
         while outcome.converged and (left := self.system.max_penetration) > self.augmentation_tolerance:
@@ -154,168 +104,47 @@ class Newton:
         return outcome
 
     def _solve(self, start: Start) -> Outcome:
-        system, method, X, guess, first = self.system, self.method, self.system.increments, start.increments, 0
-        self.ratio, self._factorisations, self._failed, evaluations = np.inf, 0, 0, system.evaluations
-        self.load_factor, self._at_step_start = 1.0, True
-        if guess is None or method.is_arc_length:
-            X.set(0.0)
-        elif method.searches:
-            if self._foreseeing is not None:
-                self._foreseeing.start(guess)
-            self.limit.limit_start(guess, X)
-        else:
-            guess.copy(X)
-        if method.remembers:
-            self.use(method)
-        if method.is_arc_length:
-            self._set_arc_load()
-        elif method.remembers and self.load.misses(X.getArray(readonly=True), 1.0):
-            # Quasi-Newton vectors belong to the free unknowns: a start that meets the prescribed increments keeps the
-            # rows of these, and their weights, at zero.
-            if self._first is None:
-                self._fitted = 0
-                self._first = self._factory.make("first_", FIRST | method.factorisation)
-            self._first.solve(None, X)
-            first = 1
-        iterations, linear = self._in_parts() if method.searches else self._once()
-        reason = self.snes.getConvergedReason()
-        system.evaluate(X)
+        """As `_attempt`, with the contacts as they are pressed now."""
+        system, iteration, evaluations = self.system, self.iteration, self.system.evaluations
+        first = iteration.start(start.increments)
+        iterations, linear, failed = self._in_parts() if iteration.method.searches else (*iteration.run(1.0), 0)
+        reason = iteration.reason
+        system.evaluate(system.increments)
         return Outcome(
             converged=reason > 0,
             reason=reason_in_words(reason),
-            ratio=self.ratio,
+            ratio=iteration.ratio,
             iterations=start.iterations + first + iterations,
-            factorisations=self._factorisations,
+            factorisations=iteration.factorisations,
             evaluations=system.evaluations - evaluations,
             linear_iterations=start.linear_iterations + linear,
-            failed_solves=self._failed,
+            failed_solves=failed,
             stagnated=reason == Reason.DIVERGED_LOCAL_MIN,
         )
 
-    def _once(self) -> tuple[int, int]:
-        """Numbers of iterations, and of linear ones in them."""
-        self.snes.solve(self._arc_load if self.method.is_arc_length else None, self.system.increments)
-        if self._foreseeing is not None:
-            self._foreseeing.forget()
-        return self.snes.getIterationNumber(), self.snes.getLinearSolveIterations()
-
-    def _in_parts(self) -> tuple[int, int]:
-        """Solve the step whole, or balance it roughly on the way where contacts stop it; as `_once`.
+    def _in_parts(self) -> tuple[int, int, int]:
+        """Solve the step whole, or balance it roughly on the way where contacts stop it.
 
         Where nothing touches, a part would fail just as the whole: the step is to be cut.
+
+        Returns:
+            Numbers of iterations, of linear ones in them, and of parts that failed.
         """
-        X, reached, counts = self.system.increments, 0.0, np.zeros(2, int)
+        iteration, X = self.iteration, self.system.increments
+        aim, reached, iterations, linear, failed = 1.0, 0.0, 0, 0, 0
         good: PETSc.Vec | None = None  # at `reached`; None: the last equilibrium
         while True:
-            counts += self._once()
-            if self.snes.getConvergedReason() > 0:
-                if self.load_factor == 1.0:
-                    return int(counts[0]), int(counts[1])
-                good = X.copy()
-                reached, self.load_factor = self.load_factor, 1.0
+            more, more_linear = iteration.run(aim)
+            iterations, linear, aim = iterations + more, linear + more_linear, iteration.load_factor
+            if iteration.reason > 0:
+                if aim == 1.0:
+                    return iterations, linear, failed
+                good, reached, aim = X.copy(), aim, 1.0
             else:
-                part = 0.5 * (self.load_factor - reached)
+                part = 0.5 * (aim - reached)
                 if part < self.control.smallest_part or not self.system.touches:
-                    return int(counts[0]), int(counts[1])
-                self._failed += 1
+                    return iterations, linear, failed
+                failed += 1
                 X.set(0.0) if good is None else good.copy(X)
-                self.load_factor = reached + part
-                log.info("no equilibrium of the whole step yet: first %.3g of it", self.load_factor)
-
-    def negative_pivots(self) -> int | None:
-        """Number of negative pivots of the last factors L U; None where they are not shown or not of the last solve."""
-        pc = self.snes.getKSP().getPC()
-        if not self.method.searches or not self._factorisations:  # a state that is in equilibrium asks for no factors
-            return None
-        if pc.getType() == PETSc.PC.Type.PYTHON:
-            return pc.getPythonContext().factors.negative_pivots
-        if pc.getType() != PETSc.PC.Type.LU or pc.getFactorSolverType() != PETSc.Mat.SolverType.PETSC:
-            return None
-        return int(np.count_nonzero(pc.getFactorMatrix().getDiagonal().getArray(readonly=True) < 0.0))
-
-    def _set_arc_load(self) -> None:
-        """What the step adds to loads and prescribed values: minus the residual at its start."""
-        self.system.residual(self.system.increments, self.load, 1.0, self._arc_load)
-        self._arc_load.scale(-1.0)
-
-    # ---- callbacks of SNES -----------------------------------------------------------------------------------------
-
-    def _residual(self, snes: PETSc.SNES, X: PETSc.Vec, F: PETSc.Vec) -> None:
-        self.system.residual(X, self.load, self.load_factor, F)
-        if snes.getType() == ARC_LENGTH:  # SNES subtracts its part of the load: F(x) − λ load
-            F.axpy(1.0, self._arc_load)
-
-    def _tangent(self, snes: PETSc.SNES, X: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
-        self._factorisations += 1
-        (self._foreseeing or self.system).tangent(X, self.load, self.matrix, self._at_step_start)
-        self._at_step_start = False
-        self.prepare(P)
-        if self.matrix.version != self._fitted:  # PETSc may take the new matrix for one with the old pattern
-            self._fitted = self.matrix.version
-            for each in (self.snes, self._first, self.snes.getNPC() if self.snes.hasNPC() else None):
-                if each is not None:
-                    each.ksp.reset()
-                    self._fit(each.ksp.pc)
-
-    def _fit(self, pc: PETSc.PC) -> None:
-        """On one rank let PETSc's LU, or ChainPC in a large matrix, fit the contacts, unless the user has chosen."""
-        method = self.method
-        if self.system.comm.size > 1:
-            return
-        if not method.chooses_factors:
-            if self.matrix.is_large and pc.getType() == PETSc.PC.Type.LU:
-                pc.setType(PETSc.PC.Type.PYTHON)
-                pc.setPythonContext(ChainPC())
-            elif not self.matrix.is_large and pc.getType() == PETSc.PC.Type.PYTHON:
-                pc.setType(PETSc.PC.Type.LU)
-                pc.setFromOptions()
-        if pc.getType() == PETSc.PC.Type.LU and not any("mat_ordering_type" in key for key in method.of_the_user):
-            pc.setFactorOrdering(self.matrix.ordering)
-
-    def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
-        """Before a line search of type `basic`: scale the correction −y."""
-        step = self.search(x, y, self.F, self.load, self.load_factor, self._foreseeing)
-        self._step_length = step.contact_limit * step.value
-        if self._foreseeing is not None:
-            self._foreseeing.correct(self._step_length, step.feigns)
-        for factor in (step.contact_limit, step.value):
-            if factor != 1.0:
-                y.scale(factor)
-        if step.ends_on_the_way:
-            reached = x.copy()
-            reached.axpy(-1.0, y)
-            self.load_factor = self.load.reached(reached.getArray(readonly=True))
-
-    def _judge(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, float, float]) -> Any:
-        """SNES's convergence test."""
-        norm, X = norms[2], self.system.increments
-        if iteration == 0:
-            self._step_length = None
-            self.test.begin(norm, 0.0 if self._foreseeing is None else self._foreseeing.axial_force)
-        if not math.isfinite(norm):
-            return NOT_A_NUMBER
-        if self.method.is_arc_length and iteration == 0:
-            return Reason.ITERATING  # at the load factor 0 every step is in equilibrium
-        if self.method.is_arc_length or self.method.searches:
-            balance = self.F
-        else:  # some methods call a preconditioned step their function: judge the forces themselves
-            balance = self._balance
-            self.system.residual(X, self.load, self.load_factor, balance)
-        found = imbalance(self.system, self.load, balance)
-        self.ratio = found.ratio
-        self._tell(iteration, norm)
-        tolerance = self.test.tolerance if self.load_factor == 1.0 else self.control.part_tolerance
-        if self.test.is_met(found, tolerance, self.system.body.rounding(X.getArray(readonly=True))):
-            return Reason.CONVERGED_FNORM_RELATIVE
-        if iteration >= snes.getTolerances()[3]:
-            return Reason.DIVERGED_MAX_IT
-        lost = None if self.method.is_arc_length else self.test.is_lost(iteration, norm, snes.getDivergenceTolerance())
-        return Reason.ITERATING if lost is None else lost
-
-    def _tell(self, iteration: int, norm: float) -> None:
-        if not each_iteration.isEnabledFor(logging.DEBUG):
-            return
-        length = "" if self._step_length is None else f", step length {self._step_length:.3g}"
-        part = "" if self.load_factor == 1.0 else f", at {self.load_factor:.3g} of the step"
-        balance = f", out of balance {self.ratio:.2e}" if np.isfinite(self.ratio) else ""
-        each_iteration.debug("  iteration %d: residual %.3e N%s%s%s", iteration, norm, balance, length, part)
+                aim = reached + part
+                log.info("no equilibrium of the whole step yet: first %.3g of it", aim)

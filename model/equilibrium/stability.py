@@ -14,10 +14,10 @@ import numpy as np
 from petsc4py import PETSc
 
 from coilset.model.equilibrium.chain_lu import ChainPC
+from coilset.model.equilibrium.iteration import Iteration
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import NATURAL
-from coilset.model.equilibrium.newton import Newton
 
 BLOCK = 4  # vectors of the inverse iteration: a double eigenvalue and its neighbours
 ITERATIONS = 12
@@ -39,18 +39,18 @@ class Weakest:
 
 
 class Stability:
-    """Judges the states of a Newton solver.
+    """Judges the states that an iteration finds.
 
     Args:
-        newton: Newton of a rod.
+        iteration: Iteration of a rod.
     """
 
-    def __init__(self, newton: Newton) -> None:
-        self.newton, self.system, self.layout = newton, newton.system, newton.system.layout
+    def __init__(self, iteration: Iteration) -> None:
+        self.iteration, self.system, self.layout = iteration, iteration.system, iteration.system.layout
 
     def negative_pivots(self, load: Load) -> int:
         """Number of negative eigenvalues of the symmetric part of the tangent at the last evaluation; collective."""
-        if self.newton.negative_pivots() == 0:
+        if self.iteration.negative_pivots() == 0:
             return 0
         return negative_pivots(self._factors(load))
 
@@ -74,7 +74,7 @@ class Stability:
 
     def _factors(self, load: Load) -> PETSc.PC:
         """Factors of the symmetric part of the tangent at the last evaluation."""
-        tangent = self.newton.matrix
+        tangent = self.iteration.matrix
         self.system.last_tangent(load, tangent, at_step_start=True)
         transposed = tangent.mat.copy()
         transposed.transpose()

@@ -10,6 +10,7 @@ from petsc4py import PETSc
 from coilset.meshes.solid import SolidMesh
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.convergence import Outcome
+from coilset.model.equilibrium.iteration import Iteration
 from coilset.model.equilibrium.layout import Layout
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.methods import SYMMETRIC, solid_method
@@ -62,9 +63,9 @@ class SolidProblem:
         self.newton = Newton(self.system, method, precision, NewtonControl(), prepare=self._prepare)
         self._multigrid: VertexMultigrid | None = None
         if self.solver.startswith("multigrid"):
-            self._multigrid = VertexMultigrid(solid.configuration, held, self.newton.snes.getKSP().getPC())
-            self.newton.snes.setFromOptions()  # now that the preconditioner's levels exist
-        self.predictor = HeadPredictor(self.newton, solid, held)
+            self._multigrid = VertexMultigrid(solid.configuration, held, self.newton.iteration.snes.getKSP().getPC())
+            self.newton.iteration.snes.setFromOptions()  # now that the preconditioner's levels exist
+        self.predictor = HeadPredictor(self.newton.iteration, solid, held)
         self._held = held[held < solid.configuration.owned]
         self.continuation = Continuation(self.newton, steps, starts=self._starts)
         self.system.restore()
@@ -129,22 +130,22 @@ class HeadPredictor:
     It does not tear the elements at the ends, and the body stays at the last equilibrium.
 
     Args:
-        newton: the solid's Newton.
+        iteration: the solid's Iteration.
         solid: Solid.
         held: blocks of the heads, ghosts included.
     """
 
-    def __init__(self, newton: Newton, solid: Solid, held: np.ndarray) -> None:
-        self.newton, self.solid = newton, solid
+    def __init__(self, iteration: Iteration, solid: Solid, held: np.ndarray) -> None:
+        self.iteration, self.solid = iteration, solid
         self._prescribed = fem.Function(self.solid.V)
         self._conditions = [fem.dirichletbc(self._prescribed, held)]
-        self._start, self._residual_forces = (newton.system.layout.vector() for _ in range(2))
+        self._start, self._residual_forces = (iteration.system.layout.vector() for _ in range(2))
 
     def __call__(self, load: Load) -> Start:
         """Solve for it; counts as one iteration; collective."""
-        system, newton, solid = self.newton.system, self.newton, self.solid
-        system.last_tangent(load, newton.matrix)
-        newton.prepare(newton.matrix.mat)
+        system, iteration, solid = self.iteration.system, self.iteration, self.solid
+        system.last_tangent(load, iteration.matrix)
+        iteration.prepare(iteration.matrix.mat)
         prescribed = self._prescribed.x.array
         prescribed[: system.layout.owned][load.held] = load.increments
         self._prescribed.x.scatter_forward()
@@ -154,8 +155,8 @@ class HeadPredictor:
         residual = b.array[: system.layout.owned] - system.state["reactions"].equilibrium
         residual[load.held] = load.increments
         self._residual_forces.setArray(residual)
-        ksp = newton.snes.getKSP()
-        ksp.setOperators(newton.matrix.mat)
+        ksp = iteration.snes.getKSP()
+        ksp.setOperators(iteration.matrix.mat)
         ksp.solve(self._residual_forces, self._start)
         self._start.getArray()[load.held] = load.increments  # exactly, even if the solve is iterative
         return Start(self._start, 1, ksp.getIterationNumber())

@@ -52,7 +52,7 @@ def near_limit():
 
 def let_go(frame, factor, unstable=None, **control):
     newton = frame.continuation.newton
-    snap = Snap(Stability(newton), StepControl(**control), newton.solve)
+    snap = Snap(Stability(newton.iteration), StepControl(**control), newton.solve)
     return snap.go(lambda: load(frame, factor), unstable)
 
 
@@ -100,7 +100,7 @@ def test_what_does_not_come_to_rest_can_be_taken_back():
 def test_drag_resists_and_its_derivative_is_in_the_tangent():
     """Residual and tangent with drag, minus those without, are c (x − x₀) and c, but in held rows."""
     frame = truss()
-    system, matrix = frame.system, frame.continuation.newton.matrix
+    system, matrix = frame.system, frame.continuation.newton.iteration.matrix
     free_of_drag, n = load(frame, 0.0), frame.layout.size
     rng = np.random.default_rng(2)
     x, origin, stiffness = 1e-3 * rng.normal(size=n), 1e-3 * rng.normal(size=n), rng.uniform(1.0, 2.0, n)

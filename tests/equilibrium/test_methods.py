@@ -52,7 +52,7 @@ def pressed(example, method):
     program = "loading=[{to: block, steps: 8}, {to: {force: 0}, steps: 3}]"
     settings = [*COARSE, "ends=clamped", program, f"solver.method={method}"]
     analysis, kinds = Analysis(read_case(example, settings), MPI.COMM_SELF), []
-    result = analysis.run(report=lambda step: kinds.append(analysis.newton.snes.getKSP().getPC().getType()))
+    result = analysis.run(report=lambda step: kinds.append(analysis.newton.iteration.snes.getKSP().getPC().getType()))
     return np.array([step.force_N for step in result.steps]), kinds
 
 
@@ -157,7 +157,7 @@ def test_a_residual_that_is_not_a_number_is_said(example, monkeypatch):
 
 def test_a_search_ends_where_there_is_stress(example, monkeypatch):
     """The work falls little, and beyond a part of the correction, as at the last trial, the law finds no stress."""
-    search = Analysis(read_case(example, COARSE), MPI.COMM_SELF).newton.search
+    search = Analysis(read_case(example, COARSE), MPI.COMM_SELF).newton.iteration.search
     monkeypatch.setattr(search, "_at", lambda length: (0.9, 1.0) if length < 0.7 else (None, np.inf))
     assert 0.69 < search._zero(1.0, 1.0, -1.0) < 0.7
 

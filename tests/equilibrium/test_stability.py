@@ -33,7 +33,7 @@ def pressed(travel, steps, comm=MPI.COMM_SELF, mesh=8, **more):
 
 def dense(analysis):
     """Symmetric part of the tangent of the free unknowns at the last equilibrium."""
-    system, load, matrix = analysis.system, analysis.newton.load, analysis.newton.matrix
+    system, load, matrix = analysis.system, analysis.newton.iteration.load, analysis.newton.iteration.matrix
     system.tangent(system.layout.vector(), load, matrix)
     n = system.layout.size
     K = matrix.mat.getValues(range(n), range(n))
@@ -50,14 +50,14 @@ def test_negative_pivots_are_negative_eigenvalues(travel):
     analysis.run()
     expected = int((np.linalg.eigvalsh(dense(analysis)) < 0.0).sum())
     assert (expected > 0) == (travel > HARINGX)
-    assert negative_pivots(analysis.stability._factors(analysis.newton.load)) == expected
+    assert negative_pivots(analysis.stability._factors(analysis.newton.iteration.load)) == expected
 
 
 def test_factors_of_other_libraries_show_no_pivots():
     """PETSc cannot ask MUMPS for them: the symmetric part is factorised as with methods that keep a matrix."""
     analysis = pressed(20.0, 1, mesh=4, solver={"options": {"pc_factor_mat_solver_type": "mumps"}})
     force = analysis.run().steps[-1].force_N
-    assert analysis.newton.negative_pivots() is None
+    assert analysis.newton.iteration.negative_pivots() is None
     assert force == pytest.approx(pressed(20.0, 1, mesh=4).run().steps[-1].force_N, rel=1e-9)
 
 
@@ -165,7 +165,7 @@ def test_ranks_count_and_weigh_alike():
     for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
         analysis = pressed(30.0, 2, comm)
         analysis.run()
-        load = analysis.newton.load
+        load = analysis.newton.iteration.load
         negative = negative_pivots(analysis.stability._factors(load))
         found.append((negative, analysis.stability.weakest(load).value))
     assert found[0][0] == found[1][0] == 0
@@ -181,7 +181,7 @@ def test_ranks_snap_alike():
         newton, stability, control = analysis.newton, analysis.stability, analysis.control
         load = partial(control.to_height, analysis.spring.free_length - 44.0)
         assert newton.solve(load()).converged
-        assert stability.negative_pivots(newton.load) > 0
+        assert stability.negative_pivots(newton.iteration.load) > 0
         straight, unstable = control.trial_force, analysis.system.increments.copy()
         analysis.system.restore()
         outcome = Snap(stability, StepControl(), newton.solve).go(load, unstable)

@@ -18,18 +18,18 @@ def products(case, comm, height):
     """Tangent times two vectors, in natural order, with the spring bent at random at a share of its height; and the
     number of contacts."""
     analysis = Analysis(case, comm)
-    system, newton, layout = analysis.system, analysis.newton, analysis.layout
+    system, matrix, layout = analysis.system, analysis.newton.iteration.matrix, analysis.layout
     rng, n, x0 = np.random.default_rng(6), len(layout.station_dofs), analysis.rod.line.stations
     ordered = rng.normal(scale=1e-3, size=layout.size)
     ordered[2 : 6 * n : 6] += (height - 1.0) * x0[:, 2]
     increments, found = layout.vector(layout.from_order(ordered).copy()), []
     load = Load.of(layout, {int(dof): 0.0 for dof in layout.station_dofs[n // 2]}, {})
     system.evaluate(increments)
-    newton.matrix.fill(system.last.contributions)
+    matrix.fill(system.last.contributions)
     for held in ([], load.held):  # then also with a station held in the middle
-        newton.matrix.hold(np.asarray(held, dtype=np.int64))
+        matrix.hold(np.asarray(held, dtype=np.int64))
         right = layout.vector(layout.from_order(rng.normal(size=layout.size)).copy())
-        found.append(layout.to_order((newton.matrix.mat * right).getArray(readonly=True)))
+        found.append(layout.to_order((matrix.mat * right).getArray(readonly=True)))
     return found, system.last.closed
 
 

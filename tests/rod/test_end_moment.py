@@ -19,13 +19,13 @@ def test_a_moment_in_space_winds_a_rod_to_a_helix():
     EI, rate = law.E * np.pi * RADIUS**4 / 4.0, 2.5 * np.pi / LENGTH
     frame = chain(straight(LENGTH, elements), RADIUS, law)
     tip = [frame.dof(elements, component) for component in (ROTATION_X, ROTATION_Y, ROTATION_Z)]
-    ratios, judge = [], frame.continuation.newton.test.is_met
+    ratios, judge = [], frame.continuation.newton.iteration.test.is_met
 
     def listen(found, tolerance, rounding):
         ratios.append(found.ratio)
         return judge(found, tolerance, rounding)
 
-    frame.continuation.newton.test.is_met = listen
+    frame.continuation.newton.iteration.test.is_met = listen
     for k in range(1, STEPS + 1):
         ratios.clear()
         outcome = frame.step(forces=dict(zip(tip, k / STEPS * EI * rate * AXIS, strict=True)), predictor_scale=None)

@@ -72,7 +72,7 @@ def test_heads_balance_after_a_large_twist():
 def test_balance_and_newtons_convergence(law):
     problem = section(MPI.COMM_SELF, law, precision=1e-9)
     norms = []
-    problem.newton.snes.setMonitor(lambda snes, iteration, norm: norms.append(norm))
+    problem.newton.iteration.snes.setMonitor(lambda snes, iteration, norm: norms.append(norm))
     for z in (-0.5, -1.0):
         norms.clear()
         problem.step(Motion((0.0, 0.0, z)))
