@@ -136,7 +136,11 @@ class Continuation:
     def _judged(self, outcome: Outcome) -> Outcome:
         """Reject an equilibrium in which bodies penetrate each other deeply."""
         if outcome.converged and (depth := self.system.max_penetration) > self.penetration_limit:
-            reason = f"coils or seats would lie {depth:.4g} mm in each other, more than {self.penetration_limit:.4g} mm"
+            limit = self.penetration_limit
+            reason = (
+                f"coils or seats would lie {depth:.4g} mm in each other, more than the {limit:.4g} mm of "
+                f"contact.penetration_limit; contact.augmentation_tolerance: {0.1 * limit:.1g} presses them apart"
+            )
             return replace(outcome, converged=False, reason=reason, refused=True)
         if outcome.converged and (refusal := self.refusal()) is not None:
             return replace(outcome, converged=False, reason=refusal, refused=True)

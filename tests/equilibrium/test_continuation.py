@@ -1,6 +1,7 @@
 """Step control: cutting, growing, stations hit exactly, and what cannot be reached."""
 
 import logging
+import re
 
 import numpy as np
 import pytest
@@ -86,6 +87,17 @@ def test_an_impossible_target_is_given_up_with_all_that_was_reached(make, ends):
     assert not result.complete
     assert result.snapshots[-1].height == result.steps[-1].seat_height_mm > 5.0
     assert analysis.system.max_penetration <= 5e-4
+
+
+def test_coils_that_lie_too_deep_in_each_other_are_told_with_a_remedy_that_helps(make):
+    """Half a per cent of the wire is less than they sink in at block, unless they are pressed apart."""
+    limit = "contact.penetration_limit=0.001"
+    with pytest.raises(SolveError, match=r"more than the 0\.005 mm of contact\.penetration_limit; ") as caught:
+        make("[{to: block}]", limit).run()
+    remedy = re.search(r"(contact\.augmentation_tolerance): (\S+) ", str(caught.value))
+    analysis = make("[{to: block}]", limit, f"{remedy[1]}={remedy[2]}")
+    assert analysis.run().complete
+    assert analysis.system.max_penetration <= float(remedy[2]) == 0.0005
 
 
 def listened(analysis):
