@@ -186,18 +186,27 @@ def _equivalent(shot: Snapshot) -> float:
 
 
 def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
-    """The worse of force, at its greatest, and set."""
+    """The worse of force, at its greatest, and set; or that the former is not known."""
     asked = setup.limits.accuracy
     top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
-    if asked is not None and top is not None and top.estimated_force_error_N is not None and top.force_N:
-        worst, place, of = abs(top.estimated_force_error_N / top.force_N), _place(top), ("the force", "")
-        error = set_error(result)
-        set_mm = setup.spring.free_length - setup.outer_length(result.snapshots[-1].x)
-        if error is not None and set_mm > 0.0 and abs(error) > worst * set_mm:
-            worst, place, of = abs(error) / set_mm, "set", ("the set", f"{abs(error):.2g} mm")
-        warning = accuracy_warning(worst, asked, place, *of)
-        if warning is not None:
-            yield warning
+    if asked is None or top is None or not top.force_N:
+        return
+    if top.estimated_force_error_N is None:
+        if not abs(top.force_N) <= FREE * result.rate * setup.spring.free_length:  # also where the rate is not known
+            message = (
+                f"how uncertain the force is because of the step size is not known at its greatest, {_place(top)}; "
+                "compare it with that of smaller steps"
+            )
+            yield Warning("unknown error", _place(top), message, None, asked)
+        return
+    worst, place, of = abs(top.estimated_force_error_N / top.force_N), _place(top), ("the force", "")
+    error = set_error(result)
+    set_mm = setup.spring.free_length - setup.outer_length(result.snapshots[-1].x)
+    if error is not None and set_mm > 0.0 and abs(error) > worst * set_mm:
+        worst, place, of = abs(error) / set_mm, "set", ("the set", f"{abs(error):.2g} mm")
+    warning = accuracy_warning(worst, asked, place, *of)
+    if warning is not None:
+        yield warning
 
 
 def set_error(result: Result) -> float | None:

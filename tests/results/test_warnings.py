@@ -138,6 +138,22 @@ def test_the_steps_error_is_held_against_the_accuracy_asked_for():
     assert "the set is uncertain by about 2 %, 0.01 mm, because" in of_set  # a small set may be good enough
 
 
+def test_an_error_that_is_not_known_at_the_greatest_force_is_told(lifted):
+    """Where accuracy is asked for, and the spring bears something; elsewhere than at its greatest no error is held."""
+    setup, result = lifted.setup, lifted.result
+    top = max(range(8), key=lambda number: result.steps[number].force_N)
+    unknown = [replace(step, estimated_force_error_N=None) for step in result.steps]
+    assert "unknown error" not in names(run_warnings(setup, result))
+    others = replace(result, steps=(*unknown[:top], result.steps[top], *unknown[top + 1 :]))
+    assert "unknown error" not in names(run_warnings(setup, others))
+    found = [one for one in run_warnings(setup, replace(result, steps=tuple(unknown))) if one.name == "unknown error"]
+    assert [(one.place, one.limit) for one in found] == [(f"step {top + 1}, travel 8 mm", 0.002)]
+    none_asked = replace(setup, limits=replace(setup.limits, accuracy=None))
+    assert "unknown error" not in names(run_warnings(none_asked, replace(result, steps=tuple(unknown))))
+    free = tuple(replace(step, force_N=1e-9) for step in unknown)
+    assert "unknown error" not in names(run_warnings(setup, replace(result, steps=free)))
+
+
 def test_stress_above_the_wires_strength(example):
     wire = "material={wire: EN 10270-1 SH}"
     block = [*COARSE, wire, "loading=[{to: {travel: 17}, steps: 3}]"]
