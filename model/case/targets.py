@@ -25,8 +25,7 @@ def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
         InputError: with the numbers: seats that would have to pull, a height below block, or a force far above the one
             at which all coils lie on each other.
     """
-    flat = case.ends == "clamped" or {case.seats.bottom.shape, case.seats.top.shape} == {"flat"}
-    lowest = spring.block_height if flat else 0.0  # with other seats the block is not known
+    lowest = lowest_height(case, spring)
     greatest = BORNE * closing_force(spring, shear_modulus)
     for number, phase in enumerate(case.loading):
         if isinstance(phase, Phase) and isinstance(phase.to, Target):
@@ -38,6 +37,12 @@ def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
                 raise InputError(f"is {phase.to.force:g} N, but all coils of this spring lie on each other at about "
                                  f"{greatest / BORNE:.4g} N, or less if it yields; give block, or a smaller force",
                                  f"{place}.force")  # fmt: skip
+
+
+def lowest_height(case: Case, spring: Spring) -> float:
+    """The least height that a target may have, mm: at block, or 0 between seats with which the block is not known."""
+    flat = case.ends == "clamped" or {case.seats.bottom.shape, case.seats.top.shape} == {"flat"}
+    return spring.block_height if flat else 0.0
 
 
 def check_steps(case: Case) -> None:

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from coilset.model.design.beforehand import refuse_beforehand
 from coilset.model.design.conditions import conditions
 from coilset.model.design.evaluation import Evaluation, Evaluator
 from coilset.model.design.reach import look_around, nearest_seen, refuse
@@ -24,14 +25,14 @@ def make_search(
     """The Search of a wish; the arguments are those of `Evaluator`.
 
     Raises:
-        InputError: a condition that the load program cannot meet.
+        InputError: a condition that the load program cannot meet, or no spring between the bounds.
     """
     sought, data = conditions(wish.spec, wish.base)
     evaluator = Evaluator(wish, sought, data, known, keep, report, threads)
     bounds = np.array([[one.low, one.high] for one in wish.spec.find.values()])
     start = np.array([_given(data, name) for name in wish.spec.find])
     search = Search(evaluator, bounds, sought, start)
-    evaluator.data(bounds[:, 0])  # names of unknowns that are not entries
+    refuse_beforehand(evaluator, sought, bounds)
     for name, values in wish.spec.trade_offs.items():
         for value in values:
             wish.check(evaluator.data(bounds.mean(axis=1), None, {name: value}))

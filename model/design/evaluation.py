@@ -125,7 +125,7 @@ class Evaluator:
             case = self.wish.check(self.data(x, plan))
             name = self._key(case)
         except InputError as error:
-            found = _failed(x, error, began)
+            found = self._failed(x, error, began)
             self._report(found, False)
             return found
         record, known = self._known.get(name), True
@@ -136,7 +136,7 @@ class Evaluator:
                 analysis = Analysis(case, MPI.COMM_SELF, detailed=False, threads=self._threads)
                 found = self._read(x, analysis.setup, analysis.run(), began)
             except CoilsetError as error:
-                found = _failed(x, error, began)
+                found = self._failed(x, error, began)
             del analysis
             status = "failed" if found.failed else "done"
             record = {"key": name, "status": status, "of": self._asked, **_plain(found)}
@@ -145,6 +145,17 @@ class Evaluator:
         found = _of_record(self._known[name])
         self._report(found, known)
         return found
+
+    def _failed(self, x: np.ndarray, error: CoilsetError, began: float) -> Evaluation:
+        wrong, reason = isinstance(error, InputError), str(error)
+        if isinstance(error, InputError) and error.place:
+            reason = f"{self._asked_at(error.place)}: {error.problem}"
+        return Evaluation(x, np.full(1, np.nan), reason, (), {}, time.perf_counter() - began, wrong)
+
+    def _asked_at(self, place: str) -> str:
+        """An entry of the case, or the wish's own if that holds the same height."""
+        heights = {f"loading.{one.phase}.to.height": f"{one.name}.height" for one in self.conditions if one.height}
+        return heights.get(place, place)
 
     def _read(self, x: np.ndarray, setup: Setup, result: Result, began: float) -> Evaluation:
         summary = {name: plain(value) for name, value in summarise(setup, result).items()}
@@ -160,12 +171,6 @@ def _read(condition: Condition, summary: Mapping[str, Any], result: Result) -> f
     if condition.phase is None:
         return summary[condition.name.removeprefix("such_that.")]
     return [step for step in result.steps if step.phase == condition.phase][-1].force_N
-
-
-def _failed(x: np.ndarray, error: CoilsetError, began: float) -> Evaluation:
-    wrong = isinstance(error, InputError)
-    reason = f"{error.place}: {error.problem}" if isinstance(error, InputError) and error.place else str(error)
-    return Evaluation(x, np.full(1, np.nan), reason, (), {}, time.perf_counter() - began, wrong)
 
 
 def _plain(found: Evaluation) -> dict[str, Any]:

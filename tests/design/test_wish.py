@@ -1,5 +1,6 @@
 """A wish is read strictly: what is wrong with it is said before anything is run."""
 
+import numpy as np
 import pytest
 import yaml
 
@@ -36,6 +37,24 @@ def test_what_is_wrong_is_said_in_one_line(wish, find, such_that, problem):
         build(wish(find, such_that))
     assert problem in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_what_no_spring_between_the_bounds_can_be_is_refused_before_one_is_run(wish):
+    """A word as an unknown, and a height below block, 12.5 mm and 17.5 mm of these, are called by their own entries."""
+    with pytest.raises(InputError, match=r"^find\.spring\.hand: 9\.0: must be 'right' or 'left'$"):
+        make_search(read_wish(wish({"spring.hand": [9, 15]}, SUCH)))
+    low = {"force_at": [{"height": 18.0, "N": 50.0}, {"height": 12.0, "N": 100.0}]}
+    turns = {"spring.turns": [1.5, 2.5]}
+    below = r"^such_that\.force_at\.1\.height: is 12 mm, below the block height, which is 12\.5 mm or more between "
+    with pytest.raises(InputError, match=below):
+        make_search(read_wish(wish(turns, low)))
+    make_search(read_wish(wish(turns, {"force_at": {"height": 13.0, "N": 100.0}})))  # a few of these can
+
+
+def test_a_height_that_one_spring_does_not_reach_is_called_by_the_wishs_entry(wish):
+    search = make_search(read_wish(wish({"spring.turns": [1.5, 2.5]}, {"force_at": {"height": 13.0, "N": 100.0}})))
+    reason = search.evaluator.run(np.array([2.5])).reason
+    assert reason == "such_that.force_at.height: is 13 mm, below the block height of 17.5 mm; give block, or more"
 
 
 def test_a_case_stands_in_the_wish_or_beside_it(tmp_path, wish, example):
