@@ -11,7 +11,7 @@ from coilset.model.contact.base import Contribution, TrialPositions
 from coilset.model.contact.curve import WirePoints
 from coilset.model.contact.elements import PAIR, coil_elements
 from coilset.model.contact.memory import Memory
-from coilset.model.contact.search import longest_element, near_locations, post_stride
+from coilset.model.contact.search import PLACES, longest_element, near_locations, place, post_stride
 from coilset.model.extremes import greatest, relative_motion
 
 FEW = 1024  # locations on other coils for which there is room at first
@@ -34,7 +34,7 @@ class Coils:
         onset: distance over which contact sets in, mm.
 
     Attributes:
-        multiplier_offset: by which each point is pressed beyond its penetration, for the coil before and after, mm.
+        multiplier_offset: by which each point is pressed beyond its penetration at each place, shape (m, PLACES), mm.
     """
 
     name, end, needs_rotations = "coils", None, False
@@ -42,12 +42,12 @@ class Coils:
     def __init__(self, points: WirePoints, stations: np.ndarray, bedding: float, onset: float):
         self.points, self.onset, self._room = points, onset, max(FEW, len(points))
         self.stiffness, self.lengths = 0.5 * bedding * points.length, points.length
-        self.overlap = np.zeros((len(points), 2))
+        self.overlap = np.zeros((len(points), PLACES))
         self._y = np.column_stack([stations, points.line.radius])  # stations of the last search, with their radii
         self._widest, self._all_elements = float(points.line.radius.max()), np.array([[0, len(points.line.lengths)]])
         self.aside = STATIONS_ASIDE + POSTS_ASIDE * post_stride(self._widest, longest_element(self._y))
         pair, where, _ = self.near(TrialPositions(stations, np.empty(0)))
-        np.minimum.at(self.overlap, self.sides(pair), where[:, 1])
+        np.minimum.at(self.overlap, self.places(pair, where), where[:, 1])
         first = points.stations[:, 0]
         self.memory = Memory({"multiplier_offset": first}, multiplier_offset=np.zeros_like(self.overlap))
         self.multiplier_offset = self.memory["multiplier_offset"]
@@ -57,10 +57,10 @@ class Coils:
                                      np.empty((0, PAIR, PAIR)), none, none, np.empty(0, np.int64), none)  # fmt: skip
         self._clear: tuple[TrialPositions, float] | None = None  # where all gaps were greater than a distance
 
-    def sides(self, pair: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Indices of pairs into arrays of points and sides: the coil before a point, and the one after it."""
+    def places(self, pair: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Indices of pairs into arrays of points and places, see `place`."""
         i = pair[:, 0]
-        return i, (self.points.line.turns[pair[:, 1]] > self.points.turns[i]).astype(int)
+        return i, places(self.points.turns, self.points.line.turns, pair, where)
 
     def near(self, trial: TrialPositions, margin: float = 0.0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Pairs of points and locations nearer than `margin`, see `near_locations`, and the points' positions."""
@@ -130,11 +130,11 @@ class Coils:
         return np.zeros(len(stations), dtype=bool)
 
     def augment(self, trial: TrialPositions) -> None:
-        """Increase each point's offset by its penetration."""
+        """Increase each point's offset at each place by its penetration."""
         before, after = self.multiplier_offset, np.zeros_like(self.overlap)
         pair, where, _ = self.near(trial, before.max())
-        sides = self.sides(pair)
-        np.maximum.at(after, sides, before[sides] - where[:, 1])
+        at = self.places(pair, where)
+        np.maximum.at(after, at, before[at] - where[:, 1])
         self.memory["multiplier_offset"] = after
 
 
@@ -143,6 +143,22 @@ def moved(there: TrialPositions, here: TrialPositions) -> float:
     if there.known is None or here.known is None:
         return relative_motion(there.x, here.x)
     return here.known.way - there.known.way
+
+
+@njit(cache=True)
+def turns_between(turns: np.ndarray, station_turns: np.ndarray, pair: np.ndarray, where: np.ndarray) -> float:
+    """Turns from a point to its location; arguments as in `keep_pressing`, of one pair."""
+    e = pair[1]
+    return station_turns[e] + where[0] * (station_turns[e + 1] - station_turns[e]) - turns[pair[0]]
+
+
+@njit(cache=True)
+def places(turns: np.ndarray, station_turns: np.ndarray, pair: np.ndarray, where: np.ndarray) -> np.ndarray:
+    """The `place` of each pair; arguments as in `keep_pressing`."""
+    found = np.empty(len(pair), np.int64)
+    for k in range(len(pair)):
+        found[k] = place(turns_between(turns, station_turns, pair[k], where[k]))
+    return found
 
 
 @njit(cache=True)
@@ -158,7 +174,7 @@ def keep_pressing(
 
     Args:
         turns, station_turns: of points and stations.
-        offsets: of the points, for the coil before and after, shape (m, 2), mm.
+        offsets: of the points at each place, shape (m, PLACES), mm.
         pair, where: of `near_locations`; the others are overwritten.
         offset: written, of the pairs.
 
@@ -167,8 +183,8 @@ def keep_pressing(
     """
     count, least = 0, np.inf
     for k in range(len(pair)):
-        i, least = pair[k, 0], min(least, where[k, 1])
-        own = offsets[i, 1 if station_turns[pair[k, 1]] > turns[i] else 0]
+        least = min(least, where[k, 1])
+        own = offsets[pair[k, 0], place(turns_between(turns, station_turns, pair[k], where[k]))]
         if where[k, 1] < own:
             pair[count], where[count], offset[count] = pair[k], where[k], own
             count += 1

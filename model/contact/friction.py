@@ -168,7 +168,7 @@ class CoilFriction(Friction):
         i, e = pair[:, 0], pair[:, 1]
         dofs = np.hstack([points.dofs(i), line.dofs[e]])
         start = self.memory.committed("x")
-        at = coils.sides(pair)
+        at = coils.places(pair, where)
         shift = coils.overlap[at] + offset
         x0, y0 = start[points.stations[i]], start[line.stations[e]]
         return at, np.hstack([dofs, self.first_rotation + dofs]), (i, e, where[:, 0], pair[:, 2] == 1, shift, x0, y0)

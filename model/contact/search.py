@@ -8,6 +8,7 @@ from numba import njit
 from coilset.model.contact.curve import element_polynomials, points_on_wire
 
 LEAST_TURNS_BETWEEN = 0.5  # turns between two points of the wire that may touch
+PLACES, TURNS_TO_NEXT = 4, 1.5  # of locations, see `place`; turns up to which a location is on the next coil
 MOST_CELLS_PER_STATION = 16  # cells of the grid
 LEAST_POST_DISTANCE = 0.5  # distance between the sorted stations, in wire radii
 # Of ξ. A step of Newton's method squares the error, so that after one as short as this only rounding is left.
@@ -37,6 +38,15 @@ def grid(x: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, float, np.
             cube = cube * count[k] + int((x[i, k] - low[k]) / size)
         after[i], head[cube] = head[cube], i
     return low, count, size, head, after
+
+
+@njit(cache=True)
+def place(turns: float) -> int:
+    """Where a location `turns` after a point is: on the coil before it, after it, or beyond these, before or after.
+
+    A point touches coils beyond the next ones where these lie in each other, as those of barrels do at block.
+    """
+    return (1 if turns > 0.0 else 0) + (2 if abs(turns) > TURNS_TO_NEXT else 0)
 
 
 @njit(cache=True)
@@ -200,7 +210,7 @@ def near_locations(
         weights, stations: of all points, shape (m, 4), with radius and turn, shape (m,).
         y: stations with their radii, shape (n, 4); station_turns: shape (n,).
         first, cubic: of the CentreLine.
-        overlap: what counts as touching though the bodies overlap, for the coil before and after, shape (m, 2), mm.
+        overlap: what counts as touching though the bodies overlap, at each `place`, shape (m, PLACES), mm.
         margin: maximum gap, mm.
         elements: ranges of elements whose four stations are known, shape (k, 2).
         widest, longest: largest radius and distance of neighbouring stations along the wire, mm.
@@ -245,7 +255,7 @@ def near_locations(
                         turn = station_turns[e] + xi * (station_turns[e + 1] - station_turns[e])
                         if abs(turn - turns[i]) < LEAST_TURNS_BETWEEN:
                             continue
-                        gap = gap_at(p[i], curves[e], xi) - radius[i] - overlap[i, 1 if turn > turns[i] else 0]
+                        gap = gap_at(p[i], curves[e], xi) - radius[i] - overlap[i, place(turn - turns[i])]
                         if gap >= margin:
                             continue
                         if found < len(pair):

@@ -92,9 +92,9 @@ def test_tractions_stay_in_the_cone_and_points_stick_and_slide(rubbing, kind, se
     friction, x, seats, rotations = rubbing(kind, **seat)
     dense(friction, x, seats, rotations)
     normal = friction.normal.evaluate(TrialPositions(x, seats))
-    # on coils a point has a place on either side; both lists are in the order of the pairs that bear
+    # on coils a point has several places; both lists are in the order of the pairs that bear
     coils, trial = friction.normal, TrialPositions(x, seats)
-    places = coils.sides(coils.pressed(trial)[0]) if kind == "coils" else (normal.point,)
+    places = coils.places(*coils.pressed(trial)[:2]) if kind == "coils" else (normal.point,)
     assert len(set(zip(*places, strict=True))) == len(normal.pressure) > 10
     share = np.linalg.norm(friction.memory["traction"][places], axis=1) / (MU * normal.pressure)
     assert share.max() == pytest.approx(1.0, rel=1e-9)
@@ -102,6 +102,24 @@ def test_tractions_stay_in_the_cone_and_points_stick_and_slide(rubbing, kind, se
     free = np.ones(friction.memory["traction"].shape[:-1], bool)
     free[places] = False
     assert not friction.memory["traction"][free].any()  # what does not bear does not rub
+
+
+def test_a_point_between_two_coils_rubs_on_each_by_itself(points, helix):
+    """Coils 0 and 2 lie on each other, and coil 1 around both: turned by 0.2 mrad, all keep the tractions of then."""
+    wire, turns, seats = points(), np.linspace(0.0, 2.5, 41), np.zeros(12)
+    angle, R = 2 * np.pi * turns, 20.0 + 4.2 * np.sin(0.5 * np.pi * turns) ** 2
+    x = np.stack([R * np.cos(angle), R * np.sin(angle), 2.45 * turns], axis=1)
+    friction = CoilFriction(Coils(wire, helix(12.0), BEDDING, 0.02), 0.3, x, seats)
+    at = friction.normal.places(*friction.normal.pressed(TrialPositions(x, seats))[:2])
+    between = [i for i in set(at[0]) if {1, 3} <= set(at[1][at[0] == i])]
+    assert len(between) > 5
+    assert len(set(zip(*at, strict=True))) == len(at[0])
+    rotations = 2e-4 * np.random.default_rng(3).normal(size=x.shape)
+    slipped, _ = dense(friction, x, seats, rotations)
+    assert np.linalg.norm(friction.memory["traction"][between][:, (1, 3)], axis=2).min() > 0.0
+    friction.memory.state.commit()
+    again, _ = dense(friction, x, seats, np.zeros_like(x))
+    np.testing.assert_allclose(again, slipped, rtol=0, atol=1e-12 * np.abs(slipped).max())
 
 
 def test_coils_rub_without_force_and_moment_on_the_whole(rubbing):
