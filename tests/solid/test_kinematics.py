@@ -1,10 +1,14 @@
 """Finite increments against scipy's polar decomposition and matrix logarithm, and Jaumann's rate in closed form."""
 
 import numpy as np
-from scipy.linalg import logm, polar
+from scipy.linalg import expm, logm, polar
+from scipy.spatial.transform import Rotation
 from solid_laws import Elastic
 
+from coilset.model.material import library
+from coilset.model.material.solid import rotate_state
 from coilset.model.solid.kinematics import push_forward, stretches
+from coilset.model.solid.points import MaterialPoints
 
 DOUBLE = np.array([1.0, 1, 1, 2, 2, 2])
 
@@ -22,7 +26,7 @@ def increment(F, old, law, symmetric=False):
     n = len(F)
     strain, axes, R, ln = np.empty((n, 6)), np.empty((n, 3, 3)), np.empty((n, 3, 3)), np.empty((n, 3))
     assert stretches(np.eye(3) - np.linalg.inv(F), strain, axes, R, ln) == 0
-    new, C, stress, moduli = np.empty((n, 13)), np.empty((n, 6, 6)), np.empty((n, 6)), np.empty((n, 6, 6))
+    new, C, stress, moduli = np.empty_like(old), np.empty((n, 6, 6)), np.empty((n, 6)), np.empty((n, 6, 6))
     law.update(old, strain, new, C)
     push_forward(new, C, axes, R, ln, stress, moduli, symmetric)
     return strain, new, moduli
@@ -103,6 +107,25 @@ def test_superposed_rotation_only_turns_the_result():
     plain, turned = increment(F, old, Elastic())[1], increment(Q @ F, old, Elastic())[1]
     for a, b in zip(plain, turned, strict=True):
         assert np.allclose(Q @ tensor(a[:6]) @ Q.T, tensor(b[:6]), rtol=1e-12, atol=1e-7)
+
+
+def test_a_rotation_between_two_increments_only_turns_what_follows():
+    """All of the state turns with the material, each of several back stresses among it, which recover on their own."""
+    rng = np.random.default_rng(4)
+    first, second = (expm(0.01 * (a + a.T)) for a in rng.normal(size=(2, 3, 3)))
+    Q = Rotation.from_rotvec([0.4, 1.0, -0.3]).as_matrix()
+    for name in ("chaboche", "ck15"):
+        law = MaterialPoints(library.load(name))
+
+        def along(path, law=law):
+            state = law.initial_state(1)
+            for F in path:
+                state = increment(F[None], state, law)[1]
+            return state[0]
+
+        expected = np.empty_like(law.initial_state(1)[0])
+        rotate_state(along([first, second]), Q, expected)
+        assert np.allclose(along([first, Q, Q @ second @ Q.T]), expected, rtol=1e-9, atol=1e-8), name
 
 
 def test_a_point_turned_inside_out_is_reported():
