@@ -10,7 +10,8 @@ from rich.table import Table
 
 from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.section_shapes import parse
-from coilset.model.case import read_case
+from coilset.meshes.spring import SpringSpec
+from coilset.model.case import Case, read_case
 from coilset.model.results.folder import clear, prepare, write_summary
 from coilset.model.results.provenance import origin
 from coilset.model.slice.analysis import ACROSS, SliceAnalysis, SliceStep
@@ -54,7 +55,7 @@ def slice_case(
         analysis = SliceAnalysis(case, outline, ACROSS if across is None else across)
         analysis.check_targets()
     except InputError as error:
-        raise InputError(error.problem, error.place, error.file or case_file) from None
+        raise _placed(error, case, case_file) from None
     prepare(folder, force)
     for warning in case_warnings(case, analysis.spring, analysis.law):
         console.warn(warning.message)
@@ -71,6 +72,19 @@ def slice_case(
     _conclude(console, summary, folder)
     if failure is not None:
         raise failure
+
+
+def _placed(error: InputError, case: Case, case_file: str | Path) -> InputError:
+    """The error with the option, or the entry of the case file, that gave what is wrong."""
+    group, _, entry = error.place.partition(".")
+    if error.file:
+        return error
+    if group == "section":
+        return InputError(error.problem, "--across" if entry == "across" else f"--section: {entry}")
+    if group == "--section":
+        return error
+    given = case.spring.diameter_entry if isinstance(case.spring, SpringSpec) else "mean_diameter"
+    return InputError(error.problem, error.place.replace("mean_diameter", given), case_file)
 
 
 def _row(step: SliceStep) -> str:
@@ -99,7 +113,7 @@ def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
     table.add_row("shear at the surface, inside, loaded", quantity(loaded["shear_inside_MPa"], "MPa", 2))
     table.add_row("the same, released", quantity(released.get("shear_inside_MPa"), "MPa", 2))
     table.add_row("maximum surface shear stress, released", quantity(released.get("surface_shear_max_MPa"), "MPa", 2))
-    table.add_row("results in", f"{out}{os.sep}")
     console.print(table)
+    console.say(f"  results in {out}{os.sep}", whole=True)
     for warning in summary["warnings"]:
         console.warn(warning["message"])

@@ -73,7 +73,7 @@ class Slice:
     def __init__(self, section: SectionMesh, coil: Coil, law: Law, temperature: float | None = None):
         if not coil.radius + section.extent[0] > 0:
             raise InputError(f"the coil's axis is {coil.radius:g} mm away, but the section reaches "
-                             f"{-section.extent[0]:g} mm inwards", "mean_diameter")  # fmt: skip
+                             f"{-section.extent[0]:g} mm inwards", "spring.mean_diameter")  # fmt: skip
         self.section, self.coil, self.law = section, coil, law
         self.forms = SliceForms(section)
         self.u = self.forms.u.x.array.reshape(-1, 3)

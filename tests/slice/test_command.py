@@ -69,7 +69,15 @@ def test_block_is_where_the_coils_touch(example):
         (["loading=[{to: {travel: 1}, seconds: 2}]"], None, "loading.0.seconds: the slice does not model time"),
         (["heat={conductivity: 50}", "loading=[{to: {travel: 1}, seconds: 2}]"], None, "heat: the slice .* time"),
         ([], "oval:4:6", "spring.wire_diameter: 5 mm, but the section is 6 mm high"),
-        ([], "ring", "--section"),
+        (
+            ["spring.outer_diameter={shape: cone, bottom: 45, top: 55}", "spring.mean_diameter=null"],
+            None,
+            "ck15_presetting.yaml: spring.outer_diameter: .*cylindrical",
+        ),
+        ([], "ring", "^--section: 'ring' is not a section"),
+        ([], "round:0", "^--section: diameter: 0 mm is not possible"),
+        ([], "rectangle:4:5:3", "^--section: corner: 3 mm is more than the sides allow"),
+        ([], "rectangle:60:5", "ck15_presetting.yaml: spring.mean_diameter: .*reaches 30 mm inwards"),
         (["material=none"], None, "material"),
         (["seats={hold: groove, top: {turn: 100}}"], None, "seats.top.turn"),
     ],
@@ -80,3 +88,14 @@ def test_what_it_refuses(example, tmp_path, settings, section, problem):
     assert "\n" not in str(caught.value)
     assert caught.value.exit_code == 2
     assert not (tmp_path / "here").exists()
+
+
+def test_too_few_triangles_are_the_options_fault(example, tmp_path):
+    with pytest.raises(InputError, match=r"^--across: 0\.5 is not possible"):
+        slice_case(example, tmp_path / "here", across=0.5)
+    assert not (tmp_path / "here").exists()
+
+
+def test_the_name_of_the_folder_is_printed_as_it_is(example, tmp_path, capsys):
+    slice_case(example, tmp_path / "[bold]x", settings=SHORT, across=3.0, pictures=False)
+    assert f"results in {tmp_path / '[bold]x'}" in capsys.readouterr().out
