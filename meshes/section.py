@@ -1,5 +1,7 @@
 """Meshes of a wire's cross-section: curved triangles of the plane (ξ, η), made by gmsh."""
 
+import contextlib
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import dolfinx.mesh
@@ -12,6 +14,7 @@ from coilset.meshes.errors import InputError
 from coilset.meshes.section_shapes import Outline
 
 SAMPLES = 4001  # points on each curve in the search for the section's extent
+ON = 1e-12  # |η| at which a point counts as one of η = 0, over its curve's size
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +28,7 @@ class SectionMesh:
         area: mm².
         size: requested length of the triangles' sides, mm.
         extent: minimum and maximum ξ, minimum and maximum η of the section, mm.
+        middle: minimum and maximum ξ of the section at η = 0, mm; None if it does not reach there.
     """
 
     mesh: dolfinx.mesh.Mesh
@@ -33,6 +37,7 @@ class SectionMesh:
     area: float
     size: float
     extent: tuple[float, float, float, float]
+    middle: tuple[float, float] | None
 
     @property
     def equivalent_diameter(self) -> float:
@@ -57,7 +62,7 @@ def section_mesh(
         SectionMesh.
 
     Raises:
-        InputError: values that do not define a mesh.
+        InputError: values that do not define a mesh, or an outline that gmsh cannot fill.
     """
     if not (np.isfinite(across) and across >= 1):
         raise InputError(f"{across:g} is not possible; give 1 or more triangles across the section", "section.across")
@@ -65,33 +70,62 @@ def section_mesh(
         raise InputError(f"{degree} is not possible; give 2 or 3", "section.degree")
     gmsh.initialize(["coilset", "-v", "1"], readConfigFiles=False, interruptible=False)
     try:
-        gmsh.model.add("section")
-        curves = outline.draw()
-        face = gmsh.model.occ.addPlaneSurface([gmsh.model.occ.addCurveLoop(curves)])
-        gmsh.model.occ.synchronize()
-        area, outer = gmsh.model.occ.getMass(2, face), gmsh.model.getBoundary([(2, face)], oriented=False)
-        size = 2.0 * np.sqrt(area / np.pi) / across
-        extent = _extent([tag for _, tag in outer])
-        _sizes(size, surface, inside, [tag for _, tag in outer], extent)
-        gmsh.model.addPhysicalGroup(2, [face], name="section")
-        gmsh.model.mesh.generate(2)
-        gmsh.model.mesh.setOrder(degree)
+        with _fillable():
+            gmsh.model.add("section")
+            curves = outline.draw()
+            face = gmsh.model.occ.addPlaneSurface([gmsh.model.occ.addCurveLoop(curves)])
+            gmsh.model.occ.synchronize()
+            area, outer = gmsh.model.occ.getMass(2, face), gmsh.model.getBoundary([(2, face)], oriented=False)
+            if not area > 0.0:
+                raise InputError("the curve crosses itself between its points; give more of them", "section.points")
+            size = 2.0 * np.sqrt(area / np.pi) / across
+            along = [_samples(tag) for _, tag in outer]
+            extent = _extent(np.concatenate(along))
+            _sizes(size, surface, inside, [tag for _, tag in outer], extent)
+            gmsh.model.addPhysicalGroup(2, [face], name="section")
+            gmsh.model.mesh.generate(2)
+            gmsh.model.mesh.setOrder(degree)
         mesh = mesh_from_gmsh(gmsh.model, MPI.COMM_SELF, gdim=2)[0]
     finally:
         gmsh.finalize()
     mesh.topology.create_connectivity(1, 2)
     facets = dolfinx.mesh.exterior_facet_indices(mesh.topology)
-    return SectionMesh(mesh, facets, degree, area, size, extent)
+    return SectionMesh(mesh, facets, degree, area, size, extent, _middle(along))
 
 
-def _extent(curves: list[int]) -> tuple[float, float, float, float]:
-    """Minimum and maximum ξ and η of curves in the current gmsh model, from points on them."""
-    along = []
-    for tag in curves:
-        (start,), (end,) = gmsh.model.getParametrizationBounds(1, tag)
-        along.append(gmsh.model.getValue(1, tag, np.linspace(start, end, SAMPLES)).reshape(-1, 3))
-    points = np.concatenate(along)
+@contextlib.contextmanager
+def _fillable() -> Iterator[None]:
+    """Context in which a failure of gmsh, a plain `Exception`, becomes the error for an outline."""
+    try:
+        yield
+    except Exception as error:
+        if type(error) is not Exception:
+            raise
+        problem = f"the curve cannot be filled with triangles ({error}); does it touch or cross itself?"
+        raise InputError(problem, "section.points") from None
+
+
+def _samples(curve: int) -> np.ndarray:
+    """Points on a curve of the current gmsh model, in order along it, shape (SAMPLES, 2), mm."""
+    (start,), (end,) = gmsh.model.getParametrizationBounds(1, curve)
+    return gmsh.model.getValue(1, curve, np.linspace(start, end, SAMPLES)).reshape(-1, 3)[:, :2]
+
+
+def _extent(points: np.ndarray) -> tuple[float, float, float, float]:
+    """Minimum and maximum ξ and η of points on a section's outline."""
     return (*np.sort(points[:, 0])[[0, -1]].tolist(), *np.sort(points[:, 1])[[0, -1]].tolist())
+
+
+def _middle(along: list[np.ndarray]) -> tuple[float, float] | None:
+    """Minimum and maximum ξ at which curves, given by points along each, reach or cross η = 0; None if they do not."""
+    found = []
+    for points in along:
+        above = points[:, 1] >= 0.0
+        first = np.flatnonzero(above[1:] != above[:-1])
+        (ξ, η), (to_ξ, to_η) = points[first].T, points[first + 1].T
+        found += [ξ + (to_ξ - ξ) * η / (η - to_η), points[np.abs(points[:, 1]) <= ON * np.abs(points).max(), 0]]
+    reached = np.concatenate(found)
+    return (float(reached.min()), float(reached.max())) if len(reached) else None
 
 
 def _sizes(

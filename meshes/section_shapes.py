@@ -15,6 +15,8 @@ import numpy as np
 
 from coilset.meshes.errors import InputError
 
+CLOSEST = 1e-6  # distance below which two points of an outline are one, over its size
+
 
 class Outline(Protocol):
     """A closed curve around a section."""
@@ -105,13 +107,13 @@ class Curve:
         points = np.asarray(self.points, float)
         if points.ndim != 2 or points.shape[1] != 2 or len(points) < 3 or not np.isfinite(points).all():
             raise InputError("give three points (ξ, η) or more, in mm", "section.points")
-        if np.allclose(points[0], points[-1]):
-            points = points[:-1]
+        before = np.roll(points, 1, axis=0)  # a point that is given twice, as the first one at the end, counts once
+        points = points[np.linalg.norm(points - before, axis=1) > CLOSEST * np.ptp(points, axis=0).max()]
         if len(points) < 3 or not abs(signed_area(points)) > 0:
             raise InputError("the curve encloses no area; give its points in their order round the section",
                              "section.points")  # fmt: skip
         if crosses_itself(points):
-            raise InputError("the curve crosses itself; give its points in their order round the section",
+            raise InputError("the curve crosses or touches itself; give its points in their order round the section",
                              "section.points")  # fmt: skip
         object.__setattr__(self, "points", points if signed_area(points) > 0 else points[::-1])
 
@@ -157,8 +159,9 @@ def signed_area(points: np.ndarray) -> float:
 
 
 def crosses_itself(points: np.ndarray) -> bool:
-    """Whether two non-adjacent sides of a closed polygon cross, shape (n, 2)."""
+    """Whether two non-adjacent sides of a closed polygon cross or touch, shape (n, 2)."""
     a, b = points, np.roll(points, -1, axis=0)
+    low, high = np.minimum(a, b), np.maximum(a, b)
 
     def side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> np.ndarray:
         return np.sign((q[..., 0] - p[..., 0]) * (r[..., 1] - p[..., 1])
@@ -167,8 +170,9 @@ def crosses_itself(points: np.ndarray) -> bool:
     i, j = np.triu_indices(len(points), 2)
     apart = (j - i) < len(points) - 1
     i, j = i[apart], j[apart]
-    return bool(np.any((side(a[i], b[i], a[j]) * side(a[i], b[i], b[j]) < 0)
-                       & (side(a[j], b[j], a[i]) * side(a[j], b[j], b[i]) < 0)))  # fmt: skip
+    near = np.all((low[i] <= high[j]) & (low[j] <= high[i]), axis=1)  # or else two sides of one straight line would do
+    return bool(np.any(near & (side(a[i], b[i], a[j]) * side(a[i], b[i], b[j]) <= 0)
+                       & (side(a[j], b[j], a[i]) * side(a[j], b[j], b[i]) <= 0)))  # fmt: skip
 
 
 def _rounded(corners: np.ndarray, radius: float) -> list[int]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.geometry import Spring
-from coilset.meshes.section import section_mesh
+from coilset.meshes.section import SectionMesh, section_mesh
 from coilset.meshes.section_shapes import Outline, round_wire
 from coilset.model.case import Case
 from coilset.model.case.phases import Phase
@@ -91,7 +91,7 @@ class SliceAnalysis:
 
     Attributes:
         spring, law, coil, body, problem: geometry, Law, Coil, Slice, SliceProblem.
-        lattice, points: Lattice over the section and the Watch of its points; line: Watch along η = 0.
+        lattice, points: Lattice over the section and the Watch of its points; line: Watch across the section at η = 0.
 
     Raises:
         InputError: if the spring is not cylindrical, or does not match the section.
@@ -111,8 +111,8 @@ class SliceAnalysis:
         self.body = Slice(section, self.coil, self.law, case.temperature)
         self.lattice = Lattice(self.body)
         self.points = Watch(self.body, self.lattice.places)
-        ends = np.linspace(section.extent[0], section.extent[1], 61)
-        self.line = Watch(self.body, np.stack([ends, np.zeros_like(ends)], axis=1))
+        ξ = np.linspace(*_across(section), 61)
+        self.line = Watch(self.body, np.stack([ξ, np.zeros_like(ξ)], axis=1))
         self.problem = SliceProblem(self.body, _ends_turn(case), SelfContact(self.body))
         self.result = SliceResult()
 
@@ -238,6 +238,15 @@ def _fits(extent: tuple[float, float, float, float], diameter: float) -> None:
     if abs(height - diameter) > 1e-3 * diameter:
         raise InputError(f"{diameter:g} mm, but the section is {height:.5g} mm high along the spring; give its height",
                          "spring.wire_diameter")  # fmt: skip
+
+
+def _across(section: SectionMesh) -> tuple[float, float]:
+    """ξ of the section's surface at η = 0, at the inside and at the outside of the coil, mm."""
+    if section.middle is None:
+        low, high = section.extent[2:]
+        raise InputError(f"the section lies at η = {low:.5g} to {high:.5g} mm; give η from the wire's centre line, "
+                         "which it must reach", "section.points")  # fmt: skip
+    return section.middle
 
 
 def _ends_turn(case: Case) -> bool:

@@ -1,5 +1,6 @@
 """Meshes of sections: areas, surfaces, and wrong outlines."""
 
+import gmsh
 import numpy as np
 import pytest
 import ufl
@@ -80,13 +81,54 @@ def test_wrong_words(text, problem):
     [
         ([(0, 0), (1, 0)], "three points"),
         ([(0, 0), (1, 0), (2, 0)], "no area"),
-        ([(0, 0), (2, 2), (2, 0), (0, 1)], "crosses itself"),
+        ([(0, 0), (2, 2), (2, 0), (0, 1)], "crosses or touches itself"),
+        ([(0, 0), (4, 0), (4, 4), (2, 4), (3, 0), (2.5, 4), (0, 4)], "crosses or touches itself"),
         ([(0, 0), (1, np.nan), (1, 1)], "three points"),
     ],
 )
 def test_wrong_outlines(points, problem):
     with pytest.raises(InputError, match=problem):
         Curve(np.array(points, float))
+
+
+def test_points_given_twice_and_sides_of_one_straight_line():
+    square = Curve(np.array([(0, 0), (1, 0), (2, 0), (2, 0), (2, 2), (1, 2), (0, 2), (0, 0)], float))
+    assert len(square.points) == 6
+    assert section_mesh(square, 3.0).area == pytest.approx(4.0, rel=1e-12)
+
+
+def test_an_outline_that_cannot_be_filled():
+    class Touching:
+        def draw(self):
+            occ = gmsh.model.occ
+            places = (-2, -2), (2, -2), (2, 2), (0, 2), (1, 0), (1, 2), (-2, 2)
+            tags = [occ.addPoint(*place, 0) for place in places]
+            return [occ.addLine(tag, tags[i - 6]) for i, tag in enumerate(tags)]
+
+    with pytest.raises(InputError, match=r"section\.points: the curve cannot be filled") as caught:
+        section_mesh(Touching(), 3.0)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_spline_that_crosses_itself_between_its_points():
+    points = [(-0.09, 1.03), (-0.5, -1.93), (-0.55, -2.41), (-0.45, -2.66), (0.22, -2.74), (0.93, -2.58), (0.55, -0.13)]
+    assert section_mesh(Curve(np.array(points)), 3.0).area > 0
+    with pytest.raises(InputError, match=r"section\.points: the curve crosses itself between its points"):
+        section_mesh(Curve(np.array(points), smooth=True), 3.0)
+
+
+@pytest.mark.parametrize(
+    ("shape", "middle"),
+    [
+        (round_wire(5.0), (-2.5, 2.5)), (Oval(4.0, 5.0), (-2.0, 2.0)), (rectangle(4.0, 6.0, 0.5), (-2.0, 2.0)),
+        (Curve(np.array([(-2.5, -2.5), (2.5, -2.5), (0, 2.5)])), (-1.25, 1.25)),
+        (Curve(np.array([(-2.5, 0), (2.5, 0), (0, 2.5)])), (-2.5, 2.5)),
+        (Curve(np.array([(-2.5, 1), (2.5, 1), (0, 2.5)])), None),
+    ],
+)  # fmt: skip
+def test_middle(shape, middle):
+    found = section_mesh(shape, 3.0).middle
+    assert found is None if middle is None else found == pytest.approx(middle, abs=1e-12)
 
 
 def test_wrong_line_of_a_file(tmp_path):

@@ -99,3 +99,25 @@ def test_too_few_triangles_are_the_options_fault(example, tmp_path):
 def test_the_name_of_the_folder_is_printed_as_it_is(example, tmp_path, capsys):
     slice_case(example, tmp_path / "[bold]x", settings=SHORT, across=3.0, pictures=False)
     assert f"results in {tmp_path / '[bold]x'}" in capsys.readouterr().out
+
+
+WIDE_BELOW = "-2.5,-2.5\n2.5,-2.5\n0,2.5\n"
+
+
+def test_stress_is_looked_at_within_the_section(example, tmp_path):
+    """At η = 0 a triangle is half as wide as at its base: its surface there is at the inside and the outside."""
+    path = tmp_path / "triangle.csv"
+    path.write_text(WIDE_BELOW)
+    slice_case(example, tmp_path / "here", settings=SHORT, across=3.0, section=str(path), pictures=False)
+    summary = json.loads((tmp_path / "here" / "summary.json").read_text())
+    for moment in ("loaded", "released"):
+        for name in ("shear", "equivalent_stress"):
+            ξ, η = summary[moment][f"surface_{name}_max_at_mm"]
+            assert abs(ξ) <= 0.5 * (2.5 - η) + 1e-9
+
+
+def test_a_section_beside_its_centre_line_is_refused(example, tmp_path):
+    path = tmp_path / "high.csv"
+    path.write_text("-2.5,1\n2.5,1\n2.5,6\n-2.5,6\n")
+    with pytest.raises(InputError, match=r"^--section: points: the section lies at η = 1 to 6 mm"):
+        slice_case(example, tmp_path / "here", section=str(path))
