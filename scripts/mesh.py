@@ -60,8 +60,9 @@ def mesh(
     except InputError as error:
         raise InputError(error.problem, error.place, error.file or case_file) from None
     _refuse_to_replace([folder / name for name in FILES if pictures] + [Path(path) for path in write], force)
-    console.print(_table(spring_data(spring, Elastic(law.G, law.E, getattr(law, "density", STEEL.density))), turns))
-    for warning in spring_warnings(spring):
+    elastic = Elastic(law.G, law.E, getattr(law, "density", STEEL.density))
+    console.print(_table(spring_data(spring, elastic), turns))
+    for warning in spring_warnings(spring, elastic):
         console.warn(warning.message)
     for path in write:
         make(Path(path).parent)

@@ -110,7 +110,7 @@ def _diagram(made: Sheet) -> tuple[str, goodman.Line, goodman.Cycle] | None:
 
 def _warnings(spring: Spring, made: Sheet) -> list[Warning]:
     cylinder = made.spring
-    warnings = [*spring_warnings(spring), *sheet_warnings(made, [cylinder.solid])]
+    warnings = [*spring_warnings(spring, made.elastic), *sheet_warnings(made, [cylinder.solid])]
     set_mm = made.at_run("set_mm")
     if set_mm is not None and made.was_at_block:  # any other run is no presetting
         warnings += filter(None, [presetting_warning(set_mm, cylinder.length - cylinder.solid)])

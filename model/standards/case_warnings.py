@@ -23,7 +23,9 @@ def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
         spring: its spring.
         law: its material.
     """
-    return (*_renamed(case), *_estimated(case), *spring_warnings(spring), *_working(case, spring, law))
+    elastic = Elastic(law.G, law.E, STEEL.density)
+    own = spring_warnings(spring, elastic)
+    return (*_renamed(case), *_estimated(case), *own, *_working(case, spring, elastic))
 
 
 def _renamed(case: Case) -> Iterator[Warning]:
@@ -38,17 +40,17 @@ def _estimated(case: Case) -> Iterator[Warning]:
                       "strength; a test of the wire gives its own (coilset material fit)")  # fmt: skip
 
 
-def _working(case: Case, spring: Spring, law: Law) -> list[Warning]:
+def _working(case: Case, spring: Spring, elastic: Elastic) -> list[Warning]:
     """Warnings about the load program, for cylinders of constant wire diameter, to which the formulas apply."""
     try:
         cylinder = Cylinder.of(spring)
     except InputError:
         return []
     named = None if isinstance(case.material, str) else wire(case.material.wire)
-    made = Sheet(cylinder, Elastic(law.G, law.E, STEEL.density), spring.wire_length, named)
+    made = Sheet(cylinder, elastic, spring.wire_length, named)
     lengths = working_lengths(case.targets, cylinder.length, made.rate, cylinder.solid)
     to_block = [cylinder.solid] if any(phase.to == "block" for phase in case.targets) else []
-    return sheet_warnings(Sheet(cylinder, made.elastic, made.helix, named, lengths), to_block)
+    return sheet_warnings(Sheet(cylinder, elastic, made.helix, named, lengths), to_block)
 
 
 def sheet_warnings(made: Sheet, to_block: list[float]) -> list[Warning]:

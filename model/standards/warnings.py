@@ -8,6 +8,7 @@ from coilset.meshes.checks import TOUCH
 from coilset.meshes.ends import touching_pitch
 from coilset.meshes.geometry import Spring
 from coilset.model.standards.buckling import buckling_travel
+from coilset.model.standards.steel import STEEL, Elastic
 from coilset.model.warning import Warning
 
 INDEX_USUAL = (4.0, 20.0)  # EN 15800, table 1: cold coiled springs
@@ -16,10 +17,15 @@ ACTIVE_LEAST = 2.0  # EN 13906-1: number of active coils
 TIP_LEAST = 0.25  # of the wire diameter
 
 
-def spring_warnings(spring: Spring) -> list[Warning]:
-    """All warnings about the unloaded spring itself."""
-    checks = (_wire, _index, _solid_coils, _active, _ground, _buckling)
-    return [warning for check in checks for warning in check(spring)]
+def spring_warnings(spring: Spring, elastic: Elastic = STEEL) -> list[Warning]:
+    """All warnings about the unloaded spring itself.
+
+    Args:
+        spring: `Spring`.
+        elastic: its material's constants, on whose G/E the travel to buckling depends.
+    """
+    checks = (_wire, _index, _solid_coils, _active, _ground)
+    return [*(warning for check in checks for warning in check(spring)), *_buckling(spring, elastic)]
 
 
 def _wire(spring: Spring) -> Iterator[Warning]:
@@ -112,8 +118,9 @@ def _ground(spring: Spring) -> Iterator[Warning]:
             )
 
 
-def _buckling(spring: Spring) -> Iterator[Warning]:
-    travel, limit = spring.free_length - spring.block_height, buckling_travel(spring)
+def _buckling(spring: Spring, elastic: Elastic) -> Iterator[Warning]:
+    travel = spring.free_length - spring.block_height
+    limit = buckling_travel(spring, elastic.shear_modulus / elastic.young_modulus)
     if limit < travel:
         slender = spring.free_length / float(2 * np.min(spring.mean_radius(spring.breaks)))
         yield Warning(

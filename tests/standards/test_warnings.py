@@ -4,7 +4,11 @@ import numpy as np
 import pytest
 
 from coilset.meshes.spring import MeasuredSpec, SpringSpec
+from coilset.model.case import read_case
+from coilset.model.standards.buckling import buckling_travel
+from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.standards.warnings import spring_warnings
+from coilset.model.standards.wires.law import case_law
 
 RIGHT = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 6.0, "pitch": 12.0}
 
@@ -70,6 +74,16 @@ WARNED = [
 @pytest.mark.parametrize(("entries", "warning"), WARNED, ids=[warning[:40] for _, warning in WARNED])
 def test_doubtful_spring_is_warned_of(entries, warning):
     assert warning in [found.message for found in warnings(entries)]
+
+
+def test_travel_to_buckling_is_that_of_the_cases_material(example):
+    """The line before a run, the line after it and `coilset mesh` name one travel."""
+    case = read_case(example, ["spring.turns=26", "material=elastic"])
+    spring = case.spring.build()
+    law = case_law(case, spring)
+    (found,) = [one for one in case_warnings(case, spring, law) if one.name == "buckling"]
+    assert found.value == buckling_travel(spring, law.G / law.E)
+    assert found.value != buckling_travel(spring)  # that of spring steel
 
 
 def test_a_measured_wire_in_metres_is_warned_of(tmp_path):
