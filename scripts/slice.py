@@ -103,16 +103,15 @@ def _write(out: Path, analysis: SliceAnalysis, summary: dict[str, Any], pictures
 
 
 def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
-    loaded, released = summary["loaded"], summary["released"] or {}
     table = Table(show_header=False, box=None, padding=(0, 2))
     table.add_row("free length before", quantity(summary["free_length_before_mm"], "mm"))
     table.add_row("free length after", quantity(summary["free_length_after_mm"], "mm"))
     table.add_row("[bold]set[/]", f"[bold]{quantity(summary['set_mm'], 'mm')}[/]")
     table.add_row("initial rate", quantity(summary["rate_N_per_mm"], "N/mm"))
     table.add_row("maximum force", quantity(summary["force_max_N"], "N", 2))
-    table.add_row("shear at the surface, inside, loaded", quantity(loaded["shear_inside_MPa"], "MPa", 2))
-    table.add_row("the same, released", quantity(released.get("shear_inside_MPa"), "MPa", 2))
-    table.add_row("maximum surface shear stress, released", quantity(released.get("surface_shear_max_MPa"), "MPa", 2))
+    table.add_row("shear stress, inside of coil, loaded", quantity(summary["shear_inside_max_MPa"], "MPa", 2))
+    table.add_row("maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2))
+    table.add_row("residual shear stress, inside of coil", quantity(summary["residual_shear_inside_MPa"], "MPa", 2))
     console.print(table)
     console.say(f"  results in {out}{os.sep}", whole=True)
     for warning in summary["warnings"]:

@@ -16,8 +16,8 @@ from coilset.model.warning import Warning
 # its stresses at the surface are in `loaded` and `released`.
 UNSEEN = (
     "unstable_steps", "buckled", "buckling_travel_mm", "buckling_force_N", "buckling_travel_EN_13906_1_mm",
-    "residual_shear_inside_MPa", "shear_inside_max_MPa", "residual_shear_ends_max_MPa",
-    "residual_shear_ends_max_turn", "residual_shear_ends_max_angle_deg", "residual_shear_surface_max_MPa",
+    "residual_shear_ends_max_MPa", "residual_shear_ends_max_turn", "residual_shear_ends_max_angle_deg",
+    "residual_shear_surface_max_MPa",
     "residual_shear_surface_max_turn", "residual_shear_surface_max_angle_deg",
     "residual_equivalent_surface_max_MPa", "residual_equivalent_surface_max_turn",
     "residual_equivalent_surface_max_angle_deg", "shear_surface_max_MPa", "shear_surface_max_turn",
@@ -47,6 +47,8 @@ def summarise(analysis: SliceAnalysis) -> dict:
         "block_height_mm": spring.block_height,
         "residual_shear_max_MPa": at_surface(analysis, last)["surface_shear_max_MPa"] if released else None,
         "shear_max_MPa": max(at_surface(analysis, shot)["surface_shear_max_MPa"] for shot in result.snapshots),
+        "residual_shear_inside_MPa": shear_inside(last) if released else None,
+        "shear_inside_max_MPa": max(shear_inside(shot) for shot in result.snapshots),
         "steps": len(result.steps),
         "iterations": sum(step.iterations for step in result.steps),
         "material": analysis.law.name,
@@ -77,10 +79,15 @@ def slice_warnings(analysis: SliceAnalysis) -> list[Warning]:
     return found
 
 
-def at_surface(analysis: SliceAnalysis, shot: SliceSnapshot) -> dict:
-    """Shear at the inside and the outside of the coil (signed), maximum shear and equivalent stress at the surface.
+def shear_inside(shot: SliceSnapshot) -> float:
+    """Shear at the inside of the coil, MPa, positive as in a compressed spring, where τ13 points downward."""
+    return 0.0 - float(shot.line[0, 4])
 
-    A position is (ξ, η) in the unloaded section, mm.
+
+def at_surface(analysis: SliceAnalysis, shot: SliceSnapshot) -> dict:
+    """Shear at the inside and the outside of the coil, maximum shear and equivalent stress at the surface.
+
+    Shear is positive upward. A position is (ξ, η) in the unloaded section, mm.
     """
     surface, ends = analysis.lattice.surface, [0, -1]
     places = np.concatenate([analysis.lattice.places[surface], analysis.line.places[ends]])

@@ -25,6 +25,8 @@ def test_files_and_summary(example, tmp_path):
     assert summary["force_max_N"] == pytest.approx(max(float(row["force_N"]) for row in rows), rel=1e-12)
     assert summary["complete"]
     assert summary["released"]["surface_shear_max_MPa"] == summary["residual_shear_max_MPa"]
+    assert summary["shear_inside_max_MPa"] == -summary["loaded"]["shear_inside_MPa"] > 0  # as of a spring's run
+    assert summary["residual_shear_inside_MPa"] == -summary["released"]["shear_inside_MPa"] < 0
     assert (tmp_path / "here" / "section.png").read_bytes().startswith(b"\x89PNG")
     assert len(list((tmp_path / "here" / "fields").glob("*.vtu"))) == 3
     with pytest.raises(InputError, match="--force"):
