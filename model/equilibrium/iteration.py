@@ -20,7 +20,7 @@ from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import TangentMatrix
 from coilset.model.equilibrium.methods import ARC_LENGTH, FIRST, Method
 from coilset.model.equilibrium.settings import NewtonControl
-from coilset.model.equilibrium.snes import SnesFactory
+from coilset.model.equilibrium.snes import SnesFactory, solve
 from coilset.model.equilibrium.system import System
 
 each_iteration = logging.getLogger("coilset.iterations")  # silent unless its level is set
@@ -143,7 +143,7 @@ class Iteration:
                 it, the iteration ends at a smaller one, `load_factor`.
         """
         self.load_factor = load_factor
-        self.snes.solve(self._arc_load if self.method.is_arc_length else None, self.system.increments)
+        solve(self.snes, self._arc_load if self.method.is_arc_length else None, self.system.increments)
         if self._foreseeing is not None:
             self._foreseeing.forget()
         return self.snes.getIterationNumber(), self.snes.getLinearSolveIterations()

@@ -57,6 +57,23 @@ class SnesFactory:
         return snes
 
 
+def solve(snes: PETSc.SNES, b: PETSc.Vec | None, x: PETSc.Vec) -> None:
+    """Solve; an interruption that came during a callback stays one, where PETSc makes an error of it.
+
+    Raises:
+        KeyboardInterrupt: on Ctrl-C.
+    """
+    try:
+        snes.solve(b, x)
+    except PETSc.Error as error:
+        cause: BaseException | None = error
+        while cause is not None:
+            if isinstance(cause, KeyboardInterrupt):
+                raise KeyboardInterrupt from None
+            cause = cause.__cause__ or cause.__context__
+        raise
+
+
 def forget(keys: set[str]) -> None:
     """Take options out of PETSc's database."""
     database = PETSc.Options()

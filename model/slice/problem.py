@@ -11,6 +11,7 @@ from petsc4py import PETSc
 
 from coilset.meshes.compat import NOT_A_NUMBER
 from coilset.meshes.errors import SolveError
+from coilset.model.equilibrium.snes import solve
 from coilset.model.slice.bordered import BorderedMatrix
 from coilset.model.slice.contact import NoContact, SelfContact, SliceContact
 from coilset.model.slice.forms import RISE, TURN, assemble
@@ -235,7 +236,7 @@ class SliceProblem:
         self._linear_answer(value, by_force, turning)
         if by_force and not self.touching:
             self._hold_back(value)
-        self.snes.solve(None, self._X)
+        solve(self.snes, None, self._X)
         return self.snes.getConvergedReason() > 0 and self._set(self._X)
 
     def _hold_back(self, value: float) -> None:
