@@ -97,9 +97,9 @@ def _write(out: Path, analysis: SliceAnalysis, summary: dict[str, Any], pictures
     clear(out)
     write_history(out, analysis.result.steps)
     output.write_fields(out, analysis)
+    write_summary(out, {**summary, "origin": origin(analysis.case)})  # before the picture, which takes longest
     if pictures:
         output.figure(out / "section.png", analysis)
-    write_summary(out, {**summary, "origin": origin(analysis.case)})
 
 
 def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:

@@ -9,6 +9,7 @@ from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.results import summary as of_spring
+from coilset.model.slice import output
 from coilset.model.slice.analysis import SliceAnalysis
 from coilset.model.slice.summary import summarise
 from coilset.scripts.slice import slice_case
@@ -33,6 +34,16 @@ def test_files_and_summary(example, tmp_path):
         slice_case(example, tmp_path / "here", settings=SHORT, across=3.0)
     slice_case(example, tmp_path / "here", force=True, settings=SHORT, across=3.0, pictures=False)
     assert not (tmp_path / "here" / "section.png").exists()
+
+
+def test_an_interrupted_picture_leaves_all_numbers(example, tmp_path, monkeypatch):
+    def interrupt(*_args):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(output, "figure", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        slice_case(example, tmp_path, settings=SHORT, across=3.0)
+    assert json.loads((tmp_path / "summary.json").read_text())["complete"]
 
 
 def test_summary_has_the_entries_of_a_springs_run(example):
