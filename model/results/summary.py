@@ -101,8 +101,11 @@ def shear_peak(setup: Setup, snapshot: Snapshot, ends: bool = False) -> surface.
 
 
 def ends_peak(setup: Setup, snapshot: Snapshot | None) -> dict[str, float | None]:
-    """The maximum residual shear on the ends' surface, MPa, its turn and its angle from the coil's inside, degrees."""
-    top = None if snapshot is None else shear_peak(setup, snapshot, ends=True)
+    """The maximum residual shear on the ends' surface, MPa, its turn and its angle from the coil's inside, degrees.
+
+    None before the release, and of half a turn or less, all of which is its middle.
+    """
+    top = None if snapshot is None or is_middle(setup).all() else shear_peak(setup, snapshot, ends=True)
     value, turn, angle = (None,) * 3 if top is None else (top.value, top.turn, top.angle)
     return {
         "residual_shear_ends_max_MPa": value,

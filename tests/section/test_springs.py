@@ -51,6 +51,16 @@ def test_greatest_residual_shear_is_a_number_of_the_spring(example):
     assert turn < 1.0 or turn > 1.5
 
 
+def test_half_a_turn_has_no_ends(example):
+    """All of it is its middle; a spring of a turn has both."""
+    for turns, has_ends in ((0.5, False), (1.0, True)):
+        summary = press(example, "curved", f"spring.turns={turns}", "loading.0.to.travel=1")[1]
+        ends = [value for name, value in summary.items() if name.startswith("residual_shear_ends")]
+        assert (ends != [None] * 3) == has_ends
+        greatest = max(summary["residual_shear_max_MPa"], ends[0] or 0.0)
+        assert summary["residual_shear_surface_max_MPa"] == greatest
+
+
 class Stop(Exception):
     pass
 
