@@ -178,7 +178,7 @@ class Iteration:
         if self._first is None:
             self._fitted = 0
             self._first = self._factory.make("first_", FIRST | self.method.factorisation)
-        self._first.solve(None, self.system.increments)
+        solve(self._first, None, self.system.increments)
 
     # ---- callbacks of SNES -----------------------------------------------------------------------------------------
 
