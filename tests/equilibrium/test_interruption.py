@@ -17,7 +17,7 @@ def interrupt(*_args, **_kwargs):
 @pytest.mark.parametrize("place", ["residual", "search"])
 def test_an_interrupted_callback_of_the_rod_ends_as_interrupted(example, monkeypatch, place):
     analysis = Analysis(read_case(example, SHORT))
-    owner = analysis.system if place == "residual" else analysis.newton
+    owner = analysis.system if place == "residual" else analysis.newton.iteration
     monkeypatch.setattr(owner, place, interrupt)
     with pytest.raises(KeyboardInterrupt):
         analysis.run()
