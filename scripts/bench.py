@@ -39,6 +39,7 @@ def bench(out: str, full: bool, cold: bool, against: str | None = None) -> None:
     draw(folder / "bench.png", record)
     for table in (
         _commands(record["commands"]),
+        _walks(record["walks"]),
         _stages(record),
         _elements([*record["elements"], *record["unestimated"]]),
         _ranks(record["ranks"]),
@@ -71,6 +72,16 @@ def _commands(rows: list[dict[str, Any]]) -> Table:
                  *(f"end{side}" for side in sides))  # fmt: skip
     for row in rows:
         table.add_row(row["name"], *(f"{value:.2f}" for value in (*row["first_line"], *row["end"])))
+    return table
+
+
+def _walks(rows: list[dict[str, Any]]) -> Table:
+    """Medians, as of the commands."""
+    sides = ("s", "the other, s")[: len(rows[0]["seconds"])]
+    table = _new("the example's load program alone, medians by the clock", "walk", "threads", *sides)
+    for row in rows:
+        spent = ("–" if value is None else f"{value:.3f}" for value in row["seconds"])
+        table.add_row(row["name"], str(row["threads"]), *spent)
     return table
 
 

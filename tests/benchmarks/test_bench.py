@@ -13,7 +13,7 @@ from mpi4py import MPI
 from coilset.meshes.errors import CoilsetError, InputError
 from coilset.model import analysis
 from coilset.scripts import bench as command
-from coilset.verification.benchmarks import everyday, measure, run, same_spring, stopwatch
+from coilset.verification.benchmarks import everyday, measure, run, same_spring, stopwatch, walks
 from coilset.verification.benchmarks.ranks import compare
 from coilset.verification.benchmarks.stopwatch import Stopwatch
 from coilset.verification.benchmarks.target import ITERATION, per_element, seconds, spread, targets
@@ -98,7 +98,8 @@ def record():
         runs = [measure.press(elements) for elements in (20, 40)]
         unestimated = measure.press(20, 1, 0, 0) | {"elements": 100_000, "memory_GiB": 1.875}
     commands = [{"name": "solve", "first_line": [0.25, 0.75], "end": [1.5, 3.5]}]
-    record = {"machine": run.machine(), "commands": commands, "example": example, "elements": runs,
+    walked = [{"name": name, "threads": 1, "seconds": [0.25, None]} for name in walks.WALKS]
+    record = {"machine": run.machine(), "commands": commands, "walks": walked, "example": example, "elements": runs,
               "unestimated": [unestimated], "ranks": [runs[0], runs[0]], "one_and_two_ranks": compared_ranks(runs),
               "cases": measure.cases(1), "opensees": [COMPARED], "load_after": 0.0}  # fmt: skip
     return record | {"targets": targets(record)}
@@ -137,7 +138,8 @@ def test_command_prints_and_writes(record, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(command, "measure_all", lambda full, cold, environment, report, against: record)
     command.bench(tmp_path / "out", False, False)
     said = capsys.readouterr().out
-    for words in ("factorise", "µs", "ranks", "an hour and core", "aimed at", "first line, the other", "times as fast",
+    for words in ("factorise", "µs", "ranks", "an hour and core", "aimed at", "first line, the other",
+                  "as shipped", "0.250", "times as fast",
                   "with contact", "9.9e-03",
                   "345.200", "4.0", "6.9", "8.8", "1.88 GiB"):  # fmt: skip
         assert words in said
@@ -173,14 +175,14 @@ def test_commands_are_timed_in_turns_and_the_first_run_does_not_count(monkeypatc
 
     monkeypatch.setattr(everyday, "timed", timed)
     monkeypatch.setattr(everyday, "COMMANDS", {"--help": ["--help"]})
-    rows = everyday.everyday({"COILSET_STARTED": "1"}, tmp_path, 3)
+    rows = everyday.everyday(everyday.launchers(tmp_path), {"COILSET_STARTED": "1"}, 3)
     assert rows == [{"name": "--help", "first_line": [0.5, 0.5], "end": [12.0, 13.0]}]  # of 10, 12, 14 and 11, 13, 15
     assert called == 4 * [called[0], str(tmp_path / "scripts" / "coilset")]
 
 
 def test_what_is_no_checkout_is_said(tmp_path):
     with pytest.raises(InputError, match="is no checkout of coilset"):
-        everyday.everyday({}, tmp_path)
+        everyday.launchers(tmp_path)
 
 
 def test_a_command_is_timed_to_its_first_line_and_to_its_end():
@@ -189,3 +191,33 @@ def test_a_command_is_timed_to_its_first_line_and_to_its_end():
     assert 0.0 < first <= end - 0.3
     with pytest.raises(CoilsetError, match="failed: no such thing"):
         everyday.timed([sys.executable, "-c", "import sys; sys.exit('no such thing')"], dict(os.environ))
+
+
+def test_walks_of_several_checkouts_are_timed_in_turns(tmp_path):
+    """Medians of what each prints; a checkout that cannot walk so has none."""
+    starts, log = [], tmp_path / "log"
+    for side in "ab":
+        script = tmp_path / side
+        script.write_text(
+            f"""#!{sys.executable}
+import json, os, sys
+assert sys.argv[1] == "python" and "COILSET_STARTED" not in os.environ
+with open({str(log)!r}, "a+") as log:
+    log.write({side!r})
+    log.seek(0)
+    count = log.read().count({side!r})
+print("a line before")
+print(json.dumps([{{"name": "w", "threads": 1, "seconds": count ** 2 if {side!r} == "a" else None}}]))
+"""
+        )
+        script.chmod(0o755)
+        starts.append([str(script)])
+    rows = walks.walks(starts, dict(os.environ) | {"COILSET_STARTED": "1"}, 3)
+    assert rows == [{"name": "w", "threads": 1, "seconds": [4, None]}]
+    assert log.read_text() == "ababab"
+
+
+@pytest.mark.skipif(MPI.COMM_WORLD.size > 1, reason="measures one rank")
+def test_a_walk_is_timed():
+    assert 0.0 < walks.walk(["loading=[{to: {travel: 1}, steps: 1}]", "mesh.elements_per_turn=8"], 1) < 60.0
+    assert walks.walk(["no.such.entry=1"], 1) is None

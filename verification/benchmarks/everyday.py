@@ -25,18 +25,20 @@ COMMANDS = {
 }
 
 
-def launcher(checkout: Path) -> list[str]:
-    """The words that start the command of a checkout, or of this installation where there is none.
+def launchers(against: Path | None = None) -> list[list[str]]:
+    """The words that start the command of this checkout, or of the installation where there is none, and of another.
 
     Raises:
-        InputError: if there is no checkout of coilset.
+        InputError: if the other is no checkout of coilset.
     """
-    script = checkout / "scripts" / "coilset"
-    if script.is_file():
-        return [str(script)]
-    if checkout != THIS:
-        raise InputError("is no checkout of coilset; there is no scripts/coilset in it", "--against", checkout)
-    return [sys.executable, "-m", "coilset.scripts"]
+    here = THIS / "scripts" / "coilset"
+    starts = [[str(here)] if here.is_file() else [sys.executable, "-m", "coilset.scripts"]]
+    if against is not None:
+        there = against / "scripts" / "coilset"
+        if not there.is_file():
+            raise InputError("is no checkout of coilset; there is no scripts/coilset in it", "--against", against)
+        starts.append([str(there)])
+    return starts
 
 
 def timed(command: Sequence[str], environment: Mapping[str, str]) -> tuple[float, float]:
@@ -60,19 +62,20 @@ def timed(command: Sequence[str], environment: Mapping[str, str]) -> tuple[float
         return first, time.perf_counter() - began
 
 
-def everyday(environment: Mapping[str, str], against: Path | None, repeats: int = REPEATS) -> list[dict[str, Any]]:
-    """Medians for this checkout and for another one, measured alternately; a first run of each, not counted, warms up.
+def everyday(
+    starts: Sequence[Sequence[str]], environment: Mapping[str, str], repeats: int = REPEATS
+) -> list[dict[str, Any]]:
+    """Medians for some checkouts, measured alternately; a first run of each, not counted, warms up.
 
     Args:
+        starts: words that start the command of each.
         environment: of the commands, from before MPI.
-        against: another checkout, or None.
         repeats: of each command.
 
     Returns:
-        For each command its `name`, and `first_line` and `end`: seconds for each checkout, this one first.
+        For each command its `name`, and `first_line` and `end`: seconds for each checkout.
     """
     plain = {name: value for name, value in environment.items() if name != "COILSET_STARTED"}
-    starts = [launcher(checkout) for checkout in (THIS, against) if checkout is not None]
     rows = []
     for name, arguments in COMMANDS.items():
         runs = [[timed([*start, *arguments], plain) for start in starts] for _ in range(repeats + 1)][1:]

@@ -13,9 +13,10 @@ from typing import Any
 
 from coilset.meshes.errors import CoilsetError
 from coilset.model.processes import end_with_parent, folder_of_mpirun, mpi_settings, mpirun, usable_cores
-from coilset.verification.benchmarks.everyday import everyday
+from coilset.verification.benchmarks.everyday import everyday, launchers
 from coilset.verification.benchmarks.ranks import compare
 from coilset.verification.benchmarks.target import targets
+from coilset.verification.benchmarks.walks import walks
 
 MODULE = "coilset.verification.benchmarks.measure"
 QUICK = ((40, 5), (400, 3), (4_000, 2), (16_000, 1))  # elements, and how often they are measured
@@ -70,15 +71,18 @@ def bench(
         with_cold: also time the compilers.
         environment: of the processes, from before MPI.
         report: called with the name of each measurement before it begins.
-        against: another checkout, whose commands are timed beside this one's.
+        against: another checkout, whose commands and walks are timed beside this one's.
 
     Returns:
         The record: plain data for JSON.
     """
     size = "full" if full else "quick"
     record: dict[str, Any] = {"machine": machine()}
+    starts = launchers(against)
     report("commands")
-    record["commands"] = everyday(environment, against)
+    record["commands"] = everyday(starts, environment)
+    report("walks")
+    record["walks"] = walks(starts, environment)
     report("example")
     record["example"] = measure(environment, "example", 5)
     if with_cold:
