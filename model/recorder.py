@@ -166,7 +166,7 @@ class Recorder:
         """The current state of the spring, gathered on rank 0; its force is that of the last step; collective."""
         force = self.result.steps[-1].force_N if self.result.steps else self.control.force
         rod = self.rod
-        parts = (rod.triads.values, rod.s.values, rod.point_state, rod.surface_state)
+        parts = (rod.coefficients.E, rod.coefficients.s, rod.point_state, rod.surface_state)
         cells = [rod.line.in_order(values) for values in parts]
         x, components = self.layout.gather(rod.x), rod.sections.components
         triads, resultants, state, surface = cells

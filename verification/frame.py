@@ -123,6 +123,6 @@ class Frame:
     @property
     def resultants(self) -> np.ndarray:
         """N, Q2, Q3, Mt, M2, M3 at both Gauss sections in the order of the elements, shape (m, 2, 6), N and N mm."""
-        out = np.empty_like(self.rod.s.values)
-        out[self.rod.line.element] = self.rod.s.values
+        out = np.empty_like(self.rod.coefficients.s)
+        out[self.rod.line.element] = self.rod.coefficients.s
         return out

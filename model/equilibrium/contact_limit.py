@@ -53,7 +53,7 @@ class ContactLimit:
     def _moves(self, increments: PETSc.Vec) -> tuple[np.ndarray, np.ndarray]:
         """Displacements of the local nodes and of both seats; collective."""
         line, values = self.system.line, increments.getArray(readonly=True)
-        return self.system.with_ghosts(values)[line.rod.u_dofs], line.extra(values)
+        return self.system.with_ghosts(values)[line.rod.numbering.u], line.extra(values)
 
     def limit_start(self, guess: PETSc.Vec, start: PETSc.Vec) -> None:
         """Write into `start` as much of the guess as the contacts allow from the last equilibrium; collective."""

@@ -77,7 +77,7 @@ class LineLayout(Layout):
         comm, line, index_map = self.comm, rod.line, self.index_map
         self.line = line
         self._nodes = line.mesh.geometry.index_map().size_local
-        mine = np.concatenate([rod.u_dofs[: self._nodes], rod.rotation_dofs[: self._nodes]], axis=1)
+        mine = np.concatenate([rod.numbering.u[: self._nodes], rod.numbering.rotations[: self._nodes]], axis=1)
         mine = index_map.local_to_global(mine.ravel().astype(np.int32)).reshape(-1, 6)
         self.own_stations = line.node[: self._nodes]
         parts = comm.allgather(self.own_stations)
@@ -89,7 +89,7 @@ class LineLayout(Layout):
         self.contact_dofs = np.concatenate(
             [self.station_dofs[:, :3].ravel(), self.seat_dofs, self.station_dofs[:, 3:].ravel()]
         )
-        shear = index_map.local_to_global(rod.shear_dofs.ravel().astype(np.int32)).reshape(-1, 2)
+        shear = index_map.local_to_global(rod.numbering.shear.ravel().astype(np.int32)).reshape(-1, 2)
         element = np.concatenate(comm.allgather(line.element[: line.owned_cells]))
         self.element_dofs = np.empty((len(element), 2), dtype=PETSc.IntType)
         self.element_dofs[element] = np.concatenate(comm.allgather(shear))

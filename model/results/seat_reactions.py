@@ -116,7 +116,7 @@ class _Observer:
 
 def mean_torque(rod: Rod) -> np.ndarray:
     """Mt of the owned elements, the mean over each, N mm."""
-    torque = rod.s.values[:, :, 3]
+    torque = rod.coefficients.s[:, :, 3]
     return 0.5 * (torque[:, 0] + torque[:, 1])
 
 

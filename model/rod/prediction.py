@@ -9,53 +9,16 @@ Methods Appl. Mech. Engrg. 313 (2017). At equilibrium both are the same.
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
 
 from coilset.model.rod.blocks import blocks
+from coilset.model.rod.coefficients import Coefficients
 from coilset.model.rod.kinematics import GAUSS
+from coilset.model.rod.numbering import Numbering
 
 BLOCK = 4096  # cells that are taken together, so that no large arrays are made on the way
-
-
-@dataclass(frozen=True)
-class Frames:
-    """Data on which the linear strains of the elements depend, see coilset.model.rod.forms.
-
-    Attributes:
-        cells: node numbers, shape (cells, 2).
-        chord: from node to node, shape (cells, 3), mm.
-        E: triads (columns), shape (cells, 3, 3).
-        T: charts' tangents of both nodes, P: rates of their turns, shape (cells, 2, 3, 3).
-        W: what makes the triad's spin about its chord, shape (cells, 3, 3).
-        shear_fraction: of the rotations that is in the shear angles, shape (cells,).
-        strain: section strains, shape (cells, 2, 6).
-    """
-
-    cells: np.ndarray
-    chord: np.ndarray
-    E: np.ndarray
-    T: np.ndarray
-    P: np.ndarray
-    W: np.ndarray
-    shear_fraction: np.ndarray
-    strain: np.ndarray
-
-
-@dataclass(frozen=True)
-class Unknowns:
-    """Numbers of the local unknowns.
-
-    Attributes:
-        u, turns: displacements and rotation charts of the nodes, shape (nodes, 3).
-        shear: excess shear angles, shape (cells, 2).
-    """
-
-    u: np.ndarray
-    turns: np.ndarray
-    shear: np.ndarray
 
 
 @njit(cache=True)
@@ -66,10 +29,10 @@ def linear_strains(
     T: np.ndarray,
     P: np.ndarray,
     W: np.ndarray,
-    shear_fraction: np.ndarray,
+    timoshenko_factor: np.ndarray,
     strain: np.ndarray,
     u: np.ndarray,
-    turns: np.ndarray,
+    rotations: np.ndarray,
     shear: np.ndarray,
     increments: np.ndarray,
     xi: np.ndarray,
@@ -78,8 +41,9 @@ def linear_strains(
     """Write B δ, the change of the section strains by increments of first order.
 
     Args:
-        cells, chords, E, T, P, W, shear_fraction, strain: of the Frames.
-        u, turns, shear: of the Unknowns.
+        cells, chords: of the Prediction.
+        E, T, P, W, timoshenko_factor, strain: Coefficients, the last one of these is `e`.
+        u, rotations, shear: of the Numbering.
         increments: of the local unknowns, mm and rad.
         xi: abscissae of the Gauss sections.
         e: written, ε, γ12, γ13, φ′, −w″, v″ at these, shape (cells, 2, 6).
@@ -94,7 +58,7 @@ def linear_strains(
             for a in range(2):
                 spins[a, i] = 0.0
                 for j in range(3):
-                    spins[a, i] += T[c, a, i, j] * increments[turns[cells[c, a], j]]
+                    spins[a, i] += T[c, a, i, j] * increments[rotations[cells[c, a], j]]
         for i in range(3):
             chord = increments[u[second, i]] - increments[u[first, i]]
             frame[0] += W[c, 0, i] * chord + W[c, 1, i] * spins[0, i] + W[c, 2, i] * spins[1, i]
@@ -117,7 +81,7 @@ def linear_strains(
             e[c, g, 3] = (t[1, 0] - t[0, 0]) / l
             for k in range(2):  # about the second axis and the third
                 mean = 0.5 * (t[0, 1 + k] + t[1, 1 + k])
-                excess = increments[shear[c, k]] - shear_fraction[c] * mean
+                excess = increments[shear[c, k]] - timoshenko_factor[c] * mean
                 e[c, g, 2 - k] = -excess if k == 0 else excess
                 e[c, g, 4 + k] = (t[1, 1 + k] - t[0, 1 + k] + H * (excess + mean)) / l
             for i in range(3, 6):
@@ -128,22 +92,24 @@ class Prediction:
     """Prediction of a correction, from the state before it.
 
     Args:
-        frames: Frames.
-        unknowns: Unknowns.
-        forces, tangent: section forces, shape (cells, 2, 6), and their tangent, shape (cells, 2, 6, 6), on trial.
+        cells: node numbers, shape (cells, 2).
+        chords: from node to node, shape (cells, 3), mm, on trial.
+        coefficients: Coefficients, on trial.
+        numbering: Numbering of the unknowns.
 
     Attributes:
         forces, strain, tangent: section forces, strains and tangent before the correction.
         change: B δ of the whole correction, shape (cells, 2, 6).
     """
 
-    def __init__(self, frames: Frames, unknowns: Unknowns, forces: np.ndarray, tangent: np.ndarray) -> None:
-        self._on_trial = forces, frames.strain, tangent
+    def __init__(self, cells: np.ndarray, chords: np.ndarray, coefficients: Coefficients, numbering: Numbering) -> None:
+        self._coefficients = c = coefficients
+        self._on_trial = c.s, c.e, c.D
         self.forces, self.strain, self.tangent = (np.zeros_like(each) for each in self._on_trial)
-        self.change = np.zeros_like(forces)
+        self.change = np.zeros_like(c.s)
         self._arguments = (
-            frames.cells, frames.chord, frames.E, frames.T, frames.P, frames.W, frames.shear_fraction, frames.strain,
-            unknowns.u, unknowns.turns, unknowns.shear,
+            cells, chords, c.E, c.T, c.P, c.W, c.timoshenko_factor, c.e,
+            numbering.u, numbering.rotations, numbering.shear,
         )  # fmt: skip
 
     def begin(self, correction: np.ndarray) -> None:
@@ -152,17 +118,19 @@ class Prediction:
             np.copyto(kept, on_trial)
         linear_strains(*self._arguments, correction, GAUSS, self.change)
 
-    def forces_after(self, length: float, out: np.ndarray) -> None:
-        """Write s + D B δ after `length` of the correction."""
+    def forces_after(self, length: float) -> None:
+        """Write s + D B δ after `length` of the correction into the foreseen forces."""
+        out = self._coefficients.foreseen
         np.einsum("ngij,ngj->ngi", self.tangent, self.change, out=out)
         out *= length
         out += self.forces
 
-    def take_turning_off(self, length: float, forces: np.ndarray, strain: np.ndarray) -> None:
+    def take_turning_off(self, length: float) -> None:
         """Take the part of second-order strains off the forces after `length` of the correction: s − D (e − e_lin).
 
         In an elastic rod they are the foreseen ones then; where the wire yields, the reduction by yielding remains.
         """
+        forces, strain = self._coefficients.s, self._coefficients.e
         for part in blocks(slice(0, len(forces)), BLOCK):
             second = strain[part] - self.strain[part] - length * self.change[part]
             forces[part] -= np.einsum("ngij,ngj->ngi", self.tangent[part], second)

@@ -17,10 +17,12 @@ from coilset.model.extremes import largest
 from coilset.model.material.law import Law
 from coilset.model.rod import forms
 from coilset.model.rod.assembly import add_element_vectors
+from coilset.model.rod.coefficients import Coefficients, timoshenko_factor
 from coilset.model.rod.compiled import compiled_forms
 from coilset.model.rod.finer_path import CLOCKS, FinerPath
 from coilset.model.rod.kinematics import GAUSS, chord_triads, displace_nodes, section_strains
-from coilset.model.rod.prediction import Frames, Prediction, Unknowns
+from coilset.model.rod.numbering import Numbering
+from coilset.model.rod.prediction import Prediction
 from coilset.model.rod.section_states import KEPT, POINTS, SURFACE, SectionStates
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule
@@ -33,13 +35,6 @@ EPSILON = float(np.finfo(float).eps)
 def comm_max(comm: MPI.Comm, value: float) -> float:
     """Maximum of a value over all ranks."""
     return comm.allreduce(float(value), op=MPI.MAX) if comm.size > 1 else float(value)
-
-
-class CellField:
-    """A coefficient of the forms, with the values of the owned cells."""
-
-    def __init__(self, shape: tuple[int, ...], cells: int) -> None:
-        self.values = np.zeros((cells, *shape))
 
 
 class Rod:
@@ -66,6 +61,8 @@ class Rod:
             `shear`, `strain`, shape (cells, 2, 6), and the arrays of the sections, of the owned cells; of these
             `point_state`, shape (cells, 2, points, n_state), and `surface_state` are always there. Rods of up to KEPT
             elements, whose law knows no time, also keep `section_forces` and `section_tangents`.
+        numbering: Numbering of the unknowns.
+        coefficients: Coefficients of the forms, with the section strains and forces on trial.
         chart: tangents of the nodes' rotation charts on trial, shape (nodes, 3, 3).
     """
 
@@ -98,30 +95,19 @@ class Rod:
 
         self.V = fem.functionspace(mesh, forms.rod_element())
         self.increment = fem.Function(self.V)
-        self._number_dofs()
+        self.numbering = numbering = Numbering.of(self.V, n)
+        self.rotation_dofs, self.element_dofs = numbering.rotations, numbering.elements  # as Body's protocols have them
         self.cells = np.ascontiguousarray(geometry_dofs(mesh)[:n])
         self._nodes = self.cells.astype(np.int32)
         x = mesh.geometry.x
         chords = x[self.cells[:, 1]] - x[self.cells[:, 0]]
         self.l0, self.E0 = np.linalg.norm(chords, axis=1), chord_triads(chords)
 
-        self.xi = CellField((2,), n)
-        self.xi.values[:] = GAUSS
-        self.timoshenko_factor = CellField((1,), n)
-        Φ = 3.0 * law.E * self.radius**2 / (law.G * self.l0**2)  # 12 E I/(G A l²)
-        self.timoshenko_factor.values[:, 0] = Φ / (1.0 + Φ)
-        self.triads, self.W = CellField((3, 3), n), CellField((3, 3), n)
-        self.T, self.P = CellField((2, 3, 3), n), CellField((2, 3, 3), n)
-        self.e, self.s, self.foreseen = (CellField((2, 6), n) for _ in range(3))
-        self.D = CellField((2, 6, 6), n)
-        fields = (
-            self.xi, self.timoshenko_factor, self.triads, self.T, self.P, self.W, self.e, self.s, self.foreseen, self.D,
-        )  # fmt: skip
+        self.coefficients = Coefficients(timoshenko_factor(law.E, law.G, self.radius, self.l0))
         self.correction = fem.Function(self.V)
         self._increment, self._correction = self.increment.x.array, self.correction.x.array
         self._finer: FinerPath | None = None
-        values = {name: field.values for name, field in zip(forms.FIELDS, fields, strict=True)}
-        self._residual, self._tangent = compiled_forms(self.comm).on(values, x, self._nodes)
+        self._residual, self._tangent = compiled_forms(self.comm).on(vars(self.coefficients), x, self._nodes)
         self.largest_radius = comm_max(self.comm, self.radius.max(initial=0.0))
         self.axial_force = law.E * np.pi * self.largest_radius**2  # E A
         self.extent = float(np.ptp(line.stations, axis=0).max())
@@ -129,40 +115,28 @@ class Rod:
         self._bending_stiffness = comm_max(self.comm, (law.E * np.pi * self.radius**4 / 4.0 / self.l0).max(initial=0.0))
         self._start(x)
 
-    def _number_dofs(self) -> None:
-        """Number the local dofs of displacements and rotations, shape (nodes, 3), and of the cells' shear angles."""
-        nodes = geometry_dofs(self.mesh)
-        self.u_dofs, self.rotation_dofs = np.empty((2, len(self.mesh.geometry.x), 3), dtype=np.int32)
-        nodal, shear = self.V.sub(0), self.V.sub(1)
-        for i in range(3):
-            self.u_dofs[nodes, i] = nodal.sub(i).dofmap.list
-            self.rotation_dofs[nodes, i] = nodal.sub(i + 3).dofmap.list
-        self.element_dofs = self.V.dofmap.list[: self.line.owned_cells]  # of the cells, shape (cells, 14)
-        self.shear_dofs = np.stack([shear.sub(i).dofmap.list[: self.line.owned_cells, 0] for i in range(2)], axis=1)
-
     def _start(self, x: np.ndarray) -> None:
         """The stress-free state; the mesh's coordinates are the trial positions, as the forms require."""
-        n, state = len(self.cells), State()
+        n, state, c, numbering = len(self.cells), State(), self.coefficients, self.numbering
         self._x = state.add("x", x, Where.STATION)
         self._R = state.add("R", np.tile(np.eye(3), (len(x), 1, 1)), Where.STATION)
         self._chord = state.add("chord", x[self.cells[:, 1]] - x[self.cells[:, 0]], Where.ELEMENT)
         self._shear = state.add("shear", np.zeros((n, 2)), Where.ELEMENT)
-        self._strain = state.add("strain", self.e.values, Where.ELEMENT)
+        self._strain = state.add("strain", c.e, Where.ELEMENT)
         self._points = SectionStates(self.sections, state, self._strain, self.in_time, self.temperature)
         self._forces: list[Field] = []  # at the last equilibrium; an element's tangents take 576 bytes
         if self.in_time is None and self.mesh.topology.index_map(1).size_global <= KEPT:
-            known = {"section_forces": self.s.values, "section_tangents": self.D.values}
+            known = {"section_forces": c.s, "section_tangents": c.D}
             self._forces = [state.add(name, values, Where.ELEMENT) for name, values in known.items()]
         self.state, self.chart = state, np.tile(np.eye(3), (len(x), 1, 1))
         self._of_nodes = (
-            self._increment, self.u_dofs, self.rotation_dofs, self.shear_dofs, self.cells,
+            self._increment, numbering.u, numbering.rotations, numbering.shear, self.cells,
             self._x.equilibrium, self._chord.equilibrium, self._R.equilibrium, self._shear.equilibrium,
-            self._x.trial, self._chord.trial, self._R.trial, self._shear.trial, self.chart, self.T.values,
+            self._x.trial, self._chord.trial, self._R.trial, self._shear.trial, self.chart, c.T,
         )  # fmt: skip
         self._of_cells = (
             self.cells, self._chord.trial, self._R.trial, self.E0, self.l0, self._shear.trial,
-            self.timoshenko_factor.values[:, 0], GAUSS, self.triads.values, self.P.values, self.W.values,
-            self._strain.trial,
+            c.timoshenko_factor, GAUSS, c.E, c.P, c.W, c.e,
         )  # fmt: skip
         self.rest()
 
@@ -215,7 +189,7 @@ class Rod:
     def update(self) -> bool:
         """Update the trial state to the increments; see Body."""
         self._move()
-        has_stress = self._points.update(self.s.values, self.D.values)
+        has_stress = self._points.update(self.coefficients.s, self.coefficients.D)
         self.stop_foreseeing()
         return has_stress
 
@@ -248,7 +222,7 @@ class Rod:
     def error_works(self, ratio: float, kinked: bool, stands: bool) -> tuple[float, float, float, float]:
         """Works of the errors of all steps so far and of the last one; see EstimatesErrors."""
         assert self._finer is not None, "estimate_errors comes before"
-        if not self._finer.follow(self.s.values, ratio, kinked, stands):
+        if not self._finer.follow(self.coefficients.s, ratio, kinked, stands):
             return np.nan, np.nan, np.nan, np.nan
         return self._finer.works(np.linalg.norm(self._chord.trial, axis=1))
 
@@ -260,12 +234,7 @@ class Rod:
     @cached_property
     def _prediction(self) -> Prediction:
         """Made when it is first needed: its arrays then take the memory that the first factors needed for a moment."""
-        frames = Frames(
-            self.cells, self._chord.trial, self.triads.values, self.T.values, self.P.values, self.W.values,
-            self.timoshenko_factor.values[:, 0], self._strain.trial,
-        )  # fmt: skip
-        unknowns = Unknowns(self.u_dofs, self.rotation_dofs, self.shear_dofs)
-        return Prediction(frames, unknowns, self.s.values, self.D.values)
+        return Prediction(self.cells, self._chord.trial, self.coefficients, self.numbering)
 
     def predict(self) -> None:
         """Predict the section forces after `correction`, from the trial state; see Foresees."""
@@ -273,18 +242,18 @@ class Rod:
 
     def foresee(self, length: float) -> None:
         """Build the frame stiffness of the next tangents with the predicted section forces; see Foresees."""
-        self._prediction.forces_after(length, self.foreseen.values)
+        self._prediction.forces_after(length)
 
     def stop_foreseeing(self) -> None:
         """Build the tangents with the actual section forces; see Foresees."""
-        self.foreseen.values[:] = self.s.values
+        self.coefficients.foreseen[:] = self.coefficients.s
 
     def forces_without_turning(self, vector: np.ndarray, length: float) -> None:
         """As `internal_forces`, without the contribution of strains of second order in the correction; see Foresees."""
-        actual = self.s.values.copy()
-        self._prediction.take_turning_off(length, self.s.values, self._strain.trial)
+        actual = self.coefficients.s.copy()
+        self._prediction.take_turning_off(length)
         self.internal_forces(vector)
-        self.s.values[:] = actual
+        self.coefficients.s[:] = actual
 
     def internal_forces(self, vector: np.ndarray) -> None:
         """Add ∫ ¹σ : δΔE_l of the owned cells; see Body."""

@@ -24,7 +24,9 @@ def bent(make_rod, request, monkeypatch):
     rod.increment.x.array[:] = np.random.default_rng(0).normal(scale=0.02, size=len(rod.increment.x.array))
     assert rod.update()
     assert (rod.point_state[..., 6] > 0.0).any()
-    rod.foreseen.values[:] *= 1.1  # other forces than those of the state, so that they cannot be taken for each other
+    rod.coefficients.foreseen[:] *= (
+        1.1  # other forces than those of the state, so that they cannot be taken for each other
+    )
     return rod
 
 
@@ -38,9 +40,8 @@ def matrix_of(rod, size):
 def by_dolfinx(rod):
     """Residual and tangent as DOLFINx assembles them."""
     fields = [fem.Function(fem.functionspace(rod.mesh, element())) for element in forms.FIELDS.values()]
-    own = (rod.xi, rod.timoshenko_factor, rod.triads, rod.T, rod.P, rod.W, rod.e, rod.s, rod.foreseen, rod.D)
-    for function, field in zip(fields, own, strict=True):
-        function.x.array[:] = field.values.ravel()
+    for function, name in zip(fields, forms.FIELDS, strict=True):
+        function.x.array[:] = getattr(rod.coefficients, name).ravel()
     rod_forms = forms.RodForms(rod.mesh, rod.V, *fields)
     vector = fem.assemble_vector(fem.form(rod_forms.residual)).array
     matrix = matrix_of(rod, len(vector))
@@ -72,8 +73,8 @@ def insert(rod, matrix):
 def test_an_element_does_not_depend_on_those_beside_it(bent):
     """The same bits, whichever elements go through together."""
     first = next(bent.element_tangents())[1][0].copy()
-    for field in (bent.triads, bent.T, bent.P, bent.W, bent.e, bent.s, bent.foreseen, bent.D):
-        field.values[1:] = 1e3
+    for name in forms.FIELDS.keys() - {"xi", "timoshenko_factor"}:
+        getattr(bent.coefficients, name)[1:] = 1e3
     np.testing.assert_array_equal(next(bent.element_tangents())[1][0], first)
 
 
@@ -112,7 +113,7 @@ def test_entries_are_added_where_they_lie_as_petsc_inserts_them(bent):
         by_row = dense(matrix.mat, size)
         np.testing.assert_array_equal(by_row[held], bent.constraint_weight * np.eye(size)[held])
         np.testing.assert_array_equal(by_row[free], found[free])
-        bent.foreseen.values[:] *= 1.1
+        bent.coefficients.foreseen[:] *= 1.1
     matrix.fill([])
     right = dense(by_dolfinx(bent)[1], n)
     np.testing.assert_allclose(dense(matrix.mat, n), right, rtol=0.0, atol=1e-13 * np.abs(right).max())

@@ -26,11 +26,11 @@ def put(rod, u1=0, t1=0, u2=0, t2=0, shear=(0, 0)):
     E = rod.E0[0]
     values = rod.increment.x.array
     for node, (u, turn) in enumerate(((u1, t1), (u2, t2))):
-        values[rod.u_dofs[node]] = E @ (np.zeros(3) + u)
-        values[rod.rotation_dofs[node]] = E @ (np.zeros(3) + turn)
-    values[rod.shear_dofs[0]] = shear
+        values[rod.numbering.u[node]] = E @ (np.zeros(3) + u)
+        values[rod.numbering.rotations[node]] = E @ (np.zeros(3) + turn)
+    values[rod.numbering.shear[0]] = shear
     assert rod.update()
-    return rod.s.values[0]
+    return rod.coefficients.s[0]
 
 
 def test_finite_rigid_motion_leaves_no_stress(rod):
@@ -126,7 +126,7 @@ def test_element_matrix_equals_table_5_2(rod, ck15):
     np.testing.assert_allclose(K[12:, :12], 0, atol=1e-12 * np.abs(K).max())
     system, E = free_system(rod), rod.E0[0]
     A = linearise(system, np.zeros(system.layout.size))[1]
-    order = [*system.layout.station_dofs[0], *system.layout.station_dofs[1], *rod.shear_dofs[0]]
+    order = [*system.layout.station_dofs[0], *system.layout.station_dofs[1], *rod.numbering.shear[0]]
     to_local = np.zeros((14, 14))
     for block in range(4):
         to_local[3 * block : 3 * block + 3, 3 * block : 3 * block + 3] = E.T
@@ -152,7 +152,7 @@ def test_element_tangent_has_taylor_slope_two(rod, state):
     direction = np.append(np.random.default_rng(3).normal(size=14) * np.repeat([1e-2, 1e-4], [12, 2]), SEATS)
     steps = np.array([1e-2, 5e-3, 2.5e-3, 1.25e-3])
     linear = A @ direction
-    for dofs in rod.rotation_dofs:
+    for dofs in rod.numbering.rotations:
         linear[dofs] -= 0.5 * np.cross(direction[dofs], f0[dofs])
     remainder = [np.linalg.norm(forces(system, base + h * direction) - f0 - h * linear) for h in steps]
     slope = np.polyfit(np.log(steps), np.log(remainder), 1)[0]
@@ -173,7 +173,7 @@ def test_tangent_is_exact_at_turned_states(make_rod):
     system, h = free_system(rod), 1e-6
     f0, A = linearise(system, base)
     linear = A @ direction
-    for dofs in rod.rotation_dofs:
+    for dofs in rod.numbering.rotations:
         linear[dofs] -= 0.5 * np.cross(direction[dofs], f0[dofs])
     exact = (forces(system, base + h * direction) - forces(system, base - h * direction)) / (2 * h)
     np.testing.assert_allclose(linear, exact, rtol=0, atol=1e-7 * np.linalg.norm(exact))
@@ -188,11 +188,11 @@ def test_increments_do_not_depend_on_the_number_of_steps(make_rod):
             previous, now = (Rotation.from_rotvec([0, 0, (k - j) / steps]) for j in (1, 0))
             twist = [Rotation.from_rotvec([2e-3 * (k - j) / steps, 0, 0]) for j in (1, 0)]
             values = rod.increment.x.array
-            values[rod.u_dofs[1]] = now.apply([LENGTH, 0, 0]) - previous.apply([LENGTH, 0, 0])
-            values[rod.rotation_dofs[0]] = (now * previous.inv()).as_rotvec()
-            values[rod.rotation_dofs[1]] = (now * twist[1] * (previous * twist[0]).inv()).as_rotvec()
+            values[rod.numbering.u[1]] = now.apply([LENGTH, 0, 0]) - previous.apply([LENGTH, 0, 0])
+            values[rod.numbering.rotations[0]] = (now * previous.inv()).as_rotvec()
+            values[rod.numbering.rotations[1]] = (now * twist[1] * (previous * twist[0]).inv()).as_rotvec()
             assert rod.update()
             rod.state.commit()
-        results.append(rod.s.values.copy())
+        results.append(rod.coefficients.s.copy())
     # the axial stress of the spin, (5.2.33), is of second order in the twist and summed up by steps: 1e-5 of the torque
     np.testing.assert_allclose(results[1], results[0], rtol=0, atol=2e-5 * np.abs(results[0]).max())

@@ -26,7 +26,7 @@ def at(rod, values):
     """Bring the rod there; its section forces."""
     rod.increment.x.array[:] = values
     assert rod.update()
-    return rod.s.values.copy()
+    return rod.coefficients.s.copy()
 
 
 def test_foreseen_forces_are_the_derivative_of_the_forces(turned):
@@ -39,16 +39,16 @@ def test_foreseen_forces_are_the_derivative_of_the_forces(turned):
     rod.predict()
     rod.foresee(1.0)
     scale = np.abs(exact).max(axis=(0, 1))
-    np.testing.assert_allclose((rod.foreseen.values - forces - exact) / scale, 0.0, atol=1e-7)
+    np.testing.assert_allclose((rod.coefficients.foreseen - forces - exact) / scale, 0.0, atol=1e-7)
     rod.stop_foreseeing()
-    np.testing.assert_array_equal(rod.foreseen.values, forces)
+    np.testing.assert_array_equal(rod.coefficients.foreseen, forces)
 
 
 def test_without_turning_an_elastic_rod_has_its_foreseen_forces(turned):
     """After 0.7 of a correction of 0.1 rad and 10 mm; the forces themselves differ from the foreseen ones by far."""
     rod, base, direction = turned
-    direction[rod.u_dofs] *= 100.0
-    direction[rod.shear_dofs] = 0.0
+    direction[rod.numbering.u] *= 100.0
+    direction[rod.numbering.shear] = 0.0
     at(rod, base)
     rod.correction.x.array[:] = direction
     rod.predict()
@@ -56,9 +56,9 @@ def test_without_turning_an_elastic_rod_has_its_foreseen_forces(turned):
     rod.foresee(0.7)
     found, expected = (np.zeros(len(base)) for _ in range(2))
     rod.forces_without_turning(found, 0.7)
-    np.testing.assert_array_equal(rod.s.values, there)
-    assert np.abs(there - rod.foreseen.values).max() > 0.02 * np.abs(rod.foreseen.values).max()
-    rod.s.values[:] = rod.foreseen.values
+    np.testing.assert_array_equal(rod.coefficients.s, there)
+    assert np.abs(there - rod.coefficients.foreseen).max() > 0.02 * np.abs(rod.coefficients.foreseen).max()
+    rod.coefficients.s[:] = rod.coefficients.foreseen
     rod.internal_forces(expected)
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10 * np.abs(expected).max())
 
@@ -68,8 +68,8 @@ def test_a_rod_stands_where_its_last_step_ended_without_asking_the_material(make
     rod = make_rod([[0, 0, 0], [LENGTH, 0, 0], [LENGTH, 60, 20]])
     increments = 0.02 * np.random.default_rng(5).normal(size=len(rod.increment.x.array))
     at(rod, increments)
-    known = (rod.s, rod.D, rod.triads, rod.P, rod.W, rod.e)
-    there = [field.values.copy() for field in known]
+    known = [getattr(rod.coefficients, name) for name in ("s", "D", "E", "P", "W", "e")]
+    there = [field.copy() for field in known]
     assert there[0].any()
     rod.follow()
     rod.state.commit()
@@ -78,10 +78,10 @@ def test_a_rod_stands_where_its_last_step_ended_without_asking_the_material(make
     rod.increment.x.array[:] = 0.0
     assert rod.stand()
     for field, values in zip(known, there, strict=True):
-        np.testing.assert_array_equal(field.values, values)
+        np.testing.assert_array_equal(field, values)
     np.testing.assert_array_equal(rod.point_state, tried)
     assert rod.update()  # the material at rest yields no more
-    assert np.abs(rod.D.values[..., 3, 3] / there[1][..., 3, 3]).max() > 1.5
+    assert np.abs(rod.coefficients.D[..., 3, 3] / there[1][..., 3, 3]).max() > 1.5
 
 
 def test_a_long_rod_asks_the_law_instead(example, monkeypatch):

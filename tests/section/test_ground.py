@@ -100,7 +100,7 @@ def test_chords_are_cut_as_the_true_sections_are():
     curved, chords = (Analysis(check(CASE | {"mesh": plane | {"axis": axis}})).rod for axis in ("curved", "chords"))
     np.testing.assert_array_equal(chords.placement.flat, curved.placement.flat)
     level, *normal = chords.placement.flat[0, 0]
-    tangent = chords.D.values[0, 0]
+    tangent = chords.coefficients.D[0, 0]
     left = Segment(level, tuple(normal))
     area = left.rule(len(chords.rule)).weights.sum()
     assert area < 0.7
@@ -130,5 +130,5 @@ def test_a_coiled_wire_that_is_ground_is_at_rest():
     stress = rod.state["point_state"].equilibrium[..., 0]
     assert np.abs(stress[cut]).max() > 50.0
     area = np.pi * 2.5**2
-    assert np.abs(rod.s.values[..., 0]).max() < 1e-8 * area * np.abs(stress).max()
-    assert np.abs(rod.s.values[..., 3:]).max() < 1e-8 * area * 2.5 * np.abs(stress).max()
+    assert np.abs(rod.coefficients.s[..., 0]).max() < 1e-8 * area * np.abs(stress).max()
+    assert np.abs(rod.coefficients.s[..., 3:]).max() < 1e-8 * area * 2.5 * np.abs(stress).max()

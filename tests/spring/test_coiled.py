@@ -37,7 +37,7 @@ def test_a_coiled_spring_stands_as_drawn_and_is_as_stiff():
     coiled, free = analysis_of(), analysis_of(spring={**SPRING, "made_by": None})
     scale = np.array([1.0, 1.0, 1.0, 2.5, 2.5, 2.5])
     area = np.pi * 2.5**2
-    assert np.abs(coiled.rod.s.values / scale).max() < 1e-3 * area  # of 1 N/mm²
+    assert np.abs(coiled.rod.coefficients.s / scale).max() < 1e-3 * area  # of 1 N/mm²
     assert np.abs(coiled.rod.surface_state[..., 0]).max() > 100.0
     results = [one.run() for one in (coiled, free)]
     summaries = [summarise(one.setup, run) for one, run in zip((coiled, free), results, strict=True)]
@@ -83,7 +83,7 @@ def test_a_peened_spring_stands_as_drawn(kind):
     mesh = {"elements_per_turn": 8, "section": {"kind": kind, "radial": 8, "angular": 12}}
     spring = analysis_of(spring=PEENED, mesh=mesh)
     scale = np.array([1.0, 1.0, 1.0, 2.5, 2.5, 2.5])
-    assert np.abs(spring.rod.s.values / scale).max() < 1e-3 * np.pi * 2.5**2
+    assert np.abs(spring.rod.coefficients.s / scale).max() < 1e-3 * np.pi * 2.5**2
     layer = 2.0 / 2.5**2 * 200.0 * sum(np.trapezoid(f * r, r) for r, f in (
         (np.linspace(2.3, 2.5, 100), 1.0), (np.linspace(1.9, 2.3, 100), np.linspace(0.0, 1.0, 100))))  # fmt: skip
     assert spring.rod.surface_state[..., 0].mean() == pytest.approx(layer - 200.0, abs=3.0)
@@ -95,7 +95,7 @@ def test_plane_sections_are_coiled_as_a_straight_bar_is():
     flat = {**SPRING, "pitch": 5.5}
     spring = analysis_of(mesh=mesh, spring=flat, material="linear_isotropic", loading=[{"to": {"travel": 0.1}}])
     scale, law = np.array([1.0, 1.0, 1.0, 2.5, 2.5, 2.5]), spring.law
-    assert np.abs(spring.rod.s.values / scale).max() < 1e-3 * np.pi * 2.5**2
+    assert np.abs(spring.rod.coefficients.s / scale).max() < 1e-3 * np.pi * 2.5**2
     bar = Bar(law.yield_stress, law.E, law.E * 2000.0 / (law.E + 2000.0), 2.5)
     exact = bar.straight(0.05)[2]
     assert spring.rod.surface_state[4, 0, 0, 0] == pytest.approx(exact, rel=0.01)
@@ -119,7 +119,7 @@ def test_relief_in_the_past_is_relief_in_the_load_program():
     assert after[0] == pytest.approx(after[1], rel=0.08)
     assert max(after) < 0.8 * before
     scale = np.array([1.0, 1.0, 1.0, 2.5, 2.5, 2.5])
-    assert np.abs(relieved.rod.s.values / scale).max() < 1e-3 * np.pi * 2.5**2
+    assert np.abs(relieved.rod.coefficients.s / scale).max() < 1e-3 * np.pi * 2.5**2
     assert relieved.rod.clock[0] == 0.0
 
 
@@ -127,7 +127,7 @@ def test_several_back_stresses_remember_coiling():
     """The coiled section's states hold all back stresses, of which some saturated; the spring bears no force."""
     spring = analysis_of(material="chaboche")
     scale = np.array([1.0, 1.0, 1.0, 2.5, 2.5, 2.5])
-    assert np.abs(spring.rod.s.values / scale).max() < 1e-3 * np.pi * 2.5**2
+    assert np.abs(spring.rod.coefficients.s / scale).max() < 1e-3 * np.pi * 2.5**2
     names = spring.rod.sections.components
     backs = [names.index(name) for name in names if name.startswith("B11")]
     assert len(backs) == 3

@@ -1,0 +1,43 @@
+"""Values of the forms' coefficients: what an evaluation writes, and the compiled loops over the elements read."""
+
+import numpy as np
+
+from coilset.model.rod.kinematics import GAUSS
+
+
+class Coefficients:
+    """Arrays by the names in coilset.model.rod.forms.FIELDS, where RodForms says what they are.
+
+    Args:
+        timoshenko_factor: of the owned cells, shape (cells,), see coilset.model.rod.forms.section_strains.
+
+    Attributes:
+        xi: abscissae of the Gauss sections, shape (cells, 2).
+        timoshenko_factor: shape (cells,).
+        E: triads of the elements (columns), shape (cells, 3, 3).
+        T, P: of the nodes' rotations, shape (cells, 2, 3, 3).
+        W: for the triads' spin about their chords, shape (cells, 3, 3).
+        e: section strains, shape (cells, 2, 6).
+        s: section forces, shape (cells, 2, 6), N and N mm.
+        foreseen: those that the frame stiffness is built with, shape (cells, 2, 6), N and N mm.
+        D: section tangents ∂s/∂e, shape (cells, 2, 6, 6).
+    """
+
+    def __init__(self, timoshenko_factor: np.ndarray) -> None:
+        cells = len(timoshenko_factor)
+        self.xi, self.timoshenko_factor = np.tile(GAUSS, (cells, 1)), timoshenko_factor
+        self.E, self.W = (np.zeros((cells, 3, 3)) for _ in range(2))
+        self.T, self.P = (np.zeros((cells, 2, 3, 3)) for _ in range(2))
+        self.e, self.s, self.foreseen = (np.zeros((cells, 2, 6)) for _ in range(3))
+        self.D = np.zeros((cells, 2, 6, 6))
+
+
+def timoshenko_factor(young: float, shear: float, radius: np.ndarray, length: np.ndarray) -> np.ndarray:
+    """c = Φ/(1 + Φ) of circular wire, Φ = 12 E I/(G A l²), see coilset.model.rod.forms.section_strains.
+
+    Args:
+        young, shear: moduli E and G, MPa.
+        radius, length: of the elements, mm.
+    """
+    Φ = 3.0 * young * radius**2 / (shear * length**2)
+    return Φ / (1.0 + Φ)
