@@ -26,7 +26,7 @@ from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.methods import Method, rod_method
 from coilset.model.equilibrium.newton import Newton
-from coilset.model.equilibrium.program import LoadProgram, ProgramPosition, Stage
+from coilset.model.equilibrium.program import LoadProgram, ProgramPosition, Stage, StepTaken
 from coilset.model.equilibrium.stability import Stability
 from coilset.model.equilibrium.step_error import StepError
 from coilset.model.equilibrium.system import System
@@ -203,8 +203,8 @@ class Analysis:
             for number in range(self.program.number, len(self.case.loading)):
                 phase = self.case.loading[number]
                 for taken in self.program.run(self.stage(phase)):
-                    self._flow_of_heat(number, taken.part)
-                    step = self.recorder.record(number, taken, self.case.loading)
+                    settled = self._flow_of_heat(number, taken)
+                    step = self.recorder.record(number, settled, self.case.loading)
                     self._keep(save)
                     report(step)
                 self.recorder.add_snapshot(self.program.stage.label)
@@ -221,14 +221,15 @@ class Analysis:
         start = self.rod.temperature if spec.surroundings is None else spec.surroundings
         return WireHeat(self.rod, heat_constants(self.law, spec.conductivity, spec.convection, spec.tips, start))
 
-    def _flow_of_heat(self, number: int, part: float) -> None:
-        """Let heat flow for the part of the phase's time that the last step took."""
+    def _flow_of_heat(self, number: int, taken: StepTaken) -> StepTaken:
+        """Let heat flow for the time that the last step took; the step, with what that cost."""
         phase = self.case.loading[number]
         if self.heat is not None and self.heat.creeps:
             self.heat.catch_up()
-            self.program.settle()
-        elif self.heat is not None and isinstance(phase, Phase) and phase.seconds is not None:
-            self.heat.advance(part * phase.seconds)
+            return self.program.settle(taken)
+        if self.heat is not None and isinstance(phase, Phase) and phase.seconds is not None:
+            self.heat.advance(taken.part * phase.seconds)
+        return taken
 
     def redirect(self, phase: Phase) -> None:
         """Change the target of the phase in progress; the case holds the new one from now on.

@@ -25,6 +25,8 @@ from coilset.model.equilibrium.step_error import StepError
 
 log = logging.getLogger("coilset.steps")
 Reading = TypeVar("Reading")
+# what the state remembers of the last steps on a path: the guess, and the parabola of the finer path
+OF_PATH = "increments", "increments_before", "strain_increment"
 
 
 class Continuation:
@@ -108,6 +110,26 @@ class Continuation:
                 self.guess.too_far = self.system.increments.copy(), size
             self.system.restore()
         return outcome
+
+    def settle(self, load: Load, step: Outcome) -> Outcome:
+        """Find equilibrium again where something else than a load has changed the body after a step; collective.
+
+        What is remembered of the path stays that of its steps: the next one does not go on as this goes.
+
+        Args:
+            load: keeps what is driven where it is.
+            step: Outcome of the step.
+
+        Returns:
+            Outcome of both; if it has not converged the state is that before.
+        """
+        state = self.system.state
+        kept = {name: state[name].equilibrium.copy() for name in OF_PATH if name in state}
+        found = self.attempt(load)
+        if found.converged:
+            for name, values in kept.items():
+                state[name].equilibrium[:] = state[name].trial[:] = values
+        return replace(step + found, estimate=step.estimate, left_branch=step.left_branch, released=step.released)
 
     def probe(self, load: Load, read: Callable[[], Reading]) -> tuple[Outcome, Reading]:
         """Solve a step, evaluate its state, and return to the last equilibrium; collective.

@@ -3,7 +3,7 @@
 import logging
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -139,18 +139,21 @@ class LoadProgram:
             progress = path.progress(continuation.steps.position.done)
             yield StepTaken(continuation.number, progress, progress - before, cuts, outcome)
 
-    def settle(self) -> None:
+    def settle(self, taken: StepTaken) -> StepTaken:
         """Find equilibrium again at the same height or force, after something else has changed the body; collective.
+
+        Returns:
+            The last step, with what this cost.
 
         Raises:
             SolveError: if there is none near.
         """
         control = self.control
         load = control.to_force(control.force) if self.stage.kind == "force" else control.to_height(control.height)
-        outcome = self.continuation.attempt(load)
+        outcome = self.continuation.settle(load, taken.outcome)
         if not outcome.converged:
-            number = self.continuation.number
-            raise SolveError(f"no equilibrium with the temperatures after step {number}: {outcome.reason}")
+            raise SolveError(f"no equilibrium with the temperatures after step {taken.number}: {outcome.reason}")
+        return replace(taken, outcome=outcome)
 
     def redirect(self, stage: Stage) -> None:
         """Go to another target from here on, in place of the stage in progress."""

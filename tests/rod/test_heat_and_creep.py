@@ -131,6 +131,31 @@ def test_it_goes_on_after_a_stop(files, resumed_after):
     assert resumed.heat.equation.surroundings.value == WARM
 
 
+def test_an_equilibrium_found_again_after_the_heat_is_no_step_of_the_path(files):
+    """Pressed in 2 s, the steps' errors are told as without heat, to 2 %; what it cost is in the steps' counts."""
+    press = {"to": {"travel": 40.0}, "steps": 4}
+    alone = analysis_of(files["creeps"], [press]).run().steps
+    analysis = analysis_of(files["both"], [press | {"seconds": 2.0}], heat={"conductivity": 50.0, "convection": 20.0})
+    outcomes, increments, solve = [], [], analysis.newton.solve
+
+    def keep(load, start=None):
+        outcomes.append(solve(load, start))
+        increments.append(analysis.system.increments.getArray().copy())
+        return outcomes[-1]
+
+    analysis.newton.solve, following = keep, []
+    steps = analysis.run(lambda _: following.append(analysis.continuation.guess.scaled_last(1.0).getArray())).steps
+    assert [step.estimated_force_error_N for step in steps[1:]] == pytest.approx(
+        [step.estimated_force_error_N for step in alone[1:]], rel=0.02
+    )
+    of_steps = outcomes[1:]  # after the initial rate
+    assert len(of_steps) == 2 * len(steps)
+    assert sum(step.evaluations for step in steps) == sum(outcome.evaluations for outcome in of_steps)
+    assert sum(step.iterations for step in steps) == sum(outcome.iterations for outcome in of_steps)
+    for found, guess in zip(increments[1::2], following, strict=True):
+        np.testing.assert_array_equal(guess, found)
+
+
 def test_another_target_leaves_the_surroundings_as_warm_as_they_are(files, resumed_after):
     """The wire is colder than its oven when the hold is made longer: the oven does not get as cold as the wire."""
     press, holds = {"to": {"travel": 9.0}, "steps": 1, "seconds": 1.0}, ({"hold": {"minutes": m}} for m in (5, 10))
