@@ -88,6 +88,21 @@ def compared_ranks(runs):
     return rows
 
 
+def test_every_tangent_counts_as_assembly():
+    """Between clamped heads most are built with the forces that a correction foresees."""
+    case = measure.read_example(["ends=clamped", "mesh.elements_per_turn=8", "loading=[{to: {travel: 2}}]"])
+    watch, stages = Stopwatch(), []
+    analysis = measure.build(watch, case, MPI.COMM_SELF)
+    matrix = analysis.newton.iteration.matrix
+    fill = matrix.fill
+    matrix.fill = lambda *args: (stages.append(watch._open[-1]), fill(*args))
+    with watch.stage("other"):
+        assert analysis.newton.solve(analysis.control.to_height(analysis.control.height - 2.0)).converged
+    assert analysis.newton.foreseeing.used
+    assert stages
+    assert set(stages) == {"assemble"}
+
+
 @pytest.fixture(scope="module")
 def record():
     """A bench of the smallest size, its measurements made in this process."""

@@ -41,7 +41,7 @@ FACTORISE, SOLVE = ("MatLUFactorSym", "MatLUFactorNum"), ("MatSolve",)  # PETSc'
 def watch_analysis(watch: Stopwatch, analysis: "Analysis") -> None:
     """Make the stages of a solve count."""
     watch.watch(analysis.rod, "update", "law")
-    for owner, function in ((analysis.rod, "internal_forces"), (analysis.system, "tangent")):
+    for owner, function in ((analysis.rod, "internal_forces"), (analysis.system, "last_tangent")):
         watch.watch(owner, function, "assemble")
     for contact in analysis.system.contacts:
         watch.watch(contact, "evaluate", "contact")
