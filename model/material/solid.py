@@ -5,8 +5,7 @@ back stress hold the tensor's components. A point's state is a row of σ (6), B 
 the temperature: 13 or 14 numbers, in N/mm² and K.
 
 The law is hypoelastic with the Zaremba-Jaumann rate (3.1.2): it holds in a frame that rotates with the material's spin.
-Either the caller works in such a frame, or it rotates the point's state by the increment's rotation first, with
-`rotate_state`.
+The caller works in such a frame, or rotates the point's state by the increment's rotation first.
 """
 
 import numpy as np
@@ -19,8 +18,6 @@ from coilset.model.material.perzyna import solve_at_rate
 
 Six = tuple[float, float, float, float, float, float]  # components 11, 22, 33, 12, 13, 23
 Pair = tuple[float, float]
-COMPONENTS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-PLACES = ((0, 3, 4), (3, 1, 5), (4, 5, 2))  # where the component (i, j) is stored
 
 
 @njit(**INLINE)
@@ -190,35 +187,3 @@ def _tangent(
         C[3 + i, 3 + i] -= 0.5 * identity
         for j in range(3):
             C[i, j] += identity / 3.0
-
-
-@njit(**KERNEL)
-def rotate_state(old: np.ndarray, R: np.ndarray, new: np.ndarray) -> None:
-    """Rotate stress and back stress of a point's state, S → R S Rᵀ.
-
-    With R = exp(W), W = ½(grad Δu − grad Δuᵀ), before the update with the strain increment in the rotated frame, this
-    integrates the Zaremba-Jaumann rate; all invariants stay, so that the update is objective for any size of W.
-
-    Args:
-        old: the point's state, shape (13,), (14,) or with more back stresses; not written.
-        R: rotation, shape (3, 3).
-        new: the rotated state, not the same array as `old`.
-    """
-    for i in range(12, old.shape[0]):
-        new[i] = old[i]
-    _rotate(old, 0, R, new)
-    _rotate(old, 6, R, new)
-    for o in range(13, old.shape[0] - 5, 6):
-        _rotate(old, o, R, new)
-
-
-@njit(**INLINE)
-def _rotate(old: np.ndarray, o: int, R: np.ndarray, new: np.ndarray) -> None:
-    """Rotate the tensor that begins in the column o."""
-    for k in range(6):
-        i, j = COMPONENTS[k]
-        value = 0.0
-        for a in range(3):
-            for b in range(3):
-                value += R[i, a] * old[o + PLACES[a][b]] * R[j, b]
-        new[o + k] = value

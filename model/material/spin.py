@@ -58,7 +58,7 @@ def _ratios(t: float) -> Ratios:
 
 
 @njit(**INLINE)
-def _elastic_shear(s: Vector, E: float, G: float) -> tuple[float, float, float]:
+def _elastic_shear(s: Vector, G: float) -> tuple[float, float, float]:
     """E ε and γ12, γ13 of the elastic strain that corresponds to the stress `s`."""
     length = math.sqrt((G + 0.5 * s[0]) ** 2 + 0.5 * (s[1] * s[1] + s[2] * s[2]))
     angle = math.atan2(math.sqrt(0.5 * (s[1] * s[1] + s[2] * s[2])), G + 0.5 * s[0])
@@ -109,7 +109,7 @@ def spun(s: Vector, B: Vector, E: float, G: float, de11: float, dg12: float, dg1
         crossing: the part of the increment that is elastic.
     """
     beta, d_beta = crossing.beta, crossing.d_beta
-    Ee, g2, g3 = _elastic_shear(s, E, G)
+    Ee, g2, g3 = _elastic_shear(s, G)
     home = _turn(B, -g2, -g3, BACK)
     end = (g2 + dg12, g3 + dg13)
     elastic, d = _elastic_stress(Ee + beta * E * de11, g2 + beta * dg12, g3 + beta * dg13, E, G)

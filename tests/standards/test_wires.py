@@ -101,13 +101,6 @@ def test_each_number_says_how_sure_it_is():
     assert wire("EN 10270-2 TDC").entry.strength.sure == "one source"
 
 
-def test_modulus_over_temperature():
-    # 0.25 ‰ a kelvin: 1 − 0.00025 · 80 at 100 °C
-    assert wire("EN 10270-1 SH").shear_modulus_factor(373.15) == pytest.approx(0.98)
-    assert wire("EN 10270-3 1.4310").shear_modulus_factor(373.15) == pytest.approx(0.968)
-    assert wire("ASTM A228").shear_modulus_factor(373.15) is None
-
-
 def test_name_is_found_however_it_is_spaced():
     assert wire("en10270-1  sh") is not None
     assert wire("en10270-1  sh").name == "EN 10270-1 SH"

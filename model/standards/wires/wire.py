@@ -54,11 +54,6 @@ class Wire:
         entry = self.entry
         return Elastic(*(number.at(diameter) for number in (entry.shear_modulus, entry.young_modulus, entry.density)))
 
-    def shear_modulus_factor(self, temperature: float) -> float | None:
-        """G at a temperature in K over G at 20 °C, G = G20 (1 − r (θ − 20 °C)); None if r is unknown."""
-        decrease = self.entry.shear_modulus_decrease
-        return None if decrease is None else 1 - decrease.at(1.0) * (temperature - ROOM_TEMPERATURE)
-
     def block_stress(self, diameter: float) -> float:
         """Shear stress allowed at block, N/mm²: of the stress that `entry.block_stress.of` names."""
         return self.entry.block_stress.at(diameter) * self.strength(diameter)
