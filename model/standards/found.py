@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 MIDDLE = (0.25, 0.75)  # part of the turns that counts as the body, away from the ends
+ROUNDING = 1e-9  # of the free length: a height that is nearer to a length is that length
 
 
 @dataclass(frozen=True)
@@ -43,20 +44,21 @@ class Found:
         return None if value is None else float(value)
 
     def force_at(self, length: float) -> float | None:
-        """Force when the spring last passed a length; None if it never did."""
+        """Force when the spring last passed a length, or came to it but for rounding; None if it never did."""
+        near = ROUNDING * self.heights[0]
         high, low = np.maximum(self.heights[1:], self.heights[:-1]), np.minimum(self.heights[1:], self.heights[:-1])
-        passed = np.flatnonzero((low <= length) & (length <= high) & (high > low))
+        passed = np.flatnonzero((low <= length + near) & (length - near <= high) & (high > low))
         if len(passed) == 0:
             return None
         i = passed[-1]
-        fraction = (length - self.heights[i]) / (self.heights[i + 1] - self.heights[i])
+        fraction = np.clip((length - self.heights[i]) / (self.heights[i + 1] - self.heights[i]), 0.0, 1.0)
         return float(self.forces[i] + fraction * (self.forces[i + 1] - self.forces[i]))
 
     def work_to(self, length: float) -> float | None:
         """Work of the first compression to a length, ∫ F ds, N mm; None if the first compression did not reach it."""
         first = int(np.argmin(self.heights)) + 1
         heights, forces = self.heights[:first], self.forces[:first]
-        if length < heights[-1] - 1e-9 or np.any(np.diff(heights) > 0):
+        if length < heights[-1] - ROUNDING * heights[0] or np.any(np.diff(heights) > 0):
             return None
         grid: np.ndarray = np.append(heights[heights > length], length)
         values = np.interp(-grid, -heights, forces)
