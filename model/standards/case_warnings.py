@@ -6,6 +6,7 @@ from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
 from coilset.model.case import Case
 from coilset.model.material.law import Law
+from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.sheet import Sheet, working_lengths
 from coilset.model.standards.steel import STEEL, Elastic
@@ -47,10 +48,10 @@ def _working(case: Case, spring: Spring, elastic: Elastic) -> list[Warning]:
     except InputError:
         return []
     named = None if isinstance(case.material, str) else wire(case.material.wire)
-    made = Sheet(cylinder, elastic, spring.wire_length, named)
-    lengths = working_lengths(case.targets, cylinder.length, made.rate, cylinder.solid)
+    rate = en13906.rate(elastic.shear_modulus, cylinder.d, cylinder.D, cylinder.n)
+    lengths = working_lengths(case.targets, cylinder.length, rate, cylinder.solid)
     to_block = [cylinder.solid] if any(phase.to == "block" for phase in case.targets) else []
-    return sheet_warnings(Sheet(cylinder, elastic, made.helix, named, lengths), to_block)
+    return sheet_warnings(Sheet(cylinder, elastic, spring.wire_length, named, lengths), to_block)
 
 
 def sheet_warnings(made: Sheet, to_block: list[float]) -> list[Warning]:
