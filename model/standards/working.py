@@ -64,8 +64,9 @@ def presetting_warning(set_mm: float, travel: float) -> Warning | None:
     if set_mm >= PRESETTING_LEAST * travel:
         return None
     share = set_mm / travel if abs(set_mm) > ROUNDING * travel else 0.0
+    part = f"{abs(share) * travel:.3g} mm, {100 * abs(share):.2g} % of the travel to block"
     message = (
-        f"presetting takes {share * travel:.3g} mm, {100 * share:.2g} % of the travel to block; "
-        f"{100 * PRESETTING_LEAST:g} % or more is usual"
+        f"presetting {'leaves the spring longer by' if share < 0.0 else 'takes'} {part}; "
+        f"a set of {100 * PRESETTING_LEAST:g} % or more is usual"
     )
     return Warning("presetting", "loading", message, set_mm, PRESETTING_LEAST * travel, "mm")

@@ -76,7 +76,11 @@ def test_presetting():
     assert presetting_warning(3.3, 32.0) is None
     found = presetting_warning(1.6, 32.0)
     assert isinstance(found, Warning)
-    assert found.message == "presetting takes 1.6 mm, 5 % of the travel to block; 10 % or more is usual"
+    assert found.message == "presetting takes 1.6 mm, 5 % of the travel to block; a set of 10 % or more is usual"
+    longer = presetting_warning(-1.6, 32.0)
+    assert longer is not None
+    assert longer.message.startswith("presetting leaves the spring longer by 1.6 mm, 5 % of the travel")
+    assert longer.value == -1.6
     elastic = presetting_warning(-9e-15, 32.0)  # by rounding
     assert elastic is not None
     assert elastic.message.startswith("presetting takes 0 mm, 0 % of")
