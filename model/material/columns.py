@@ -34,6 +34,11 @@ class Columns:
         """
         return np.array([self._number(row[name], name, line) for line, row in self.rows])
 
+    def lacks(self, name: str, wanted: str) -> InputError:
+        """The error for a column that is not there; `wanted` are those that a user gives, in words."""
+        there = shortened(", ".join(self.names))
+        return InputError(f"is missing; the columns are {wanted}, but here {there}", f"column {name}", self.path)
+
     def _number(self, text: str | None, name: str, line: int) -> float:
         try:
             value = float(text or "")

@@ -236,7 +236,7 @@ def read_table(path: str | Path) -> tuple[np.ndarray, np.ndarray]:
     table = read_columns(path)
     for name in ("strain", "stress"):
         if name not in table.names:
-            raise InputError("is missing; the columns are strain and stress (N/mm²)", f"column {name}", table.path)
+            raise table.lacks(name, "strain and stress (N/mm²)")
     return table.numbers("strain"), table.numbers("stress")
 
 

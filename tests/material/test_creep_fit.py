@@ -138,7 +138,10 @@ def test_the_command(tmp_path):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda text: text.replace("hours", "time"), "column hours is missing"),
+        (
+            lambda text: text.replace("hours", "time"),
+            "column hours: is missing; the columns are hours, temperature, loss, and stress or shear_stress, but here ",
+        ),
         (lambda text: text.replace("shear_stress", "tau"), "give one of the columns stress and shear_stress"),
         (lambda text: "\n".join(text.splitlines()[:6]), "has 4 readings; 8 are needed at least"),
         (lambda text: text.replace("\n1,", "\n-1,", 1), "line 3, column hours: -1 must lie between 0 and 1e+07"),

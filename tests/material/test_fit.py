@@ -1,5 +1,6 @@
 """Identification of the constants from the shipped synthetic tests (1 % noise), and from wrong data."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -132,8 +133,10 @@ def test_strain_in_per_cent_and_stress_in_other_units_are_refused(shipped, name)
     (test,) = (test for test in shipped if test.name == name)
     for strain, stress in ((100.0, 1.0), (1.0, 1e-3)):
         wrong = experiments.Test(name, strain * test.strain, stress * test.stress)
-        with pytest.raises(InputError, match=f"test {name}: .*give strain as a number"):
+        with pytest.raises(InputError, match=f"^{name}: .*give strain as a number"):
             fit.fit([wrong], 84000, 0.28989)
+        with pytest.raises(InputError, match=f"^{DATA / name}\\.csv: .*give strain as a number"):
+            fit.fit([replace(wrong, file=test.file)], 84000, 0.28989)
 
 
 def test_too_few_readings_of_flow_are_counted():
@@ -152,7 +155,11 @@ def test_too_few_readings_of_flow_are_counted():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda text: text.replace("tau12", "tau", 1), "column tau12: is missing"),
+        (
+            lambda text: text.replace("tau12", "tau", 1),
+            "column tau12: is missing; the columns are eps11, gamma12, sigma11, tau12, or for a tension test strain, "
+            "stress, but here eps11, gamma12, sigma11, tau",
+        ),
         (lambda text: text.replace("23.66,", "often,"), "line 4, column sigma11: 'often' is not a number"),
         (lambda text: "\n".join(text.splitlines()[:10]), "has 7 rows; a test needs at least 20"),
         (lambda text: text.replace("0.0001,", "12,"), "strain: goes up to 12; give strain as a number, 0.02 for 2 %"),

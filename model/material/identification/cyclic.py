@@ -143,7 +143,7 @@ def fit_back_stresses(tests: Iterable[Test], G: float, nu: float, terms: int, te
     for test in tests:
         if test.kind not in AXIS:
             problem = "is a test of both tension and torsion; back stresses are fitted to tests in one direction"
-            raise InputError(problem, file=test.name)
+            raise test.error(problem)
         check_units(test, (2.0 * float(G) * (1.0 + float(nu)), float(G)))
     paths = [_path(test, G, nu) for test in tests]
     _refuse_one_way(paths)

@@ -1,7 +1,7 @@
 """Laboratory tests of a material: strain paths and measured stresses, read from CSV files."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -18,12 +18,21 @@ LARGEST_STRAIN = 2.0  # of a test; above it the numbers are per cent
 
 @dataclass(frozen=True)
 class Test:
-    """A strain-controlled test: strain ε11, γ12, shape (rows, 2), and the measured stress σ11, τ12, N/mm²."""
+    """A strain-controlled test: strain ε11, γ12, shape (rows, 2), and the measured stress σ11, τ12, N/mm².
+
+    Attributes:
+        file: that it was read from, for messages; by default its name.
+    """
 
     __test__ = False  # not a test of pytest
     name: str
     strain: np.ndarray
     stress: np.ndarray
+    file: str = ""
+
+    def error(self, problem: str) -> InputError:
+        """That something is wrong with it."""
+        return InputError(problem, file=self.file or self.name)
 
     @property
     def kind(self) -> str:
@@ -55,8 +64,7 @@ def read_test(path: str | Path, engineering: bool = False) -> Test:
     sheared = any(name in table.names for name in SHEAR)
     missing = [name for name in COLUMNS if names[name] not in table.names and (sheared or name not in SHEAR)]
     if missing:
-        raise InputError(f"is missing; the columns are {', '.join(COLUMNS)}, or for a tension test strain, stress",
-                         f"column {names[missing[0]]}", table.path)  # fmt: skip
+        raise table.lacks(names[missing[0]], f"{', '.join(COLUMNS)}, or for a tension test strain, stress")
     rows = len(table.rows)
     if rows < 20:
         raise InputError(f"has {rows} rows; a test needs at least 20", file=str(table.path))
@@ -66,7 +74,7 @@ def read_test(path: str | Path, engineering: bool = False) -> Test:
     largest = np.abs(values[:, :2]).max()
     if largest > LARGEST_STRAIN:
         raise InputError(f"goes up to {largest:g}; give strain as a number, 0.02 for 2 %", "strain", str(table.path))
-    test = Test(table.path.stem, values[:, :2], values[:, 2:])
+    test = Test(table.path.stem, values[:, :2], values[:, 2:], str(table.path))
     return _true(test, table.path) if engineering else test
 
 
@@ -80,4 +88,4 @@ def _true(test: Test, path: Path) -> Test:
     strain, stress = test.strain[:end].copy(), test.stress[:end].copy()
     stress[:, 0] *= 1 + strain[:, 0]
     strain[:, 0] = np.log1p(strain[:, 0])
-    return Test(test.name, strain, stress)
+    return replace(test, strain=strain, stress=stress)

@@ -77,10 +77,9 @@ def check_units(test: Test, moduli: tuple[float, float]) -> None:
         strain, stress = np.abs(test.strain[:, component]), np.abs(test.stress[:, component])
         first = int(np.argmax(stress >= LOADED * stress.max()))
         if stress[first] < SOFTEST * moduli[component] * strain[first]:
-            raise InputError(
+            raise test.error(
                 f"at a stress of {stress[first]:.4g} its strain is {strain[first]:.4g}, far more than the elastic "
-                f"{stress[first] / moduli[component]:.2g}; give strain as a number, 0.02 for 2 %, and stress in N/mm²",
-                f"test {test.name}",
+                f"{stress[first] / moduli[component]:.2g}; give strain as a number, 0.02 for 2 %, and stress in N/mm²"
             )
 
 

@@ -55,7 +55,7 @@ def hardening(
         points.append((work[flows], k2[flows]))
     work, k2 = np.hstack(points)
     if work.size < READINGS:
-        names = ", ".join(test.name for test in tests)
+        names = ", ".join(test.file or test.name for test in tests)
         none = "no yielding is seen; are G and the unit of stress, N/mm², right, and the readings in the test's order?"
         few = f"{work.size} readings beyond a plastic strain of {100 * FLOWING:g} %, and {READINGS} are needed"
         problem = f"{few}; give more, or the curve as a table" if work.size else none

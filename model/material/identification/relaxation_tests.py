@@ -44,10 +44,11 @@ def read_relaxation(path: str | Path) -> Readings:
     table = read_columns(path)
     given = [name for name in STRESSES if name in table.names]
     missing = [name for name in NEEDED if name not in table.names]
-    if missing or len(given) != 1:
-        problem = f"column {missing[0]} is missing" if missing else "give one of the columns stress and shear_stress"
-        raise InputError(f"{problem}; the columns are hours, temperature, loss, and stress or shear_stress", "",
-                         table.path)  # fmt: skip
+    wanted = f"{', '.join(NEEDED)}, and stress or shear_stress"
+    if missing:
+        raise table.lacks(missing[0], wanted)
+    if len(given) != 1:
+        raise InputError(f"give one of the columns stress and shear_stress; the columns are {wanted}", "", table.path)
     if len(table.rows) < FEWEST:
         raise InputError(f"has {len(table.rows)} readings; {FEWEST} are needed at least", "", table.path)
     hours, temperature, loss, stress = (table.numbers(name) for name in (*NEEDED, given[0]))
