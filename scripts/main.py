@@ -353,9 +353,20 @@ def python(context: typer.Context) -> None:
 def command_line_message(error: Any) -> str:
     """Click's message on a command line, with the user's words in it, in one line of limited length."""
     said = printable(error.format_message())
+    if variable := _of_environment(error):
+        said = re.sub(r"^Invalid value for '.*?'", f"Invalid value of {variable}", said)
     said = re.sub(r"^(No such command '.*?'\.) Did you mean .*", r"\1", said)  # the guess of newer versions of typer
     said += _hint(said)
     return said if len(said) <= LONGEST_MESSAGE else f"{said[: LONGEST_MESSAGE - 3]}..."
+
+
+def _of_environment(error: Any) -> str:
+    """The environment variable from which a wrong value came; empty if it came from the command line."""
+    option, context = getattr(error, "param", None), getattr(error, "ctx", None)
+    if option is None or context is None:
+        return ""
+    source = context.get_parameter_source(option.name)
+    return str(option.envvar) if source is not None and source.name == "ENVIRONMENT" else ""
 
 
 def _hint(said: str) -> str:
