@@ -72,13 +72,15 @@ def read(folder: str | Path) -> Found:
         InputError: if it contains no readable summary or history.
     """
     folder = Path(folder)
+    if not (folder / "summary.json").is_file():
+        raise InputError("holds no results of a run: there is no summary.json", "", folder)
     summary = _read(folder / "summary.json", lambda file: json.load(file))
     rows = _read(folder / "history.csv", lambda file: list(csv.DictReader(file)))
     try:
         heights = [summary["free_length_before_mm"], *(float(row["seat_height_mm"]) for row in rows)]
         forces = [0.0, *(float(row["force_N"]) for row in rows)]
     except (KeyError, TypeError, ValueError) as error:
-        raise InputError(f"is not a result of coilset solve ({error})", "--results", folder) from None
+        raise InputError(f"is not a result of coilset solve ({error})", "", folder) from None
     return Found(summary, np.array(heights), np.array(forces), *_points(folder / "points.nc"))
 
 
@@ -90,7 +92,7 @@ def _read(path: Path, parse: Callable[[TextIO], Parsed]) -> Parsed:
         with open(path, encoding="utf-8", newline="") as file:
             return parse(file)
     except (OSError, UnicodeDecodeError, ValueError, csv.Error) as error:
-        raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", "--results", path) from None
+        raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", "", path) from None
 
 
 def _points(path: Path) -> tuple[float | None, float | None, float | None]:

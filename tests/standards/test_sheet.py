@@ -195,9 +195,12 @@ def test_wires_are_listed(capsys):
 def test_wrong_questions(case, tmp_path):
     with pytest.raises(InputError, match=r"--length: 20 mm is no working length; must be between the block length 28"):
         sheet(case, lengths=[20.0], out=tmp_path / "out")
-    with pytest.raises(InputError, match="--results: cannot be read"):
+    with pytest.raises(InputError, match=f"^{tmp_path}: holds no results of a run: there is no summary.json$"):
         sheet(case, results=tmp_path, out=tmp_path / "out")
     folder = run_folder(tmp_path / "run")
+    (folder / "history.csv").unlink()
+    with pytest.raises(InputError, match=f"^{folder}/history.csv: cannot be read"):
+        found.read(folder)
     (folder / "history.csv").write_text("a,b\n1,2\n", encoding="utf-8")
     with pytest.raises(InputError, match="is not a result of coilset solve"):
         found.read(folder)
