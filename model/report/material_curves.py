@@ -1,4 +1,4 @@
-"""The material of the wire: one point under reversed torsion."""
+"""The material of the wire: one point under reversed torsion, at the temperature of the spring."""
 
 import json
 from math import isfinite
@@ -19,8 +19,10 @@ def material_curve(results: Run) -> Panel | None:
     if not isfinite(law.yield_stress):
         return None
     far = FAR * law.yield_stress / (3.0**0.5 * law.G)
+    low, high = law.temperature_range
+    temperature = results.case.get("temperature") or low
     steps = [Step(to={"gamma12": to}, increments=number * INCREMENTS) for number, to in ((1, far), (2, -far), (2, far))]
-    history = run(law, Program(name="there and back", steps=tuple(steps)))
+    history = run(law, Program(name="there and back", temperature=temperature, steps=tuple(steps)))
     trace = {
         "type": "scatter",
         "mode": "lines",
@@ -29,7 +31,8 @@ def material_curve(results: Run) -> Panel | None:
         "line": {**LINE, "color": COLOURS[0]},
         "showlegend": False,
     }
-    finding = f"{law.name}: twisted to {100.0 * far:.2g} % shear, {abs(history.stress[INCREMENTS, 1]):.0f} MPa"
+    at = f" at {temperature:g} K" if low < high else ""
+    finding = f"{law.name}{at}: twisted to {100.0 * far:.2g} % shear, {abs(history.stress[INCREMENTS, 1]):.0f} MPa"
     return Panel(
         "material",
         finding,

@@ -129,6 +129,21 @@ def test_a_law_that_never_yields_has_no_curve(folder):
     assert material_curve(replace(run, data=run.data.assign_attrs(material_file=elastic))) is None
 
 
+def test_a_law_of_several_temperatures_is_drawn_at_that_of_the_spring(folder):
+    """The creeping wire is softer at 373 K, by its G at the first readings."""
+    run = open_run(folder)
+    law = library.load("creeping")
+    data = run.data.assign_attrs(material_file=law.data.model_dump_json())
+    slopes = []
+    for temperature in (None, 373.15):
+        case = run.case | {"temperature": temperature}
+        panel = material_curve(replace(run, data=data, summary={**run.summary, "origin": {"case": case}}))
+        assert f" at {temperature or law.reference_temperature:g} K: twisted" in panel.title
+        slopes.append(100.0 * panel.traces[0]["y"][3] / panel.traces[0]["x"][3])
+    assert slopes == pytest.approx([law.moduli(T)[1] for T in (law.reference_temperature, 373.15)], rel=1e-3)
+    assert " K" not in material_curve(run).title  # of constants for one temperature
+
+
 def test_each_step_can_be_slid_to(folder, page):
     """As many moments as steps and the start, where phases end those of the snapshots, which are kept apart."""
     run = open_run(folder)
