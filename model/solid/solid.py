@@ -55,7 +55,8 @@ class Solid:
         self.u = self.increment.x.array.reshape(-1, 3)
         self.n_cells = wire.mesh.topology.index_map(3).size_local
         self.n_points = len(self.forms.points)
-        rows = points.initial_state(self.n_cells * self.n_points).reshape(self.n_cells, self.n_points, -1)
+        rows = points.initial_state(self.n_cells * self.n_points)
+        rows = rows.reshape(self.n_cells, self.n_points, rows.shape[1])  # a rank may have no cells
         self.state = State()
         self._x = self.state.add("x", self.configuration.x.copy(), Where.STATION)
         self._points = self.state.add("point_state", rows, Where.CELL)

@@ -5,6 +5,8 @@ import pytest
 from mpi4py import MPI
 from solid_laws import Elastic, IdealPlastic
 
+from coilset.meshes import solid
+from coilset.meshes.compat import to_ranks
 from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.solid import SectionGrid, coil_section, straight_wire
 from coilset.model.equilibrium.settings import StepControl
@@ -108,6 +110,23 @@ def test_all_ranks_together_find_what_one_finds(solver):
         results.append([(s.travel, s.force, s.torque) for s in program.stations])
     scale = np.abs(results[0]).max(axis=0)
     assert np.all(np.abs(np.array(results[0]) - results[1]) < 1e-8 * scale)
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("solver", ["direct", "multigrid"])
+def test_a_rank_without_cells_takes_part(monkeypatch, solver):
+    def all_on_the_first(comm, ranks, kinds, nodes):
+        return to_ranks(np.zeros(len(nodes[0]) // 8))
+
+    monkeypatch.setattr(solid, "unghosted", lambda: all_on_the_first)
+    results = []
+    for comm in (MPI.COMM_SELF, MPI.COMM_WORLD):
+        wire = straight_wire(d, L, 8, comm, SectionGrid(1, 1))
+        problem = SolidProblem(wire, MaterialPoints(library.load("ck15")), solver, precision=1e-10)
+        problem.step(Motion(rotation=(0.0, 0.0, 0.05)))
+        stress = SectionSample(problem.solid, 0.5 * L, *disk_grid(R, 2, 8)).stress()
+        results.append(np.append(problem.reactions(ORIGIN)[1].moment, stress))
+    assert np.abs(results[1] - results[0]).max() < 1e-7 * np.abs(results[0]).max()
 
 
 @pytest.mark.mpi
