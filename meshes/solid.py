@@ -158,7 +158,9 @@ def coil_section(
     """
     if not mean_diameter > wire_diameter:
         raise InputError(f"{mean_diameter} mm is not more than the wire's {wire_diameter} mm", "mean_diameter")
-    if not degrees > 0:
+    if not np.isfinite(pitch):
+        raise InputError(f"{pitch} mm is not possible; give a rise per turn", "pitch")
+    if not 0 < degrees < np.inf:
         raise InputError(f"{degrees}° is not possible; give a positive angle", "degrees")
     helix = Helix(mean_diameter, pitch, degrees)
     wire = straight_wire(wire_diameter, helix.length, layers, comm, grid, cell)
