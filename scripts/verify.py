@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from mpi4py import MPI
+from rich.markup import escape
 from rich.table import Table
 
 from coilset.meshes.errors import CoilsetError, InputError
@@ -42,8 +43,8 @@ def verify(names: Sequence[str] | None, out: str | Path, fast: bool, page_file: 
     began = time.perf_counter()
     found = {case.name: _run(case, Path(out) / case.name, console) for case in cases}
     console.print(_all_checks(found))
-    judged = [check for study, _ in found.values() for check in study.checks if check.judged]
-    shown = sum(not check.judged for study, _ in found.values() for check in study.checks)
+    judged = [check for study in found.values() for check in study.checks if check.judged]
+    shown = sum(not check.judged for study in found.values() for check in study.checks)
     met = sum(check.passed for check in judged)
     console.print(f"{len(cases)} case(s) in {time.perf_counter() - began:.0f} s; {len(judged)} numbers judged: "
                   f"{met} met, {len(judged) - met} not met; {shown} shown but not judged")  # fmt: skip
@@ -51,7 +52,7 @@ def verify(names: Sequence[str] | None, out: str | Path, fast: bool, page_file: 
         with whole(Path(page_file)) as path:
             before = Path(page_file).read_text(encoding="utf-8") if Path(page_file).exists() else ""
             path.write_text(page(out, before), encoding="utf-8")
-    off = [name for name, (study, problem) in found.items() if problem or not study.passed]
+    off = [name for name, study in found.items() if not study.passed]
     console.print(f"[red]off: {', '.join(off)}[/]" if off else "[green]all judged numbers within tolerance[/]")
     return 1 if off else 0
 
@@ -66,15 +67,15 @@ def show() -> None:
     Console().print(table)
 
 
-def _run(case: registry.Case, folder: Path, console: Console) -> tuple[Study, str]:
-    """The Study of a case, and a description of what went wrong."""
+def _run(case: registry.Case, folder: Path, console: Console) -> Study:
+    """The Study of a case, written."""
     console.rule(f"[bold]{case.name}[/]: {case.title}", align="left")
-    study, began, problem = Study(folder), time.perf_counter(), ""
+    study, began = Study(folder), time.perf_counter()
     try:
         case.run(study)
     except (CoilsetError, RuntimeError) as error:
-        problem = str(error)
-        console.print(f"[red]{problem}[/]")
+        study.stopped = str(error)
+        console.print(f"[red]{escape(study.stopped)}[/]")
     study.write(case.name)
     for table in study.tables:
         console.print(_plain_table(table))
@@ -82,23 +83,23 @@ def _run(case: registry.Case, folder: Path, console: Console) -> tuple[Study, st
         console.print(note)
     files = ", ".join([*study.figures, "record.json"])
     console.print(f"{time.perf_counter() - began:.1f} s; {files} in {folder}{os.sep}\n")
-    return study, problem
+    return study
 
 
-def _all_checks(found: Mapping[str, tuple[Study, str]]) -> Table:
+def _all_checks(found: Mapping[str, Study]) -> Table:
     """Every number of every case: what, computed, reference, deviation, tolerance, verdict."""
     table = Table(box=None, padding=(0, 1), header_style="bold")
     for column in ("case", "quantity", "computed", "reference", "deviation", "tolerance", "verdict", "source"):
         table.add_column(
             column, justify="right" if column in ("computed", "reference", "deviation", "tolerance") else "left"
         )
-    for name, (study, problem) in found.items():
+    for name, study in found.items():
         for check in study.checks:
             style = "" if check.judged and check.passed else "red" if check.judged else "yellow"
             row = [name, check.quantity, _number(check.ours), *_limits(check), check.verdict, check.source]
             table.add_row(*row, style=style)
-        if problem:
-            table.add_row(name, "", "", "", "", "", f"stopped: {problem}", "", style="red")
+        if study.stopped:
+            table.add_row(name, "", "", "", "", "", escape(f"stopped: {study.stopped}"), "", style="red")
     return table
 
 

@@ -35,8 +35,10 @@ def page(folder: str | Path, before: str = "") -> str:
         case, file = registry.load(name), Path(folder) / name / "record.json"
         speed = "" if case.fast else " *(slow)*"
         texts.append(f"- **{name}**{speed}: {case.title}")
-        checks = json.loads(file.read_text(encoding="utf-8"))["checks"] if file.exists() else []
-        if not checks or "verdict" not in checks[0]:  # a record from before there were verdicts counts as none
+        record = json.loads(file.read_text(encoding="utf-8")) if file.exists() else {"checks": []}
+        checks, stopped = record["checks"], record.get("stopped", "")
+        # a record from before there were verdicts counts as none
+        if not stopped and (not checks or "verdict" not in checks[0]):
             kept = [line for line in before.splitlines() if line.startswith(f"| `{name}` |")]
             lines += kept or [_line(f"`{name}`", "", "", "", "", "", "", "", "not run")]
             continue
@@ -44,10 +46,12 @@ def page(folder: str | Path, before: str = "") -> str:
         for check in checks:
             groups.setdefault((check["source"], bool(check["reason"])), []).append(check)
         for (source, _), group in groups.items():
-            worst = max(group, key=_used)
+            worst = max(group, key=lambda check: (check["verdict"] == "not met", _used(check)))
             failed = sum(check["verdict"] == "not met" for check in group)
             verdict = f"{failed} of {len(group)} not met" if failed else worst["verdict"]
             lines.append(_line(f"`{name}`", source, str(len(group)), worst["quantity"], *_numbers(worst), verdict))
+        if stopped:
+            lines.append(_line(f"`{name}`", "", "", "", "", "", "", "", f"stopped: {stopped}"))
     return HEAD + "\n".join(lines) + "\n\n## The cases\n\n" + "\n".join(texts) + "\n"
 
 

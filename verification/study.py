@@ -84,11 +84,15 @@ class Study:
 
     Args:
         folder: where figures and record.json go; created if missing.
+
+    Attributes:
+        stopped: what ended the case before its end; empty if it came there.
     """
 
     def __init__(self, folder: str | Path) -> None:
         self.folder = Path(folder)
         make(self.folder)
+        self.stopped = ""
         self.checks: list[Check] = []
         self.tables: list[dict[str, Any]] = []
         self.notes: list[str] = []
@@ -140,9 +144,9 @@ class Study:
 
     @property
     def passed(self) -> bool:
-        """All numbers that are judged are within their tolerances, and there is at least one."""
+        """The case came to its end, and all of its judged numbers, one at least, are within their tolerances."""
         judged = [check for check in self.checks if check.judged]
-        return bool(judged) and all(check.passed for check in judged)
+        return not self.stopped and bool(judged) and all(check.passed for check in judged)
 
     def write(self, name: str) -> None:
         """The figures, and record.json."""
@@ -150,8 +154,8 @@ class Study:
             add_title(figure, self.finding)
             save(figure, self.folder / file)
         checks = [asdict(check) | {"deviation": check.deviation, "verdict": check.verdict} for check in self.checks]
-        record = {"case": name, "passed": self.passed, "checks": checks, "tables": self.tables, "notes": self.notes,
-                  "figures": self.figures}  # fmt: skip
+        record = {"case": name, "passed": self.passed, "stopped": self.stopped, "checks": checks,
+                  "tables": self.tables, "notes": self.notes, "figures": self.figures}  # fmt: skip
         with whole(self.folder / "record.json") as path:
             path.write_text(json.dumps(json_ready(record), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 

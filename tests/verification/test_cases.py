@@ -1,11 +1,15 @@
 """The fast cases of verification are part of the tests; and a case that is off is said to be."""
 
+import json
 from pathlib import Path
 
 import pytest
 from matplotlib.figure import Figure
 
+from coilset.meshes.errors import SolveError
+from coilset.scripts.verify import verify
 from coilset.verification import registry
+from coilset.verification.cases import two_circles
 from coilset.verification.page import page
 from coilset.verification.study import Study
 
@@ -87,6 +91,31 @@ def test_the_page_tells_what_uses_most_of_its_tolerance(tmp_path):
     assert page(tmp_path, before) == page(tmp_path).replace(
         "| `elastica` |  |  |  |  |  |  |  | not run |", "| `elastica` | of before |"
     )
+
+
+def test_the_page_shows_a_number_that_is_not_met(tmp_path):
+    study = Study(tmp_path / "two-circles")
+    study.check("near its limit", 1.09, 1.0, "closed", 0.1)
+    study.check("off, and no deviation is allowed", 1.01, 1.0, "closed", 0.0, "absolute")
+    study.check("off, and a bound", 6.001, 6.0, "closed", kind="at_most")
+    study.write("two-circles")
+    (row,) = [line for line in page(tmp_path).splitlines() if line.startswith("| `two-circles`")]
+    assert "| off, and" in row
+    assert row.endswith("| 2 of 3 not met |")
+
+
+def test_a_case_that_stops_has_not_passed_and_the_page_says_so(tmp_path, monkeypatch, capsys):
+    def stops(study):
+        study.check("first", 1.0, 1.0, "closed", 0.1)
+        raise SolveError("no equilibrium at step 3")
+
+    monkeypatch.setattr(two_circles, "run", stops)
+    assert verify(["two-circles"], tmp_path, fast=False, page_file=str(tmp_path / "page.md")) == 1
+    assert not json.loads((tmp_path / "two-circles" / "record.json").read_text())["passed"]
+    rows = [line for line in page(tmp_path).splitlines() if line.startswith("| `two-circles`")]
+    assert rows[0].endswith("| met |")
+    assert rows[1].endswith("| stopped: no equilibrium at step 3 |")
+    assert (tmp_path / "page.md").read_text() == page(tmp_path)
 
 
 def test_the_page_in_docs_names_every_case():
