@@ -11,8 +11,9 @@ series get normal noise with a standard deviation of 0.4 % of the load, each is 
 counted whose 95 % interval holds the truth: of 200 series 190 on average, with a standard deviation of 3.1.
 
 Tolerance: without scatter, 0.1 %; three standard deviations of the number of intervals: right intervals miss them with
-a chance of 0.4 % for each constant, and intervals so wide that they always held would miss them, too. Fits of sinh take
-long, so that there are only 40 series of them. The seeds are fixed.
+a chance of 0.4 % for each constant, and of 200 series intervals so wide that they always held would miss them, too.
+Fits of sinh take long, so that there are only 40 series of them, too few to tell intervals that are too wide. The seeds
+are fixed.
 """
 
 from dataclasses import replace

@@ -6,7 +6,8 @@ sideways and let them roll (docs/contact.md). What is known about them:
 - The end coils bear unevenly, so the resultant is off the axis, and wanders as they roll down on the seats (thesis,
   7.1, figures 7.2 and 7.3, and 7.2.2, after Huhnen, Draht 17 and 18, 1966/67, and Grueber, 1981). While they lie down
   the rate grows, and below a certain load of the release they lift off and it falls again (thesis, 7.2.2). The thesis
-  prints no numbers, and its figure 7.14 is lost.
+  prints no numbers, and its figure 7.14 is lost: the bounds are ours, a third of the radius for the final centre of
+  pressure and 0.6 for the rate after lift-off over the rate before.
 - Springs with closed ends that are not ground are not linear at first: their end coils are out of balance and let the
   spring bend until it is stable (Cadet and others, Mechanics & Industry 22, 50, 2021: three slopes).
 

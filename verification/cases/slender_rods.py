@@ -53,7 +53,7 @@ def elastica(slenderness: float, elements: int) -> tuple[list[int], bool, float]
 
 
 def circles(slenderness: float, elements: int) -> tuple[list[int], bool, float]:
-    """Iterations, whether all steps converged, and the distance of the distance of the tip from the clamp over L."""
+    """Iterations, whether all steps converged, and the distance of the tip from the clamp over L."""
     plane = [(node, (Z, ROTATION_X, ROTATION_Y)) for node in range(1, elements + 1)]
     frame = chain(straight(LENGTH, elements), slenderness * LENGTH, library.load("elastic"), held=[(0, ALL), *plane])
     counts, done = take_steps(frame, moves={frame.dof(elements, ROTATION_Z): 4.0 * np.pi})
