@@ -56,7 +56,8 @@ def kinds(solid: Solid) -> dict[str, np.ndarray]:
         rod = pressing.run_rod(solid.case, {"kind": kind, **FINE})
         found[kind] = np.append(of_turn(rod, solid.case.steps), rod["force"][1])
     coil = press_slice(solid.index, solid.case.pitch, solid.case.travel, material=solid.material)
-    found["slice"] = ends(solid.case) * [coil.force[-1], coil.set_mm, -abs(coil.released[0])]
+    # its third axis points up, that of the solid down
+    found["slice"] = ends(solid.case) * [coil.force[-1], coil.set_mm, -coil.released[0]]
     return found
 
 

@@ -28,7 +28,7 @@ def of_coil(case: PressedSection) -> np.ndarray:
     places = 0.5 * WIRE * rule.points.T
     end = {"y": places[0], "z": places[1], "stress": state.points[0, :, :3]}
     shear = np.interp(INSIDE, *diameter({"end": end}, "end"))
-    return np.array([forces[0, -1], back[0, 0], -abs(shear)])
+    return np.array([forces[0, -1], back[0, 0], -shear])  # its third axis points up, that of a clamped turn down
 
 
 def ends(case: PressedSection) -> np.ndarray:
