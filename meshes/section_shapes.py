@@ -119,13 +119,13 @@ class Curve:
 
     @classmethod
     def read(cls, path: str | Path, smooth: bool = False) -> "Curve":
-        """Read a CSV file with two columns ξ, η in mm; only the first line may be other than a pair of numbers.
+        """Read a CSV file with two columns ξ, η in mm; its first line may name them, without a number in it.
 
         Raises:
             InputError: if it cannot be read, with the line.
         """
         try:
-            with open(path, newline="", encoding="utf-8") as file:
+            with open(path, newline="", encoding="utf-8-sig") as file:
                 rows = [(number, row) for number, row in enumerate(csv.reader(file), 1) if any(map(str.strip, row))]
         except (OSError, UnicodeDecodeError) as error:
             raise InputError(f"cannot be read ({getattr(error, 'strerror', None) or error})", "", path) from None
@@ -134,7 +134,7 @@ class Curve:
             try:
                 ξ, η = map(float, row)
             except ValueError:
-                if number == rows[0][0]:
+                if number == rows[0][0] and not any(map(_is_number, row)):
                     continue  # the columns' names
                 raise InputError(f"'{','.join(row)}' is not a pair of numbers ξ, η in mm", f"line {number}",
                                  path) from None  # fmt: skip
@@ -150,6 +150,14 @@ class Curve:
             return _rounded(self.points, 0.0)
         tags = [gmsh.model.occ.addPoint(ξ, η, 0) for ξ, η in self.points]
         return [gmsh.model.occ.addSpline([*tags, tags[0]])]
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def signed_area(points: np.ndarray) -> float:

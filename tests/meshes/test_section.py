@@ -136,3 +136,13 @@ def test_wrong_line_of_a_file(tmp_path):
     path.write_text("xi,eta\n0,0\n1,zero\n1,1\n")
     with pytest.raises(InputError, match="line 3"):
         Curve.read(path)
+
+
+def test_the_first_line_of_a_file_is_a_point_unless_it_names_the_columns(tmp_path):
+    path, square = tmp_path / "outline.csv", "-2,-2\n2,-2\n2,2\n-2,2\n"
+    for head, encoding in (("", "utf-8"), ("", "utf-8-sig"), ("xi,eta\n", "utf-8-sig")):
+        path.write_text(head + square, encoding=encoding)
+        assert len(Curve.read(path).points) == 4
+    path.write_text(square.replace("-2,-2", "-2,-2x"))
+    with pytest.raises(InputError, match=r"line 1: '-2,-2x' is not a pair"):
+        Curve.read(path)
