@@ -61,9 +61,10 @@ class MeasuredSpec(Strict):
         if wire is not None and self.wire_diameter is not None:
             raise InputError(f"the file {path} has wire diameters too; leave this entry out", "spring.wire_diameter")
         wire = np.full(len(points), self.wire_diameter) if wire is None else wire
+        numbers = np.arange(1, len(points) + 1)
         if points[-1, 2] < points[0, 2]:  # the bottom end comes first
-            points, wire = points[::-1], wire[::-1]
-        turn, hand, phase = _turns(points, path)
+            points, wire, numbers = points[::-1], wire[::-1], numbers[::-1]
+        turn, hand, phase = _turns(points, numbers, path)
         # radius and height have the same noise as a coordinate
         fit = functions.smoothed if self.noise > 0 else lambda t, y, noise: functions.tabulated(t, y, "spline")
         radius = fit(turn, np.hypot(points[:, 0], points[:, 1]), self.noise)
@@ -111,14 +112,17 @@ def read_centre_line(path: str | Path) -> tuple[np.ndarray, np.ndarray | None]:
 def _read_csv(path: Path) -> tuple[np.ndarray, np.ndarray | None]:
     """Columns x, y, z and perhaps wire_diameter, named in the first line, separated by commas."""
     try:
-        lines = [line for line in path.read_text(encoding="utf-8-sig").splitlines() if line.strip()]
+        text = path.read_text(encoding="utf-8-sig").splitlines()
     except UnicodeDecodeError:
         raise InputError("it is not a text file", "", path) from None
-    names = [name.strip() for name in lines[0].split(",")] if lines else []
+    lines = [(number, line) for number, line in enumerate(text, 1) if line.strip()]
+    first, head = lines[0] if lines else (1, "")
+    names = [name.strip() for name in head.split(",")]
     if names not in (["x", "y", "z"], ["x", "y", "z", WIRE_DIAMETER]):
-        raise InputError(f"the columns must be x,y,z or x,y,z,{WIRE_DIAMETER}, not {','.join(names)!r}", "line 1", path)
+        problem = f"the columns must be x,y,z or x,y,z,{WIRE_DIAMETER}, not {','.join(names)!r}"
+        raise InputError(problem, f"line {first}", path)
     rows = []
-    for number, line in enumerate(lines[1:], start=2):
+    for number, line in lines[1:]:
         try:
             row = [float(text) for text in line.split(",")]
         except ValueError:
@@ -176,8 +180,8 @@ def _chain(lines: np.ndarray, path: str | Path) -> np.ndarray:
     return np.array(order)
 
 
-def _turns(points: np.ndarray, path: str | Path) -> tuple[np.ndarray, int, float]:
-    """Turns of the points from the first, hand, and polar angle of the first, rad."""
+def _turns(points: np.ndarray, numbers: np.ndarray, path: str | Path) -> tuple[np.ndarray, int, float]:
+    """Turns of the points from the first, hand, and polar angle of the first, rad; the file has their numbers."""
     angle = np.arctan2(points[:, 1], points[:, 0])
     step = (np.diff(angle) + np.pi) % (2 * np.pi) - np.pi
     hand = 1 if step.sum() > 0 else -1
@@ -187,15 +191,16 @@ def _turns(points: np.ndarray, path: str | Path) -> tuple[np.ndarray, int, float
         raise InputError(
             "the wire does not continue around the z axis here; the axis of the spring must be the z axis, "
             "and no point may occur twice",
-            f"point {i + 2}",
+            f"point {numbers[i + 1]}",
             path,
         )
     wide = np.abs(step) > 2 * np.pi * WIDEST_STEP
     if wide.any():
         i = int(np.argmax(wide))
         raise InputError(
-            f"is {np.degrees(abs(step[i])):.0f}° away from the point before; must be at most {360 * WIDEST_STEP:.0f}°",
-            f"point {i + 2}",
+            f"is {np.degrees(abs(step[i])):.0f}° away from point {numbers[i]}; must be at most "
+            f"{360 * WIDEST_STEP:.0f}°",
+            f"point {numbers[i + 1]}",
             path,
         )
     return np.concatenate([[0.0], np.cumsum(np.abs(step))]) / (2 * np.pi), hand, float(angle[0])

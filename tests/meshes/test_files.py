@@ -160,7 +160,7 @@ WRONG_TABLES = [
         "point 10: the wire does not continue around the z axis here; the axis of the spring must be the z axis, and "
         "no point may occur twice",
     ),
-    (HEAD + "".join(POINTS[::5]), "point 2: is 143° away from the point before; must be at most 120°"),
+    (HEAD + "".join(POINTS[::5]), "point 2: is 143° away from point 1; must be at most 120°"),
     (
         "".join([HEAD.replace(",wire_diameter", ""), *(row.replace(",5\n", "\n") for row in POINTS)]),
         "has no wire_diameter; give spring.wire_diameter",
@@ -211,3 +211,22 @@ def test_order_of_points_and_elements_does_not_matter(tmp_path):
     meshio.Mesh(helix.centre_line(turns)[shuffle], [("line3", quadratic)]).write(tmp_path / "wire.vtu")
     spring = MeasuredSpec(file=str(tmp_path / "wire.vtu"), wire_diameter=5.0).build()
     np.testing.assert_allclose(spring.centre_line(turns), helix.centre_line(turns), atol=1e-9)
+
+
+@pytest.mark.parametrize("downwards", [False, True])
+@pytest.mark.parametrize(("step", "problem"), [(0.0, "the wire does not"), (0.4, "is 144° away from point {}")])
+def test_the_number_of_a_wrong_point_is_that_in_the_file(tmp_path, downwards, step, problem):
+    steps = np.full(39, 0.075)
+    steps[3] = step  # from the fourth point to the fifth
+    helix = SpringSpec(wire_diameter=5.0, mean_diameter=40.0, turns=4.0, pitch=12.0).build()
+    points = helix.centre_line(np.append(0.0, np.cumsum(steps)))
+    np.savetxt(tmp_path / "scan.csv", points[:: -1 if downwards else 1], delimiter=",", header="x,y,z", comments="")
+    before, number = (37, 36) if downwards else (4, 5)
+    with pytest.raises(InputError, match=f"point {number}: {problem.format(before)}"):
+        MeasuredSpec(file=str(tmp_path / "scan.csv"), wire_diameter=5.0).build()
+
+
+def test_the_number_of_a_wrong_line_counts_empty_ones(tmp_path):
+    (tmp_path / "scan.csv").write_text("\nx,y,z\n\n1,2,3\n1,2,x\n")
+    with pytest.raises(InputError, match="line 5: '1,2,x': must be 3 numbers"):
+        MeasuredSpec(file=str(tmp_path / "scan.csv"), wire_diameter=5.0).build()
