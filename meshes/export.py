@@ -25,6 +25,8 @@ def check_format(path: str | Path) -> None:
     if suffix != ".msh" and suffix not in meshio.extension_to_filetypes:
         named = f"'{suffix}' is no format of a mesh" if suffix else "has no suffix to say its format"
         raise InputError(f"{named}; use .vtu, .msh, .inp or .xdmf", "--write", path)
+    if suffix == ".msh" != Path(path).suffix:
+        raise InputError("gmsh knows its format by small letters; give .msh", "--write", path)
     if suffix in SURFACES:
         raise InputError(f"{suffix} files hold no line elements; use .vtu, .msh, .inp or .xdmf", "--write", path)
 
@@ -58,8 +60,8 @@ def _write_meshio(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarr
     nodes = np.arange(len(points))
     lines = np.stack([nodes[:-1], nodes[1:]], axis=1)
     mesh = meshio.Mesh(points, [("line", lines)], point_data=data, cell_data={"end_coil": [(coil != 1).astype(int)]})
-    options = {"data_format": "XML"} if path.suffix == ".xdmf" else {}
-    if path.suffix == ".inp":  # Abaqus has sets instead of data, with names without spaces
+    options = {"data_format": "XML"} if path.suffix.lower() == ".xdmf" else {}
+    if path.suffix.lower() == ".inp":  # Abaqus has sets instead of data, with names without spaces
         elements = {"wire": [nodes[:-1]], "end_coils": [nodes[:-1][coil != 1]]}
         mesh = meshio.Mesh(
             points, [("line", lines)], cell_sets=elements, point_sets={"bottom_end": nodes[:1], "top_end": nodes[-1:]}

@@ -110,9 +110,10 @@ def test_gmsh_groups(barrel, tmp_path):
     np.testing.assert_allclose(nodes["top end"], ends[1:], atol=1e-9)
 
 
-def test_abaqus_sets(barrel, tmp_path):
-    write_mesh(barrel, barrel.stations(16), tmp_path / "spring.inp")
-    mesh = meshio.read(tmp_path / "spring.inp")
+@pytest.mark.parametrize("suffix", [".inp", ".INP"])
+def test_abaqus_sets(barrel, tmp_path, suffix):
+    write_mesh(barrel, barrel.stations(16), tmp_path / f"spring{suffix}")
+    mesh = meshio.read(tmp_path / f"spring{suffix}")
     assert len(mesh.cell_sets["end_coils"][0]) == 32
     assert mesh.point_sets["top_end"].tolist() == [len(mesh.points) - 1]
 

@@ -50,6 +50,13 @@ def test_files_and_pictures(tmp_path, capsys):
     mesh(SPRINGS / "closed_and_ground.yaml", out=out, write=[str(file)], force=True)
 
 
+def test_gmsh_writes_small_letters_only(tmp_path):
+    file = tmp_path / "spring.MSH"
+    with pytest.raises(InputError, match=r"--write: gmsh knows its format by small letters; give \.msh"):
+        mesh(SPRINGS / "cone.yaml", pictures=False, write=[str(file)])
+    assert not file.exists()
+
+
 def test_wrong_case_names_file_and_entry(capsys):
     case = SPRINGS / "cone.yaml"
     with pytest.raises(InputError, match=r"cone\.yaml: spring\.mean_diameter: the wire is thicker than the coil"):
