@@ -7,10 +7,10 @@ from pathlib import Path
 from coilset.meshes.errors import InputError
 from coilset.model.warning import Warning
 
-# Measured with 96 points per section, docs/scaling.md: 37 of 48 µs for the law, 10.8 of 26 kB for the points and their
-# finer path, which tells the error of the steps.
-SECONDS_OF_POINT = 37e-6 / 96
-SECONDS_OF_ELEMENT = 11e-6
+# Measured with 96 points per section, docs/scaling.md: 16.5 of 25.7 µs for the law, 10.8 of 26 kB for the points and
+# their finer path, which tells the error of the steps.
+SECONDS_OF_POINT = 16.5e-6 / 96
+SECONDS_OF_ELEMENT = 9.2e-6
 BYTES_OF_POINT = 5.4e3 / 96
 BYTES_OF_ELEMENT = 15.2e3
 BYTES_OF_PROGRAM = 0.3e9  # with all its libraries
