@@ -22,7 +22,8 @@ from coilset.model.processes import end_with_parent, first_rank
 NOTICE = "coilset: compiling forms and kernels, once after an installation or a change; this takes some minutes ..."
 NOTICE_OF_PART = "coilset: compiling what this command needs, once ..."
 COMPILE = [sys.executable, "-m", "coilset.scripts", "compile"]
-OF_A_RANK = ("OMPI_", "PMI", "PRTE_")  # variables by which mpirun tells a process that it is a rank
+OF_A_RANK = ("OMPI_", "PMI", "PRTE_")  # variables by which mpirun tells a process that it is a rank, but for
+ALLOWED = "OMPI_ALLOW_"  # those without which it starts none as root
 
 
 class Announcement(logging.Handler):
@@ -74,7 +75,8 @@ def compile_first(check: Callable[[], object] = bool, say: Callable[[str], None]
     check()
     say(NOTICE)
     begun = time.monotonic()
-    environment = {name: value for name, value in os.environ.items() if not name.startswith(OF_A_RANK)}
+    environment = {name: value for name, value in os.environ.items()
+                   if name.startswith(ALLOWED) or not name.startswith(OF_A_RANK)}  # fmt: skip
     with contextlib.suppress(OSError):  # if nothing can be stored, each process compiles for itself
         done.parent.mkdir(parents=True, exist_ok=True)
         with open(done.with_suffix(".lock"), "w") as lock:
