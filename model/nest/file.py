@@ -59,11 +59,13 @@ class Nest:
         cases: of the outer and the inner spring.
         loading: as in the file.
         path: of the file.
+        files: of the two cases.
     """
 
     cases: tuple[Case, Case]
     loading: tuple[Press, ...]
     path: Path
+    files: tuple[Path, Path]
 
 
 def read_nest(path: str | Path) -> Nest:
@@ -74,9 +76,8 @@ def read_nest(path: str | Path) -> Nest:
     """
     path = Path(path)
     data = check_entries(read_data(path, KIND), NestFile, path)
-    cases = []
-    for name in NAMES:
-        file = path.parent / getattr(data, name).case
+    cases, files = [], [path.parent / getattr(data, name).case for name in NAMES]
+    for file in files:
         case = read_case(file)
         if case.ends != "seats":
             raise InputError("a nest stands between seats; give ends: seats", "ends", file)
@@ -86,4 +87,4 @@ def read_nest(path: str | Path) -> Nest:
         if case.heat is not None:
             raise InputError("takes time to flow, and the seats of a nest take none; leave it out", "heat", file)
         cases.append(case)
-    return Nest((cases[0], cases[1]), tuple(data.loading), path)
+    return Nest((cases[0], cases[1]), tuple(data.loading), path, (files[0], files[1]))

@@ -6,8 +6,10 @@ the largest distance of the one and the least distance of the other from the axi
 is sufficient, not necessary: a cone may stand in a cone with less. Contact between the two is not computed.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
@@ -16,6 +18,7 @@ from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.geometry import Spring
 from coilset.model.analysis import Analysis
 from coilset.model.case import Case
+from coilset.model.case.phases import Phase, Target
 from coilset.model.nest.clearance import inside, outside
 from coilset.model.nest.file import NAMES, Nest
 from coilset.model.nest.plan import Plan, plan
@@ -85,7 +88,7 @@ def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: N
         InputError: if the inner spring has no room in the outer one, or a case is wrong.
         SolveError: if a spring finds no equilibrium, or the springs would touch each other.
     """
-    springs = [case.spring.build() for case in nest.cases]
+    springs = [_build(case, file) for case, file in zip(nest.cases, nest.files, strict=True)]
     turns = [np.linspace(0.0, one.turns, 64 * int(np.ceil(one.turns)) + 1) for one in springs]
     wires = [one.centre_line(t) for one, t in zip(springs, turns, strict=True)]
     room, reach = inside(springs[0], turns[0], wires[0]), outside(springs[1], turns[1], wires[1])
@@ -96,7 +99,7 @@ def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: N
         heights = plan(nest.loading, springs)
     except InputError as error:
         raise InputError(error.problem, error.place, nest.path) from None
-    members = tuple(_run(name, case, heights, told, threads) for name, case in zip(NAMES, nest.cases, strict=True))
+    members = tuple(_run(nest, number, heights, told, threads) for number in range(len(NAMES)))
     steps = [_steps(member, heights) for member in members]
     forces = np.array([[0.0 if step is None else step.force_N for step in one] for one in steps])
     clearance = _clearance(members, steps)
@@ -104,15 +107,34 @@ def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: N
     return Pressed(heights, (members[0], members[1]), forces, clearance, tuple(_hands(springs)))
 
 
-def _run(name: str, case: Case, heights: Plan, told: Callable[[str, Step], object], threads: int) -> Member:
-    """Run one spring's own program."""
-    program = heights.program(case.spring.build().free_length)
-    analysis = Analysis(case.model_copy(update={"loading": program or case.loading}), MPI.COMM_SELF,
-                        threads=threads)  # fmt: skip
+def _build(case: Case, file: Path) -> Spring:
+    with _naming(file):
+        return case.spring.build()
+
+
+def _run(nest: Nest, number: int, heights: Plan, told: Callable[[str, Step], object], threads: int) -> Member:
+    """Run one spring through the heights at which the seats touch it."""
+    name, case = NAMES[number], nest.cases[number]
+    with _naming(nest.files[number]):
+        program = heights.program(case.spring.build().free_length)
+        loading = program or [Phase(to=Target(force=0.0), steps=1)]  # its own is that of another run
+        analysis = Analysis(case.model_copy(update={"loading": loading}), MPI.COMM_SELF, threads=threads)
     if not program:
         return Member(name, case, analysis.setup, None)
-    analysis.run(lambda step: told(name, step))
+    try:
+        analysis.run(lambda step: told(name, step))
+    except SolveError as error:
+        raise SolveError(f"{name}: {error}") from None
     return Member(name, analysis.case, analysis.setup, analysis.result)
+
+
+@contextmanager
+def _naming(file: Path) -> Iterator[None]:
+    """Context in which wrong input is that of a case's file."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(error.problem, error.place, error.file or file) from None
 
 
 def _steps(member: Member, heights: Plan) -> list[Step | None]:

@@ -102,6 +102,27 @@ def test_nests_without_room_are_refused_with_the_numbers(tmp_path):
         press(read_nest(near))
 
 
+def test_what_is_wrong_with_a_spring_names_its_file(tmp_path):
+    """Entries that fit each other only when the spring is built, or the material; and one without an equilibrium."""
+    for change, place in (({"outer": {"pitch": 2.0}}, "outer"), ({"inner": {"pitch": 2.0}}, "inner")):
+        with pytest.raises(InputError) as error:
+            press(read_nest(write(tmp_path, **change)))
+        assert str(error.value).startswith(f"{tmp_path}/{place}.yaml: spring")
+    with pytest.raises(InputError, match=f"^{tmp_path}/outer.yaml: temperature: "):
+        press(read_nest(write(tmp_path, material="creeping", temperature=5.0)))
+    with pytest.raises(SolveError, match=r"^outer: no equilibrium beyond "):
+        press(read_nest(write(tmp_path, contact={"penetration_limit": 1e-6}, loading=[{"to": "block", "steps": 1}])))
+
+
+def test_the_own_loading_of_a_spring_is_not_used(tmp_path):
+    """Nor is one that it could not bear refused, where the seats do not even reach the spring."""
+    wrong = write(tmp_path, loading=[{"to": {"height": 36.0}, "steps": 1}], outer={"turns": 4.5})
+    file = tmp_path / "inner.yaml"
+    case = yaml.safe_load(file.read_text(encoding="utf-8")) | {"loading": [{"to": {"height": 1.0}}]}
+    file.write_text(yaml.safe_dump(case), encoding="utf-8")
+    assert press(read_nest(wrong)).members[1].result is None
+
+
 HEIGHT = "loading.0.to.height: is"
 WRONG = [
     (
