@@ -21,7 +21,7 @@ from coilset.model.material import library
 from coilset.model.results.record import Result, Setup
 from coilset.model.results.summary import summarise
 from coilset.model.sweep.evaluate import plain
-from coilset.model.sweep.plan import Keys
+from coilset.model.sweep.keys import Keys
 
 Plan = tuple[tuple[float, ...] | None, ...]
 """For each phase: the parts of it at which its steps end; None: automatic, or as the case says."""

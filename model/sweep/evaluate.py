@@ -11,14 +11,17 @@ from typing import Any
 
 from mpi4py import MPI
 
-from coilset.meshes.errors import CoilsetError, SolveError
+from coilset.meshes.errors import CoilsetError, InputError, SolveError
 from coilset.model.analysis import Analysis
-from coilset.model.case import check
+from coilset.model.case import Case, check
 from coilset.model.results.record import Step
 from coilset.model.results.summary import summarise
+from coilset.model.sweep.keys import Keys
 
 
-def evaluate(data: dict[str, Any], comm: MPI.Comm, file: str = "", time_limit: float | None = None) -> dict[str, Any]:
+def evaluate(
+    data: dict[str, Any], comm: MPI.Comm, file: str = "", time_limit: float | None = None, key: str | None = None
+) -> dict[str, Any]:
     """Run a case; errors are recorded instead of raised.
 
     Args:
@@ -26,6 +29,7 @@ def evaluate(data: dict[str, Any], comm: MPI.Comm, file: str = "", time_limit: f
         comm: communicator of the ranks that solve it.
         file: the base case's file, from whose folder other files count.
         time_limit: seconds after which it is stopped at the end of its step.
+        key: of the case when the sweep was read; it fails if it has another one now, since a file has changed.
 
     Returns:
         The record, plain data: `status` ("done" or "failed"), `reason`, `seconds`, `summary`, `steps` (columns of the
@@ -34,7 +38,10 @@ def evaluate(data: dict[str, Any], comm: MPI.Comm, file: str = "", time_limit: f
     began = time.perf_counter()
     reason, analysis = "", None
     try:
-        analysis = Analysis(check(data, file), comm, detailed=False)
+        case: Case = check(data, file)
+        analysis = Analysis(case, comm, detailed=False)
+        if key is not None and Keys()(case) != key:  # as it is now that the files have been read
+            raise InputError("a file that this case names has changed since the sweep was read; run the sweep again")
         analysis.run(watch(comm, began, time_limit))
     except CoilsetError as error:
         reason = str(error)

@@ -62,7 +62,7 @@ def _keep_busy(
     while True:
         while len(waiting) < AHEAD * pool.workers and (case := next(todo, None)) is not None:
             row, key = case
-            waiting[pool.submit(plan.task(row))] = key
+            waiting[pool.submit(plan.task(row) | {"key": key})] = key
         if not waiting:
             return
         for future in wait(waiting, return_when=FIRST_COMPLETED).done:

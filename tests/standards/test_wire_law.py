@@ -9,7 +9,7 @@ from coilset.model.material.points import initial_state, update
 from coilset.model.standards.wires import wire
 from coilset.model.standards.wires.hardening import curve
 from coilset.model.standards.wires.law import case_law, wire_law
-from coilset.model.sweep.plan import Keys
+from coilset.model.sweep.keys import Keys
 
 
 def tensile_test(law, strain_end=0.04, steps=4000):

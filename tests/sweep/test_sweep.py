@@ -351,10 +351,24 @@ def test_a_changed_material_file_makes_new_cases(write_sweep, tmp_path):
     assert Plan(write_sweep(text)).keys != first
 
 
+def test_a_material_file_that_changes_during_the_sweep_gives_no_case_of_before(write_sweep, tmp_path):
+    ck15 = (FOLDER / "ck15.yaml").read_text()
+    (tmp_path / "own.yaml").write_text(ck15)
+    change = "change: {material: %s, loading: [{to: {travel: 1}, steps: 1}]}" % (tmp_path / "own.yaml")
+    plan = Plan(write_sweep(f"{change}\nvary: {{spring.wire_diameter: [5.0]}}"))
+    task = plan.task(plan.rows[0]) | {"key": plan.keys[0]}
+    assert evaluate(**task, comm=MPI.COMM_SELF)["status"] == "done"
+    (tmp_path / "own.yaml").write_text(ck15.replace("22480", "22481"))
+    record = evaluate(**task, comm=MPI.COMM_SELF)
+    assert record["status"] == "failed"
+    assert "a file that this case names has changed since the sweep was read" in record["reason"]
+    assert not record["summary"]
+
+
 def test_another_version_makes_new_cases(write_sweep, monkeypatch):
     text = "vary: {spring.wire_diameter: [5.0]}"
     first = Plan(write_sweep(text)).keys
-    monkeypatch.setattr("coilset.model.sweep.plan.__version__", "0.0.1")
+    monkeypatch.setattr("coilset.model.sweep.keys.__version__", "0.0.1")
     assert Plan(write_sweep(text)).keys != first
 
 
