@@ -3,14 +3,16 @@
 import csv
 import json
 
+import numpy as np
 import pytest
 
 from coilset.meshes.errors import InputError
+from coilset.meshes.section_shapes import Curve
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.results import summary as of_spring
 from coilset.model.slice import output
-from coilset.model.slice.analysis import SliceAnalysis
+from coilset.model.slice.analysis import TOUCHING, SliceAnalysis
 from coilset.model.slice.summary import UNSEEN, summarise
 from coilset.scripts.slice import slice_case
 
@@ -70,6 +72,14 @@ def test_block_is_where_the_coils_touch(example):
     assert steps[-1].seat_height_mm > coil.spring.block_height  # by the wire's inclination
     assert steps[-1].seat_height_mm == pytest.approx(coil.spring.block_height, abs=0.05)
     assert steps[-1].force_N == max(step.force_N for step in steps)
+
+
+def test_block_is_where_slanted_sides_touch(example):
+    """A side at 45° is nearer to the next coil than its height over it; only many approaches close the gap."""
+    diamond = Curve(np.array([(0, -2.5), (2.5, 0), (0, 2.5), (-2.5, 0)]))
+    coil = SliceAnalysis(read_case(example, ["loading=[{to: block, steps: 2}]"]), diamond, across=3.0)
+    coil.run()
+    assert 0.0 <= coil.problem.pressure.gap <= TOUCHING * coil.wire_diameter
 
 
 @pytest.mark.parametrize(
