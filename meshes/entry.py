@@ -65,6 +65,14 @@ class Strict(BaseModel):
                 yield from (f"{name}.{notice}" for notice in value.notices())
 
 
+def _before_comma(name: object, data: dict) -> str:
+    """The entry that was cut by a decimal comma: of `{nu: 0,26}` YAML makes the entries nu: 0 and 26; else empty."""
+    names = list(data)
+    where = names.index(name)
+    is_rest = str(name).isdigit() and data[name] is None
+    return str(names[where - 1]) if is_rest and where else ""
+
+
 def _check_names(group: type[BaseModel], data: dict) -> None:
     """Report the first unknown entry before the first missing one: a misspelt entry leaves another one missing."""
     known = {field.alias or name: field for name, field in group.model_fields.items()}
@@ -73,6 +81,8 @@ def _check_names(group: type[BaseModel], data: dict) -> None:
             left = [other for other in known if other not in data]
             near = get_close_matches(str(name), known, 1, 0.8) or get_close_matches(str(name), left, 3)
             hint = f"is {' or '.join(near)} meant?" if near else f"the entries here are {', '.join(known)}"
+            if before := _before_comma(name, data):
+                hint = f"a comma begins the next entry: give {before} with a decimal point, as in 0.5"
             raise PydanticCustomError("unknown_entry", "unknown entry; {hint}", {"entry": str(name), "hint": hint})
     for name, field in known.items():
         if field.is_required() and name not in data:

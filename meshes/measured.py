@@ -93,7 +93,7 @@ def read_centre_line(path: str | Path) -> tuple[np.ndarray, np.ndarray | None]:
     """
     path = Path(path)
     if not path.is_file():
-        raise InputError("there is no such file", "", path)
+        raise InputError("is a folder; give a file" if path.is_dir() else "there is no such file", "", path)
     points, wire = _read_csv(path) if path.suffix.lower() in (".csv", ".txt") else _read_mesh(path)
     if len(points) < LEAST_POINTS:
         raise InputError(f"has {len(points)} points; a centre line needs {LEAST_POINTS} or more", "", path)

@@ -109,6 +109,11 @@ WRONG = {
         lambda c: at(c)["isotropic"].update(k0_square=1),
         "temperatures.0.isotropic.k0_square: unknown entry; is k0_squared meant?",
     ),
+    "decimal comma": (  # nu: 0,26 between braces
+        lambda c: at(c).update(elasticity={"G": 81500, "nu": 0, 26: None}),
+        "temperatures.0.elasticity.26: unknown entry; a comma begins the next entry: give nu with a decimal point,"
+        " as in 0.5",
+    ),
     "wrong type": (
         lambda c: at(c)["elasticity"].update(G="stiff"),
         "temperatures.0.elasticity.G: 'stiff': must be a number",

@@ -197,6 +197,8 @@ def test_wrong_meshes_have_their_messages(tmp_path):
         assert str(error.value) == f"{tmp_path / 'wire.vtu'}: {message}"
     with pytest.raises(InputError, match="there is no such file"):
         MeasuredSpec(file=str(tmp_path / "none.vtu")).build()
+    with pytest.raises(InputError, match="is a folder; give a file"):
+        MeasuredSpec(file=str(tmp_path)).build()
     (tmp_path / "broken.vtu").write_text("no mesh", encoding="utf-8")
     with pytest.raises(InputError, match="meshio cannot read it"):
         MeasuredSpec(file=str(tmp_path / "broken.vtu")).build()
