@@ -67,7 +67,8 @@ def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapp
         greatest = max(abs(summary["force_max_N"]), 1e-300)
         block = summary["free_length_before_mm"] - summary["block_height_mm"]
         if (rate := summary["rate_N_per_mm"]) is not None:
-            end = min(greatest / rate, max([block, *(step.travel_mm for step in result.steps)]))
+            end = min(greatest / rate, max([block, *(abs(step.travel_mm) for step in result.steps)]))
+            end = np.copysign(end, summary["force_max_N"])
             axes.plot([0, end], [0, rate * end], "k:", lw=0.9, label=f"initial rate {rate:.4g} N/mm")
         axes.axvline(block, color="0.6", lw=0.8, ls="--", label=f"block, {summary['block_height_mm']:.4g} mm high")
         if summary["set_mm"] is not None:
@@ -87,7 +88,8 @@ def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapp
 def _found(summary: Mapping[str, Any]) -> str:
     set_mm = summary["set_mm"]
     sets = "" if set_mm is None else f", the spring sets {plain(set_mm)} mm"
-    return f"Pressed with up to {plain(abs(summary['force_max_N']))} N{sets} ({summary['material']})"
+    way = "Pulled" if summary["force_max_N"] < 0.0 else "Pressed"
+    return f"{way} with up to {plain(abs(summary['force_max_N']))} N{sets} ({summary['material']})"
 
 
 def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:

@@ -27,6 +27,7 @@ TURNS = (  # what is drawn of them: name in the records, words, line
     ("free_turns", "touching nothing", {"color": "0.5", "lw": 1.0, "ms": 2.5}),
 )
 OVER_LINES: dict[str, Any] = {"frameon": True, "framealpha": 0.8, "edgecolor": "none"}  # legends where there is no room
+NAMED_STEPS = 12  # at most; of more, the places of nine are named
 FAINT = 0.02  # part of the maximum force below which a force centre says little and is not drawn
 REACH = 1.3  # of the picture, in coil radii
 DECADES = 3  # of the pressure's colours
@@ -95,7 +96,7 @@ def force_centre(path: str | Path, setup: Setup, result: Result) -> None:
         name_styles(over, setup)
         over.axhline(radius, color="0.6", lw=0.8, ls="--", label="coil radius at the tip")
         over.set(xlabel="travel in mm", ylabel="distance of the force centre from the axis in mm",
-                 ylim=(0.0, REACH * radius), title=f"at {100 * FAINT:g} % of the maximum force or more")  # fmt: skip
+                 ylim=(0.0, REACH * radius), title=_farthest(result, strong))  # fmt: skip
         over.legend(fontsize=7, **OVER_LINES)
         for axes in (plan, over):
             axes.grid(lw=0.3)
@@ -107,6 +108,12 @@ def _at_greatest(result: Result, force: np.ndarray) -> str:
     step = int(np.argmax(force))
     away = max(getattr(result.seats[step], end).eccentricity_mm for end in ENDS)
     return f"At {plain(float(force[step]))} N the force passes {away:.2g} mm beside the axis"
+
+
+def _farthest(result: Result, strong: np.ndarray) -> str:
+    """How far from the axis the force passes in the `strong` steps."""
+    away = max((column(result, end, "eccentricity_mm")[strong].max(initial=0.0) for end in ENDS), default=0.0)
+    return f"From {100 * FAINT:g} % of that force on it passes at most {away:.2g} mm beside"
 
 
 def seat_pressure(path: str | Path, setup: Setup, result: Result) -> bool:
@@ -180,7 +187,8 @@ def draw_pressure(axes: Axes, result: Result, kind: int, contact: ContactRecord,
     norm = LogNorm(10.0**-DECADES * greatest, greatest)
     number = [step.number for step in result.steps]
     shown = axes.pcolormesh(away[points], number, values, norm=norm, cmap="viridis", shading="nearest")
-    places = np.unique(np.linspace(0, len(number) - 1, min(len(number), 9)).astype(int))
+    named = len(number) if len(number) <= NAMED_STEPS else 9
+    places = np.unique(np.linspace(0, len(number) - 1, named).astype(int))
     travels = [result.steps[k].travel_mm for k in places]
     forces = [abs(result.steps[k].force_N) for k in places]
     a, b = decimals(max(map(abs, travels))), decimals(max(forces))

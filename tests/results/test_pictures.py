@@ -116,6 +116,30 @@ def test_cycles_make_no_legend_of_their_own(analysis, monkeypatch):
     assert max(len(one) for figure in legends for one in figure) <= 10
 
 
+@pytest.mark.parametrize(("force", "way"), [(9.0, "Pressed"), (-9.0, "Pulled")])
+def test_a_pulled_spring_is_not_called_pressed(analysis, monkeypatch, force, way):
+    """And the line of its initial rate goes where its force goes."""
+    steps = (Step(1, 0, 1.0, 35.0 - force / 9.0, force / 9.0, force, 1, 1, 0, 0, 0, 0.0),)
+    result, drawn = replace(analysis.result, steps=steps), []
+    monkeypatch.setattr(figures, "save", lambda figure, path: drawn.append(figure.axes[0]))
+    figures.characteristic("", analysis.setup, result, summarise(analysis.setup, result))
+    (axes,) = drawn
+    assert axes.get_title().startswith(f"{way} with up to 9 N")
+    (rate,) = (line for line in axes.get_lines() if str(line.get_label()).startswith("initial rate"))
+    assert rate.get_ydata()[1] == pytest.approx(force, rel=1e-12)
+
+
+def test_each_of_a_few_steps_is_named_beside_the_pressure(analysis, monkeypatch):
+    """The greatest force is that of one of them; of many steps, nine are."""
+    drawn = []
+    monkeypatch.setattr(seat_figures, "save", lambda figure, path: drawn.append(figure.axes[0]))
+    for count in (12, 13):
+        steps = tuple(Step(k, 0, 1.0, 35.0 - k, float(k), 9.0 * k, 1, 1, 0, 0, 0, 0.0) for k in range(1, count + 1))
+        seats = analysis.result.seats[:1] * count
+        seat_figures.seat_pressure("", analysis.setup, replace(analysis.result, steps=steps, seats=seats))
+    assert [len(axes.get_yticks()) for axes in drawn] == [12, 9]
+
+
 def with_mode(analysis, direction):
     """A run with a mode that goes off as a clamped column does, in a direction across the axis."""
     x = analysis.rod.line.stations
