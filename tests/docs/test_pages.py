@@ -1,0 +1,48 @@
+"""What a page says to type works after what it said before, and the files that it names are there."""
+
+import itertools
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+PAGES = {path.relative_to(REPOSITORY).as_posix(): path.read_text(encoding="utf-8")
+         for path in [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").rglob("*.md"))]
+         if "generated" not in path.parts}  # fmt: skip
+ROOMS = ("model", "meshes", "scripts", "verification", "tests", "examples", "docs")
+WRITES = {"solve": "", "slice": "-slice", "sweep": "", "design": ""}  # into a folder without results: suffix
+STEP_BY_STEP = [name for name in PAGES if name.startswith(("docs/how-to/", "docs/tutorial/"))]
+
+
+def commands(page):
+    """Words of each command on a page."""
+    for line in re.findall(r"^    scripts/coilset (.*)$", page, re.MULTILINE):
+        yield shlex.split(line.partition(" | ")[0], comments=True)
+
+
+def test_every_source_that_a_page_names_is_there():
+    sources = [path.relative_to(REPOSITORY).as_posix() for room in ROOMS for path in (REPOSITORY / room).rglob("*.py")]
+    missing = {}
+    for name, page in PAGES.items():
+        saved = re.findall(r"[Ss]ave (?:this|it) as `(\S+)`", page)  # by the reader
+        for named in set(re.findall(r"`([\w./-]+\.py)`", page)) - set(saved):
+            if not any(f"/{source}".endswith(f"/{named}") for source in sources):
+                missing.setdefault(name, []).append(named)
+    assert missing == {}
+
+
+@pytest.mark.parametrize("name", STEP_BY_STEP)
+def test_commands_follow_each_other(name):
+    """None meets the results of one before it, unless it says what is to be done with them; the examples are there."""
+    taken = set()
+    for words in commands(PAGES[name]):
+        for word in words:
+            assert not word.startswith("examples/") or (REPOSITORY / word).is_file(), word
+        if words[0] not in WRITES:
+            continue
+        default = f"results/{Path(words[1]).stem}{WRITES[words[0]]}"
+        folder = dict(itertools.pairwise(words)).get("--out", default)
+        assert folder not in taken or {"--force", "--resume"} & set(words), words
+        taken.add(folder)
