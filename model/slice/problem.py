@@ -224,10 +224,14 @@ class SliceProblem:
         return not self.touching and self.contact.evaluate().gap < 0.0
 
     def _accept(self) -> None:
-        axial, self.torque = self.resultants()
-        self.force = -axial
-        self.pressure = self._pressure if self.touching else self.contact.evaluate()
-        self.body.commit()
+        axial, torque = self.resultants()
+        pressure = self._pressure if self.touching else self.contact.evaluate()
+        try:
+            self.body.commit()
+        except SolveError:
+            self.body.restore()
+            raise
+        self.force, self.torque, self.pressure = -axial, torque, pressure
         if self.touching and not self.pressure.bearing:
             self._let_touch(False)
 

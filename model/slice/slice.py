@@ -19,8 +19,12 @@ from coilset.model.solid.points import update_points
 class Follower(Protocol):
     """Something that follows a slice from equilibrium to equilibrium."""
 
+    def evaluate(self) -> np.ndarray:
+        """Point states at the slice's increment; raises SolveError if there are none."""
+        ...
+
     def accept(self) -> None:
-        """Make the slice's increment the equilibrium."""
+        """Make what was evaluated last the equilibrium."""
 
 
 @dataclass(frozen=True)
@@ -145,7 +149,13 @@ class Slice:
         return True
 
     def commit(self) -> None:
-        """Make the increment of the last `update` the equilibrium; its moduli are kept to start the next step."""
+        """Make the increment of the last `update` the equilibrium; its moduli are kept to start the next step.
+
+        Raises:
+            SolveError: if the law finds no solution at a watched point; then nothing has changed.
+        """
+        for watch in self.watches:
+            watch.evaluate()
         for watch in self.watches:
             watch.accept()
         self.forms.x.x.array[:] += self.forms.u.x.array

@@ -54,8 +54,8 @@ class Watch:
         return self._trial
 
     def accept(self) -> None:
-        """Make the body's increment the equilibrium."""
-        self.state[:] = self.evaluate()
+        """Make what was evaluated last the equilibrium."""
+        self.state[:] = self._trial
 
     def section_stress(self, state: np.ndarray | None = None) -> np.ndarray:
         """Stress in the current axes of the section: 1 along the wire, 2 outward, 3 upward.

@@ -148,6 +148,26 @@ def test_no_equilibrium_is_said_and_the_last_one_kept(make_slice):
     assert np.isfinite(body.x).all()
 
 
+def test_an_output_point_without_stress_leaves_the_last_equilibrium(make_slice, monkeypatch):
+    body = make_slice()
+    first, second = (Watch(body, [[ξ, 0.0]]) for ξ in (-2.5, 2.5))
+    problem = SliceProblem(body)
+    press(problem, 3.0, 2)
+    before = problem.force, problem.torque, body.rise, body.x.copy(), body.state.copy(), first.state.copy()
+
+    def fails():
+        raise SolveError("the law finds no stress")
+
+    monkeypatch.setattr(second, "evaluate", fails)
+    with pytest.raises(SolveError, match="the law finds no stress"):
+        problem.go_to_rise(body.coil.rise - 4.0 / (2 * np.pi))
+    after = problem.force, problem.torque, body.rise, body.x, body.state, first.state
+    assert all(np.array_equal(one, other) for one, other in zip(before, after, strict=True))
+    monkeypatch.undo()
+    problem.go_to_rise(body.coil.rise - 4.0 / (2 * np.pi))
+    assert problem.force > before[0]
+
+
 def test_section_that_reaches_the_axis_is_refused(make_slice):
     with pytest.raises(InputError, match="axis"):
         make_slice(index=0.9)
