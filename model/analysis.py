@@ -1,4 +1,4 @@
-"""From a case to its result: geometry → mesh → rod, contacts and control → load program → records."""
+"""From a case to its result: its parts, as coilset.model.build makes them, go through the load program → records."""
 
 import logging
 import math
@@ -9,43 +9,33 @@ import numpy as np
 from mpi4py import MPI
 
 from coilset.meshes.errors import InputError, SolveError
-from coilset.meshes.line import line_mesh
-from coilset.meshes.placement import chord_placement, refuse_sharp_bends, section_placement
+from coilset.model.build import (
+    build_continuation,
+    build_control,
+    build_heat,
+    build_method,
+    build_newton,
+    build_setup,
+    build_wire,
+)
 from coilset.model.case import Case
-from coilset.model.case.heat import HeatSpec
 from coilset.model.case.phases import AnyPhase, Phase, TimePhase
 from coilset.model.case.targets import check_steps, check_targets, check_times
-from coilset.model.contact.base import BearsOnWire
 from coilset.model.contact.build import build_contacts, seats_at
-from coilset.model.contact.coarse_mesh import coarse_mesh_warnings
-from coilset.model.effort import Effort, machine_memory
 from coilset.model.entries.entry import check_entries
-from coilset.model.equilibrium.axial_control import AxialControl
-from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
-from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.layout import LineLayout
-from coilset.model.equilibrium.methods import Method, rod_method
-from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.program import LoadProgram, ProgramPosition, Stage, StepTaken
 from coilset.model.equilibrium.stability import Stability
-from coilset.model.equilibrium.step_error import StepError
 from coilset.model.equilibrium.system import System
 from coilset.model.recorder import Recorder
 from coilset.model.results.balance import imbalance
 from coilset.model.results.checkpoint import Saved
-from coilset.model.results.record import ContactRecord, Limits, Result, Setup, Snapshot, Step
-from coilset.model.rod.heat import WireHeat, heat_constants
-from coilset.model.rod.kinematics import GAUSS, chord_triads
-from coilset.model.rod.past import give_past, past_warnings
-from coilset.model.rod.rod import Rod
-from coilset.model.standards.buckling import buckling_travel
-from coilset.model.standards.case_warnings import case_warnings
-from coilset.model.standards.wires.law import case_law, case_strength
+from coilset.model.results.record import Result, Snapshot, Step
+from coilset.model.rod.past import give_past
+from coilset.model.standards.wires.law import case_law
 from coilset.model.state import State
-from coilset.model.threads import Threads
 
 log = logging.getLogger("coilset.steps")
-PENETRATION = 0.02  # usual maximum penetration in wire diameters; a case may allow more
 
 
 class Save(Protocol):
@@ -81,55 +71,23 @@ class Analysis:
         check_steps(case)
         check_targets(case, spring, self.law.G)
         check_times(case, self.law)
-        turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
-        estimated = case.steps_error is not None
-        effort = Effort.of(len(turns) - 1, case.mesh.section.points, self._planned_steps(), estimated)
-        effort.check_memory(machine_memory())
-        # before the rod is made, which takes the memory that this needs for a moment
-        coarse = coarse_mesh_warnings(spring, turns)
-        line = line_mesh(spring.centre_line(turns), comm)
-        radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
-        section, chords = case.mesh.section, chord_triads(np.diff(line.stations, axis=0))
-        if case.mesh.axis == "chords":
-            placement = chord_placement(spring, turns, chords, GAUSS)
-        else:
-            to_normal = section.kind != "plane" or bool(case.past)
-            placement = section_placement(spring, turns, chords, GAUSS, to_normal)
-            refuse_sharp_bends(placement, radius, turns)
-        self.rod = Rod(line, radius, self.law, section.build(), placement, case.temperature, section.kind,
-                       section.degree, Threads(threads))  # fmt: skip
-        self.heat = None if case.heat is None else self._wire_heat(case.heat)
+        wire = build_wire(case, spring, self.law, comm, threads)
+        self.rod = wire.rod
+        self.heat = build_heat(case, self.rod)
         coiling_diameter = give_past(self.rod, case.spring)
         seats = case.seats if case.ends == "seats" else None
-        contacts = build_contacts(case.contact, seats, spring, turns, line.stations, self.law.E)
+        contacts = build_contacts(case.contact, seats, spring, wire.turns, self.rod.line.stations, self.law.E)
         self.layout = LineLayout(self.rod)
         self.system = System(self.rod, self.layout, contacts, seats_at(spring.free_length))
-        self.newton = self._newton(2.0 * self.rod.largest_radius)
-        self.control = AxialControl(
-            self.system, spring.free_length, case.ends == "clamped", case.seats.hold == "tips",
-            (case.seats.bottom.held(), case.seats.top.held()),
-        )  # fmt: skip
-        limit = case.contact.penetration_limit * 2.0 * float(radius.min())
+        self.newton = build_newton(case, self.system)
+        self.control = build_control(case, spring, self.system)
         self.stability = Stability(self.newton.iteration)
-        steps = case.solver.control.steps
-        accuracy = case.steps_error
-        self.step_error = None if accuracy is None else StepError(self.control, accuracy, steps)
-        self.continuation = Continuation(self.newton, steps, limit, None, self.stability, self.step_error)
+        least_radius = float(wire.radius.min())
+        self.continuation = build_continuation(case, self.newton, self.control, self.stability, least_radius)
         self.continuation.refusal = self._passed
         self.program = LoadProgram(self.control, self.continuation)
-        records = tuple(
-            ContactRecord(one.name, one.end, one.points.turns if isinstance(one, BearsOnWire) else np.empty(0))
-            for one in contacts
-        )
-        warnings = (*case_warnings(case, spring, self.law), *past_warnings(self.rod, case.spring),
-                    *coarse, *effort.warnings())  # fmt: skip
-        self.setup = Setup(spring, self.law.name, case.ends, tuple(p.label for p in case.loading), turns, radius,
-                           self.rod.rule, records, section.kind, placement,
-                           buckling_travel(spring, self.law.G / self.law.E), self._limits(float(radius.min())),
-                           tuple(case.rates_at), warnings, coiling_diameter)  # fmt: skip
-        self.recorder = Recorder(
-            self.setup, self.rod, self.system, self.control, self.stability, detailed
-        )  # fmt: skip
+        self.setup = build_setup(case, spring, wire, contacts, coiling_diameter)
+        self.recorder = Recorder(self.setup, self.rod, self.system, self.control, self.stability, detailed)
 
     @property
     def result(self) -> Result:
@@ -140,22 +98,6 @@ class Analysis:
         """The spring as it stands, gathered on rank 0; collective."""
         return self.recorder.snapshot(name)
 
-    def _newton(self, wire_diameter: float) -> Newton:
-        solver, contact = self.case.solver, self.case.contact
-        control = solver.control.newton
-        limit = ContactLimit(self.system, control, free_penetration(control, contact.penetration_limit) * wire_diameter)
-        return Newton(self.system, self._method(solver.method), solver.tolerance, control, limit,
-                      contact.augmentation_tolerance or np.inf)  # fmt: skip
-
-    def _method(self, name: str) -> Method:
-        # an arc by which every node moves by about the wire's radius
-        arc = self.rod.largest_radius * np.sqrt(len(self.layout.station_dofs))
-        return rod_method(name, self.comm.size, self.case.solver.options, arc)
-
-    def _planned_steps(self) -> int:
-        automatic = self.case.solver.control.steps.automatic
-        return sum(phase.count(automatic) for phase in self.case.loading)
-
     def _passed(self) -> str | None:
         """Why the trial state is impossible: the heads have passed each other; collective."""
         height, wire = self.control.trial_height, 2.0 * self.rod.largest_radius
@@ -163,17 +105,13 @@ class Analysis:
             return None
         return f"the heads would be {height:.4g} mm apart, less than the wire's {wire:.4g} mm"
 
-    def _limits(self, radius: float) -> Limits:
-        return Limits(self.law.validity.plastic_work, case_strength(self.case, self.spring), PENETRATION * 2.0 * radius,
-                      self.case.steps_error)  # fmt: skip
-
     def use_method(self, name: str) -> None:
         """Switch to another iteration method.
 
         Raises:
             InputError: if there is no such method, or PETSc rejects an option; the method is then unchanged.
         """
-        self.newton.iteration.use(self._method(name))
+        self.newton.iteration.use(build_method(self.case, self.layout, name))
 
     # ---- the run ---------------------------------------------------------------------------------------------------
 
@@ -216,10 +154,6 @@ class Analysis:
             raise
         self.recorder.end()
         return self.result
-
-    def _wire_heat(self, spec: HeatSpec) -> WireHeat:
-        start = self.rod.temperature if spec.surroundings is None else spec.surroundings
-        return WireHeat(self.rod, heat_constants(self.law, spec.conductivity, spec.convection, spec.tips, start))
 
     def _flow_of_heat(self, number: int, taken: StepTaken) -> StepTaken:
         """Let heat flow for the time that the last step took; the step, with what that cost."""

@@ -11,7 +11,7 @@ import pytest
 from mpi4py import MPI
 
 from coilset.meshes.errors import CoilsetError, InputError
-from coilset.model import analysis
+from coilset.model import build
 from coilset.scripts import bench as command
 from coilset.verification.benchmarks import everyday, measure, run, same_spring, stopwatch, walks
 from coilset.verification.benchmarks.ranks import compare
@@ -108,7 +108,7 @@ def record():
     """A bench of the smallest size, its measurements made in this process."""
     with pytest.MonkeyPatch.context() as patch:
         for function in ("line_mesh", "section_placement"):  # what is watched stays so until the process ends
-            patch.setattr(analysis, function, getattr(analysis, function))
+            patch.setattr(build, function, getattr(build, function))
         example = measure.example(1)
         runs = [measure.press(elements) for elements in (20, 40)]
         unestimated = measure.press(20, 1, 0, 0) | {"elements": 100_000, "memory_GiB": 1.875}

@@ -40,7 +40,7 @@ def test_an_accuracy_that_is_none(example, given):
 def test_steps_take_the_size_that_their_error_allows(example):
     """Eight times what a step may bring in: cut to 0.9/2 of its size; the next one to 0.9/1.1 by a third of 1.1³."""
     analysis = Analysis(read_case(example, ["mesh.elements_per_turn=8", "loading=[{to: {travel: 3}}]"]), MPI.COMM_SELF)
-    factor = analysis.step_error._factor
+    factor = analysis.continuation.step_error._factor
     assert factor(8.0) == pytest.approx(0.45)
     assert factor(1.0) == pytest.approx(0.9)
     assert factor(0.0) == factor(1e-9) == analysis.case.solver.control.steps.growth
@@ -53,7 +53,7 @@ def test_steps_take_the_size_that_their_error_allows(example):
         share = shares.pop(0) if shares else 0.0
         return Estimate(0.0, 0.0, share, factor(share))
 
-    analysis.step_error.estimate = estimate
+    analysis.continuation.step_error.estimate = estimate
     travels = [step.travel_mm for step in analysis.run().steps]
     regular = 3.0 / analysis.case.solver.control.steps.automatic
     assert travels[0] == pytest.approx(0.45 * regular, rel=1e-12)

@@ -3,7 +3,7 @@
 import pytest
 
 from coilset.meshes.errors import InputError
-from coilset.model import analysis as room
+from coilset.model import build as room
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.effort import Effort, machine_memory

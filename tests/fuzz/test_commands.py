@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from coilset.meshes.errors import CoilsetError
-from coilset.model import analysis
+from coilset.model import build
 from coilset.model.slice import analysis as slices
 from coilset.scripts import design, main, material, mesh, ranks, report, solve, sweep, verify, warm
 from coilset.scripts import slice as slice_command
@@ -86,7 +86,7 @@ def place(tmp_path, monkeypatch):
     (tmp_path / "run").mkdir()
     monkeypatch.chdir(tmp_path)
     for module, name in ((solve, "prepare"), (slice_command, "prepare"), (sweep, "_pool"), (ranks, "launch"),
-                         (verify, "_run"), (mesh, "make"), (analysis, "line_mesh"), (slices.SliceAnalysis, "run"),
+                         (verify, "_run"), (mesh, "make"), (build, "line_mesh"), (slices.SliceAnalysis, "run"),
                          (design, "find"), (everyday, "timed"), (warm, "warm"), (report, "open_run"),
                          (material, "_save"), (material, "_write_csv")):  # fmt: skip
         monkeypatch.setattr(module, name, reach)

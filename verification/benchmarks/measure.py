@@ -97,7 +97,7 @@ def build(watch: Stopwatch, case: "Case", comm: "MPI.Comm") -> "Analysis":
 
 def watch_meshing() -> Stopwatch:
     """The Stopwatch whose stage `mesh` is what the analysis has made in `meshes`."""
-    from coilset.model import analysis as module
+    from coilset.model import build as module
 
     watch = Stopwatch()
     for function in ("line_mesh", "section_placement"):
