@@ -19,7 +19,7 @@ from coilset.scripts.loading import keeping, load_for_solve
 from coilset.scripts.material import app as material
 from coilset.scripts.output import Output, output_closed
 from coilset.scripts.plain import typer
-from coilset.scripts.target import file_targets, folder_target
+from coilset.scripts.target import file_targets, folder_target, page_target
 
 if TYPE_CHECKING:  # commands load what they need
     from mpi4py import MPI
@@ -284,7 +284,9 @@ def verify(
     ),
     fast: bool = typer.Option(False, "--fast", help="only the cases that take seconds"),
     show: bool = typer.Option(False, "--list", help="list the cases"),
-    page: str = typer.Option(None, "--page", help="also write a page of all records, such as docs/verification.md"),
+    page: str = typer.Option(
+        None, "--page", callback=page_target, help="also write a page of all records, such as docs/verification.md"
+    ),
 ) -> None:
     """Compare with tables, closed-form solutions and finer models; exit 1 on any deviation."""
     from coilset.scripts import verify as verification

@@ -46,12 +46,20 @@ def file_targets(paths: list[str] | None) -> list[str]:
     Raises:
         InputError: if one is a folder, or its folder cannot be made or written to.
     """
-    found = [os.path.expanduser(_named(path, "--write")) for path in paths or []]
-    for path in map(Path, found):
-        if os.path.isdir(path):  # of a path, as Path.is_dir fails on a name that is too long
-            raise InputError("is a folder; give a file", "--write", path)
-        _check(path.parent, "--write", path)
-    return found
+    return [_file(path, "--write") for path in paths or []]
+
+
+def page_target(path: str | None) -> str | None:
+    """Callback of `--page`, which names a file; returns it; raises as `file_targets`."""
+    return None if path is None else _file(path, "--page")
+
+
+def _file(path: str, option: str) -> str:
+    path = os.path.expanduser(_named(path, option))
+    if os.path.isdir(path):  # of a path, as Path.is_dir fails on a name that is too long
+        raise InputError("is a folder; give a file", option, path)
+    _check(Path(path).parent, option, Path(path))
+    return path
 
 
 def _named(path: str, option: str) -> str:

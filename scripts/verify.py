@@ -12,7 +12,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from coilset.meshes.errors import CoilsetError, InputError
-from coilset.model.results.folder import whole
+from coilset.model.results.folder import make, whole
 from coilset.scripts.console import Console
 from coilset.verification import registry
 from coilset.verification.page import page, percent
@@ -49,6 +49,7 @@ def verify(names: Sequence[str] | None, out: str | Path, fast: bool, page_file: 
     console.print(f"{len(cases)} case(s) in {time.perf_counter() - began:.0f} s; {len(judged)} numbers judged: "
                   f"{met} met, {len(judged) - met} not met; {shown} shown but not judged")  # fmt: skip
     if page_file:
+        make(Path(page_file).parent)
         with whole(Path(page_file)) as path:
             before = Path(page_file).read_text(encoding="utf-8") if Path(page_file).exists() else ""
             path.write_text(page(out, before), encoding="utf-8")

@@ -50,6 +50,22 @@ def test_a_mesh_that_cannot_be_written_gets_one_line(example, tmp_path, monkeypa
         app(["mesh", str(example), "--no-pictures", "--write", target], prog_name="coilset", standalone_mode=False)
 
 
+@pytest.mark.parametrize("target", ["", ".", "taken/page.md", "n" * 300])
+def test_a_page_that_cannot_be_written_gets_one_line_before_the_cases_run(tmp_path, monkeypatch, target):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "taken").write_text("mine")
+    with pytest.raises(InputError, match="--page"):
+        app(["verify", "two-circles", "--page", target], prog_name="coilset", standalone_mode=False)
+    assert [path.name for path in tmp_path.iterdir()] == ["taken"]
+
+
+def test_a_page_makes_its_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    command = ["verify", "two-circles", "--page", "new/page.md"]
+    assert app(command, prog_name="coilset", standalone_mode=False) == 0
+    assert "`two-circles`" in (tmp_path / "new" / "page.md").read_text()
+
+
 def test_a_home_folder_that_the_shell_left_is_found(tmp_path, monkeypatch):
     """As in `--out=~/runs`."""
     monkeypatch.setenv("HOME", str(tmp_path))
