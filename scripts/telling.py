@@ -50,6 +50,9 @@ class Lines:
         targets = ", ".join(phase.label for phase in analysis.case.loading)
         elements, ranks = len(analysis.setup.turns) - 1, analysis.comm.size
         self.say(f"{Path(case_file).name}: {elements} elements, to {targets}, {ranks} rank(s)")
+        if resumed and self._from >= 1.0:
+            self.say(f"all {analysis.continuation.number} steps are there: only the results are written again")
+            return
         if resumed:
             self.say(f"continuing after step {analysis.continuation.number}")
         self.say(f"{HEAD}{'points':>7}  touching")  # a row fits in 80 columns

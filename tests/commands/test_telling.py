@@ -32,6 +32,14 @@ def said(tmp_path, capsys):
     return run
 
 
+def test_a_finished_run_that_is_resumed_has_no_table_of_steps(said, tmp_path, capsys):
+    said()
+    solve(tmp_path / "spring.yaml", tmp_path / "out", False, [], pictures=False, comm=MPI.COMM_SELF, resume=True)
+    lines = capsys.readouterr().out.splitlines()
+    assert "all 5 steps are there: only the results are written again" in lines
+    assert not any("iter." in line for line in lines)
+
+
 def test_json_has_the_rows_of_the_history_and_the_summary(said):
     lines, folder = said(voice="json")
     events = [json.loads(line) for line in lines]
