@@ -1,8 +1,11 @@
 """A part of the case contact-meshes of verification, which is slow."""
 
+from pathlib import Path
+
 import pytest
 
-from coilset.verification.cases.contact_meshes import press
+from coilset.model import equilibrium
+from coilset.verification.cases.contact_meshes import FAILED, IN_PARTS, SOLVED, press
 from coilset.verification.springs.torsion import CoilByCoil
 
 
@@ -13,3 +16,9 @@ def test_cone_reaches_block_and_comes_back_without_a_failed_solve():
     assert counter.failed == 0
     by_hand = CoilByCoil(analysis.spring, analysis.law)
     assert by_hand.block_travel() - summary["set_mm"] == pytest.approx(by_hand.spring_back(), rel=0.1)
+
+
+def test_failed_solves_are_told_by_the_words_of_the_log():
+    """Or none would ever be counted."""
+    sources = "".join(path.read_text() for path in Path(equilibrium.__path__[0]).glob("*.py"))
+    assert [words for words in (*FAILED, *SOLVED, *IN_PARTS) if words not in sources] == []

@@ -48,9 +48,7 @@ def press(pitch: float, helix: Helix, mesh: int) -> tuple[float, float, np.ndarr
         way = {X: helix.radius - 0.5 * DIAMETER, Y: 0.0, Z: sinks, ROTATION_X: tilt, ROTATION_Y: 0.0, ROTATION_Z: 0.0}
         moves |= {frame.dof(node, component): value for component, value in way.items()}
     drive(frame, STEPS, moves)
-    frame.step(
-        moves=dict.fromkeys(moves, 0.0)
-    )  # at rest: moments on rotations refer to the chart, which starts anew here
+    drive(frame, 1, dict.fromkeys(moves, 0.0))  # at rest: moments on rotations refer to the chart, which starts anew
     force, torque = frame.force(frame.dof(last, Z)), frame.force(frame.dof(last, ROTATION_Z))
     x = nodes + np.array([frame.moved(k) for k in range(last + 1)])
     torque += x[-1, 0] * frame.force(frame.dof(last, Y)) - x[-1, 1] * frame.force(frame.dof(last, X))

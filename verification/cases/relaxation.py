@@ -18,6 +18,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from coilset.meshes.errors import SolveError
 from coilset.meshes.placement import straight
 from coilset.model.material.creep_law import CreepLaw
 from coilset.model.material.file import MaterialFile
@@ -117,6 +118,8 @@ def steady() -> tuple[np.ndarray, np.ndarray]:
             twist += (TORQUE - torque) / slope
             if abs(TORQUE - torque) < 1e-9 * TORQUE:
                 break
+        else:
+            raise SolveError(f"the bar finds no twist for its torque after {hours:g} h")
         bar.keep()
     rows = bar.state["point_state"][0, 0]
     return np.hypot(*bar.rule.points.T)[::12], np.hypot(rows[:, 1], rows[:, 2])[::12] / rim

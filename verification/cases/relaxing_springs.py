@@ -30,6 +30,7 @@ import yaml
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
+from coilset.meshes.errors import SolveError
 from coilset.model.analysis import Analysis
 from coilset.model.case.case import Case, check
 from coilset.model.material.creep_law import CreepLaw
@@ -70,6 +71,8 @@ def section(index: float, kind: str) -> np.ndarray:
             K = np.block([[D[0, 0], -wire.load[:, None]], [wire.load[None, :], np.zeros((1, 1))]])
             change = np.linalg.solve(K, rest)
             e, force = e + change[:6], force + change[6]
+        else:
+            raise SolveError(f"the section finds no equilibrium after {hours:g} h")
         start = trial
         found.append(force / first)
     return np.array(found[1:])[AT]
