@@ -90,7 +90,7 @@ def force_centre(path: str | Path, setup: Setup, result: Result) -> None:
         plan.plot(0, 0, "k+", ms=9)
         plan.set(aspect="equal", xlabel="x in mm", ylabel="y in mm", title=_at_greatest(result, force),
                  xlim=(-REACH * radius, REACH * radius), ylim=(-REACH * radius, REACH * radius))  # fmt: skip
-        plan.legend(fontsize=6.5, loc="upper right")
+        plan.legend(fontsize=6.5, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=2)  # clear of the ring
         for end in ENDS:
             over.plot([], [], "-", marker="o", **DRAWN[end], label=f"{end} seat")
         name_styles(over, setup)
@@ -107,13 +107,18 @@ def _at_greatest(result: Result, force: np.ndarray) -> str:
     """Where the greatest force passes."""
     step = int(np.argmax(force))
     away = max(getattr(result.seats[step], end).eccentricity_mm for end in ENDS)
-    return f"At {plain(float(force[step]))} N the force passes {away:.2g} mm beside the axis"
+    return f"At {plain(float(force[step]))} N the force passes {_roughly(away)} mm beside the axis"
 
 
 def _farthest(result: Result, strong: np.ndarray) -> str:
     """How far from the axis the force passes in the `strong` steps."""
     away = max((column(result, end, "eccentricity_mm")[strong].max(initial=0.0) for end in ENDS), default=0.0)
-    return f"From {100 * FAINT:g} % of that force on it passes at most {away:.2g} mm beside"
+    return f"With {100 * FAINT:g} % of that or more, up to {_roughly(away)} mm"
+
+
+def _roughly(distance: float) -> str:
+    """Two figures of it, without an exponent."""
+    return f"{float(f'{distance:.2g}'):g}"
 
 
 def seat_pressure(path: str | Path, setup: Setup, result: Result) -> bool:
