@@ -1,5 +1,6 @@
 """All that a picture shows is in it: springs of any shape, programs of many cycles, numbers of any size."""
 
+import itertools
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import matplotlib.axes
 import matplotlib.figure
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.image import imread
 from mpi4py import MPI
 
@@ -181,3 +183,30 @@ def test_all_figures_share_one_look():
     repository = Path(__file__).resolve().parents[2]
     sources = [path for room in ("model", "verification") for path in (repository / room).rglob("*.py")]
     assert not [path for path in sources if "axes.spines" in path.read_text(encoding="utf-8")]
+
+
+@pytest.mark.parametrize("size", [1.0, 1e3, 1e6])
+def test_titles_are_whole_and_clear_of_each_other(analysis, monkeypatch, size):
+    """Whatever the size of their numbers."""
+    step = replace(analysis.result.steps[0], force_N=1.23456 * size)
+    away = 0.0123456 * size
+    seats = tuple(replace(one, bottom=replace(one.bottom, eccentricity_mm=away),
+                          top=replace(one.top, eccentricity_mm=away)) for one in analysis.result.seats)  # fmt: skip
+    result, boxes = replace(analysis.result, steps=(step,), seats=seats), []
+
+    def keep(figure: matplotlib.figure.Figure, path):
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+        titles = [axes.title.get_window_extent(canvas.get_renderer()) for axes in figure.axes if axes.get_title()]
+        boxes.append((figure.bbox, titles))
+
+    monkeypatch.setattr(figures, "save", keep)
+    monkeypatch.setattr(seat_figures, "save", keep)
+    summary = summarise(analysis.setup, result)
+    figures.characteristic("", analysis.setup, result, summary)
+    seat_figures.force_centre("", analysis.setup, result)
+    seat_figures.seat_pressure("", analysis.setup, result)
+    assert [len(titles) for _, titles in boxes] == [1, 2, 4]
+    for whole, titles in boxes:
+        assert all(whole.x0 <= box.x0 and box.x1 <= whole.x1 and box.y1 <= whole.y1 for box in titles)
+        assert not any(one.overlaps(other) for one, other in itertools.combinations(titles, 2))
