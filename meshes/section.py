@@ -13,6 +13,7 @@ from coilset.meshes.compat import mesh_from_gmsh
 from coilset.meshes.errors import InputError
 from coilset.meshes.section_shapes import Outline
 
+MOST_ACROSS = 100  # triangles across a section: 140,000 unknowns with sides of degree 2
 SAMPLES = 4001  # points on each curve in the search for the section's extent
 ON = 1e-12  # |η| at which a point counts as one of η = 0, over its curve's size
 
@@ -52,7 +53,7 @@ def section_mesh(
 
     Args:
         outline: `Outline`, see `section_shapes`.
-        across: triangles across the round section of the same area.
+        across: triangles across the round section of the same area, up to MOST_ACROSS.
         degree: of the triangles' sides and of the displacements, 2 or 3.
         surface: how much finer the triangles are at the surface than in the middle.
         inside: how much finer they are at the inside of the coil, where stress is highest and varies most: from the
@@ -64,8 +65,9 @@ def section_mesh(
     Raises:
         InputError: values that do not define a mesh, or an outline that gmsh cannot fill.
     """
-    if not (np.isfinite(across) and across >= 1):
-        raise InputError(f"{across:g} is not possible; give 1 or more triangles across the section", "section.across")
+    if not 1 <= across <= MOST_ACROSS:
+        raise InputError(f"{across:g} is not possible; give 1 to {MOST_ACROSS} triangles across the section",
+                         "section.across")  # fmt: skip
     if degree not in (2, 3):
         raise InputError(f"{degree} is not possible; give 2 or 3", "section.degree")
     gmsh.initialize(["coilset", "-v", "1"], readConfigFiles=False, interruptible=False)

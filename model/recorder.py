@@ -76,7 +76,7 @@ class Recorder:
         x, turns = self.layout.gather(self.rod.x), self.setup.turns
         pulls = self.setup.ends == "seats" and force < -faint_force(self.rod, greatest)
         lift_off = max(clearance(self.system, x), 0.0) if pulls else 0.0
-        bears = 0.0 if lift_off else force  # the pull of the tip springs is ignored
+        bears = 0.0 if lift_off else force + 0.0  # the pull of the tip springs is ignored; and zero has no sign
         weakest = self._weakest()
         step = Step(taken.number, phase, taken.progress, height, self.setup.spring.free_length - height, bears,
                     taken.outcome.iterations, taken.outcome.evaluations, taken.outcome.failed_solves, taken.cuts,

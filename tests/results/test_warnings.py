@@ -60,6 +60,13 @@ def test_a_seat_that_is_left_bears_nothing(lifted):
         assert one.top.force_N == pytest.approx(step.force_N, rel=1e-9)
 
 
+def test_a_force_of_zero_has_no_sign(lifted):
+    """A released spring bears 0.0 N in all files, not -0.0."""
+    released = [step.force_N for step in lifted.result.steps if step.force_N == 0.0]
+    assert len(released) > 2  # at the release, and where the seat is left
+    assert [math.copysign(1.0, force) for force in released] == [1.0] * len(released)
+
+
 def test_no_rate_is_that_of_a_lifted_seat(lifted):
     summary = summarise(lifted.setup, lifted.result)
     (asked,) = summary["rates"]

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 
 import numpy as np
 import pytest
@@ -113,9 +114,10 @@ def test_what_it_refuses(example, tmp_path, settings, section, problem):
     assert not (tmp_path / "here").exists()
 
 
-def test_too_few_triangles_are_the_options_fault(example, tmp_path):
-    with pytest.raises(InputError, match=r"^--across: 0\.5 is not possible"):
-        slice_case(example, tmp_path / "here", across=0.5)
+@pytest.mark.parametrize("across", [0.5, 1000.0, math.nan])
+def test_too_few_or_too_many_triangles_are_the_options_fault(example, tmp_path, across):
+    with pytest.raises(InputError, match=rf"^--across: {across:g} is not possible; give 1 to 100 "):
+        slice_case(example, tmp_path / "here", across=across)
     assert not (tmp_path / "here").exists()
 
 
