@@ -60,8 +60,8 @@ def _elements(axes: Axes, runs: list[dict[str, Any]]) -> None:
     axes.set(xscale="log", yscale="log", xlabel="elements", ylabel="processor time of an element\nin an iteration, µs",
              title="Cost of an element, one plastic step")  # fmt: skip
     axes.title.set_fontsize(9)
-    axes.set_ylim(max(axes.get_ylim()[0], 1e-3 * total.min()))
-    axes.legend(fontsize=7, ncols=2)
+    axes.set_ylim(0.2 * max(axes.get_ylim()[0], 1e-3 * total.min()))  # room for the legend below the lines
+    axes.legend(fontsize=7, ncols=2, loc="lower left")
     axes.grid(lw=0.3)
 
 
