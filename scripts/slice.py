@@ -53,7 +53,6 @@ def slice_case(
     try:
         outline = parse(section) if section else None
         analysis = SliceAnalysis(case, outline, ACROSS if across is None else across)
-        analysis.check_targets()
     except InputError as error:
         raise _placed(error, case, case_file) from None
     prepare(folder, force)

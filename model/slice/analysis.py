@@ -94,7 +94,8 @@ class SliceAnalysis:
         lattice, points: Lattice over the section and the Watch of its points; line: Watch across the section at η = 0.
 
     Raises:
-        InputError: if the spring is not cylindrical, or does not match the section.
+        InputError: if the spring is not cylindrical or does not match the section, or the load program is in time or
+            goes below block.
     """
 
     def __init__(self, case: Case, outline: Outline | None = None, across: float = ACROSS, degree: int = 2):
@@ -102,6 +103,7 @@ class SliceAnalysis:
         for entry in case.past:
             problem = f"a slice begins free of stress; leave '{entry}' out, or use 'coilset solve'"
             raise InputError(problem, f"spring.{entry}")
+        self._check_targets()
         self.law = case_law(case, self.spring)
         d, D, pitch = (_same_in_all_turns(self.spring, name) for name in ("wire_diameter", "mean_diameter", "pitch"))
         self.wire_diameter, self.mean_diameter, self.is_round = d, D, outline is None
@@ -115,6 +117,21 @@ class SliceAnalysis:
         self.line = Watch(self.body, np.stack([ξ, np.zeros_like(ξ)], axis=1))
         self.problem = SliceProblem(self.body, _ends_turn(case), SelfContact(self.body))
         self.result = SliceResult()
+
+    def _check_targets(self) -> None:
+        """Reject a load program in time, or with a height below that at which the coils touch."""
+        block, timeless = self.spring.block_height, "the slice does not model time; leave it out, or use coilset solve"
+        if self.case.heat is not None:
+            raise InputError(timeless, "heat")
+        for index, phase in enumerate(self.case.loading):
+            if not isinstance(phase, Phase):
+                raise InputError(timeless, f"loading.{index}")
+            if phase.seconds is not None:
+                raise InputError(timeless, f"loading.{index}.seconds")
+            kind, value = phase.goal(self.spring.free_length, block)
+            if kind == "height" and value < block * (1.0 - SAME):
+                raise InputError(f"a height of {value:.6g} mm is below block, {block:.6g} mm; give to: block",
+                                 f"loading.{index}.to")  # fmt: skip
 
     @property
     def travel(self) -> float:
@@ -172,25 +189,6 @@ class SliceAnalysis:
 
     def _rise(self, height: float) -> float:
         return self.coil.rise - (self.spring.free_length - height) / (2.0 * np.pi * self.turns)
-
-    def check_targets(self) -> None:
-        """Reject a load program in time, or with a height below that at which the coils touch.
-
-        Raises:
-            InputError: with the phase.
-        """
-        block, timeless = self.spring.block_height, "the slice does not model time; leave it out, or use coilset solve"
-        if self.case.heat is not None:
-            raise InputError(timeless, "heat")
-        for index, phase in enumerate(self.case.loading):
-            if not isinstance(phase, Phase):
-                raise InputError(timeless, f"loading.{index}")
-            if phase.seconds is not None:
-                raise InputError(timeless, f"loading.{index}.seconds")
-            kind, value = phase.goal(self.spring.free_length, block)
-            if kind == "height" and value < block * (1.0 - SAME):
-                raise InputError(f"a height of {value:.6g} mm is below block, {block:.6g} mm; give to: block",
-                                 f"loading.{index}.to")  # fmt: skip
 
     def _close(self, height: float) -> Effort:
         """Continue until the coils just touch, slightly above the block height because of the wire's inclination.

@@ -114,6 +114,11 @@ def test_what_it_refuses(example, tmp_path, settings, section, problem):
     assert not (tmp_path / "here").exists()
 
 
+def test_a_slice_from_python_goes_no_further_than_block(example):
+    with pytest.raises(InputError, match=r"^loading\.0\.to: .*below block"):
+        SliceAnalysis(read_case(example, ["loading=[{to: {height: 17}}]"]), across=3.0)
+
+
 @pytest.mark.parametrize("across", [0.5, 1000.0, math.nan])
 def test_too_few_or_too_many_triangles_are_the_options_fault(example, tmp_path, across):
     with pytest.raises(InputError, match=rf"^--across: {across:g} is not possible; give 1 to 100 "):
