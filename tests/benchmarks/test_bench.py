@@ -13,7 +13,7 @@ from mpi4py import MPI
 from coilset.meshes.errors import CoilsetError, InputError
 from coilset.model import build
 from coilset.scripts import bench as command
-from coilset.verification.benchmarks import everyday, measure, run, same_spring, stopwatch, walks
+from coilset.verification.benchmarks import everyday, measure, run, same_spring, stopwatch, walk
 from coilset.verification.benchmarks.ranks import compare
 from coilset.verification.benchmarks.stopwatch import Stopwatch
 from coilset.verification.benchmarks.target import ITERATION, per_element, seconds, spread, targets
@@ -113,7 +113,7 @@ def record():
         runs = [measure.press(elements) for elements in (20, 40)]
         unestimated = measure.press(20, 1, 0, 0) | {"elements": 100_000, "memory_GiB": 1.875}
     commands = [{"name": "solve", "first_line": [0.25, 0.75], "end": [1.5, 3.5]}]
-    walked = [{"name": name, "threads": 1, "seconds": [0.25, None]} for name in walks.WALKS]
+    walked = [{"name": name, "threads": 1, "seconds": [0.25, None]} for name in walk.WALKS]
     record = {"machine": run.machine(), "commands": commands, "walks": walked, "example": example, "elements": runs,
               "unestimated": [unestimated], "ranks": [runs[0], runs[0]], "one_and_two_ranks": compared_ranks(runs),
               "cases": measure.cases(1), "opensees": [COMPARED], "load_after": 0.0}  # fmt: skip
@@ -227,12 +227,12 @@ print(json.dumps([{{"name": "w", "threads": 1, "seconds": count ** 2 if {side!r}
         )
         script.chmod(0o755)
         starts.append([str(script)])
-    rows = walks.walks(starts, dict(os.environ) | {"COILSET_STARTED": "1"}, 3)
+    rows = everyday.walks(starts, dict(os.environ) | {"COILSET_STARTED": "1"}, 3)
     assert rows == [{"name": "w", "threads": 1, "seconds": [4, None]}]
     assert log.read_text() == "ababab"
 
 
 @pytest.mark.skipif(MPI.COMM_WORLD.size > 1, reason="measures one rank")
 def test_a_walk_is_timed():
-    assert 0.0 < walks.walk(["loading=[{to: {travel: 1}, steps: 1}]", "mesh.elements_per_turn=8"], 1) < 60.0
-    assert walks.walk(["no.such.entry=1"], 1) is None
+    assert 0.0 < walk.walk(["loading=[{to: {travel: 1}, steps: 1}]", "mesh.elements_per_turn=8"], 1) < 60.0
+    assert walk.walk(["no.such.entry=1"], 1) is None

@@ -1,4 +1,7 @@
-"""Elapsed time of everyday commands, measured from outside: until their first line and until they end."""
+"""Elapsed time of everyday commands, and of the walk in them: medians for several checkouts, measured alternately.
+
+Commands are measured from outside, until their first line and until they end.
+"""
 
 import subprocess
 import sys
@@ -11,12 +14,13 @@ from typing import Any
 
 from coilset.meshes.errors import CoilsetError, InputError
 from coilset.model.examples import EXAMPLES
+from coilset.verification.benchmarks import walk
+from coilset.verification.benchmarks.process import read_json
 
 REPEATS = 5
 THIS = Path(__file__).resolve().parents[2]
 CASE = str(EXAMPLES / "ck15_presetting.yaml")
-EQUAL = ["--set", "loading.0.steps=12", "--set", "loading.1.steps=12",
-         "--set", "mesh.section.radial=4", "--set", "mesh.section.angular=12"]  # fmt: skip
+EQUAL = [word for setting in walk.EQUAL for word in ("--set", setting)]
 COMMANDS = {
     "--help": ["--help"],
     "solve --no-pictures, 12 + 12 steps, 4 x 12 points": ["solve", CASE, "--no-pictures", *EQUAL],
@@ -75,10 +79,40 @@ def everyday(
     Returns:
         For each command its `name`, and `first_line` and `end`: seconds for each checkout.
     """
-    plain = {name: value for name, value in environment.items() if name != "COILSET_STARTED"}
-    rows = []
+    plain, rows = _of_a_new_command(environment), []
     for name, arguments in COMMANDS.items():
         runs = [[timed([*start, *arguments], plain) for start in starts] for _ in range(repeats + 1)][1:]
         first, end = ([median(run[i][which] for run in runs) for i in range(len(starts))] for which in (0, 1))
         rows.append({"name": name, "first_line": first, "end": end})
     return rows
+
+
+def walks(
+    starts: Sequence[Sequence[str]], environment: Mapping[str, str], repeats: int = REPEATS
+) -> list[dict[str, Any]]:
+    """Medians for some checkouts, measured alternately.
+
+    Args:
+        starts: words that start the command of each.
+        environment: of the commands, from before MPI.
+        repeats: processes of each.
+
+    Returns:
+        As `walk.walks`, but for `seconds`: a number, or None, for each checkout.
+
+    Raises:
+        CoilsetError: if one failed.
+    """
+    plain, script = _of_a_new_command(environment), str(Path(walk.__file__).resolve())
+    runs = [[read_json([*start, "python", script], f"'{start[0]} python walk.py'", plain) for start in starts]
+            for _ in range(repeats)]  # fmt: skip
+    rows = []
+    for number, row in enumerate(runs[0][0]):
+        found = [[run[side][number]["seconds"] for run in runs] for side in range(len(starts))]
+        rows.append({**row, "seconds": [None if None in side else median(side) for side in found]})
+    return rows
+
+
+def _of_a_new_command(environment: Mapping[str, str]) -> dict[str, str]:
+    """Without the time at which this command started, from which that one would count."""
+    return {name: value for name, value in environment.items() if name != "COILSET_STARTED"}

@@ -24,6 +24,7 @@ from coilset.model.caches import load_without_compiler
 from coilset.model.examples import EXAMPLES
 from coilset.verification.benchmarks.same_spring import compare
 from coilset.verification.benchmarks.stopwatch import Stopwatch
+from coilset.verification.benchmarks.walk import SAME, STEPS
 
 if TYPE_CHECKING:  # at run time their import is measured
     from mpi4py import MPI
@@ -72,10 +73,6 @@ class Logged:
         now = self._read()
         self.watch.split("other", {name: now[name] - self.before[name] for name in now})
         self.before = now
-
-
-SAME = ("mesh.section.radial=4", "mesh.section.angular=12")  # so that times of all versions refer to the same work
-STEPS = ("loading.0.steps=12", "loading.1.steps=12")
 
 
 def read_example(settings: Iterable[str] = ()) -> "Case":

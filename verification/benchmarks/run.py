@@ -1,22 +1,19 @@
 """Runs the measurements, each in a process of its own, and brings them together in one record."""
 
 import functools
-import json
 import os
 import platform
-import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from coilset.meshes.errors import CoilsetError
-from coilset.model.processes import end_with_parent, folder_of_mpirun, mpi_settings, mpirun, usable_cores
-from coilset.verification.benchmarks.everyday import everyday, launchers
+from coilset.model.processes import folder_of_mpirun, mpi_settings, mpirun, usable_cores
+from coilset.verification.benchmarks.everyday import everyday, launchers, walks
+from coilset.verification.benchmarks.process import read_json
 from coilset.verification.benchmarks.ranks import compare
 from coilset.verification.benchmarks.target import targets
-from coilset.verification.benchmarks.walks import walks
 
 MODULE = "coilset.verification.benchmarks.measure"
 QUICK = ((40, 5), (400, 3), (4_000, 2), (16_000, 1))  # elements, and how often they are measured
@@ -43,12 +40,8 @@ def measure(environment: dict[str, str], job: str, *arguments: int, ranks: int =
     if ranks > 1:
         command = [*mpirun(ranks), *command]
     with folder_of_mpirun() as folder:
-        done = subprocess.run(command, env=mpi_settings() | environment | folder, capture_output=True, text=True,
-                              preexec_fn=end_with_parent)  # fmt: skip
-    if done.returncode:
-        reason = (done.stderr.strip() or "no message").splitlines()[-1]
-        raise CoilsetError(f"the measurement '{' '.join(map(str, (job, *arguments)))}' failed: {reason}")
-    return json.loads(done.stdout.strip().splitlines()[-1])
+        name = f"the measurement '{' '.join(map(str, (job, *arguments)))}'"
+        return read_json(command, name, mpi_settings() | environment | folder)
 
 
 def cold(environment: dict[str, str]) -> dict[str, Any]:

@@ -16,13 +16,12 @@ OpenSees is wanted, not needed: `pip install --target FOLDER openseespy`, Debian
 import importlib.util
 import json
 import math
-import subprocess
 import sys
 import time
 from typing import TYPE_CHECKING, Any
 
-from coilset.meshes.errors import CoilsetError
 from coilset.model.examples import EXAMPLES
+from coilset.verification.benchmarks.process import read_json
 
 if TYPE_CHECKING:
     from coilset.model.analysis import Analysis
@@ -95,8 +94,4 @@ def run_opensees(model: dict[str, Any], repeats: int) -> dict[str, Any]:
     Raises:
         CoilsetError: if it failed.
     """
-    done = subprocess.run([sys.executable, "-m", THEIRS, str(repeats)], input=json.dumps(model), capture_output=True,
-                          text=True)  # fmt: skip
-    if done.returncode:
-        raise CoilsetError(f"OpenSees failed: {(done.stderr.strip() or 'no message').splitlines()[-1]}")
-    return json.loads(done.stdout)
+    return read_json([sys.executable, "-m", THEIRS, str(repeats)], "OpenSees", text=json.dumps(model))

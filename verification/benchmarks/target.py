@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from coilset.verification.benchmarks.walks import WALKS
+from coilset.verification.benchmarks.walk import WALKS
 
 ITERATION = ("law", "contact", "assemble", "factorise", "solve", "other")  # stages of the equilibrium iteration
 LARGE = 4_000  # number of elements above which the cost of an element should not depend on it
