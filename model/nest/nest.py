@@ -99,7 +99,8 @@ def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: N
         heights = plan(nest.loading, springs)
     except InputError as error:
         raise InputError(error.problem, error.place, nest.path) from None
-    members = tuple(_run(nest, number, heights, told, threads) for number in range(len(NAMES)))
+    programs = [heights.program(one.free_length) for one in springs]
+    members = tuple(_run(nest, number, program, told, threads) for number, program in enumerate(programs))
     steps = [_steps(member, heights) for member in members]
     forces = np.array([[0.0 if step is None else step.force_N for step in one] for one in steps])
     clearance = _clearance(members, steps)
@@ -112,12 +113,11 @@ def _build(case: Case, file: Path) -> Spring:
         return case.spring.build()
 
 
-def _run(nest: Nest, number: int, heights: Plan, told: Callable[[str, Step], object], threads: int) -> Member:
-    """Run one spring through the heights at which the seats touch it."""
+def _run(nest: Nest, number: int, program: list[Phase], told: Callable[[str, Step], object], threads: int) -> Member:
+    """Run one spring through its program; without one the seats do not touch it."""
     name, case = NAMES[number], nest.cases[number]
+    loading = program or [Phase(to=Target(force=0.0), steps=1)]  # its own is that of another run
     with _naming(nest.files[number]):
-        program = heights.program(case.spring.build().free_length)
-        loading = program or [Phase(to=Target(force=0.0), steps=1)]  # its own is that of another run
         analysis = Analysis(case.model_copy(update={"loading": loading}), MPI.COMM_SELF, threads=threads)
     if not program:
         return Member(name, case, analysis.setup, None)
