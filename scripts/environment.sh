@@ -31,6 +31,10 @@ find_environment() {
         "enter_$kind"
         return
     fi
+    # Without a trap, SIGINT ends this shell at once, unless it waits for a command: then it may forget one that the command
+    # did not get. With one, it forgets what comes while it prepares exec or waits for a command substitution. So a trap is
+    # set only where something is waited for, and on the way to Python from a record neither is done.
+    trap 'exit 130' INT
     if ! ready; then
         case " $* " in *' --help '* | *' -h '* | *' --version '* | '  ') printf '%s\n' "$ways" ${near:+"$near"}; exit 0 ;; esac
         [ -z "${COILSET_PYTHON:-}" ] || [ -n "${COILSET_RELEASE:-}" ] ||
@@ -59,7 +63,7 @@ recall() { # the record, if its facts still hold
 }
 
 remember() {
-    facts+=("$scripts/environment.sh" "$scripts/packages.txt")
+    facts+=("$scripts/environment.sh" "$scripts/environment.py" "$scripts/packages.txt")
     [ "$kind" = directly ] || facts+=("$private_root$record")
     printf '%s\n' "$kind" "$python" "${facts[@]}" > "$found.$$" && mv "$found.$$" "$found"
 }
@@ -80,27 +84,17 @@ ready() { # is there an environment? Sets kind, python and the facts that this r
 }
 
 complete() { # has this Python every module, and DOLFINx >= 0.9? Where it looks for them is added to the facts
-    local line enough=''
+    local line enough='' answer=$found.$$.answer
+    # Over a file: bash does not reliably answer a signal in the midst of a substitution.
+    PYTHONPATH='' "$1" - $modules < "$scripts/environment.py" > "$answer" 2> /dev/null || true
     while read -r line; do
         case "$line" in
             enough) enough=yes ;;
             has\ *) near=${near:-$1 $line} ;;
             *) facts+=("$line") ;;
         esac
-    done < <(PYTHONPATH='' exec "$1" - $modules 2> /dev/null << 'PYTHON'
-import importlib.metadata, importlib.util, os, sys
-print(os.path.realpath(sys.executable), *(path for path in sys.path if os.path.isdir(path)), sep="\n")
-try:
-    version = importlib.metadata.version("fenics-dolfinx")
-except importlib.metadata.PackageNotFoundError:
-    version = importlib.metadata.version("dolfinx-solver-real")  # its wheel on PyPI
-missing = [name for name in sys.argv[1:] if importlib.util.find_spec(name) is None]
-if tuple(map(int, version.split(".")[:2])) < (0, 9):
-    print(f"has DOLFINx {version}; 0.9 or later is needed")
-else:
-    print(f"has DOLFINx, but not {', '.join(missing)}" if missing else "enough")
-PYTHON
-    )
+    done < "$answer"
+    rm -f "$answer"
     [ -n "$enough" ]
 }
 

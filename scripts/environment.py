@@ -1,0 +1,22 @@
+"""What environment.sh asks a Python: its files and folders, a line each, and whether it has what coilset needs.
+
+Any Python 3 answers, from its standard input, so that this folder is none of those in which it looks for modules.
+"""
+
+import importlib.metadata
+import importlib.util
+import os
+import sys
+
+LEAST = (0, 9)  # DOLFINx
+
+print(os.path.realpath(sys.executable), *(path for path in sys.path if os.path.isdir(path)), sep="\n")
+try:
+    version = importlib.metadata.version("fenics-dolfinx")
+except importlib.metadata.PackageNotFoundError:
+    version = importlib.metadata.version("dolfinx-solver-real")  # its wheel on PyPI
+missing = [name for name in sys.argv[1:] if importlib.util.find_spec(name) is None]
+if tuple(map(int, version.split(".")[:2])) < LEAST:
+    print(f"has DOLFINx {version}; {LEAST[0]}.{LEAST[1]} or later is needed")
+else:
+    print(f"has DOLFINx, but not {', '.join(missing)}" if missing else "enough")
