@@ -18,6 +18,11 @@ COILSET_PYTHON names a Python that has it but is not the first on the PATH."
 say() { printf 'coilset: %s\n' "$*" >&2; }
 fail() { say "$*"; exit 2; }
 
+# Without a trap, SIGINT ends this shell at once; but while it waits for a command, it forgets one that the command did not
+# get. With a trap, it forgets what comes while it prepares exec or waits for a command substitution. So one is set only
+# where commands are waited for; on the way from a record to Python there are neither.
+hear_interrupts() { trap 'exit 130' INT; }
+
 packages() { tr '\n' ' ' < "$scripts/packages.txt"; }
 
 # What was found is kept beside the checkout's link in the cache folder, one record for each python3 of the PATH: the
@@ -31,10 +36,7 @@ find_environment() {
         "enter_$kind"
         return
     fi
-    # Without a trap, SIGINT ends this shell at once, unless it waits for a command: then it may forget one that the command
-    # did not get. With one, it forgets what comes while it prepares exec or waits for a command substitution. So a trap is
-    # set only where something is waited for, and on the way to Python from a record neither is done.
-    trap 'exit 130' INT
+    hear_interrupts
     if ! ready; then
         case " $* " in *' --help '* | *' -h '* | *' --version '* | '  ') printf '%s\n' "$ways" ${near:+"$near"}; exit 0 ;; esac
         [ -z "${COILSET_PYTHON:-}" ] || [ -n "${COILSET_RELEASE:-}" ] ||
@@ -138,7 +140,7 @@ quietly() { # run with the output in the file $log, a dot every five seconds, an
         ticks=$((ticks + 1))
         [ $((ticks % 5)) -eq 0 ] && printf '.' >&2
     done
-    trap 'exit 130' INT
+    hear_interrupts
     trap - TERM
     [ "$ticks" -lt 5 ] || printf ' %s s\n' "$ticks" >&2
     wait "$job" || { tail -n 15 "$log" >&2; fail "that failed; the whole log is $log"; }
@@ -155,6 +157,7 @@ enter_directly() {
 link_namespace() { # `import coilset.model` finds the folder model of this checkout, without an installation
     namespace=$COILSET_CACHE/checkouts/${1//\//%}
     [ "$namespace/coilset" -ef "$1" ] || {
+        hear_interrupts
         mkdir -p "$namespace"
         ln -sfn "$1" "$namespace/coilset"
     }
