@@ -90,6 +90,7 @@ SOLID_METHODS = {
     "multigrid": {**_MULTIGRID, "ksp_type": "gmres", "ksp_gmres_restart": 80, "ksp_pc_side": "right"},
     "multigrid-cg": {**_MULTIGRID, "ksp_type": "cg", "ksp_norm_type": "unpreconditioned"},
 }
+MULTIGRID = "multigrid"  # how the names of those begin that correct at the vertices first
 SYMMETRIC = ("multigrid-cg",)
 DIRECT_LIMIT = 60_000  # unknowns above which a factorisation of a compact body costs more than multigrid
 
@@ -174,19 +175,25 @@ def rod_method(name: str, ranks: int, extra: Mapping[str, Any] | None = None, ar
     return Method(name, chosen | dict(extra or {}), frozenset(extra or ()))
 
 
-def solid_method(name: str, unknowns: int, extra: Mapping[str, Any] | None = None) -> Method:
+def solid_method(
+    name: str, unknowns: int, extra: Mapping[str, Any] | None = None, *, free_vertices: bool = True
+) -> Method:
     """A method for solids.
 
     Args:
         name: a key of SOLID_METHODS, or ``auto`` to choose by size.
         unknowns: their number.
         extra: further options, which take precedence.
+        free_vertices: whether any vertex of the mesh may move; multigrid's coarse space holds these alone.
 
     Raises:
-        InputError: if there is no such method.
+        InputError: if there is no such method, or if it finds nothing to coarsen to.
     """
     if name == "auto":
-        name = "direct" if unknowns <= DIRECT_LIMIT else "multigrid"
+        name = "direct" if unknowns <= DIRECT_LIMIT or not free_vertices else "multigrid"
     if name not in SOLID_METHODS:
         raise InputError(f"'{name}' is not a solver of the solid; give auto or {', '.join(SOLID_METHODS)}", "solver")
+    if name.startswith(MULTIGRID) and not free_vertices:
+        raise InputError(f"'{name}' needs two layers of elements or more, since the heads hold all vertices of one; "
+                         "give direct or auto, or more layers", "solver")  # fmt: skip
     return Method(name, SOLID_METHODS[name] | dict(extra or {}), frozenset(extra or ()))

@@ -54,6 +54,17 @@ class VertexMultigrid:
         return PETSc.NullSpace().create(vectors=vectors, comm=comm)
 
 
+def any_free_vertex(V: fem.FunctionSpace, held: np.ndarray) -> bool:
+    """Whether any rank has a vertex that is not held; collective.
+
+    Args:
+        V: function space of quadratic elements.
+        held: blocks with prescribed displacement.
+    """
+    _number, mine = _number_vertices(V, held)
+    return bool(V.mesh.comm.allreduce(len(mine)))
+
+
 def _number_vertices(V: fem.FunctionSpace, held: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Global numbers of the vertices that are not held, -1 for other blocks, and those owned by this rank."""
     index_map, comm = V.dofmap.index_map, V.mesh.comm

@@ -13,13 +13,13 @@ from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.iteration import Iteration
 from coilset.model.equilibrium.layout import Layout
 from coilset.model.equilibrium.load import Load
-from coilset.model.equilibrium.methods import SYMMETRIC, solid_method
+from coilset.model.equilibrium.methods import MULTIGRID, SYMMETRIC, solid_method
 from coilset.model.equilibrium.newton import Newton, Start
 from coilset.model.equilibrium.settings import NewtonControl, StepControl
 from coilset.model.equilibrium.step_control import Path
 from coilset.model.equilibrium.system import System
 from coilset.model.solid.heads import Head, Motion, Reaction
-from coilset.model.solid.multigrid import VertexMultigrid
+from coilset.model.solid.multigrid import VertexMultigrid, any_free_vertex
 from coilset.model.solid.solid import PointLaw, Solid
 
 STEPS = StepControl(smallest=2.0**-6)
@@ -55,14 +55,14 @@ class SolidProblem:
         self.solid = solid = Solid(wire, points)
         layout = Layout(solid.V)
         self.unknowns, self.comm = layout.size, solid.comm
-        method = solid_method(solver, self.unknowns, options)
-        self.solver, solid.symmetric = method.name, method.name in SYMMETRIC
         self.bottom, self.top = Head(solid, "bottom"), Head(solid, "top")
         held = np.unique(np.concatenate([self.bottom.blocks, self.top.blocks]))
+        method = solid_method(solver, self.unknowns, options, free_vertices=any_free_vertex(solid.V, held))
+        self.solver, solid.symmetric = method.name, method.name in SYMMETRIC
         self.system = System(solid, layout)
         self.newton = Newton(self.system, method, precision, NewtonControl(), prepare=self._prepare)
         self._multigrid: VertexMultigrid | None = None
-        if self.solver.startswith("multigrid"):
+        if self.solver.startswith(MULTIGRID):
             self._multigrid = VertexMultigrid(solid.configuration, held, self.newton.iteration.snes.getKSP().getPC())
             self.newton.iteration.snes.setFromOptions()  # now that the preconditioner's levels exist
         self.predictor = HeadPredictor(self.newton.iteration, solid, held)

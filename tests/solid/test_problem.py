@@ -9,6 +9,7 @@ from coilset.meshes import solid
 from coilset.meshes.compat import to_ranks
 from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.solid import SectionGrid, coil_section, straight_wire
+from coilset.model.equilibrium import methods
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.material import library
 from coilset.model.solid.heads import Motion
@@ -158,6 +159,22 @@ def test_an_impossible_step_leaves_the_last_equilibrium():
         problem.step(Motion((0.0, 0.0, -300.0)))
     assert np.array_equal(problem.solid.x, x)
     assert np.allclose(problem.forces, forces, atol=1e-9 * np.abs(forces).max())
+
+
+@pytest.mark.parametrize("solver", ["multigrid", "multigrid-cg"])
+def test_one_layer_leaves_multigrid_no_vertex_and_is_refused(solver):
+    # both heads hold all vertices; `auto` takes the factorisation however many unknowns there are
+    wire = straight_wire(d, L, 1, MPI.COMM_SELF, SectionGrid(1, 1))
+    with pytest.raises(InputError, match=f"solver: '{solver}' needs two layers of elements or more"):
+        SolidProblem(wire, Elastic(), solver)
+
+
+@pytest.mark.parametrize(("layers", "chosen"), [(1, "direct"), (2, "multigrid")])
+def test_many_unknowns_are_solved_by_multigrid_where_a_vertex_is_free(monkeypatch, layers, chosen):
+    monkeypatch.setattr(methods, "DIRECT_LIMIT", 10)
+    problem = SolidProblem(straight_wire(d, L, layers, MPI.COMM_SELF, SectionGrid(1, 1)), Elastic(), "auto")
+    assert problem.solver == chosen
+    assert twist(problem, 1e-6) > 0
 
 
 def test_an_unknown_solver_is_refused():
