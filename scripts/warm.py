@@ -10,7 +10,9 @@ from coilset.model.analysis import Analysis
 from coilset.model.case import Case, read_case
 from coilset.model.design.surrogate import guess
 from coilset.model.examples import EXAMPLES
+from coilset.model.material import library
 from coilset.model.processes import end_with_parent, folder_of_mpirun, mpi_environment, mpirun
+from coilset.model.report.material_curves import there_and_back
 
 LOADING = "loading=[{to: {travel: 16}, steps: 4}, {to: {force: 0}, steps: 1}]"
 CREEPING = "loading=[{to: {force: 650}, steps: 2}, {hold: {hours: 1}, steps: 1}]"
@@ -25,6 +27,8 @@ def short_case(example: str, loading: str) -> Case:
 def warm() -> None:
     """Compress an example until coils touch and yield, release it, let one creep, press a uniform rod; keep nothing.
 
+    One point of steel is twisted, too, as for the page of a run.
+
     What several threads do is compiled beside what one does: there are points enough for two, on the surface too.
     """
     cases = [short_case(*PRESSED), short_case(*HELD)]
@@ -32,6 +36,8 @@ def warm() -> None:
         for threads in (1, 2):
             Analysis(case, MPI.COMM_SELF, threads=threads).run()
     guess(cases[0], [])
+    law = library.load("ck15")
+    there_and_back(law, law.reference_temperature)
 
 
 def warm_ranks() -> None:

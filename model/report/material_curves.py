@@ -5,7 +5,7 @@ from math import isfinite
 
 from coilset.model.material.file import MaterialFile
 from coilset.model.material.law import Law
-from coilset.model.material.programs import Program, Step, run
+from coilset.model.material.programs import History, Program, Step, run
 from coilset.model.report.panel import COLOURS, LINE, Panel, axis
 from coilset.model.results.opened import Run
 
@@ -18,11 +18,10 @@ def material_curve(results: Run) -> Panel | None:
     law = Law(MaterialFile.model_validate(json.loads(results.data.attrs["material_file"])))
     if not isfinite(law.yield_stress):
         return None
-    far = FAR * law.yield_stress / (3.0**0.5 * law.G)
     low, high = law.temperature_range
     temperature = results.case.get("temperature") or low
-    steps = [Step(to={"gamma12": to}, increments=number * INCREMENTS) for number, to in ((1, far), (2, -far), (2, far))]
-    history = run(law, Program(name="there and back", temperature=temperature, steps=tuple(steps)))
+    history = there_and_back(law, temperature)
+    far = history.strain[INCREMENTS, 1]
     trace = {
         "type": "scatter",
         "mode": "lines",
@@ -41,3 +40,18 @@ def material_curve(results: Run) -> Panel | None:
         {"xaxis": axis("shear strain, %"), "yaxis": axis("shear stress, MPa")},
         note=law.description + ". Source: " + law.source,
     )
+
+
+def there_and_back(law: Law, temperature: float) -> History:
+    """Twist one point to FAR yield strains, back as far, and there again.
+
+    Args:
+        law: of a material that yields.
+        temperature: of the point, K.
+
+    Raises:
+        InputError: if the temperature lies outside the material's table.
+    """
+    far = FAR * law.yield_stress / (3.0**0.5 * law.G)
+    steps = [Step(to={"gamma12": to}, increments=number * INCREMENTS) for number, to in ((1, far), (2, -far), (2, far))]
+    return run(law, Program(name="there and back", temperature=temperature, steps=tuple(steps)))

@@ -10,11 +10,13 @@ import threading
 
 import numba
 import pytest
+from mpi4py import MPI
 
 from coilset.meshes.errors import InputError
 from coilset.model.processes import mpi_environment, mpirun
 from coilset.scripts import compiling, warm
 from coilset.scripts.compiling import NOTICE, NOTICE_OF_PART, announce_compiling, compile_first, compiled
+from coilset.scripts.solve import solve
 
 SMALL = ["--set", "loading=[{to: {travel: 2}, steps: 1}]", "--set", "mesh.elements_per_turn=8", "--no-pictures"]
 
@@ -146,6 +148,25 @@ def test_shipped_examples_need_no_kernel_that_is_not_compiled_before(example):
     count, *missing = done.stdout.splitlines()
     assert int(count) > 8  # those that are called by Python; the others are in them
     assert missing == []
+
+
+KERNELS_OF_PAGE = """
+from coilset.scripts.report import report
+warm()
+compiled = used()
+report(sys.argv[1])
+print(len(compiled), sorted(used() - compiled))
+"""
+
+
+def test_the_page_of_a_run_needs_no_kernel_that_is_not_compiled_before(example, tmp_path):
+    solve(example, tmp_path / "run", False, SMALL[1::2], pictures=False, comm=MPI.COMM_SELF)
+    command = [sys.executable, "-c", USED + KERNELS_OF_PAGE, str(tmp_path / "run")]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    count, missing = done.stdout.splitlines()[-1].split(maxsplit=1)
+    assert int(count) > 8
+    assert missing == "[]"
+    assert (tmp_path / "run" / "report.html").is_file()
 
 
 KERNELS_OF_RANKS = """
