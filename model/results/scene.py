@@ -83,11 +83,9 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.nda
         plotter.add_mesh(
             mesh, scalars=name, clim=(0.0, end), cmap="viridis", smooth_shading=True, scalar_bar_args=_bar(frame, name),
         )  # fmt: skip
-        bears = abs(shot.force) if abs(shot.force) > 1e-6 * force else 0.0
-        label = f"{shot.name}\n{plain(shot.height, 5)} mm, {plain(bears)} N"
         foot = [aside + place * frame.column, 0.0, high + (0.5 * ABOVE * across + 15.0 / frame.scale)]
-        plotter.add_point_labels([foot], [label], font_size=20, text_color="black", shape=None, show_points=False,
-                                 always_visible=True, justification_horizontal="center")  # fmt: skip
+        plotter.add_point_labels([foot], [caption(shot, force)], font_size=20, text_color="black", shape=None,
+                                 show_points=False, always_visible=True, justification_horizontal="center")  # fmt: skip
     centre, away = 0.5 * (low + high) + 0.5 * (LABELS - BAR) / frame.scale, 10.0 * (high - low + across)
     plotter.camera_position = [(middle, -away, centre + ABOVE * away), (middle, 0.0, centre), (0, 0, 1)]
     plotter.camera.parallel_projection = True
@@ -97,6 +95,17 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.nda
             plotter.screenshot(str(partial))
     finally:
         plotter.close()
+
+
+def caption(shot: Snapshot, greatest: float) -> str:
+    """Name, height and force of a snapshot, the force of a pulled spring with its sign.
+
+    Args:
+        shot: Snapshot.
+        greatest: magnitude of the greatest force of all that are shown, N; small parts of it count as zero.
+    """
+    bears = shot.force if abs(shot.force) > 1e-6 * greatest else 0.0
+    return f"{shot.name}\n{plain(shot.height, 5)} mm, {plain(bears)} N"
 
 
 def _bar(frame: Frame, title: str) -> dict[str, Any]:

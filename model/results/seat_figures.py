@@ -155,24 +155,45 @@ def seat_pressure(path: str | Path, setup: Setup, result: Result) -> bool:
                 values = column(result, end, "length_mm")[steps]
                 lengths.plot(travel[steps], values, styles[index], marker="o", **DRAWN[end])
             for name, _words, drawn in TURNS:
-                values = np.array([getattr(result.seats[k], name) for k in steps])
-                turns.plot(travel[steps], values, styles[index], marker="o", **drawn)
+                turns.plot(travel[steps], shown_turns(setup, result, name)[steps], styles[index], marker="o", **drawn)
         for end in seats:
             lengths.plot([], [], "-", marker="o", **DRAWN[end], label=f"{end} seat")
-        for _name, words, drawn in TURNS:
-            turns.plot([], [], "-", marker="o", **drawn, label=words)
+        for name, words, drawn in TURNS:
+            beyond = sum(getattr(one, name) > most_turns(setup) for one in result.seats)
+            aside = f" (beyond {most_turns(setup):g} turns: {beyond} of the steps)" if beyond else ""
+            turns.plot([], [], "-", marker="o", **drawn, label=words + aside)
         most = result.seats[int(np.argmax(np.abs([step.force_N for step in result.steps])))]
         bearing = " and ".join(f"{getattr(most, end).length_mm:.3g}" for end in seats)
         lengths.set(xlabel="travel in mm", ylabel="wire in contact with the seat in mm",
                     title=f"{bearing} mm bear at the greatest force")  # fmt: skip
-        turns.set(xlabel="travel in mm", ylabel="turns", ylim=(0.0, 1.5 * setup.spring.turns),
-                  title=f"At the greatest force {most.active_turns:.3g} turns are active")  # fmt: skip
+        turns.set(xlabel="travel in mm", ylabel="turns", ylim=(0.0, most_turns(setup)),
+                  title=_active(most.active_turns, most_turns(setup)))  # fmt: skip
         for axes in (lengths, turns):
             name_styles(axes, setup)
             axes.legend(fontsize=7, **OVER_LINES)
             axes.grid(lw=0.3)
         save(figure, path)
     return True
+
+
+def _active(turns: float, most: float) -> str:
+    """How many turns bear the greatest force; where these are beyond what is shown, or NaN, they say nothing."""
+    return f"At the greatest force {turns:.3g} turns are active" if turns <= most else "Turns over travel"
+
+
+def most_turns(setup: Setup) -> float:
+    """The most active turns that a figure shows: those of a spring that bears on its tips alone."""
+    return 1.5 * setup.spring.turns
+
+
+def shown_turns(setup: Setup, result: Result, name: str) -> np.ndarray:
+    """Turns over the steps, NaN beyond what is shown.
+
+    Where coils roll over each other near block, the torque changes while the force hardly does. The turns that bear
+    this change are then any number, and lines to them would cover all else.
+    """
+    values = np.array([getattr(one, name) for one in result.seats])
+    return np.where(values <= most_turns(setup), values, np.nan)
 
 
 def draw_pressure(axes: Axes, result: Result, kind: int, contact: ContactRecord, greatest: float) -> Any:

@@ -21,7 +21,7 @@ from coilset.model.results.display import ensure
 from coilset.model.results.labels import plain
 from coilset.model.results.record import BucklingMode, Step
 from coilset.model.results.rings import ROUND
-from coilset.model.results.scene import ABOVE, BAR, COLUMN, LABELS, MOST_HEIGHT, WIDTH, Frame, springs
+from coilset.model.results.scene import ABOVE, BAR, COLUMN, LABELS, MOST_HEIGHT, WIDTH, Frame, caption, springs
 from coilset.model.results.summary import summarise
 from coilset.model.style import QUARTERED, round_end
 
@@ -140,6 +140,31 @@ def test_each_of_a_few_steps_is_named_beside_the_pressure(analysis, monkeypatch)
         seats = analysis.result.seats[:1] * count
         seat_figures.seat_pressure("", analysis.setup, replace(analysis.result, steps=steps, seats=seats))
     assert [len(axes.get_yticks()) for axes in drawn] == [12, 9]
+
+
+@pytest.mark.parametrize(("beyond", "title"), [(3, "At the greatest force 2.4 turns"), (8, "Turns over travel")])
+def test_active_turns_that_mean_nothing_are_told_and_not_drawn(analysis, monkeypatch, beyond, title):
+    """Where the force hardly changes the quotient is any number; lines to it would cover the others."""
+    steps = tuple(Step(k, 0, 1.0, 35.0 - k, float(k), 9.0 * k, 1, 1, 0, 0, 0, 0.0) for k in range(1, 9))
+    seats = tuple(replace(analysis.result.seats[0], active_turns=4e3 if step.number == beyond else 2.4)
+                  for step in steps)  # fmt: skip
+    drawn = []
+    monkeypatch.setattr(seat_figures, "save", lambda figure, path: drawn.append(figure.axes[3]))
+    seat_figures.seat_pressure("", analysis.setup, replace(analysis.result, steps=steps, seats=seats))
+    (axes,) = drawn
+    assert axes.get_title().startswith(title)
+    active = next(line.get_ydata() for line in axes.get_lines() if len(line.get_ydata()) == len(steps))
+    assert np.flatnonzero(np.isnan(active)) == [beyond - 1]
+    assert np.nanmax(active) == 2.4
+    words = [text.get_text() for text in axes.get_legend().get_texts()]
+    most = 1.5 * analysis.setup.spring.turns
+    assert words[:2] == [f"active (beyond {most:g} turns: 1 of the steps)", "touching nothing"]
+
+
+@pytest.mark.parametrize(("force", "told"), [(-300.0, "-300 N"), (300.0, "300 N"), (-1e-5, "0 N")])
+def test_a_pulled_spring_bears_less_than_nothing_in_its_picture(analysis, force, told):
+    shot = replace(analysis.result.snapshots[-1], force=force)
+    assert caption(shot, 300.0).splitlines()[1] == f"{plain(shot.height, 5)} mm, {told}"
 
 
 def with_mode(analysis, direction):
