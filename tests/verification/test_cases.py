@@ -4,12 +4,13 @@ import json
 from pathlib import Path
 
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from coilset.meshes.errors import SolveError
 from coilset.scripts.verify import verify
 from coilset.verification import registry
-from coilset.verification.cases import two_circles
+from coilset.verification.cases import force_centre, two_circles
 from coilset.verification.page import page
 from coilset.verification.study import Study
 
@@ -55,6 +56,20 @@ def test_a_number_that_is_shown_is_not_judged(tmp_path):
     study.check("a third", 2.0, 1.0, "by hand", 0.5)
     assert study.checks[-1].verdict == "not met"
     assert not study.passed
+
+
+def test_the_legend_of_the_force_centre_is_clear_of_the_ring(tmp_path, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(Study, "figure", lambda study, name, figure: drawn.append(figure))
+    pressed = {ends: force_centre.press(ends, "elastic", [{"to": {"travel": 1.0}, "steps": 1}])
+               for ends in force_centre.SPRINGS}  # fmt: skip
+    force_centre.draw_paths(Study(tmp_path), pressed)
+    canvas = FigureCanvasAgg(drawn[0])
+    canvas.draw()
+    plan, _over, *maps = drawn[0].axes
+    legend = plan.get_legend().get_window_extent(canvas.get_renderer())
+    assert not any(legend.overlaps(axes.get_window_extent()) for axes in drawn[0].axes)
+    assert not any(legend.overlaps(axes.title.get_window_extent(canvas.get_renderer())) for axes in maps)
 
 
 def test_the_title_of_a_figure_says_what_was_found(tmp_path):

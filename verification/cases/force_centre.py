@@ -174,7 +174,8 @@ def draw_paths(study: Study, elastic: dict[str, Analysis]) -> None:
                  title="over the travel")  # fmt: skip
         for axes in (plan, over):
             axes.grid(lw=0.3)
-            axes.legend(fontsize=7)
+        plan.legend(fontsize=7, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2)  # clear of the ring
+        over.legend(fontsize=7)
         figure.suptitle("The force acts at the wire's tip first, then moves inwards\n"
                         "(elastic springs between flat guided seats, tips held sideways by short grooves)")  # fmt: skip
     study.figure("force_centre", figure)
