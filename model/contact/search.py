@@ -8,7 +8,7 @@ from numba import njit
 from coilset.model.contact.curve import element_polynomials, points_on_wire
 
 LEAST_TURNS_BETWEEN = 0.5  # turns between two points of the wire that may touch
-PLACES, TURNS_TO_NEXT = 4, 1.5  # of locations, see `place`; turns up to which a location is on the next coil
+PLACES, TURNS_TO_NEXT = 6, 1.5  # of locations, see `place`; turns up to which a location is on the next coil
 MOST_CELLS_PER_STATION = 16  # cells of the grid
 LEAST_POST_DISTANCE = 0.5  # distance between the sorted stations, in wire radii
 # Of ξ. A step of Newton's method squares the error, so that after one as short as this only rounding is left.
@@ -44,9 +44,11 @@ def grid(x: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray, float, np.
 def place(turns: float) -> int:
     """Where a location `turns` after a point is: on the coil before it, after it, or beyond these, before or after.
 
-    A point touches coils beyond the next ones where these lie in each other, as those of barrels do at block.
+    A point touches coils beyond the next ones where these lie in each other, as those of barrels do at block. There it
+    may lie in the groove between two that follow each other: those of even and of odd numbers have a place each.
     """
-    return (1 if turns > 0.0 else 0) + (2 if abs(turns) > TURNS_TO_NEXT else 0)
+    side, coil = 1 if turns > 0.0 else 0, int(abs(turns) + 0.5)
+    return side + (2 + 2 * (coil % 2) if abs(turns) > TURNS_TO_NEXT else 0)
 
 
 @njit(cache=True)

@@ -9,6 +9,7 @@ from coilset.model.analysis import Analysis
 from coilset.model.case import check
 from coilset.model.contact.base import SEAT_DOFS, TrialPositions
 from coilset.model.contact.coils import Coils
+from coilset.model.contact.curve import CentreLine
 from coilset.model.contact.friction import CoilFriction, SeatFriction
 from coilset.model.contact.seat import Seat
 from coilset.model.material import library
@@ -117,6 +118,27 @@ def test_a_point_between_two_coils_rubs_on_each_by_itself(points, helix):
     rotations = 2e-4 * np.random.default_rng(3).normal(size=x.shape)
     slipped, _ = dense(friction, x, seats, rotations)
     assert np.linalg.norm(friction.memory["traction"][between][:, (1, 3)], axis=2).min() > 0.0
+    friction.memory.state.commit()
+    again, _ = dense(friction, x, seats, np.zeros_like(x))
+    np.testing.assert_allclose(again, slipped, rtol=0, atol=1e-12 * np.abs(slipped).max())
+
+
+def test_a_point_between_two_farther_coils_rubs_on_each_by_itself():
+    """Coil 0 lies in the groove between coils 2 and 3, which coil 1 leads to from outside: all keep their tractions."""
+    turns, seats = np.linspace(0.0, 3.75, 61), np.zeros(12)
+    angle, away = 2 * np.pi * turns, np.array([0.0, 0.75, 1.0, 1.75, 2.0, 2.875, 3.125, 3.75])
+    R = np.interp(turns, away, [20.0, 20.0, 32.0, 32.0, 17.5, 17.5, 22.5, 22.5])
+    z = np.interp(turns, away, [0.0, 0.0, 0.0, 4.3, 4.3, 4.3, 4.3, 4.3])
+    apart, x = (np.stack([R * np.cos(angle), R * np.sin(angle), level], axis=1) for level in (12.0 * turns, z))
+    wire = CentreLine(turns, np.full(61, 2.5), np.full(60, 2 * np.pi * 20.0 / 16)).points()
+    friction = CoilFriction(Coils(wire, apart, BEDDING, 0.02), 0.3, x, seats)
+    pair, where = friction.normal.pressed(TrialPositions(x, seats))[:2]
+    at = friction.normal.places(pair, where)
+    farther = np.bincount(pair[:, 0], np.round(turns[pair[:, 1]] - wire.turns[pair[:, 0]]) >= 2.0)
+    assert np.count_nonzero(farther == 2) > 5
+    assert len(set(zip(*at, strict=True))) == len(pair)
+    rotations = 2e-4 * np.random.default_rng(3).normal(size=x.shape)
+    slipped, _ = dense(friction, x, seats, rotations)
     friction.memory.state.commit()
     again, _ = dense(friction, x, seats, np.zeros_like(x))
     np.testing.assert_allclose(again, slipped, rtol=0, atol=1e-12 * np.abs(slipped).max())
