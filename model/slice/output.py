@@ -9,7 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from coilset.model.results.figures import save
-from coilset.model.results.folder import make, whole
+from coilset.model.results.folder import make
+from coilset.model.results.grid_file import write_grid
 from coilset.model.results.labels import plain
 from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot
 from coilset.model.slice.watch import equivalent, shear
@@ -33,8 +34,7 @@ def write_fields(folder: Path, analysis: SliceAnalysis) -> None:
         grid.point_data["shear stress"] = shear(shot.stress)
         grid.point_data["von Mises stress"] = equivalent(shot.stress)
         grid.point_data["plastic work"] = shot.work
-        with whole(folder / f"{number:02d}_{shot.name.replace(' ', '_')}.vtu") as path:
-            grid.save(path)
+        write_grid(folder / f"{number:02d}_{shot.name.replace(' ', '_')}.vtu", grid)
 
 
 def around_the_wire(places: np.ndarray, stress: np.ndarray) -> np.ndarray:

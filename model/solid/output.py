@@ -10,6 +10,7 @@ import pyvista
 
 from coilset.meshes.compat import geometry_dofs
 from coilset.model.results.folder import whole
+from coilset.model.results.grid_file import write_grid
 from coilset.model.solid.solid import Solid
 from coilset.model.style import QUARTERED, round_end
 
@@ -81,8 +82,7 @@ def write_fields(path: str | Path, solid: Solid) -> None:
     """Write the fields of `grid` to a .vtu file for ParaView; collective."""
     body = grid(solid)
     if body is not None:
-        with whole(path) as part:
-            body.save(part)
+        write_grid(path, body)
 
 
 def picture(path: str | Path, bodies: Mapping[str, pyvista.DataSet], field: str, unit: str) -> None:

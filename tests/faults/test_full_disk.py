@@ -13,6 +13,7 @@ from pathlib import Path
 import matplotlib.figure
 import numpy as np
 import pytest
+import pyvista
 import xarray as xr
 from mpi4py import MPI
 
@@ -23,6 +24,7 @@ from coilset.model.case import read_case
 from coilset.model.results import dataset, figures, folder, scene, seat_figures
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.display import ensure
+from coilset.model.results.grid_file import write_grid
 from coilset.model.results.summary import summarise
 from coilset.model.sweep import dataset as sweep_data
 from coilset.model.sweep.journal import Journal, read_records
@@ -65,6 +67,10 @@ def characteristic(out, analysis):
     figures.characteristic(out / "characteristic.png", analysis.setup, analysis.result, summary)
 
 
+def grid(out, analysis):
+    write_grid(out / "a.vtu", pyvista.ImageData(dimensions=(9, 9, 9)).cast_to_unstructured_grid())
+
+
 def save(out, analysis):
     position = analysis.program.position
     Checkpoint(out, analysis.case).save(analysis.system.state, analysis.layout, position, analysis.result)
@@ -85,6 +91,7 @@ WRITERS = {
     "data of a sweep": lambda out, one: sweep_data.write(out / "sweep.nc", xr.Dataset({"a": ("n", np.zeros(999))})),
     "record of verification": lambda out, one: Study(out).write("name" * 99),
     "figure": lambda out, one: figures.save(drawn(), out / "a.png"),
+    "grid": grid,
     "example": lambda out, one: examples.copy("ck15_presetting.yaml", out),
 }
 
