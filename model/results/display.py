@@ -9,7 +9,7 @@ from coilset.model.processes import end_with_parent
 
 
 def ensure() -> bool:
-    """Start a virtual X server if there is no display; it ends with this process.
+    """Start a virtual X server if there is no display; it ends with this process, not at a Ctrl-C that this one hears.
 
     Returns:
         False if there is no display and none can be started.
@@ -22,7 +22,7 @@ def ensure() -> bool:
     server = subprocess.Popen(
         ["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x1024x24", "-nolisten", "tcp"],
         pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        preexec_fn=end_with_parent,
+        start_new_session=True, preexec_fn=end_with_parent,
     )  # fmt: skip
     os.close(write)
     atexit.register(server.terminate)
