@@ -429,7 +429,7 @@ def _listen() -> None:
 
     def interrupt(number: int, frame: FrameType | None) -> None:
         nonlocal last
-        if _imports(frame):  # where an unexpected exception makes libraries fail or crash
+        if _cannot_pass_on(frame):
             signal.setitimer(signal.ITIMER_REAL, SOON)
             return
         before, last = last, time.monotonic()
@@ -455,10 +455,11 @@ def _listen() -> None:
         signal.signal(signal.SIGUSR1, interrupt)
 
 
-def _imports(frame: FrameType | None) -> bool:
-    """Is a module being imported there?"""
+def _cannot_pass_on(frame: FrameType | None) -> bool:
+    """Is a module imported there, or an entry checked, where an unexpected exception becomes another, or a crash?"""
     while frame is not None:
-        if frame.f_code.co_filename.startswith("<frozen importlib"):
+        file = frame.f_code.co_filename
+        if file.startswith("<frozen importlib") or "/pydantic/" in file:
             return True
         frame = frame.f_back
     return False

@@ -20,6 +20,33 @@ def coilset(*arguments, cwd):
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False)
 
 
+DURING_A_CHECK_IS_BUILT = """
+import os, signal, time
+from pydantic import TypeAdapter
+from coilset.scripts import main
+
+class Entry:
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source, handler):
+        os.kill(os.getpid(), signal.SIGINT)
+        print("built")
+        return handler.generate_schema(int)
+
+main._listen()
+try:
+    TypeAdapter(Entry)
+    time.sleep(60)
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+
+
+def test_ctrl_c_while_the_check_of_an_entry_is_built_is_heard_after_it():
+    """In the midst of it, pydantic makes an error of its own of the interruption."""
+    done = subprocess.run([sys.executable, "-c", DURING_A_CHECK_IS_BUILT], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["built", "interrupted"]
+
+
 def test_solve_writes_what_the_readme_says(example, tmp_path):
     done = coilset("solve", example, "--out", "here", *SHORT, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
