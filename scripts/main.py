@@ -390,6 +390,7 @@ def run() -> None:
     _listen()
     ending, status = Ending(), 1
     try:
+        _refuse_unreadable(sys.argv[1:])
         status = app(prog_name="coilset", standalone_mode=False) or 0
     except CoilsetError as error:
         status = error.exit_code
@@ -418,6 +419,17 @@ def run() -> None:
         status = _interrupted()
     ending.status = status
     sys.exit(status)
+
+
+def _refuse_unreadable(words: list[str]) -> None:
+    """A name that was written in another encoding: DOLFINx cannot be imported beside it.
+
+    Raises:
+        InputError: naming it.
+    """
+    for word in words:
+        if re.search("[\ud800-\udfff]", word):  # what Python makes of bytes that are no UTF-8
+            raise InputError("is not written in UTF-8; rename it", "", word)
 
 
 def _listen() -> None:

@@ -20,6 +20,13 @@ def coilset(*arguments, cwd):
     return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=False)
 
 
+def test_a_name_in_another_encoding_gets_one_line(tmp_path):
+    done = subprocess.run([sys.executable, "-m", "coilset.scripts", "solve", b"Feder\xe4.yaml"], cwd=tmp_path,
+                          capture_output=True, text=True, check=False)  # fmt: skip
+    assert done.returncode == 2
+    assert done.stderr == "coilset: Feder\\udce4.yaml: is not written in UTF-8; rename it\n"
+
+
 DURING_A_CHECK_IS_BUILT = """
 import os, signal, time
 from pydantic import TypeAdapter
