@@ -1,5 +1,6 @@
-"""Standard output whose reader may close it, as in `coilset solve … | head -3`."""
+"""Standard output whose reader may close it, as in `coilset solve … | head -3`, or may not know all letters."""
 
+import io
 import os
 import sys
 from typing import Any, TextIO
@@ -8,12 +9,16 @@ from typing import Any, TextIO
 class Output:
     """A text stream that discards output once nobody reads it, instead of raising BrokenPipeError.
 
+    A letter that its encoding lacks, such as the π of a formula in ASCII, becomes a question mark.
+
     Attributes:
         closed_by_reader: whether that has happened.
     """
 
     def __init__(self, stream: TextIO):
         self.stream, self.closed_by_reader = stream, False
+        if isinstance(stream, io.TextIOWrapper) and stream.errors == "strict":
+            stream.reconfigure(errors="replace")
 
     def write(self, text: str) -> int:
         """Write or discard; returns the number of characters."""

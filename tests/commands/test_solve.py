@@ -2,6 +2,7 @@
 
 import csv
 import json
+import os
 import re
 import subprocess
 import sys
@@ -52,6 +53,15 @@ def test_ctrl_c_while_the_check_of_an_entry_is_built_is_heard_after_it():
     """In the midst of it, pydantic makes an error of its own of the interruption."""
     done = subprocess.run([sys.executable, "-c", DURING_A_CHECK_IS_BUILT], capture_output=True, text=True, check=True)
     assert done.stdout.split() == ["built", "interrupted"]
+
+
+def test_letters_that_the_output_lacks_are_replaced(example, tmp_path):
+    done = subprocess.run([sys.executable, "-m", "coilset.scripts", "sheet", example, "--no-pictures"], cwd=tmp_path,
+                          capture_output=True, text=True, check=False,
+                          env=os.environ | {"PYTHONIOENCODING": "ascii"})  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "wire length l" in done.stdout
+    assert "? D n_t" in done.stdout  # for π
 
 
 def test_solve_writes_what_the_readme_says(example, tmp_path):
