@@ -258,10 +258,10 @@ class Setup:
 
         return self.turns[:-1, None] + np.diff(self.turns)[:, None] * GAUSS
 
-    @property
+    @cached_property
     def inside(self) -> surface.Inside:
-        """Where the inside of the coil is on the wire's surface."""
-        return surface.Inside.of(self.section_kind != "plane", self.spring.hand)
+        """Where the inside of the coil is on the wire's surface; plane sections know the curvature of a past."""
+        return surface.Inside.of(bool(self.placement.curvature.any()), self.spring.hand)
 
     @cached_property
     def mean_diameter(self) -> float:

@@ -14,7 +14,7 @@ GAUSS = 0.5 / np.sqrt(3.0)  # from the middle of an element to its sections, ove
 
 def inside(run: Run) -> Inside:
     """Where the inside of the coil is on the surface."""
-    return Inside.of(run.summary["section_kind"] != "plane", hand(run))
+    return Inside.of(bool(run.data["curvature"].values.any()), hand(run))
 
 
 def hand(run: Run) -> int:

@@ -19,7 +19,7 @@ from coilset.model.report.glossary import GLOSSARY
 from coilset.model.report.material_curves import material_curve
 from coilset.model.report.page import CHAPTERS, write_report
 from coilset.model.results.opened import open_run
-from coilset.model.results.wire import closed, moments, shear_around, tubes
+from coilset.model.results.wire import closed, inside, moments, shear_around, tubes
 from coilset.scripts.report import report
 from coilset.scripts.sheet import sheet
 
@@ -120,6 +120,8 @@ def test_shear_with_the_load_is_positive_in_a_left_handed_coil(folder):
     case = {"spring": {"file": "measured.csv"}}  # which does not say the hand
     left = replace(run, data=mirrored, summary={**run.summary, "origin": {"case": case}})
     assert np.array_equal(shear_around(left), shear_around(run))
+    coiled = replace(left, summary={**left.summary, "section_kind": "plane"})  # its past gives y the same direction
+    assert inside(coiled) == inside(left)
 
 
 def test_a_law_that_never_yields_has_no_curve(folder):

@@ -47,6 +47,20 @@ def test_a_coiled_spring_stands_as_drawn_and_is_as_stiff():
     assert summaries[1]["coiling_diameter_mm"] is None
 
 
+def test_the_inside_of_a_left_handed_coil_of_plane_sections_is_found():
+    """Sections with a past have y towards the coil's axis: what remains is that of the mirrored spring, to rounding."""
+    spring = {**PEENED, "made_by": "coiling"}
+    plane = {"elements_per_turn": 8, "section": {"kind": "plane", "radial": 4, "angular": 12}}
+    found = []
+    for hand in ("right", "left"):
+        analysis = analysis_of(spring={**spring, "hand": hand}, mesh=plane)
+        found.append(summarise(analysis.setup, analysis.run()))
+    for name in ("residual_shear_inside_MPa", "shear_inside_max_MPa"):
+        assert found[1][name] == pytest.approx(found[0][name], rel=1e-6)
+    name = "residual_shear_surface_max_angle_deg"
+    assert found[1][name] == pytest.approx(-found[0][name], abs=1e-3)
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
