@@ -8,28 +8,32 @@ import numpy as np
 from coilset.model.results.record import Result, Setup, Step
 
 MAKERS = (0.3, 0.7)  # of the travel to block, between which EN 15800 measures the rate
+STANDS = 1e-9  # of the greatest travel and force: a step that changes both by less, as in a phase to where it is, is none
 
 
 def first_compression(steps: Sequence[Step]) -> tuple[np.ndarray, np.ndarray]:
     """Travel, mm, and force, N, from the start to the first release; a free spring may be heated before."""
-    travel, force = [0.0], [0.0]
-    for step in dropwhile(lambda step: step.travel_mm <= 0.0, steps):
-        if step.travel_mm <= travel[-1]:
-            break
-        travel.append(step.travel_mm)
-        force.append(step.force_N)
-    return np.array(travel), np.array(force)
+    pressed = dropwhile(lambda step: step.travel_mm <= 0.0, steps)
+    return _ascending([(step.travel_mm, step.force_N) for step in pressed])
 
 
 def last_release(steps: Sequence[Step], height: float) -> tuple[np.ndarray, np.ndarray]:
     """Travel, mm, counted from the final free length, and force, N, of the last release."""
-    travel, force = [0.0], [0.0]
-    for step in reversed(steps[:-1]):
-        if height - step.seat_height_mm <= travel[-1]:
+    return _ascending([(height - step.seat_height_mm, step.force_N) for step in reversed(steps[:-1])])
+
+
+def _ascending(points: Sequence[tuple[float, float]]) -> tuple[np.ndarray, np.ndarray]:
+    """Travels and forces from 0 on, as far as the travel grows; points that repeat the one before are left out."""
+    least = STANDS * np.abs(points).max(axis=0, initial=0.0)
+    found = [(0.0, 0.0)]
+    for point in points:
+        if np.all(np.abs(np.subtract(point, found[-1])) <= least):
+            continue
+        if point[0] <= found[-1][0]:
             break
-        travel.append(height - step.seat_height_mm)
-        force.append(step.force_N)
-    return np.array(travel), np.array(force)
+        found.append(point)
+    travel, force = np.array(found).T
+    return travel, force
 
 
 def makers_rate(travel: np.ndarray, force: np.ndarray, whole: float) -> float | None:

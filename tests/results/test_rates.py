@@ -40,6 +40,17 @@ def test_branches_of_a_characteristic():
     assert force.tolist() == [0.0, 6.0, 12.0]
 
 
+def test_steps_to_where_the_spring_is_end_no_branch():
+    """As of phases to the same target; one in which the force has fallen at the same height is another branch."""
+    there = [step(k, travel, 2 * travel) for k, travel in enumerate((2.0, 4.0, 4.0, 6.0))]
+    back = [step(4 + k, travel, 3 * (travel - 2.0)) for k, travel in enumerate((4.0, 4.0, 2.0, 2.0 + 1e-12, 2.0))]
+    assert first_compression([*there, *back])[0].tolist() == [0.0, 2.0, 4.0, 6.0]
+    assert last_release([*there, *back], 48.0)[1].tolist() == [0.0, 6.0, 12.0]
+    relaxed = [step(0, 2.0, 4.0), step(1, 2.0, 3.0), step(2, 4.0, 7.0)]
+    assert first_compression(relaxed)[1].tolist() == [0.0, 4.0]
+    assert first_compression([])[0].tolist() == [0.0]
+
+
 @pytest.fixture(scope="module")
 def pressed(example):
     loading = "loading=[{to: {travel: 13}, steps: 7}, {to: {force: 0}, steps: 5}, {to: {force: 100}, steps: 2}]"
