@@ -5,7 +5,16 @@ from difflib import get_close_matches
 from operator import index
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Discriminator, PrivateAttr, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Discriminator,
+    PrivateAttr,
+    ValidationError,
+    model_validator,
+)
+from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
 
@@ -34,17 +43,19 @@ class Strict(BaseModel):
 
     Attributes:
         RENAMED: earlier names of entries and their current names; either is accepted, but not both together.
+        ELSEWHERE: entries of other kinds of files, and who reads these.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, strict=True, defer_build=True)
     RENAMED: ClassVar[dict[str, str]] = {}
+    ELSEWHERE: ClassVar[dict[str, str]] = {}
     _earlier: tuple[str, ...] = PrivateAttr(())
 
     @model_validator(mode="wrap")
     @classmethod
     def _entries(cls, data: Any, validate: Any) -> Any:
         if not isinstance(data, dict):
-            return validate(data)
+            return _told(cls, data, validate)
         earlier = tuple(name for name in cls.RENAMED if name in data)
         for name in earlier:
             if cls.RENAMED[name] in data:
@@ -73,14 +84,32 @@ def _before_comma(name: object, data: dict) -> str:
     return str(names[where - 1]) if is_rest and where else ""
 
 
-def _check_names(group: type[BaseModel], data: dict) -> None:
+def _known(group: type[BaseModel]) -> dict[str, FieldInfo]:
+    """The entries of a group by the names that a file has for them."""
+    return {field.alias or name: field for name, field in group.model_fields.items()}
+
+
+def _told(group: type[BaseModel], data: Any, validate: Any) -> Any:
+    """The group of what is no mapping, which some groups can be written as; an error names their entries."""
+    try:
+        return validate(data)
+    except ValidationError as error:
+        if error.errors(include_url=False)[0]["type"] != "model_type":
+            raise
+    problem = "must be a group of entries, as in {name: value}, of {names}"
+    raise PydanticCustomError("no_group", problem, {"names": ", ".join(_known(group))})
+
+
+def _check_names(group: type[Strict], data: dict) -> None:
     """Report the first unknown entry before the first missing one: a misspelt entry leaves another one missing."""
-    known = {field.alias or name: field for name, field in group.model_fields.items()}
+    known = _known(group)
     for name in data:
         if name not in known:
             left = [other for other in known if other not in data]
             near = get_close_matches(str(name), known, 1, 0.8) or get_close_matches(str(name), left, 3)
             hint = f"is {' or '.join(near)} meant?" if near else f"the entries here are {', '.join(known)}"
+            if name in group.ELSEWHERE:
+                hint = f"a file with it is for {group.ELSEWHERE[str(name)]}"
             if before := _before_comma(name, data):
                 hint = f"a comma begins the next entry: give {before} with a decimal point, as in 0.5"
             raise PydanticCustomError("unknown_entry", "unknown entry; {hint}", {"entry": str(name), "hint": hint})

@@ -193,6 +193,10 @@ Part = Annotated[float, BeforeValidator(_fraction)]
 class Case(Strict):
     """A case; units mm, N, MPa, K."""
 
+    ELSEWHERE: ClassVar[dict[str, str]] = {
+        "outer": "coilset nest", "inner": "coilset nest", "vary": "coilset sweep", "find": "coilset design",
+        "case": "coilset sweep or coilset design", "temperatures": "the entry material",
+    }  # fmt: skip
     spring: Annotated[SpringEntry, Field(description="the spring's drawing, or the file of a measured one")]
     material: Annotated[
         Material, Field(description="name of a library material, path of a material file, or {wire: name of a wire}")

@@ -17,8 +17,6 @@ Group = TypeVar("Group", bound=Strict)
 LONGEST = 60  # characters of a value or a name in a message
 OWN = ("unknown_entry", "missing_entry")  # errors that name their entry themselves
 TEXTS = {  # what would be right, where pydantic's messages are meant for programmers
-    "model_type": "must be a group of entries, as in {name: value}",
-    "model_attributes_type": "must be a group of entries, as in {name: value}",
     "dict_type": "must be a group of entries, as in {name: value}",
     "list_type": "must be a list, as in [1, 2]",
     "tuple_type": "must be a list, as in [1, 2]",
@@ -65,6 +63,8 @@ def explain(error: ValidationError) -> tuple[str, str]:
     given = "" if first["type"] in (*OWN, "value_error") else f"{shown(first['input'])}: "
     problem = TEXTS.get(first["type"]) or _in_words(first["msg"])
     problem += ALTERNATIVES.get(first["loc"][-1], "") if first["loc"] else ""
+    if first["type"] == "string_type" and isinstance(first["input"], int | float):
+        problem += "; a number in quotation marks is one"
     if first["type"] in ("float_type", "int_type") and isinstance(first["input"], str):
         problem += _number_in_words(first["input"])
     more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""

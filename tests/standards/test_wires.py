@@ -108,6 +108,9 @@ def test_name_is_found_however_it_is_spaced():
 
 WRONG = [
     (lambda: wire("EN 10270-1 SX"), "material.wire: 'EN 10270-1 SX' is not a known wire; is EN 10270-1 "),
+    (lambda: wire("1.4310"), "material.wire: '1.4310' is not a known wire; is EN 10270-3 1.4310 meant?"),
+    (lambda: wire("sh"), "material.wire: 'sh' is not a known wire; is EN 10270-1 SH meant?"),
+    (lambda: wire(""), "material.wire: '' is not a known wire; `coilset sheet --wires` lists them"),
     (lambda: wire("copper"), "material.wire: 'copper' is not a known wire; `coilset sheet --wires` lists them"),
     (lambda: wire("EN 10270-1 SL").strength(0.5),
      "material.wire: the strength of 'EN 10270-1 SL' is not known at 0.5 mm; known for 1 to 10 mm"),

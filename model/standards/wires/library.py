@@ -42,7 +42,8 @@ def wire(name: str) -> Wire:
     """
     by_key = {_key(known): known for known in names()}
     if _key(name) not in by_key:
-        near = [by_key[key] for key in get_close_matches(_key(name), by_key, 1, 0.7)]
+        parts = [key for key in by_key if _key(name) and key.endswith(_key(name))]
+        near = [by_key[key] for key in parts or get_close_matches(_key(name), by_key, 1, 0.7)]
         known = f"is {near[0]} meant?" if near else "`coilset sheet --wires` lists them"
         raise InputError(f"'{shortened(name)}' is not a known wire; {known}", "material.wire")
     name = by_key[_key(name)]
