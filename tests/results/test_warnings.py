@@ -145,6 +145,18 @@ def test_the_steps_error_is_held_against_the_accuracy_asked_for():
     assert "the set is uncertain by about 2 %, 0.01 mm, because" in of_set  # a small set may be good enough
 
 
+@pytest.mark.parametrize(("error", "found"), [(1e-4, []), (1e-3, ["step error"])])
+def test_an_error_of_the_set_that_nobody_measures_is_not_told(example, error, found):
+    """Of an elastic spring of 35 mm that has set by a thousandth of a millimetre in rounding."""
+    settings = [*COARSE, "material=elastic", "loading=[{to: {travel: 6}, steps: 2}, {to: {force: 0}, steps: 1}]"]
+    analysis = Analysis(read_case(example, settings), MPI.COMM_SELF)
+    result = analysis.run()
+    shorter = replace(result.snapshots[-1], x=result.snapshots[-1].x * (1.0 - 3e-5))
+    steps = (*result.steps[:-1], replace(result.steps[-1], estimated_height_error_mm=error))
+    set_so = replace(result, steps=steps, snapshots=(*result.snapshots[:-1], shorter))
+    assert names(run_warnings(analysis.setup, set_so)) == found
+
+
 def test_an_error_that_is_not_known_at_the_greatest_force_is_told(lifted):
     """Where accuracy is asked for, and the spring bears something; elsewhere than at its greatest no error is held."""
     setup, result = lifted.setup, lifted.result
