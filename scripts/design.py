@@ -110,7 +110,7 @@ def _conclude(
     console.print("estimates for other wishes and springs, by the uniform rod as the runs have corrected it:")
     table = Table(box=None, padding=(0, 2))
     table.add_column("", no_wrap=True)
-    for name in (*search.evaluator.names, "wire length", "wound", "torque/yield"):
+    for name in (*search.evaluator.names, "wire length, mm", "as wound, mm", "torque/yield"):
         table.add_column(".".join(name.split(".")[-2:]), justify="right")
     table.add_column("")
     for row in rows:

@@ -65,6 +65,8 @@ def sheet(
     diagram = _diagram(made) if pictures else None
     if diagram is not None and (folder / FIGURE).exists() and not force:
         raise InputError("already exists; use --force to overwrite it", "", folder / FIGURE)
+    if run:
+        console.say(f"first the number by the formula, then that of {results}", whole=True)
     for title, rows in sections(made):
         console.print(f"[bold]{title}[/]")
         for line in _lines(rows, run is not None):

@@ -165,7 +165,9 @@ def test_a_set_is_held_against_presetting_where_the_run_was_at_block(case, tmp_p
     (folder / "summary.json").write_text(json.dumps({"free_length_before_mm": 105.8, "set_mm": 1.0}), encoding="utf-8")
     (folder / "history.csv").write_text(f"seat_height_mm,force_N\n{least},700\n104.8,0\n", encoding="utf-8")
     sheet(case, folder, pictures=False)
-    assert ("presetting takes 1 mm" in " ".join(capsys.readouterr().out.split())) == said
+    printed = capsys.readouterr().out
+    assert printed.startswith(f"first the number by the formula, then that of {folder}\n")
+    assert ("presetting takes 1 mm" in " ".join(printed.split())) == said
 
 
 def test_command_draws_nothing_without_a_wire(case, tmp_path, capsys):
