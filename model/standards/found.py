@@ -44,14 +44,15 @@ class Found:
         return None if value is None else float(value)
 
     def force_at(self, length: float) -> float | None:
-        """Force when the spring last passed a length, or came to it but for rounding; None if it never did."""
+        """Force when the spring last passed a length, or stood at it but for rounding; None if it never did."""
         near = ROUNDING * self.heights[0]
         high, low = np.maximum(self.heights[1:], self.heights[:-1]), np.minimum(self.heights[1:], self.heights[:-1])
-        passed = np.flatnonzero((low <= length + near) & (length - near <= high) & (high > low))
+        passed = np.flatnonzero((low <= length + near) & (length - near <= high))
         if len(passed) == 0:
             return None
         i = passed[-1]
-        fraction = np.clip((length - self.heights[i]) / (self.heights[i + 1] - self.heights[i]), 0.0, 1.0)
+        way = self.heights[i + 1] - self.heights[i]
+        fraction = np.clip((length - self.heights[i]) / way, 0.0, 1.0) if way else 1.0  # of a hold, its end
         return float(self.forces[i] + fraction * (self.forces[i + 1] - self.forces[i]))
 
     def work_to(self, length: float) -> float | None:

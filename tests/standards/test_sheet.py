@@ -85,6 +85,9 @@ def test_what_a_run_found(tmp_path, components):
     assert run.force_at(103.0) == pytest.approx(400 * 2.8 / 25.8)  # only on the way down
     assert run.force_at(50.0) is None
     assert run.force_at(60.0 - 1e-12) == run.force_at(60.0) == 700.0  # a length that was computed
+    heights, forces = np.append(run.heights[:3], [60.0, 60.0]), np.append(run.forces[:3], [680.0, 650.0])
+    held = replace(run, heights=heights, forces=forces)
+    assert held.force_at(60.0) == 650.0  # what the hold has left
     assert run.work_to(80.0) == pytest.approx(0.5 * 400 * 25.8)
     assert run.work_to(55.0) is None
 
