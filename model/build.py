@@ -30,7 +30,7 @@ from coilset.model.rod.past import past_warnings
 from coilset.model.rod.rod import Rod
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.case_warnings import case_warnings
-from coilset.model.standards.wires.law import case_strength
+from coilset.model.standards.wires.law import case_elastic, case_strength
 from coilset.model.threads import Threads
 from coilset.model.warning import Warning
 
@@ -145,6 +145,8 @@ def build_setup(
     limits = Limits(law.validity.plastic_work, case_strength(case, spring), PENETRATION * 2.0 * least_radius,
                     case.steps_error)  # fmt: skip
     warnings = (*case_warnings(case, spring, law), *past_warnings(rod, case.spring), *wire.warnings)
+    elastic = case_elastic(case, law)
+    buckling = buckling_travel(spring, elastic.shear_modulus / elastic.young_modulus)
     return Setup(spring, law.name, case.ends, tuple(phase.label for phase in case.loading), wire.turns, wire.radius,
-                 rod.rule, records, case.mesh.section.kind, wire.placement, buckling_travel(spring, law.G / law.E),
-                 limits, tuple(case.rates_at), warnings, coiling_diameter)  # fmt: skip
+                 rod.rule, records, case.mesh.section.kind, wire.placement, buckling, limits, tuple(case.rates_at),
+                 warnings, coiling_diameter)  # fmt: skip

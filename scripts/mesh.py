@@ -13,9 +13,8 @@ from coilset.meshes.spring import Spring
 from coilset.model.case import read_case
 from coilset.model.results.folder import make, whole
 from coilset.model.standards.data import SpringData, spring_data
-from coilset.model.standards.steel import STEEL, Elastic
 from coilset.model.standards.warnings import spring_warnings
-from coilset.model.standards.wires.law import case_law
+from coilset.model.standards.wires.law import case_elastic, case_law
 from coilset.scripts.console import Console
 from coilset.scripts.target import results_folder
 
@@ -56,11 +55,10 @@ def mesh(
     try:
         spring = case.spring.build()
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
-        law = case_law(case, spring)
+        elastic = case_elastic(case, case_law(case, spring))
     except InputError as error:
         raise InputError(error.problem, error.place, error.file or case_file) from None
     _refuse_to_replace([folder / name for name in FILES if pictures] + [Path(path) for path in write], force)
-    elastic = Elastic(law.G, law.E, getattr(law, "density", STEEL.density))
     console.print(_table(spring_data(spring, elastic), turns))
     for warning in spring_warnings(spring, elastic):
         console.warn(warning.message)

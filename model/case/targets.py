@@ -64,11 +64,11 @@ def check_times(case: Case, law: Law) -> None:
     Raises:
         InputError: with the entry.
     """
-    _check_known(law, case.temperature, "temperature")
+    check_known(law, case.temperature, "temperature")
     if case.heat and not law.is_adiabatic:
         raise InputError(f"plastic work does not warm '{law.name}'; give a material with heating", "heat")
     if case.heat:
-        _check_known(law, case.heat.surroundings, "heat.surroundings")
+        check_known(law, case.heat.surroundings, "heat.surroundings")
     for number, phase in enumerate(case.loading):
         if isinstance(phase, Phase) and phase.seconds is not None and not case.heat and law.data.rate is None:
             raise InputError(f"no heat flows, and '{law.name}' does not depend on the rate; give the entry heat, or "
@@ -86,11 +86,15 @@ def check_times(case: Case, law: Law) -> None:
             raise InputError(f"'{law.name}' does not creep, so that time changes nothing; give a material with creep",
                              f"loading.{number}.{word}")  # fmt: skip
         if phase.heat:
-            _check_known(law, phase.heat.to, f"loading.{number}.heat.to")
+            check_known(law, phase.heat.to, f"loading.{number}.heat.to")
 
 
-def _check_known(law: Law, temperature: float | None, place: str) -> None:
-    """Name the entry of the case, where the law would name its own file."""
+def check_known(law: Law, temperature: float | None, place: str) -> None:
+    """Refuse a temperature that the material does not know.
+
+    Raises:
+        InputError: with the entry of the case, where the law would name its own file.
+    """
     if temperature is not None:
         try:
             law.known(temperature)

@@ -103,5 +103,5 @@ def _press(case: Case, spring: Spring, law: Law) -> tuple[dict[str, float], floa
     if force == 0.0 or abs(force) < 1e-6 * greatest:
         found |= {"free_length_after_mm": length - travel, "set_mm": travel}
     # τ = √(k²/2) in torsion (3.1.4), T = π d³ τ / 16
-    yielding = law.yield_stress / sqrt(3.0) * pi * one[0] ** 3 / 16.0
+    yielding = law.first_yield(temperature) / sqrt(3.0) * pi * one[0] ** 3 / 16.0
     return found, torque / yielding if isfinite(yielding) else 0.0

@@ -222,6 +222,10 @@ class Law:
         fn.many(p, work.ravel(), p[fn.TEMPERATURE], values)
         return values.reshape(6, *work.shape)
 
+    def first_yield(self, temperature: float | None = None) -> float:
+        """`yield_stress` at a temperature of the table, K; default is the reference temperature."""
+        return math.sqrt(1.5 * float(self.functions(0.0, temperature)[0]))
+
     def k_squared(self, work: npt.ArrayLike) -> np.ndarray:
         """k² at the reference temperature, N²/mm⁴."""
         return self.functions(work)[0]

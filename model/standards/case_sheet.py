@@ -10,9 +10,8 @@ from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.en15800 import Grade
 from coilset.model.standards.found import Found
 from coilset.model.standards.sheet import Sheet, working_lengths
-from coilset.model.standards.steel import STEEL, Elastic
 from coilset.model.standards.wires import wire
-from coilset.model.standards.wires.law import case_law
+from coilset.model.standards.wires.law import case_elastic, case_law
 
 
 def case_sheet(
@@ -36,12 +35,13 @@ def case_sheet(
         grade, surface, dynamic: see Sheet.
 
     Raises:
-        InputError: a spring that is not cylindrical, an unknown wire, a length that the spring cannot have.
+        InputError: a spring that is not cylindrical, an unknown wire, a length that the spring cannot have, or a
+            temperature that the material does not know.
     """
     law, cylinder = case_law(case, spring), Cylinder.of(spring)
     named = wire_name or getattr(case.material, "wire", None)
     known = wire(named) if named else None
-    elastic = known.elastic(cylinder.d) if known else Elastic(law.G, law.E, getattr(law, "density", STEEL.density))
+    elastic = known.elastic(cylinder.d) if known else case_elastic(case, law)
     for length in lengths:
         if not cylinder.solid < length < cylinder.length:
             raise InputError(
@@ -49,7 +49,7 @@ def case_sheet(
                 f"free length {cylinder.length:.4g} mm", "--length",
             )  # fmt: skip
     made = Sheet(cylinder, elastic, spring.wire_length, known, tuple(lengths), grade, surface, dynamic, run,
-                 case.ends == "clamped", law.yield_stress)  # fmt: skip
+                 case.ends == "clamped", law.first_yield(case.temperature))  # fmt: skip
     if lengths:
         return made
     planned = working_lengths(case.targets, cylinder.length, made.rate, cylinder.solid)

@@ -9,9 +9,10 @@ from coilset.model.material.law import Law
 from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.sheet import Sheet, working_lengths
-from coilset.model.standards.steel import STEEL, Elastic
+from coilset.model.standards.steel import Elastic
 from coilset.model.standards.warnings import spring_warnings
 from coilset.model.standards.wires import wire
+from coilset.model.standards.wires.law import case_elastic
 from coilset.model.standards.working import endurance_warnings, gap_warnings, stress_warnings
 from coilset.model.warning import Warning
 
@@ -24,7 +25,7 @@ def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
         spring: its spring.
         law: its material.
     """
-    elastic = Elastic(law.G, law.E, STEEL.density)
+    elastic = case_elastic(case, law)
     own = spring_warnings(spring, elastic)
     return (*_renamed(case), *_estimated(case), *own, *_working(case, spring, elastic))
 

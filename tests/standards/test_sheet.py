@@ -9,7 +9,10 @@ import pytest
 import xarray as xr
 
 from coilset.meshes.errors import InputError
+from coilset.meshes.spring import SpringSpec
+from coilset.model.case import read_case
 from coilset.model.standards import found, goodman
+from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.rows import sections
 from coilset.model.standards.sheet import Sheet
@@ -19,6 +22,7 @@ from coilset.scripts.sheet import list_wires, sheet
 # HeliSpring, spring S.198: wire DM of 5 mm, De 39.6, n 9.5, n_t 11.5, L0 105.8, 280 N at 88.5 mm, 620 N at 67.5 mm
 PRINTED = Cylinder(5.0, 34.6, 11.5, 9.5, 105.8, 9.547, "closed and ground", 57.5)
 DM = wire("EN 10270-1 DM")
+SPRING = SpringSpec(wire_diameter=5.0, mean_diameter=40.0, turns=2.5, pitch=12.0).build()
 
 
 def rows(made):
@@ -195,6 +199,16 @@ def test_wires_are_listed(capsys):
     assert "not found: endurance of all wires of CrV, SiCr and SiCrV" in printed
     with pytest.raises(InputError, match="'copper' is not a known wire"):
         list_wires("copper")
+
+
+def test_a_warm_spring_has_the_moduli_and_the_yield_stress_of_its_temperature(example):
+    """`creeping` at 433.15 K: G = 79000 − 7900/2, k0² = (666666.67 + 426666.67)/2; 10 % less stiff at the end."""
+    made = case_sheet(read_case(example, ["material=creeping", "temperature=433.15"]), SPRING, None)
+    assert made.elastic.shear_modulus == pytest.approx(75050.0)
+    assert made.rate == pytest.approx(75050.0 * 5.0**4 / (8 * 40.0**3 * 2.5))
+    assert made.yield_stress == pytest.approx(np.sqrt(1.5 * 546666.67))
+    with pytest.raises(InputError, match=r"^temperature: 600 K is outside the table of 'creeping'"):
+        case_sheet(read_case(example, ["material=creeping", "temperature=600"]), SPRING, None)
 
 
 def test_wrong_questions(case, tmp_path):

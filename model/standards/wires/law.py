@@ -3,10 +3,11 @@
 from coilset.meshes.errors import InputError
 from coilset.meshes.geometry import Spring
 from coilset.model.case import Case
+from coilset.model.case.targets import check_known
 from coilset.model.material import library
 from coilset.model.material.file import MaterialFile
 from coilset.model.material.law import Law
-from coilset.model.standards.steel import Elastic
+from coilset.model.standards.steel import STEEL, Elastic
 from coilset.model.standards.wires.hardening import Curve, curve
 from coilset.model.standards.wires.library import wire
 from coilset.model.standards.wires.wire import ROOM_TEMPERATURE, Wire
@@ -86,6 +87,17 @@ def case_law(case: Case, spring: Spring) -> Law:
     if isinstance(case.material, str):
         return library.load(case.material, spin=spin)
     return wire_law(case.material.wire, wire_diameter(spring), spin)
+
+
+def case_elastic(case: Case, law: Law) -> Elastic:
+    """Moduli of a case's material at the temperature of its spring, and the density of steel.
+
+    Raises:
+        InputError: a temperature that the material does not know.
+    """
+    check_known(law, case.temperature, "temperature")
+    E, G = law.moduli(law.reference_temperature if case.temperature is None else case.temperature)
+    return Elastic(float(G), float(E), STEEL.density)
 
 
 def case_strength(case: Case, spring: Spring) -> float | None:
