@@ -3,6 +3,7 @@
 import numpy as np
 
 from coilset.model.report.panel import COLOURS, LINE, Panel, Trace, axis
+from coilset.model.results.labels import in_legend
 from coilset.model.results.opened import Run
 
 HEIGHT = 440  # pixels, the same for both, which stand side by side
@@ -21,7 +22,7 @@ def phases(run: Run) -> list[tuple[str, np.ndarray, np.ndarray]]:
             for start, name in zip(last, ("travel_mm", "force_N"), strict=True)
         )
         label = labels[number] if number < len(labels) else "last equilibrium"
-        found.append((f"to {label}", travel, force))
+        found.append((in_legend(label), travel, force))
         last = float(travel[-1]), float(force[-1])
     names = [name for name, _, _ in found]
     again = {name for name in names if names.count(name) > 1}

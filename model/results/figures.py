@@ -12,12 +12,13 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from coilset.model.results.folder import whole
-from coilset.model.results.labels import named_phases, plain, unnamed
+from coilset.model.results.labels import in_legend, named_phases, plain, unnamed
 from coilset.model.results.record import Result, Setup, Snapshot
 from coilset.model.results.rings import ROUND, refined, rings
 from coilset.model.style import DIVERGING, STYLE, levels
 
-NAMED = 6  # targets in a legend, at most
+NAMED = 6  # targets in a legend, at most: as many as there are colours
+REST = "0.55"  # the grey of all others
 LETTERS = 14  # of a title, on an inch of a figure
 LARGE = 10  # the same in the size of a single diagram's title
 COMPRESSION = 3  # of PNG, from 1 to 9: files 8 % larger than by 6, in half of the time
@@ -39,10 +40,10 @@ def save(figure: Figure, path: str | Path) -> None:
 
 def add_title(figure: Figure, text: str) -> None:
     """Put a line below the title that a figure has, all of it broken to the figure's width."""
-    figure.suptitle(_broken(figure, f"{figure.get_suptitle()}\n{text}", LETTERS), fontsize=9)
+    figure.suptitle(broken(figure, f"{figure.get_suptitle()}\n{text}", LETTERS), fontsize=9)
 
 
-def _broken(figure: Figure, text: str, letters: int) -> str:
+def broken(figure: Figure, text: str, letters: int) -> str:
     """Lines of a title that are not wider than the figure, with so many letters on an inch of it."""
     width = int(letters * figure.get_figwidth())
     return "\n".join(part for line in text.split("\n") for part in textwrap.wrap(line, width))
@@ -60,10 +61,10 @@ def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapp
                 continue
             travel = [travel[-1]] + [step.travel_mm for step in steps]
             force = [force[-1]] + [step.force_N for step in steps]
-            label = name and f"to {name}"
-            axes.plot(travel, force, "o-", ms=3, lw=1.3, color=f"C{number % 10}", label=label)
+            colour = f"C{number}" if number < NAMED else REST
+            axes.plot(travel, force, "o-", ms=3, lw=1.3, color=colour, label=name and in_legend(name))
         if more := unnamed(setup.phases, NAMED):
-            axes.plot([], [], " ", label=more)
+            axes.plot([], [], "o-", ms=3, lw=1.3, color=REST, label=more)
         greatest = max(abs(summary["force_max_N"]), 1e-300)
         block = summary["free_length_before_mm"] - summary["block_height_mm"]
         if (rate := summary["rate_N_per_mm"]) is not None:
@@ -74,9 +75,10 @@ def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapp
         if summary["set_mm"] is not None:
             set_mm = summary["set_mm"]
             axes.annotate("", (0, 0), (set_mm, 0), arrowprops={"arrowstyle": "<->", "lw": 0.9, "color": "0.3"})
-            axes.annotate(f"set {plain(set_mm)} mm", (0.5 * set_mm, 0.02 * greatest), ha="center", va="bottom",
+            axes.annotate(_changed(set_mm, "set"), (0.5 * set_mm, 0.02 * greatest), va="bottom",
+                          ha="right" if summary["force_max_N"] < 0.0 else "center",
                           bbox={"fc": "w", "ec": "none", "pad": 0.5, "alpha": 0.8})  # fmt: skip
-        axes.set(xlabel="travel in mm", ylabel="axial force in N", title=_broken(figure, _found(summary), LARGE))
+        axes.set(xlabel="travel in mm", ylabel="axial force in N", title=broken(figure, _found(summary), LARGE))
         if len(axes.get_legend_handles_labels()[1]) <= BESIDE:
             axes.legend(fontsize=8)
         else:
@@ -87,9 +89,19 @@ def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapp
 
 def _found(summary: Mapping[str, Any]) -> str:
     set_mm = summary["set_mm"]
-    sets = "" if set_mm is None else f", the spring sets {plain(set_mm)} mm"
+    lost, sets = summary["load_loss_percent"], ""
+    if set_mm is not None:
+        sets = f", the spring {_changed(set_mm, 'sets', 'stays ')}"
+    elif lost is not None:
+        sets = f", the spring loses {plain(lost)} % of its load"
     way = "Pulled" if summary["force_max_N"] < 0.0 else "Pressed"
     return f"{way} with up to {plain(abs(summary['force_max_N']))} N{sets} ({summary['material']})"
+
+
+def _changed(set_mm: float, word: str, longer: str = "") -> str:
+    """A set with its word, or by how much a spring that was pulled has become longer."""
+    said = plain(set_mm)
+    return f"{longer}{said[1:]} mm longer" if said.startswith("-") else f"{word} {said} mm"
 
 
 def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from coilset.model.results.figures import save
+from coilset.model.results.figures import LARGE, broken, save
 from coilset.model.standards.goodman import Cycle, Line
 from coilset.model.style import STYLE
 
@@ -27,7 +27,7 @@ def draw(path: Path, wire: str, endured: Line, cycle: Cycle, residual: float | N
             text = f"{residual:.0f}".replace("-", "−")
             _mark(axes, cycle.shifted(residual), "C1", f"with the residual {text} MPa that was found")
         axes.set(xlabel="lower corrected stress τk1 in MPa", ylabel="upper corrected stress τk2 in MPa",
-                 title=_found(wire, endured, cycle))  # fmt: skip
+                 title=broken(figure, _found(wire, endured, cycle), LARGE))  # fmt: skip
         axes.legend(fontsize=8, loc="lower right")
         axes.grid(lw=0.3)
         save(figure, path)

@@ -31,6 +31,11 @@ def named_phases(phases: Sequence[str], most: int) -> list[tuple[int, str | None
             for index, (number, phase) in enumerate(zip(numbers, phases, strict=True))]  # fmt: skip
 
 
+def in_legend(phase: str) -> str:
+    """A phase in a legend: a target with the word that leads to it, a waiting or heating as it is."""
+    return phase if phase.startswith(("hold ", "heat ")) else f"to {phase}"
+
+
 def unnamed(phases: Sequence[str], most: int) -> str | None:
     """The line of a legend for the targets that it does not name."""
     more = len(dict.fromkeys(phases)) - most

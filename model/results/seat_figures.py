@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 
 from coilset.meshes.ends import ENDS
 from coilset.model.results.figures import save
-from coilset.model.results.labels import decimals, named_phases, plain, unnamed
+from coilset.model.results.labels import decimals, in_legend, named_phases, plain, unnamed
 from coilset.model.results.record import ContactRecord, Result, Setup
 from coilset.model.style import STYLE
 
@@ -51,7 +51,7 @@ def name_styles(axes: Axes, setup: Setup) -> None:
     """Name the line of each target in the legend."""
     for number, name in named_phases(setup.phases, len(LINES)):
         if name is not None:
-            axes.plot([], [], LINES[number], lw=1.0, color="k", label=f"to {name}")
+            axes.plot([], [], LINES[number], lw=1.0, color="k", label=in_legend(name))
     if more := unnamed(setup.phases, len(LINES)):
         axes.plot([], [], " ", label=more)
 

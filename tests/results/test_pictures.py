@@ -14,7 +14,7 @@ from mpi4py import MPI
 
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.results import figures, seat_figures
+from coilset.model.results import figures, goodman_figure, seat_figures
 from coilset.model.results.buckling_figure import axis, buckling_mode, column, plane
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.display import ensure
@@ -23,6 +23,7 @@ from coilset.model.results.record import BucklingMode, Step
 from coilset.model.results.rings import ROUND
 from coilset.model.results.scene import ABOVE, BAR, COLUMN, LABELS, MOST_HEIGHT, WIDTH, Frame, caption, springs
 from coilset.model.results.summary import summarise
+from coilset.model.standards import goodman
 from coilset.model.style import QUARTERED, round_end
 
 
@@ -208,6 +209,51 @@ def test_all_figures_share_one_look():
     repository = Path(__file__).resolve().parents[2]
     sources = [path for room in ("model", "verification") for path in (repository / room).rglob("*.py")]
     assert not [path for path in sources if "axes.spines" in path.read_text(encoding="utf-8")]
+
+
+def drawn(monkeypatch, module, draw):
+    """The figure that a function would save, laid out."""
+    kept = []
+    monkeypatch.setattr(module, "save", lambda figure, path: kept.append(figure))
+    draw()
+    FigureCanvasAgg(kept[0]).draw()
+    return kept[0]
+
+
+def test_more_phases_than_colours_are_grey(analysis, monkeypatch):
+    """A colour of the legend belongs to one of its names, which say what is done."""
+    steps = tuple(Step(k, k, 1.0, 35.0 - k, k, 9.0, 1, 1, 0, 0, 0, 0.0) for k in range(8))
+    phases = ("travel 1 mm", "heat to 400 K in 1 h at constant height", *(f"travel {k} mm" for k in range(2, 8)))
+    setup, result = replace(analysis.setup, phases=phases), replace(analysis.result, steps=steps)
+    figure = drawn(monkeypatch, figures,
+                   lambda: figures.characteristic("", setup, result, summarise(setup, result)))  # fmt: skip
+    colours = [line.get_color() for line in figure.axes[0].get_lines()[:9]]
+    assert len(set(colours[:6])) == 6
+    assert set(colours[6:]) == {figures.REST}
+    texts = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert texts[:2] == ["to travel 1 mm", "heat to 400 K in 1 h at constant height"]
+
+
+@pytest.mark.parametrize(("summary", "said"), [
+    ({"set_mm": 1.25}, "the spring sets 1.25 mm"),
+    ({"set_mm": -1e-13}, "the spring sets 0 mm"),
+    ({"set_mm": -0.177, "force_max_N": -9.0}, "the spring stays 0.177 mm longer"),
+    ({"set_mm": None, "load_loss_percent": 17.05}, "the spring loses 17.05 % of its load"),
+])  # fmt: skip
+def test_a_characteristic_says_what_becomes_of_the_spring(analysis, monkeypatch, summary, said):
+    setup, result = analysis.setup, analysis.result
+    found = summarise(setup, result) | summary
+    figure = drawn(monkeypatch, figures, lambda: figures.characteristic("", setup, result, found))
+    assert said in figure.axes[0].get_title().replace("\n", " ")
+
+
+def test_the_title_of_a_goodman_diagram_is_whole(monkeypatch):
+    endured = goodman.Line(470.0, 770.0, 1035.0, 1e7, "shot peened")
+    figure = drawn(monkeypatch, goodman_figure, lambda: goodman_figure.draw(
+        "", "EN 10270-2 VDSiCrV, 12.5 mm", endured, goodman.Cycle(795.0, 1325.0), None))  # fmt: skip
+    title = figure.axes[0].title.get_window_extent()
+    assert figure.bbox.x0 <= title.x0
+    assert title.x1 <= figure.bbox.x1
 
 
 @pytest.mark.parametrize("size", [1.0, 1e3, 1e6])
