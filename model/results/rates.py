@@ -8,7 +8,7 @@ import numpy as np
 from coilset.model.results.record import Result, Setup, Step
 
 MAKERS = (0.3, 0.7)  # of the travel to block, between which EN 15800 measures the rate
-STANDS = 1e-9  # of the greatest travel and force: a step that changes both by less, as in a phase to where it is, is none
+STANDS = 1e-9  # of the greatest travel and force: a step that changes both by less changes nothing
 
 
 def first_compression(steps: Sequence[Step]) -> tuple[np.ndarray, np.ndarray]:
