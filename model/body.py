@@ -133,6 +133,14 @@ class EstimatesErrors(Protocol):
         """
         ...
 
+    def resolves_time(self, fall: float) -> bool:
+        """Whether the error of a step on trial, in which time passes at constant height, can be told from its works.
+
+        Args:
+            fall: of the logarithm of the force in the step. For this rank's cells.
+        """
+        ...
+
     def rejoin_finer_path(self) -> None:
         """Estimate from the last equilibrium on, which was reached by steps without an estimate."""
         ...

@@ -16,6 +16,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from mpi4py import MPI
 
 from coilset.model.body import EstimatesErrors
 from coilset.model.equilibrium.axial_control import AxialControl
@@ -105,7 +106,13 @@ class StepError:
         share = abs(works[2] / first) / (self.steps.step_share * self.accuracy * greatest)
         if math.isnan(share):
             return Estimate(math.nan, math.nan, 0.0, 1.0)
-        return Estimate(works[3] / first, math.nan, share, self._factor(share))
+        return Estimate(works[3] / first if self._resolves_time() else math.nan, math.nan, share, self._factor(share))
+
+    def _resolves_time(self) -> bool:
+        """Can the error of the step, in which the force falls, be told from its works? Collective."""
+        before, force, comm = abs(self.control.force), abs(self.control.trial_force), self.control.system.comm
+        resolves = self._body.resolves_time(math.log(before / force) if 0.0 < force < before else 0.0)
+        return comm.allreduce(resolves, MPI.LAND) if comm.size > 1 else resolves
 
     def rejoin(self) -> None:
         """Go on from the last equilibrium, which was reached by steps that were not judged."""

@@ -14,6 +14,7 @@ from coilset.meshes.line import LineMesh
 from coilset.meshes.placement import Placement, straight
 from coilset.model.body import Moment
 from coilset.model.extremes import largest
+from coilset.model.material.creep_law import CreepLaw
 from coilset.model.material.law import Law
 from coilset.model.rod import forms
 from coilset.model.rod.assembly import add_element_vectors
@@ -24,6 +25,7 @@ from coilset.model.rod.kinematics import GAUSS, chord_triads, displace_nodes, se
 from coilset.model.rod.numbering import Numbering
 from coilset.model.rod.prediction import Prediction
 from coilset.model.rod.section_states import KEPT, POINTS, SURFACE, SectionStates
+from coilset.model.section import surface
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule
 from coilset.model.state import Field, State, Where
@@ -225,6 +227,14 @@ class Rod:
         if not self._finer.follow(self.coefficients.s, ratio, kinked, stands):
             return np.nan, np.nan, np.nan, np.nan
         return self._finer.works(np.linalg.norm(self._chord.trial, axis=1))
+
+    def resolves_time(self, fall: float) -> bool:
+        """Whether the finer path tells the error of a step in time; see EstimatesErrors."""
+        if not isinstance(self.in_time, CreepLaw):
+            return True
+        end, middle = (self.state[name] for name in CLOCKS)
+        stress = surface.equivalent(self.surface_state, self.sections.components).max(initial=0.0)
+        return self.in_time.is_resolved((end.equilibrium, middle.trial, end.trial), float(stress), fall)
 
     def rejoin_finer_path(self) -> None:
         """Estimate from the last equilibrium on; see EstimatesErrors."""

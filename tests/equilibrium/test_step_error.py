@@ -1,5 +1,7 @@
 """Steps that know their error: what is asked for, what the estimate says, what the steps make of it."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from mpi4py import MPI
@@ -9,6 +11,7 @@ from coilset.model.analysis import Analysis
 from coilset.model.case import check, read_case
 from coilset.model.case.case import read_case_data
 from coilset.model.equilibrium.step_error import Estimate
+from coilset.model.material import library
 from coilset.model.results.summary import summarise
 
 COARSE = ["mesh.elements_per_turn=10", "mesh.section.radial=3", "mesh.section.angular=8"]
@@ -78,6 +81,27 @@ def test_equal_steps_tell_their_error_within_a_factor_of_three(example, ends, to
     worst = max(abs(told["estimated_force_error_N"]) / told["force_max_N"],
                 abs(told["estimated_set_error_mm"]) / told["set_mm"])  # fmt: skip
     assert ("step error" in names) == (worst > 0.002)
+
+
+LINEAR = {"strain: 2.0e-4": "strain: 2.0e-6", "exponent: 6": "exponent: 4", "time_exponent: 0.2": "time_exponent: 1"}
+
+
+@pytest.mark.parametrize(("changes", "unknown", "known"), [({}, 1, 3), (LINEAR, 1, 4), (LINEAR, 3, 4)])
+def test_a_hold_in_coarse_steps_tells_its_error_or_that_it_is_not_known(tmp_path, example, changes, unknown, known):
+    """In one step the difference of its halves has the other sign; told over true in `known` steps: 0.6 to 0.7."""
+    material = (Path(library.__file__).parent / "creeping.yaml").read_text()
+    for old, new in changes.items():
+        material = material.replace(old, new, 1)
+    (tmp_path / "creeping.yaml").write_text(material)
+
+    def hold(steps):
+        loading = f"loading=[{{to: {{force: 650}}, steps: 8}}, {{hold: {{hours: 1000}}, steps: {steps}}}]"
+        entries = [f"material={tmp_path}/creeping.yaml", "temperature=373.15", "spring.pitch=18", "ends=clamped"]
+        return run(example, *COARSE, *entries, loading)[0].steps[-1]
+
+    assert hold(unknown).estimated_force_error_N is None
+    coarse = hold(known)
+    assert 1 / 3 < coarse.estimated_force_error_N / (hold(128).force_N - coarse.force_N) < 3
 
 
 def test_the_example_is_within_its_accuracy(example):
