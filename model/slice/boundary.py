@@ -6,6 +6,8 @@ import numpy as np
 
 from coilset.model.slice.slice import Slice
 
+STRAIGHT = 0.95  # cosine of the angle between two edges below which they meet in a corner
+
 
 @dataclass(frozen=True, eq=False)
 class Boundary:
@@ -20,6 +22,20 @@ class Boundary:
     blocks: np.ndarray
     polynomials: np.ndarray
     upward: np.ndarray
+
+    def corners(self, nodes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Edges that end at a corner of the section, and those that begin at one.
+
+        Args:
+            nodes: positions of the blocks in the section, shape (blocks, 2).
+        """
+        powers = np.arange(len(self.polynomials))
+        slopes = [self.polynomials @ (powers * t ** np.maximum(powers - 1, 0)) for t in (1.0, 0.0)]
+        ahead, behind = (np.einsum("a,eai->ei", slope, nodes[self.blocks]) for slope in slopes)
+        ahead, behind = (along / np.linalg.norm(along, axis=1)[:, None] for along in (ahead, behind))
+        follows = np.argmax(self.blocks[:, -1:] == self.blocks[:, 0], axis=1)
+        ends = np.flatnonzero((ahead * behind[follows]).sum(axis=1) < STRAIGHT)
+        return ends, follows[ends]
 
     @classmethod
     def of(cls, body: Slice) -> "Boundary":

@@ -22,7 +22,8 @@ class Pressure:
     """Contact at an increment of the body.
 
     Attributes:
-        gap: smallest gap, mm.
+        gap: smallest gap, also of corners, mm.
+        free: smallest gap of the points that can bear, mm.
         bearing: number of points in contact.
         force: pressure times area of all points, per turn of wire, N.
         forces: on the displacements, shape (blocks, 3), N; numbers: on h̄ and λ, shape (2,), N and N mm.
@@ -30,6 +31,7 @@ class Pressure:
     """
 
     gap: float
+    free: float
     bearing: int
     force: float
     forces: np.ndarray
@@ -63,7 +65,7 @@ class NoContact:
     def evaluate(self) -> Pressure:
         """No pressure and no closing gap."""
         none, places = np.empty(0), np.empty(0, int)
-        return Pressure(np.inf, 0, 0.0, np.zeros((1, 3)), np.zeros(2), places, places, none)
+        return Pressure(np.inf, np.inf, 0, 0.0, np.zeros((1, 3)), np.zeros(2), places, places, none)
 
 
 class SelfContact:
@@ -88,6 +90,8 @@ class SelfContact:
         t, w = np.polynomial.legendre.leggauss(GAUSS)
         self._gauss = 0.5 * (t + 1.0)
         self._areas = self._points_areas(0.5 * w)
+        at_corners = edges.corners(body.forms.V.tabulate_dof_coordinates()[:, :2])
+        self._corners = [np.intersect1d(found, self._above) for found in at_corners]
         points, size = self._areas.size, 6 * edges.blocks.shape[1] + 1
         self._gap, self._where = np.empty(self._areas.shape), np.empty((points, 3), np.int64)
         self._gradient, self._hessian = np.empty((points, size)), np.empty((points, size, size))
@@ -101,6 +105,17 @@ class SelfContact:
         length = np.linalg.norm(np.einsum("ka,eai->eki", slopes, nodes), axis=2)
         radius = np.einsum("ka,eai->eki", values, nodes)[..., 0]
         return length * weights * np.hypot(radius, self.body.coil.rise)
+
+    def _corner_gap(self, κ: float) -> float:
+        """Smallest gap of the corners on the upper side, which no Gauss point sees, mm; infinite without corners."""
+        edges, smallest = self._edges, np.inf
+        for above, t in zip(self._corners, (1.0, 0.0), strict=True):
+            if len(above):
+                gap = np.empty((len(above), 1))
+                gaps(self.body.x, κ, edges.blocks, edges.polynomials, above, self._below, np.array([t]), -np.inf,
+                     gap, self._where, self._gradient, self._hessian)  # fmt: skip
+                smallest = min(smallest, float(gap.min()))
+        return smallest
 
     def evaluate(self) -> Pressure:
         """Forces and stiffness at the body's increment."""
@@ -125,5 +140,7 @@ class SelfContact:
         dofs = np.hstack([dofs, np.tile(x.size + np.array([RISE, TURN]), (count, 1))])
         forces = np.bincount(dofs.ravel(), (load @ onto).ravel(), x.size + 2)
         i, j = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
-        return Pressure(float(self._gap.min()), int(np.count_nonzero(pressure > 0)), 2 * np.pi * float(pressure.sum()),
-                        forces[:-2].reshape(-1, 3), forces[-2:], i.ravel(), j.ravel(), K.ravel())  # fmt: skip
+        free = float(self._gap.min())
+        return Pressure(min(free, self._corner_gap(h / λ)), free, int(np.count_nonzero(pressure > 0)),
+                        2 * np.pi * float(pressure.sum()), forces[:-2].reshape(-1, 3), forces[-2:],
+                        i.ravel(), j.ravel(), K.ravel())  # fmt: skip

@@ -221,7 +221,7 @@ class SliceProblem:
 
     def _sinks_in(self) -> bool:
         """Whether coils penetrate at an equilibrium that was found without contact."""
-        return not self.touching and self.contact.evaluate().gap < 0.0
+        return not self.touching and self.contact.evaluate().free < 0.0
 
     def _accept(self) -> None:
         axial, torque = self.resultants()
@@ -246,7 +246,7 @@ class SliceProblem:
     def _hold_back(self, value: float) -> None:
         """Start where coils have just touched, if a force without their contact would make them penetrate deeper."""
         falls = -2.0 * np.pi * self._X.getArray(readonly=True)[-2] / self.body.turn
-        reach = self.pressure.gap + 2.0 * self.contact.onset
+        reach = self.pressure.free + 2.0 * self.contact.onset
         if falls > reach:
             self._let_touch(True)
             self._linear_answer(value, by_force=True)

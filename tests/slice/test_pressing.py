@@ -105,6 +105,28 @@ def test_coils_touch_and_part_again(make_slice):
     assert problem.pressure.gap > 0
 
 
+@pytest.mark.parametrize("outline", [Trapezoid(4.0, 5.0, 6.0), Trapezoid(4.0, 6.0, 5.0)])
+@pytest.mark.parametrize("off", [1e-4, -1e-4])
+def test_coils_touch_where_their_corners_do(make_slice, outline, off):
+    """The Gauss points are 0.02 mm from it; what a section measures along the axis is in its nodes."""
+    body = make_slice("elastic", outline=outline, pitch=5.5)
+    along = body.start[:, 2] - body.coil.rise * np.arctan2(body.start[:, 1], body.start[:, 0])
+    contact, height = SelfContact(body), np.ptp(along)
+    body.increment[0] = (1.0 + off) * height / (2 * np.pi) - body.coil.rise
+    assert body.update()
+    moved = body.x[:, 2] - body.rise * np.arctan2(body.x[:, 1], body.x[:, 0])
+    left = 2 * np.pi * body.rise - np.ptp(moved)
+    found = contact.evaluate()
+    assert found.gap == pytest.approx(left, rel=0.02)  # normal to the side, which is inclined by 7°
+    assert found.free > 0.01
+    assert found.bearing == 0
+
+
+def test_a_round_wire_has_no_corners(make_slice):
+    found = SelfContact(make_slice(across=3.0)).evaluate()
+    assert found.gap == found.free
+
+
 def test_surface_is_free_of_traction_and_keeps_the_yield_condition(make_slice):
     # measured: 0.18 MPa of about 120; the law itself is integrated at the surface
     body, φ = make_slice(across=6.5), np.linspace(0, 2 * np.pi, 36, endpoint=False)
