@@ -178,10 +178,11 @@ class Law:
         return BackStresses(parameters, self._terms_at(parameters[fn.TEMPERATURE])) if self.n_terms else parameters
 
     def content(self) -> bytes:
-        """All constants, for a digest."""
+        """All constants and how far they are valid, for a digest."""
         terms = self._terms.tobytes() if self.n_terms else b""
-        parts = (part.model_dump_json().encode() for part in (self.data.creep, self.data.rate) if part)
-        return self.parameters().tobytes() + terms + b"".join(parts)
+        sections = self.data.creep, self.data.rate, self.data.heating
+        parts = (part.model_dump_json().encode() for part in sections if part)
+        return self.parameters().tobytes() + terms + b"".join(parts) + np.float64(self.validity.plastic_work).tobytes()
 
     def known(self, temperature: float) -> float:
         """The temperature, K, as a number.

@@ -119,6 +119,16 @@ def test_adiabatic_heating(name, material_file, reference_of):
     np.testing.assert_allclose(mapped[1][:, -1] - TEMPERATURES[0], HEATING * mapped[1][:, -2], rtol=1e-10)
 
 
+def test_the_digest_of_a_material_knows_its_heat_capacity_and_its_validity(material_file):
+    """With half of the density, and of the part that becomes heat, a point warms as before, but conducts faster."""
+    half = {**HEAT, "dissipated": 0.5 * DISSIPATED, "density": 0.5 * DENSITY}
+    other = {"plastic_work": 50.0, "remark": "as far as the tests went"}
+    laws = [library.load(material_file(**more)) for more in ({"heating": HEAT}, {"heating": half})]
+    assert laws[0].parameters().tobytes() == laws[1].parameters().tobytes()
+    laws += [library.load(material_file(heating=HEAT, validity=other))]
+    assert len({law.content() for law in laws}) == 3
+
+
 def test_heating_matters(material_file):
     """The flow stress after adiabatic tension is lower than after isothermal tension, by the table's softening."""
     hot, cold = (library.load(material_file(**more), spin=False) for more in ({"heating": HEAT}, {}))
