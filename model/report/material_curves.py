@@ -3,6 +3,7 @@
 import json
 from math import isfinite
 
+from coilset.meshes.errors import InputError
 from coilset.model.material.file import MaterialFile
 from coilset.model.material.law import Law
 from coilset.model.material.programs import History, Program, Step, run
@@ -14,13 +15,16 @@ INCREMENTS = 60
 
 
 def material_curve(results: Run) -> Panel | None:
-    """Shear stress over shear strain, forwards and back; None of a law that never yields."""
+    """Shear stress over shear strain, forwards and back; None of a law that never yields, or warms out of its table."""
     law = Law(MaterialFile.model_validate(json.loads(results.data.attrs["material_file"])))
     if not isfinite(law.yield_stress):
         return None
     low, high = law.temperature_range
     temperature = results.case.get("temperature") or low
-    history = there_and_back(law, temperature)
+    try:
+        history = there_and_back(law, temperature)
+    except InputError:
+        return None
     far = history.strain[INCREMENTS, 1]
     trace = {
         "type": "scatter",

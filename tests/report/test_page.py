@@ -131,6 +131,18 @@ def test_a_law_that_never_yields_has_no_curve(folder):
     assert material_curve(replace(run, data=run.data.assign_attrs(material_file=elastic))) is None
 
 
+def test_a_law_that_warms_out_of_its_table_has_no_curve(folder):
+    """A spring at the last temperature of its table that stays elastic has a page all the same."""
+    run = open_run(folder)
+    warming = library.load("creeping").data.model_dump(mode="json", exclude={"creep"})
+    warming["heating"] = {"dissipated": 0.9, "density": 7.85e-9, "specific_heat": 4.6e8}
+    warm = replace(run, data=run.data.assign_attrs(material_file=json.dumps(warming)))
+    assert material_curve(warm) is not None
+    case = {**run.case, "temperature": 573.15}
+    hot = replace(warm, summary={**run.summary, "origin": {**run.summary["origin"], "case": case}})
+    assert material_curve(hot) is None
+
+
 def test_a_law_of_several_temperatures_is_drawn_at_that_of_the_spring(folder):
     """The creeping wire is softer at 373 K, by its G at the first readings."""
     run = open_run(folder)
