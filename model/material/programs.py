@@ -170,7 +170,7 @@ class _Point:
         self.strain = np.zeros(self.n)
         self.by_strain = np.zeros(self.n, dtype=bool)
         _, tangent, _ = update(law, self.state[None], np.zeros((1, self.n)), temperature=self._at(self.temperature))
-        self.tangent = tangent[0]
+        self.tangent = self._elastic = tangent[0]
 
     def _at(self, end: float) -> tuple[float, float] | None:
         """The temperature argument of `update`."""
@@ -192,24 +192,26 @@ class _Point:
         """One increment to `target` and `temperature`; if Newton's method fails, two of half the size."""
         now = np.where(self.by_strain, self.strain, self.state[: self.n])
         self.refused: InputError | None = None
-        if self._newton(target, temperature):
+        if self._newton(target, temperature, self.tangent):
             return
         if halvings == MAX_HALVINGS:
+            if self._newton(target, temperature, self._elastic):  # back from flow without hardening
+                return
             if self.refused is not None:
                 raise self.refused
             raise SolveError("no strain was found that gives the prescribed stress; can the material carry it?")
         self.advance(0.5 * (now + target), 0.5 * (self.temperature + temperature), halvings + 1)
         self.advance(target, temperature, halvings + 1)
 
-    def _newton(self, target: np.ndarray, temperature: float) -> bool:
+    def _newton(self, target: np.ndarray, temperature: float, tangent: np.ndarray) -> bool:
         held, free = self.by_strain, ~self.by_strain
         increment = np.where(held, target - self.strain, 0.0)
-        tangent, stress = self.tangent, self.state[: self.n]
+        stress = self.state[: self.n]
         scale = max(1.0, float(np.abs(stress).max()), float(np.abs(target[free]).max(initial=0.0)))
         # Heun's choice of sub-steps makes its stress jump, by its own error at most.
         jump = 0.0 if self.integrator == "return_mapping" else 0.1 * min(self.law.heun_tolerance, 1e-2) * scale
         last = np.inf
-        # The free components follow the last tangent first.
+        # The free components follow the given tangent first.
         residual = target[free] - stress[free] - tangent[np.ix_(free, held)] @ increment[held]
         for _ in range(MAX_ITERATIONS):
             if free.any():

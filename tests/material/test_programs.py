@@ -50,6 +50,16 @@ def test_release_is_elastic(integrator):
     assert history.strain[-1, 0] == pytest.approx(0.15 - history.stress[top, 0] / law.E, rel=1e-7)
 
 
+@pytest.mark.parametrize("integrator", points.INTEGRATORS)
+@pytest.mark.parametrize("form", ["rod", "solid"])
+def test_release_from_flow_without_hardening(integrator, form):
+    """The last tangent is singular there: no strain changes a stress that flows."""
+    law = library.load("ideal_plastic")
+    history = programs.run(law, program(({"eps11": 0.02}, 20), ({"sigma11": 0}, 4), form=form), integrator)
+    assert history.stress[-1, 0] == pytest.approx(0.0, abs=1e-4)
+    assert history.strain[-1, 0] == pytest.approx(0.02 - law.yield_stress / law.E, rel=1e-6)
+
+
 def test_stress_control_of_linear_hardening():
     """To σ = 500: ε = 500/E + (500 − 400)/2000; then τ12 = 100 with σ held raises the equivalent stress alike."""
     law = library.load("linear_isotropic", spin=False)
