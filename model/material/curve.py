@@ -188,8 +188,9 @@ class Table(Strict):
 
         strain, stress = self.points()
         if self.measure == "engineering":
-            strain, stress = np.log1p(strain), stress * (1.0 + strain)
-        if self.strains == "total":
+            total = strain if self.strains == "total" else strain + stress / young_modulus
+            strain, stress = np.log1p(total), stress * (1.0 + total)
+        if self.strains == "total" or self.measure == "engineering":
             strain = strain - stress / (young_modulus if self.test == "tension" else shear_modulus)
         if self.test == "torsion":  # σ = √3 τ, εᵖ = γᵖ/√3
             strain, stress = strain / np.sqrt(3.0), stress * np.sqrt(3.0)

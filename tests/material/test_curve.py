@@ -71,15 +71,16 @@ def test_a_table_passes_through_its_points_and_never_falls():
 
 
 def test_total_strain_torsion_and_first_lengths_are_taken_off(tmp_path):
-    """Swift's law sampled as four kinds of test gives four times the same k²."""
+    """Swift's law sampled as five kinds of test gives five times the same k²."""
     plastic = np.concatenate([[0.0], np.geomspace(2e-4, 0.2, 120)])
     stress = LAWS["swift"][1](plastic)
     total = plastic + stress / E
-    shear = stress / np.sqrt(3)
+    shear, force = stress / np.sqrt(3), stress / np.exp(total)
     tables = [
         {"strain": plastic, "stress": stress, "strains": "plastic"},
         {"strain": total, "stress": stress},
-        {"strain": np.expm1(total), "stress": stress / np.exp(total), "measure": "engineering"},
+        {"strain": np.expm1(total), "stress": force, "measure": "engineering"},
+        {"strain": np.expm1(total) - force / E, "stress": force, "measure": "engineering", "strains": "plastic"},
         {"strain": np.sqrt(3) * plastic + shear / G, "stress": shear, "test": "torsion"},
     ]
     works = np.linspace(0.5, 150.0, 300)
