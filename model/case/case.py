@@ -290,6 +290,11 @@ class Case(Strict):
         return [phase for phase in self.loading if isinstance(phase, Phase)]
 
     @property
+    def ends_turn(self) -> bool:
+        """Whether an end of the spring is free to turn about its axis; held tips are not."""
+        return self.ends == "seats" and "free" in (self.seats.bottom.turn, self.seats.top.turn)
+
+    @property
     def steps_error(self) -> float | None:
         """`accuracy` as a part of one; None if the errors of the steps are not estimated."""
         return None if isinstance(self.accuracy, str) else self.accuracy

@@ -80,7 +80,7 @@ def guess(case: Case, conditions: Sequence[Condition], load: Callable[[str], Law
 
 
 def _press(case: Case, spring: Spring, law: Law) -> tuple[dict[str, float], float]:
-    length, free = spring.free_length, case.ends == "seats"
+    length, free = spring.free_length, case.ends_turn
     one, temperature = coil(spring), case.temperature
     found = {"free_length_before_mm": length, "block_height_mm": spring.block_height}
     probe, _ = press(one, law, travels=np.array([PROBE * length]), rule=RULE, free_ends=free, temperature=temperature)

@@ -253,10 +253,8 @@ def _across(section: SectionMesh) -> tuple[float, float]:
 
 def _ends_turn(case: Case) -> bool:
     """Whether an end is free to turn about the spring's axis."""
-    if case.ends == "clamped" or case.seats.hold == "tips":
-        return False
-    turns = [case.seats.bottom.turn, case.seats.top.turn]
-    for end, turn in zip(("bottom", "top"), turns, strict=True):
+    for end in ("bottom", "top"):
+        turn = getattr(case.seats, end).turn
         if not isinstance(turn, str):
             raise InputError(f"{turn:g} N mm/rad; the slice's ends are held or free", f"seats.{end}.turn")
-    return "free" in turns
+    return case.ends_turn

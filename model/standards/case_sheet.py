@@ -49,7 +49,7 @@ def case_sheet(
                 f"free length {cylinder.length:.4g} mm", "--length",
             )  # fmt: skip
     made = Sheet(cylinder, elastic, spring.wire_length, known, tuple(lengths), grade, surface, dynamic, run,
-                 case.ends == "clamped", law.first_yield(case.temperature))  # fmt: skip
+                 not case.ends_turn, law.first_yield(case.temperature))  # fmt: skip
     if lengths:
         return made
     planned = working_lengths(case.targets, cylinder.length, made.rate, cylinder.solid)

@@ -66,16 +66,16 @@ def _dimensions(sheet: Sheet) -> Iterator[Row]:
     growth = en13906.outer_diameter_growth(s.d, s.D, s.pitch)
     grown = sheet.found.growth if sheet.found and sheet.was_at_block else None
     yield Row("growth of D to block", growth, "mm", "(m² − 0.8 m d − 0.2 d²)/(π² D)", DERIVED, grown,
-              f"mean of the body; the formula is for ends that turn{', these are held' * sheet.clamped}")  # fmt: skip
+              f"mean of the body; the formula is for ends that turn{', these are held' * sheet.held}")  # fmt: skip
 
 
 def _spring(sheet: Sheet) -> Iterator[Row]:
     s, e = sheet.spring, sheet.elastic
     rate, solid = sheet.rate, s.solid
-    softer = pitch_compliance(s.pitch_angle, poisson_ratio(e), "held" if sheet.clamped else "turning")
+    softer = pitch_compliance(s.pitch_angle, poisson_ratio(e), "held" if sheet.held else "turning")
     yield Row("rate R", rate, "N/mm", "G d⁴/(8 D³ n)", DERIVED, sheet.at_run("rate_N_per_mm"),
               "at first touch, where end turns bear, too; with curvature and direct shear")  # fmt: skip
-    held = "(½ − ν)" if sheet.clamped else "(1 − ν)/(2 (1 + ν))"
+    held = "(½ − ν)" if sheet.held else "(1 − ν)/(2 (1 + ν))"
     formula = f"R/(1 + tan²α {held} + …), α = {degrees(s.pitch_angle):.1f}°"
     yield Row("R of a rising wire", rate / softer, "N/mm", formula, DERIVED)
     formula = {"closed and ground": "n_t d_max", "closed": "(n_t + 1.5) d_max"}.get(s.ends, "")

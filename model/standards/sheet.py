@@ -27,7 +27,7 @@ class Sheet:
         surface: `as coiled` or `shot peened`, for endurance.
         dynamic: whether the load alternates, which affects Sa.
         found: results of a run; None without one.
-        clamped: whether the ends of the run were clamped.
+        held: whether the ends of the run cannot turn about the spring's axis.
         yield_stress: of the run's material in tension, MPa; None if it is unknown or the material is elastic.
     """
 
@@ -40,7 +40,7 @@ class Sheet:
     surface: str = "as coiled"
     dynamic: bool = False
     found: Found | None = None
-    clamped: bool = False
+    held: bool = False
     yield_stress: float | None = None
 
     @property

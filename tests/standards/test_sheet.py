@@ -211,6 +211,21 @@ def test_a_warm_spring_has_the_moduli_and_the_yield_stress_of_its_temperature(ex
         case_sheet(read_case(example, ["material=creeping", "temperature=600"]), SPRING, None)
 
 
+@pytest.mark.parametrize(
+    ("settings", "held"),
+    [([], True), (["ends=clamped"], True), (["seats={hold: groove}"], True),
+     (["seats={hold: groove, top: {turn: free}}"], False)],
+)  # fmt: skip
+def test_only_ends_that_are_free_to_turn_are_those_of_the_formula(example, settings, held):
+    """Tips in pockets cannot turn: tan²α weighs ½ − ν in place of (1 − ν)/(2 (1 + ν))."""
+    made = case_sheet(read_case(example, settings), SPRING, None)
+    nu, tangent = made.elastic.young_modulus / (2 * made.elastic.shear_modulus) - 1, 12 / (40 * np.pi)
+    weight = 0.5 - nu if held else (1 - nu) / (2 * (1 + nu))
+    shown = rows(made)
+    assert shown["R of a rising wire"].value == pytest.approx(made.rate / (1 + weight * tangent**2), rel=2e-5)
+    assert shown["growth of D to block"].why.endswith(", these are held") == held
+
+
 def test_wrong_questions(case, tmp_path):
     with pytest.raises(InputError, match=r"--length: 20 mm is no working length; must be between the block length 28"):
         sheet(case, lengths=[20.0], out=tmp_path / "out")
