@@ -106,7 +106,7 @@ class Recorder:
         if self._warned is None:
             self._warned = {warning.name for warning in step_warnings(self.setup, before)}
         steps = self.result.steps if self.setup.slender else self.result.steps[-2:]
-        for warning in step_warnings(self.setup, Result(steps)):
+        for warning in step_warnings(self.setup, Result(steps, snapshots=self.result.snapshots[:1])):
             if warning.name not in self._warned:
                 log.warning("warning: %s", warning.message)
                 self._warned.add(warning.name)

@@ -66,11 +66,13 @@ def beyond_validity(greatest: float, limit: float, material: str, place: str) ->
 
 
 def _plastic_work(setup: Setup, result: Result) -> Iterator[Warning]:
+    """Since the start if the wire's past went that far."""
     limit = setup.limits.plastic_work
     first = next((step for step in result.steps if step.plastic_work_max_N_per_mm2 > limit), None)
     if first is not None:
         greatest = max(step.plastic_work_max_N_per_mm2 for step in result.steps)
-        yield beyond_validity(greatest, limit, setup.material, _place(first))
+        past = any(_work(shot) > limit for shot in result.snapshots[:1])
+        yield beyond_validity(greatest, limit, setup.material, "the start" if past else _place(first))
 
 
 def _lift_off(setup: Setup, result: Result) -> Iterator[Warning]:
@@ -180,6 +182,10 @@ def _strength(setup: Setup, result: Result) -> Iterator[Warning]:
             f"tensile strength Rm of {strength:.4g} N/mm²"
         )
         yield Warning("strength", shot.name, message, greatest, strength, "MPa")
+
+
+def _work(shot: Snapshot) -> float:
+    return float(surface.component(shot.surface_state, shot.components, "b").max(initial=0.0))
 
 
 def _equivalent(shot: Snapshot) -> float:

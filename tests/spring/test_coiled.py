@@ -8,6 +8,7 @@ from coilset.meshes.errors import InputError
 from coilset.model.analysis import Analysis
 from coilset.model.case.case import check
 from coilset.model.results.summary import summarise
+from coilset.model.results.warnings import run_warnings
 from coilset.model.slice.analysis import SliceAnalysis
 from coilset.verification.references.springback import Bar
 
@@ -45,6 +46,14 @@ def test_a_coiled_spring_stands_as_drawn_and_is_as_stiff():
     assert 0.0 < summaries[0]["set_mm"] < 0.8 * summaries[1]["set_mm"]
     assert 36.0 < summaries[0]["coiling_diameter_mm"] < 40.0
     assert summaries[1]["coiling_diameter_mm"] is None
+
+
+def test_work_beyond_the_materials_constants_is_that_of_coiling():
+    """The first step only shows it: bent to D/d = 8, the wire has flowed by more than its curve is valid for."""
+    analysis = analysis_of(material={"wire": "EN 10270-1 SH"})
+    (warning,) = [one for one in run_warnings(analysis.setup, analysis.run()) if one.name == "plastic work"]
+    assert warning.place == "the start"
+    assert warning.message.endswith("only; exceeded since the start")
 
 
 def test_the_inside_of_a_left_handed_coil_of_plane_sections_is_found():
