@@ -16,6 +16,7 @@ from coilset.model.contact.seat import Seat
 
 MODULUS_OF_BEDDING = 40.0  # default bedding is E/40: steel wire penetrates by some thousandths of its diameter at block
 FREE_TILT_OF_BEDDING = 1e-7  # stiffness of a joint that is free to tilt, relative to that of the coil's bedding, b r³
+ASIDE_OF_DIAMETER = 0.1  # nodes of a gap element may be so far beside each other: they meet 0.5 % of a diameter late
 ONSET_OF_DIAMETER = 1e-3  # distance over which contact sets in, in wire diameters
 
 
@@ -34,6 +35,9 @@ def build_contacts(
 
     Returns:
         List of Contacts.
+
+    Raises:
+        InputError: if a seat or a gap element does not fit to the wire or its mesh.
     """
     bedding = contact.bedding or E / MODULUS_OF_BEDDING
     radius, lengths = 0.5 * spring.wire_diameter(turns), np.diff(spring.arc_length(turns))
@@ -114,8 +118,18 @@ def build_seat(
 def gaps_one_turn_apart(
     turns: np.ndarray, radius: np.ndarray, lengths: np.ndarray, bedding: float, onset: float
 ) -> Gaps:
-    """The thesis's gap elements between stations one turn apart."""
+    """The thesis's gap elements between stations one turn apart.
+
+    Raises:
+        InputError: if there are none: elements between others would close too late, or never.
+    """
     stiffness = bedding * 0.5 * (np.append(lengths, 0.0) + np.append(0.0, lengths))  # of each station
     lower = np.flatnonzero(turns <= turns[-1] - 1.0 + 1e-9)
     upper = np.searchsorted(turns, turns[lower] + 1.0 - 1e-9)
+    upper -= np.abs(turns[upper - 1] - turns[lower] - 1.0) < np.abs(turns[upper] - turns[lower] - 1.0)  # the nearest
+    off = np.abs(turns[upper] - turns[lower] - 1.0) * (lengths / np.diff(turns))[lower]
+    if np.any(off > ASIDE_OF_DIAMETER * 2.0 * radius[lower]):
+        raise InputError(f"gaps join nodes one turn apart, but on this mesh the nearest are up to {off.max():.3g} mm "
+                         "beside them; give a number of elements_per_turn whose product with the turns is whole, or "
+                         "coils: closest", "contact.coils")  # fmt: skip
     return Gaps(np.stack([lower, upper], axis=1), radius[lower] + radius[upper], stiffness[lower], onset)

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from coilset.meshes.errors import InputError
 from coilset.model.contact.base import TrialPositions, one_sided
+from coilset.model.contact.build import gaps_one_turn_apart
 from coilset.model.contact.elements import one_sided_at
 from coilset.model.contact.gap import Gaps, Stops
 
@@ -61,3 +63,17 @@ def test_the_compiled_onset_is_that_of_the_arrays():
     gaps = np.linspace(-5.0, 2.0, 29) * ONSET
     compiled = [one_sided_at(gap, C, ONSET) for gap in gaps]
     assert np.transpose(compiled) == pytest.approx(np.array(one_sided(gaps, C, ONSET)), rel=1e-14)
+
+
+def test_gap_elements_join_stations_one_turn_apart():
+    """2.3 turns in 37 elements: those one element farther on lie 7 mm aside, and never come as near as 5 mm."""
+    helix = 2 * np.pi * 20.0
+
+    def joined(elements):
+        turns = np.linspace(0.0, 2.3, elements + 1)
+        lengths = helix * np.diff(turns)
+        return gaps_one_turn_apart(turns, np.full(elements + 1, 2.5), lengths, C, ONSET).pairs
+
+    np.testing.assert_array_equal(joined(23), np.arange(14)[:, None] + [0, 10])
+    with pytest.raises(InputError, match=r"^contact\.coils: gaps join nodes one turn apart, .* up to 0\.679 mm beside"):
+        joined(37)
