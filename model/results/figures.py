@@ -2,6 +2,7 @@
 
 import textwrap
 from collections.abc import Mapping
+from math import ceil
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ LETTERS = 14  # of a title, on an inch of a figure
 LARGE = 10  # the same in the size of a single diagram's title
 COMPRESSION = 3  # of PNG, from 1 to 9: files 8 % larger than by 6, in half of the time
 BESIDE = 4  # lines of a legend that fit beside a characteristic
+LINE = 0.15  # inches of a figure that a line of the legend below it takes
 
 
 def save(figure: Figure, path: str | Path) -> None:
@@ -79,10 +81,11 @@ def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapp
                           ha="right" if summary["force_max_N"] < 0.0 else "center",
                           bbox={"fc": "w", "ec": "none", "pad": 0.5, "alpha": 0.8})  # fmt: skip
         axes.set(xlabel="travel in mm", ylabel="axial force in N", title=broken(figure, _found(summary), LARGE))
-        if len(axes.get_legend_handles_labels()[1]) <= BESIDE:
+        if (lines := len(axes.get_legend_handles_labels()[1])) <= BESIDE:
             axes.legend(fontsize=8)
         else:
-            figure.legend(fontsize=8, loc="outside right upper")
+            figure.set_figheight(figure.get_figheight() + LINE * ceil(lines / 2))
+            figure.legend(fontsize=7, loc="outside lower center", ncols=2)
         axes.grid(lw=0.3)
         save(figure, path)
 

@@ -226,12 +226,16 @@ def test_more_phases_than_colours_are_grey(analysis, monkeypatch):
     phases = ("travel 1 mm", "heat to 400 K in 1 h at constant height", *(f"travel {k} mm" for k in range(2, 8)))
     setup, result = replace(analysis.setup, phases=phases), replace(analysis.result, steps=steps)
     figure = drawn(monkeypatch, figures,
-                   lambda: figures.characteristic("", setup, result, summarise(setup, result)))  # fmt: skip
+                   lambda: figures.characteristic("", setup, result,
+                                                  summarise(setup, result) | {"load_loss_percent": 12.34}))  # fmt: skip
     colours = [line.get_color() for line in figure.axes[0].get_lines()[:9]]
     assert len(set(colours[:6])) == 6
     assert set(colours[6:]) == {figures.REST}
     texts = [text.get_text() for text in figure.legends[0].get_texts()]
     assert texts[:2] == ["to travel 1 mm", "heat to 400 K in 1 h at constant height"]
+    title, legend = figure.axes[0].title.get_window_extent(), figure.legends[0].get_window_extent()
+    assert all(figure.bbox.x0 <= box.x0 and box.x1 <= figure.bbox.x1 for box in (title, legend))
+    assert not title.overlaps(legend)
 
 
 @pytest.mark.parametrize(("summary", "said"), [
