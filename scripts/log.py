@@ -3,6 +3,7 @@
 import contextlib
 import fcntl
 import logging
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -36,7 +37,8 @@ def run_log(folder: Path) -> Iterator[logging.FileHandler]:
         raise CoilsetError(f"{path}: cannot be written: {error.strerror}") from None
     logger = logging.getLogger("coilset")
     try:
-        _lock(handler, folder)
+        assert handler.stream is not None  # it is opened in advance
+        _lock(handler.stream.fileno(), folder)
         handler.setFormatter(logging.Formatter("%(asctime)s %(message)s"))
         logger.setLevel(logging.INFO)
         logger.addHandler(handler)
@@ -46,10 +48,24 @@ def run_log(folder: Path) -> Iterator[logging.FileHandler]:
         handler.close()
 
 
-def _lock(handler: logging.FileHandler, folder: Path) -> None:
-    assert handler.stream is not None  # it is opened in advance
+@contextlib.contextmanager
+def only_run(folder: Path) -> Iterator[None]:
+    """Hold a lock on a folder that has no log.txt.
+
+    Raises:
+        InputError: if another run uses the folder.
+    """
+    descriptor = os.open(folder, os.O_RDONLY)
     try:
-        fcntl.flock(handler.stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        _lock(descriptor, folder)
+        yield
+    finally:
+        os.close(descriptor)
+
+
+def _lock(descriptor: int, folder: Path) -> None:
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         raise InputError("another run is using this folder; wait for it, or use another --out", "--out",
                          folder) from None  # fmt: skip

@@ -4,7 +4,7 @@ import os
 import signal
 import time
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +18,7 @@ from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.pools import Pool, Workers
 from coilset.model.sweep.run import finished, missing, run
 from coilset.scripts.console import Console
+from coilset.scripts.log import only_run
 from coilset.scripts.target import results_folder
 
 if TYPE_CHECKING:  # at run time only after the environment is saved
@@ -44,16 +45,17 @@ def sweep(
 
     comm = MPI.COMM_WORLD
     folder = results_folder(out, Path(sweep_file).stem)
-    plan = on_first_rank(comm, lambda: _prepare(sweep_file, folder, force, resume or retry))
     console = Console()
     interrupted = False
-    try:
-        with _pool(comm, workers, ranks_per_case, folder) as pool:
-            if pool is not None and plan is not None:
-                _lead(plan, folder, retry, pool, console)
-    except KeyboardInterrupt:
-        interrupted = True
-    failed = comm.bcast(0 if plan is None else _conclude(plan, folder, pictures, console))
+    with ExitStack() as held:
+        plan = on_first_rank(comm, lambda: _prepare(sweep_file, folder, force, resume or retry, held))
+        try:
+            with _pool(comm, workers, ranks_per_case, folder) as pool:
+                if pool is not None and plan is not None:
+                    _lead(plan, folder, retry, pool, console)
+        except KeyboardInterrupt:
+            interrupted = True
+        failed = comm.bcast(0 if plan is None else _conclude(plan, folder, pictures, console))
     if interrupted:
         console.print("interrupted; run the same command with --resume to continue")
         raise KeyboardInterrupt
@@ -61,7 +63,8 @@ def sweep(
         raise SolveError(f"{failed} case(s) failed; their reasons are in the journal, --retry runs them again")
 
 
-def _prepare(sweep_file: str, out: Path, force: bool, resume: bool) -> Plan:
+def _prepare(sweep_file: str, out: Path, force: bool, resume: bool, held: ExitStack) -> Plan:
+    """The plan of a sweep, whose folder is `held` for it from now on."""
     if force and resume:
         raise InputError("discards what --resume and --retry continue; give one of them", "--force")
     refuse_obstacles(out, ["journal.jsonl", "sweep.nc", "workers.log"])
@@ -73,6 +76,7 @@ def _prepare(sweep_file: str, out: Path, force: bool, resume: bool) -> Plan:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot be made: {error.strerror}", "--out", out) from None
+    held.enter_context(only_run(out))
     if force:
         clear(out, ("sweep.nc", "report.html", journal.name))
     return plan

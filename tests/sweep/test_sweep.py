@@ -30,6 +30,7 @@ from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.pools import Workers
 from coilset.model.sweep.run import finished, missing, run
 from coilset.model.sweep.spec import RESPONSES
+from coilset.scripts.log import only_run
 
 THREE = """
     vary:
@@ -164,6 +165,19 @@ def test_kill_and_resume_lose_nothing_and_repeat_nothing(write_sweep, tmp_path):
     with xr.open_dataset(out / "sweep.nc", engine="h5netcdf") as data:
         assert (data.status == "done").all()
         assert data.set_mm.notnull().all()
+
+
+@pytest.mark.parametrize("option", ["--force", "--resume"])
+def test_a_sweep_leaves_the_folder_of_one_that_runs(write_sweep, tmp_path, option):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "journal.jsonl").write_text("of the other one")
+    with only_run(out):
+        done = subprocess.run(command(write_sweep(THREE), out, option), capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert "another run is using this folder" in done.stderr
+    assert [path.name for path in out.iterdir()] == ["journal.jsonl"]
+    assert (out / "journal.jsonl").read_text() == "of the other one"
 
 
 def test_ctrl_c_keeps_what_has_ended(write_sweep, tmp_path):
