@@ -45,9 +45,12 @@ def open_run(folder: str | Path) -> Run:
         InputError: if it holds no run, or a file cannot be read.
     """
     folder = Path(folder)
+    for name in ("summary.json", "points.nc"):
+        if not (folder / name).is_file():
+            within = min(folder.glob("*/points.nc"), default=None)  # of a nest's springs, or of runs in one folder
+            hint = f"; is {within.parent} meant?" if within else ""
+            raise InputError(f"holds no results of a run: there is no {name}{hint}", "", folder)
     path = folder / "summary.json"
-    if not path.is_file():
-        raise InputError("holds no results of a run: there is no summary.json", "", folder)
     try:
         summary = json.loads(path.read_text(encoding="utf-8"))
         path = folder / "points.nc"

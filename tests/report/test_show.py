@@ -6,6 +6,7 @@ import pyvista as pv
 from PIL import Image
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 
+from coilset.meshes.errors import InputError
 from coilset.model.results.animation import animate
 from coilset.model.results.display import ensure
 from coilset.model.results.opened import open_run
@@ -22,6 +23,21 @@ def run(folder):
 @pytest.fixture(scope="module")
 def read(run):
     return [pv.PVDReader(path) for path in write_series(run)]
+
+
+@pytest.mark.parametrize(("there", "said"), [
+    ((), "there is no summary.json"),
+    (("summary.json",), "there is no points.nc"),
+    (("summary.json", "inner/points.nc", "outer/points.nc"), "there is no points.nc; is {}/inner meant?"),
+])  # fmt: skip
+def test_a_folder_without_a_run_is_told(tmp_path, there, said):
+    """Such as that of a slice, or of a nest, which has a run in each of two folders."""
+    for name in there:
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("{}")
+    with pytest.raises(InputError) as caught:
+        open_run(tmp_path)
+    assert str(caught.value) == f"{tmp_path}: holds no results of a run: {said.format(tmp_path)}"
 
 
 def mesh(reader, time):
