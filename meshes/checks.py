@@ -89,5 +89,6 @@ def _block(spring: "Spring") -> Iterator[Fault]:
         yield Fault(
             "spring",
             f"there is no travel: the free length is {spring.free_length:.4g} mm, the block "
-            f"length {spring.block_height:.4g} mm",
+            f"length {spring.block_height:.4g} mm; wind it longer, an extension spring by a few hundredths of its wire "
+            "a turn",
         )

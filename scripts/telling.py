@@ -94,7 +94,8 @@ class Lines:
         table.add_row("free length after", quantity(summary["free_length_after_mm"], "mm"))
         table.add_row("[bold]set[/]", f"[bold]{quantity(summary['set_mm'], 'mm')}[/]")
         table.add_row("initial rate", quantity(summary["rate_N_per_mm"], "N/mm"))
-        table.add_row("rate between 30 and 70 % of the travel", quantity(summary["rate_30_70_N_per_mm"], "N/mm"))
+        if summary["force_max_N"] >= 0.0:  # of a spring that is pressed
+            table.add_row("rate between 30 and 70 % of the travel", quantity(summary["rate_30_70_N_per_mm"], "N/mm"))
         for rate in summary["rates"]:
             table.add_row(f"rate at {rate['travel_mm']:g} mm", quantity(rate["rate_N_per_mm"], "N/mm"))
         table.add_row("maximum force", quantity(summary["force_max_N"], "N", 2))

@@ -40,6 +40,15 @@ def test_a_finished_run_that_is_resumed_has_no_table_of_steps(said, tmp_path, ca
     assert not any("iter." in line for line in lines)
 
 
+@pytest.mark.parametrize(("travel", "told"), [(2, True), (-2, False)])
+def test_a_pulled_spring_has_no_rate_on_the_way_to_block(tmp_path, capsys, travel, told):
+    path = tmp_path / "spring.yaml"
+    path.write_text(CASE)
+    program = [f"loading=[{{to: {{travel: {travel}}}, steps: 1}}]", "ends=clamped"]
+    solve(path, tmp_path / "out", True, program, pictures=False, comm=MPI.COMM_SELF)
+    assert ("rate between 30 and 70 % of the travel" in capsys.readouterr().out) == told
+
+
 def test_json_has_the_rows_of_the_history_and_the_summary(said):
     lines, folder = said(voice="json")
     events = [json.loads(line) for line in lines]

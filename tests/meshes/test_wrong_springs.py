@@ -113,7 +113,11 @@ WRONG = [
     ({"pitch": table([0, 6], [11.0, 2.0])}, OVERLAP.format("5 and 6", "2.75")),
     # √(4.5² + (5/6)²) = 4.58
     ({"mean_diameter": CONE, "pitch": 4.5}, OVERLAP.format("0 and 1", "4.58")),
-    ({"pitch": 5.0}, "spring: there is no travel: the free length is 35 mm, the block length 35 mm"),
+    (
+        {"pitch": 5.0},
+        "spring: there is no travel: the free length is 35 mm, the block length 35 mm; wind it longer, an extension "
+        "spring by a few hundredths of its wire a turn",
+    ),
     (
         {"free_length": 80.0},
         "spring.free_length: 80 mm contradicts the pitch, which makes 77 mm; leave one of the two out",
