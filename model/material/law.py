@@ -15,6 +15,8 @@ from coilset.model.material.back_stresses import BackStresses, columns
 from coilset.model.material.curve import AnyCurve
 from coilset.model.material.file import UNITS, Chaboche, Constants, Creep, MaterialFile, Validity
 
+CELSIUS = 273.15  # K at 0 °C
+
 
 class Law:
     """A material: its data and the parameter array for the compiled kernels.
@@ -193,6 +195,8 @@ class Law:
         low, high = self.temperature_range
         if not low <= temperature <= high:
             known = f"only for {low:g} K" if low == high else f"for {low:g} to {high:g} K"
+            if low <= temperature + CELSIUS <= high:
+                known += f"; {temperature:g} °C is {temperature + CELSIUS:g} K"
             self._fail("temperature", f"{temperature:g} K is outside the table of '{self.name}', known {known}")
         return float(temperature)
 

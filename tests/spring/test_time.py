@@ -144,6 +144,7 @@ def test_a_fast_press_bears_more_and_then_relaxes(viscous):
          "loading.0.hold: 'ck15' does not creep, so that time changes nothing; give a material with creep"),
         ([{"heat": {"to": 700, "hours": 1}}], {},
          "loading.0.heat.to: 700 K is outside the table of 'creeping', known for 293.15 to 573.15 K"),
+        ([{"heat": {"to": 100, "hours": 1}}], {}, "known for 293.15 to 573.15 K; 100 °C is 373.15 K"),
         (HOLD, {"temperature": 20.0}, "temperature: 20 K is outside the table of 'creeping', known for"),
         ([{"hold": {"hours": 1, "minutes": 2}}], {}, "give exactly one of hours or minutes, as in {hours: 48}"),
         ([{"hold": {"hours": 1}, "heat": {"to": 300, "hours": 1}}], {}, "give exactly one of hold or heat"),
