@@ -9,7 +9,7 @@ from mpi4py import MPI
 
 from coilset.meshes.errors import InputError
 from coilset.meshes.spring import Spring
-from coilset.model.case import read_case
+from coilset.model.case import Case, read_case
 from coilset.model.results import goodman_figure
 from coilset.model.results.folder import make
 from coilset.model.standards import found, goodman
@@ -20,6 +20,7 @@ from coilset.model.standards.rows import Row, sections
 from coilset.model.standards.sheet import Sheet
 from coilset.model.standards.warnings import spring_warnings
 from coilset.model.standards.wires import names, wire
+from coilset.model.standards.wires.file import Surface
 from coilset.model.standards.wires.library import files
 from coilset.model.standards.wires.words import described
 from coilset.model.standards.working import presetting_warning
@@ -52,6 +53,8 @@ def sheet(
     if MPI.COMM_WORLD.rank:
         return  # too little work to be worth distributing
     console = Console()
+    if surface not in get_args(Surface):
+        raise InputError(f"'{surface}' is no surface; give {' or '.join(get_args(Surface))}", "--surface")
     if case_file is None:
         raise InputError("name a case file, or give --wires to list the wires", "coilset sheet")
     case = read_case(case_file, settings)
@@ -73,12 +76,21 @@ def sheet(
             console.print(line, soft_wrap=True)
     if run and made.wire and not str(run.summary.get("material")).startswith(made.wire.name):
         console.print(f"the run was made with the material {run.summary.get('material')}, not with {made.wire.name}")
+    if run and (other := _otherwise(run, case)):
+        console.warn(f"{results} is of another spring: {', '.join(other)}")
     for warning in _warnings(spring, made):
         console.warn(warning.message)
     if diagram is not None:
         make(folder)
         goodman_figure.draw(folder / FIGURE, *diagram, run.residual if run else None)
         console.say(f"Goodman diagram in {folder}{os.sep}{FIGURE}")
+
+
+def _otherwise(run: found.Found, case: Case) -> list[str]:
+    """Entries of the spring that a run had otherwise than the case."""
+    then = run.summary.get("origin", {}).get("case", {}).get("spring", {})
+    now = case.spring.model_dump(mode="json")
+    return [f"spring.{name}" for name in then if then[name] != now.get(name)]
 
 
 def list_wires(name: str | None = None) -> None:

@@ -177,6 +177,23 @@ def test_a_set_is_held_against_presetting_where_the_run_was_at_block(case, tmp_p
     assert ("presetting takes 1 mm" in " ".join(printed.split())) == said
 
 
+@pytest.mark.parametrize(("changes", "said"), [
+    ({}, None),
+    ({"turns": 9.0}, "spring.turns"),
+    ({"turns": 9.0, "hand": "left"}, "spring.turns, spring.hand"),
+])  # fmt: skip
+def test_results_of_another_spring_are_told(case, tmp_path, capsys, changes, said):
+    folder = run_folder(tmp_path / "run")
+    entries = read_case(case).spring.model_dump(mode="json")
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    summary["origin"] = {"case": {"spring": entries | changes}}
+    (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
+    sheet(case, folder, pictures=False)
+    printed = " ".join(capsys.readouterr().out.split())
+    assert ("is of another spring" in printed) == bool(said)
+    assert said is None or f"is of another spring: {said}" in printed
+
+
 def test_command_draws_nothing_without_a_wire(case, tmp_path, capsys):
     sheet(case, out=tmp_path / "out")
     assert "the material is not a standard wire; give --wire" in capsys.readouterr().out
@@ -227,6 +244,8 @@ def test_only_ends_that_are_free_to_turn_are_those_of_the_formula(example, setti
 
 
 def test_wrong_questions(case, tmp_path):
+    with pytest.raises(InputError, match=r"^--surface: 'peened' is no surface; give as coiled or shot peened$"):
+        sheet(case, surface="peened", out=tmp_path / "out")
     with pytest.raises(InputError, match=r"--length: 20 mm is no working length; must be between the block length 28"):
         sheet(case, lengths=[20.0], out=tmp_path / "out")
     with pytest.raises(InputError, match=f"^{tmp_path}: holds no results of a run: there is no summary.json$"):

@@ -165,13 +165,16 @@ class Strength(Sourced):
         return None
 
 
+Surface = Literal["as coiled", "shot peened"]
+
+
 class Endurance(Sourced):
     """Line of the Goodman diagram of corrected stresses: values a, b of a − b lg(d / 1 mm), N/mm².
 
     A straight line from the upper stress `at_zero` at lower stress 0 to `limit` at `knee`, `limit` from there on.
     """
 
-    surface: Literal["as coiled", "shot peened"]
+    surface: Surface
     cycles: Positive
     at_zero: Pair
     knee: Pair
