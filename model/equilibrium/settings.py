@@ -80,6 +80,7 @@ class StepControl:
         largest: maximum size of an automatic step.
         cut: factor on the length of a step that found no equilibrium.
         step_share: share of the requested accuracy that the error of one automatic step may use up.
+        least_rest: share of that share which a step may use up even if nothing of the accuracy is left.
         tolerated_share: multiple of that share up to which a step is still kept; the next one is shorter.
         finest: size below which an automatic step is no longer shortened because of its error.
         caution: factor on the size that the estimated error allows.
@@ -107,6 +108,7 @@ class StepControl:
     largest: Growth = 2.0
     cut: Fraction = 0.5
     step_share: Positive = 0.2
+    least_rest: Fraction = 0.2
     tolerated_share: Growth = 1.5
     finest: Fraction = 2.0**-6
     caution: Fraction = 0.9

@@ -9,7 +9,9 @@ driven head's force is wrong by
 where Δs is the step's travel and ∂F/∂s its secant. Of the error that comes in with one step, the work on the first
 step's deformation, which is elastic, gives in the same way what will be wrong when the spring is let go: the set. The
 greater of both, ΔF', is of third order in the step's size h, so that h (a/ΔF')^⅓ is the size of a step that brings in
-a. Over an automatic step in which contacts close or open the path of strains is taken for kinked.
+a. What all steps together leave, E, shall not exceed the accuracy asked for, A: where more than half of it is used up,
+a step may bring in less to E, in proportion to the rest of it, 2 (1 − |E|/A). Over an automatic step in which contacts
+close or open the path of strains is taken for kinked.
 """
 
 import math
@@ -87,12 +89,25 @@ class StepError:
         if still or none or (self._takes_time() and abs(force - before) <= STILL_FORCE * greatest):
             return self._in_time(works, greatest, float(last[FIRST]))
         memory[FIRST] = last[FIRST] or travel
-        error, new, left = works[0] / travel, works[1] / travel, works[2] / float(memory[FIRST])
+        error, new = works[0] / travel, works[1] / travel
         stiffness = (force - before) / travel
-        share = max(abs(new), abs(left)) / (self.steps.step_share * self.accuracy * greatest)
+        share = self._share(new, works, float(memory[FIRST]), greatest)
         if math.isnan(share):
             return Estimate(math.nan, math.nan, 0.0, 1.0)
         return Estimate(error, error / stiffness if stiffness else math.nan, share, self._factor(share))
+
+    def _share(self, new: float, works: tuple[float, ...], first: float, greatest: float) -> float:
+        """The greater of the errors that the step brings in, at its height and what will be left, over what it may.
+
+        Args:
+            new: at its height, N.
+            works: of EstimatesErrors.
+            first: travel of the first step of all, mm; greatest: maximum force so far, N.
+        """
+        left, before = works[2] / first, (works[3] - works[2]) / first
+        rest = 2.0 * (1.0 - abs(before) / (self.accuracy * greatest))
+        allowed = self.steps.step_share * self.accuracy * greatest
+        return max(abs(new) / allowed, abs(left) / (allowed * min(max(rest, self.steps.least_rest), 1.0)))
 
     def _takes_time(self) -> bool:
         """Does time pass in the step on trial?"""
@@ -103,7 +118,7 @@ class StepError:
         """A held spring is deformed by no travel of its own; the first step of all shows what a travel does."""
         if greatest <= ROUNDING * self._body.axial_force or first == 0.0 or not self._takes_time():
             return Estimate(math.nan, math.nan, 0.0, self.steps.growth)
-        share = abs(works[2] / first) / (self.steps.step_share * self.accuracy * greatest)
+        share = self._share(0.0, works, first, greatest)
         if math.isnan(share):
             return Estimate(math.nan, math.nan, 0.0, 1.0)
         return Estimate(works[3] / first if self._resolves_time() else math.nan, math.nan, share, self._factor(share))
