@@ -121,12 +121,14 @@ class StepError:
         share = self._share(0.0, works, first, greatest)
         if math.isnan(share):
             return Estimate(math.nan, math.nan, 0.0, 1.0)
-        return Estimate(works[3] / first if self._resolves_time() else math.nan, math.nan, share, self._factor(share))
+        told = works[3] / first if self._resolves_time(STILL_FORCE * greatest) else math.nan
+        return Estimate(told, math.nan, share, self._factor(share))
 
-    def _resolves_time(self) -> bool:
-        """Can the error of the step, in which the force falls, be told from its works? Collective."""
-        before, force, comm = abs(self.control.force), abs(self.control.trial_force), self.control.system.comm
-        resolves = self._body.resolves_time(math.log(before / force) if 0.0 < force < before else 0.0)
+    def _resolves_time(self, faint: float) -> bool:
+        """Can the error of the step be told from its works? Forces up to `faint`, N, do not fall; collective."""
+        comm = self.control.system.comm
+        before, after = (max(abs(force), faint) for force in (self.control.force, self.control.trial_force))
+        resolves = self._body.resolves_time(max(math.log(before / after), 0.0))
         return comm.allreduce(resolves, MPI.LAND) if comm.size > 1 else resolves
 
     def rejoin(self) -> None:

@@ -23,8 +23,9 @@ HOURS, TEMPERATURE, WORTH = range(3)
 # What is_resolved asks for. Of an error of third order in the creep strain, equal halves remove three quarters; where
 # they remove less than a third of that, it is told three times too small. SLOWING is the logarithm of the factor by
 # which creep may become slower: up to 1.7, holds in one to six steps tell 0.6 of their error and more, with three
-# laws; from 2.0 on some tell a fifth of it, or another sign.
-LEAST_REMOVED, SLOWING = 0.25, 1.8
+# laws; from 2.0 on some tell a fifth of it, or another sign. Where it becomes slower by STEADY or less there is hardly
+# an error, however the halves share the creep.
+LEAST_REMOVED, SLOWING, STEADY = 0.25, 1.8, 0.2
 CREEP_COLUMNS = ("T", "c")  # what creep adds to a point's state: temperature, K, and equivalent creep strain
 
 
@@ -92,7 +93,8 @@ class CreepLaw:
         """
         start, middle, end = (float(clock[WORTH]) ** self.data.time_exponent for clock in clocks)
         first = (middle - start) / (end - start) if end > start else 0.5
-        return 1.0 - first**3 - (1.0 - first) ** 3 >= LEAST_REMOVED and self._stress_exponent(stress) * fall <= SLOWING
+        slowing, removed = self._stress_exponent(stress) * fall, 1.0 - first**3 - (1.0 - first) ** 3
+        return slowing <= STEADY or (slowing <= SLOWING and removed >= LEAST_REMOVED)
 
     def _stress_exponent(self, stress: float) -> float:
         """Slope of the logarithm of the creep rate over that of the equivalent stress, N/mm²."""

@@ -104,6 +104,17 @@ def test_a_hold_in_coarse_steps_tells_its_error_or_that_it_is_not_known(tmp_path
     assert 1 / 3 < coarse.estimated_force_error_N / (hold(128).force_N - coarse.force_N) < 3
 
 
+def test_holds_in_which_hardly_anything_creeps_keep_the_error_of_those_before(example):
+    """Of a later hold each step is 100 times as long as all before it; a free spring loses forces of rounding."""
+    phases = ("{to: {force: 650}, steps: 8}", "{hold: {hours: 1000}, steps: 6}", "{hold: {hours: 100}, steps: 3}",
+              BACK, "{hold: {hours: 10}, steps: 4}")  # fmt: skip
+    entries = ["material=creeping", "temperature=373.15", "spring.pitch=18", "ends=clamped"]
+    steps = run(example, *COARSE, *entries, f"loading=[{', '.join(phases)}]")[0].steps
+    first, *later = (step.estimated_force_error_N for step in steps if step.phase in (1, 2, 4))
+    assert None not in (first, *later)
+    assert later[5:8] == pytest.approx([later[4]] * 3, rel=0.1)
+
+
 def test_the_example_is_within_its_accuracy(example):
     """Against Richardson's limit of 24 and 48 equal steps each way, with the error of second order."""
     (_, coarse), (_, fine) = (
