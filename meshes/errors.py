@@ -46,6 +46,15 @@ def reading(file: object) -> Iterator[None]:
         raise unreadable(file, error) from None
 
 
+@contextlib.contextmanager
+def naming(file: object) -> Iterator[None]:
+    """Context in which wrong input that names no file is that of this one."""
+    try:
+        yield
+    except InputError as error:
+        raise InputError(error.problem, error.place, error.file or file) from None
+
+
 class SolveError(CoilsetError):
     """A solve that did not converge or cannot continue; the results up to that point are kept."""
 

@@ -13,7 +13,7 @@ from typing import Protocol
 import gmsh
 import numpy as np
 
-from coilset.meshes.errors import InputError
+from coilset.meshes.errors import InputError, naming
 
 CLOSEST = 1e-6  # distance below which two points of an outline are one, over its size
 
@@ -139,10 +139,8 @@ class Curve:
                 raise InputError(f"'{','.join(row)}' is not a pair of numbers ξ, η in mm", f"line {number}",
                                  path) from None  # fmt: skip
             points.append((ξ, η))
-        try:
+        with naming(path):
             return cls(np.array(points), smooth)
-        except InputError as error:
-            raise InputError(error.problem, error.place, path) from None
 
     def draw(self) -> list[int]:
         """See `Outline`."""

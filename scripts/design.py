@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rich.table import Table
 
-from coilset.meshes.errors import CoilsetError, InputError
+from coilset.meshes.errors import CoilsetError, InputError, naming
 from coilset.model.design import output
 from coilset.model.design.conditions import Condition
 from coilset.model.design.design import find, make_search
@@ -35,14 +35,12 @@ def design(wish_file: str, out: str | None, force: bool, resume: bool, threads: 
     if not console.is_terminal:
         console = Console(width=WIDTH)
     wish = read_wish(wish_file)
-    try:
+    with naming(wish_file):
         make_search(wish)
-    except InputError as error:
-        raise InputError(error.problem, error.place, error.file or wish_file) from None
     folder = results_folder(out, Path(wish_file).stem)
     new = _prepare(folder, force, resume)
     try:
-        with run_log(folder) as log:
+        with naming(wish_file), run_log(folder) as log:
             if not resume:
                 assert log.stream is not None  # it is opened in advance
                 log.stream.truncate(0)
@@ -52,7 +50,7 @@ def design(wish_file: str, out: str | None, force: bool, resume: bool, threads: 
     except InputError as error:
         if error.place != "--out" and (new or not resume):  # with --out, another run uses the folder
             _forget(folder, new)
-        raise InputError(error.problem, error.place, error.file or wish_file) from None
+        raise
     except KeyboardInterrupt:
         console.print("interrupted; run the same command with --resume to continue")
         raise

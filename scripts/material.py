@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from coilset.meshes.errors import InputError
+from coilset.meshes.errors import InputError, naming
 from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.plain import typer
 from coilset.scripts.target import folder_target, results_folder
@@ -62,10 +62,8 @@ def run_program(
     name = Path(program).stem
     table, picture = _free(_folder(out, law.name), force, f"{name}.csv", f"{name}.png")
     console = Console()
-    try:
+    with naming(program):
         history = programs.run(law, steps, integrator)
-    except InputError as error:
-        raise InputError(error.problem, error.place, error.file or program) from None
     console.print(_ends(steps, history))
     make(table.parent)
     _write_csv(table, history)

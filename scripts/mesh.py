@@ -8,7 +8,7 @@ import numpy as np
 from mpi4py import MPI
 from rich.table import Table
 
-from coilset.meshes.errors import InputError
+from coilset.meshes.errors import InputError, naming
 from coilset.meshes.spring import Spring
 from coilset.model.case import read_case
 from coilset.model.results.folder import make, whole
@@ -52,12 +52,10 @@ def mesh(
         for path in write:
             check_format(path)
     folder = results_folder(out, Path(case_file).stem)
-    try:
+    with naming(case_file):
         spring = case.spring.build()
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
         elastic = case_elastic(case, case_law(case, spring))
-    except InputError as error:
-        raise InputError(error.problem, error.place, error.file or case_file) from None
     _refuse_to_replace([folder / name for name in FILES if pictures] + [Path(path) for path in write], force)
     console.print(_table(spring_data(spring, elastic), turns))
     for warning in spring_warnings(spring, elastic):

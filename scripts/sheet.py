@@ -7,7 +7,7 @@ from typing import get_args
 
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
+from coilset.meshes.errors import InputError, naming
 from coilset.meshes.spring import Spring
 from coilset.model.case import Case, read_case
 from coilset.model.results import goodman_figure
@@ -60,11 +60,9 @@ def sheet(
     case = read_case(case_file, settings)
     folder = results_folder(out, Path(case_file).stem)
     run = found.read(results) if results else None
-    try:
+    with naming(case_file):
         spring = case.spring.build()
         made = case_sheet(case, spring, run, wire_name, lengths, GRADES[grade], surface, dynamic)
-    except InputError as error:
-        raise InputError(error.problem, error.place, error.file or case_file) from None
     diagram = _diagram(made) if pictures else None
     if diagram is not None and (folder / FIGURE).exists() and not force:
         raise InputError("already exists; use --force to overwrite it", "", folder / FIGURE)

@@ -10,7 +10,7 @@ from typing import Any
 
 from mpi4py import MPI
 
-from coilset.meshes.errors import CoilsetError, InputError, SolveError
+from coilset.meshes.errors import CoilsetError, InputError, SolveError, naming
 from coilset.model.agreement import on_first_rank
 from coilset.model.analysis import Analysis
 from coilset.model.case import Case, read_case
@@ -60,10 +60,8 @@ def solve(
     folder = results_folder(out, Path(case_file).stem)
     with contextlib.ExitStack() as stack:
         interrupt = stack.enter_context(Interrupt(comm, telling.say))
-        try:
+        with naming(case_file):
             analysis = Analysis(case, comm, threads=threads or usual(comm.size))
-        except InputError as error:
-            raise InputError(error.problem, error.place, error.file or case_file) from None
         on_first_rank(comm, lambda: _prepare(folder, analysis.case, force, resume))
         on_first_rank(comm, lambda: _begin(stack.enter_context(run_log(folder)), folder, resume))
         drawings = (drawings or stack.enter_context(Drawings(os.environ))) if pictures else None

@@ -6,15 +6,14 @@ the largest distance of the one and the least distance of the other from the axi
 is sufficient, not necessary: a cone may stand in a cone with less. Contact between the two is not computed.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError, SolveError
+from coilset.meshes.errors import InputError, SolveError, naming
 from coilset.meshes.geometry import Spring
 from coilset.model.analysis import Analysis
 from coilset.model.case import Case
@@ -95,10 +94,8 @@ def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: N
     if not room > reach:
         raise InputError(f"reaches {reach:.4g} mm from the axis, but the outer spring leaves {room:.4g} mm: it has no "
                          "room inside", "inner", nest.path)  # fmt: skip
-    try:
+    with naming(nest.path):
         heights = plan(nest.loading, springs)
-    except InputError as error:
-        raise InputError(error.problem, error.place, nest.path) from None
     programs = [heights.program(one.free_length) for one in springs]
     members = tuple(_run(nest, number, program, told, threads) for number, program in enumerate(programs))
     steps = [_steps(member, heights) for member in members]
@@ -109,7 +106,7 @@ def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: N
 
 
 def _build(case: Case, file: Path) -> Spring:
-    with _naming(file):
+    with naming(file):
         return case.spring.build()
 
 
@@ -117,7 +114,7 @@ def _run(nest: Nest, number: int, program: list[Phase], told: Callable[[str, Ste
     """Run one spring through its program; without one the seats do not touch it."""
     name, case = NAMES[number], nest.cases[number]
     loading = program or [Phase(to=Target(force=0.0), steps=1)]  # its own is that of another run
-    with _naming(nest.files[number]):
+    with naming(nest.files[number]):
         analysis = Analysis(case.model_copy(update={"loading": loading}), MPI.COMM_SELF, threads=threads)
     if not program:
         return Member(name, case, analysis.setup, None)
@@ -126,15 +123,6 @@ def _run(nest: Nest, number: int, program: list[Phase], told: Callable[[str, Ste
     except SolveError as error:
         raise SolveError(f"{name}: {error}") from None
     return Member(name, analysis.case, analysis.setup, analysis.result)
-
-
-@contextmanager
-def _naming(file: Path) -> Iterator[None]:
-    """Context in which wrong input is that of a case's file."""
-    try:
-        yield
-    except InputError as error:
-        raise InputError(error.problem, error.place, error.file or file) from None
 
 
 def _steps(member: Member, heights: Plan) -> list[Step | None]:

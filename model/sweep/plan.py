@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from coilset.meshes.errors import InputError
+from coilset.meshes.errors import InputError, naming
 from coilset.model.case import Case, check, read_case_data
 from coilset.model.case.settings import located, put
 from coilset.model.entries.entry import shown
@@ -43,14 +43,12 @@ class Plan:
         self.case_path = self.path.parent / self.spec.case
         self.base = read_case_data(self.case_path)
         self.names = list(self.spec.vary)
-        try:
+        with naming(path):
             for entry, value in self.spec.change.items():
                 put(self.base, entry, self._located(entry, value), f"change.{entry}")
             self.base_values = {name: self._base_value(name) for name in self.names}
             self.rows: list[Row] = rows(self.spec, self.base_values)
             self.keys = list(self._check_cases())
-        except InputError as error:
-            raise InputError(error.problem, error.place, error.file or path) from None
 
     def __len__(self) -> int:
         return len(self.rows)
