@@ -7,7 +7,7 @@ from pathlib import Path
 
 from coilset.meshes.errors import InputError
 from coilset.model.entries.entry import shortened
-from coilset.model.results.folder import make, whole
+from coilset.model.results.folder import make, refuse_to_replace, whole
 
 EXAMPLES = Path(str(resources.files("coilset.examples")))
 SUFFIXES = (".yaml", ".csv", ".sh")
@@ -61,9 +61,7 @@ def copy(name: str, folder: Path, replace: bool = False) -> list[Path]:
         CoilsetError: if one cannot be written.
     """
     targets = {EXAMPLES / file: folder / file for file in needs(name)}
-    for target in targets.values():
-        if target.exists() and not replace:
-            raise InputError("already exists; use --force to overwrite it", "", target)
+    refuse_to_replace(targets.values(), replace)
     for source, target in targets.items():
         make(target.parent)
         with whole(target) as partial:

@@ -183,10 +183,10 @@ def _folder(out: str | None, name: str) -> Path:
 
 def _free(folder: Path, force: bool, *names: str) -> list[Path]:
     """Files that a command will write, none of which is there unless forced: found before it computes or writes any."""
+    from coilset.model.results.folder import refuse_to_replace
+
     paths = [folder / name for name in names]
-    for path in paths:
-        if path.exists() and not force:
-            raise InputError("already exists; use --force to overwrite it", "", path)
+    refuse_to_replace(paths, force)
     return paths
 
 

@@ -1,7 +1,7 @@
 """`coilset mesh`: the data of a case's spring, its drawing, and its mesh as a file."""
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +11,7 @@ from rich.table import Table
 from coilset.meshes.errors import InputError, naming
 from coilset.meshes.spring import Spring
 from coilset.model.case import read_case
-from coilset.model.results.folder import make, whole
+from coilset.model.results.folder import make, refuse_to_replace, whole
 from coilset.model.standards.data import SpringData, spring_data
 from coilset.model.standards.warnings import spring_warnings
 from coilset.model.standards.wires.law import case_elastic, case_law
@@ -56,7 +56,7 @@ def mesh(
         spring = case.spring.build()
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
         elastic = case_elastic(case, case_law(case, spring))
-    _refuse_to_replace([folder / name for name in FILES if pictures] + [Path(path) for path in write], force)
+    refuse_to_replace([folder / name for name in FILES if pictures] + [Path(path) for path in write], force)
     console.print(_table(spring_data(spring, elastic), turns))
     for warning in spring_warnings(spring, elastic):
         console.warn(warning.message)
@@ -72,12 +72,6 @@ def mesh(
         make(folder)
         _draw(spring, folder, Path(case_file).stem, console)
         console.say(f"pictures in {folder}{os.sep}")
-
-
-def _refuse_to_replace(paths: Iterable[Path], force: bool) -> None:
-    for path in paths:
-        if path.exists() and not force:
-            raise InputError("already exists; use --force to overwrite it", "", path)
 
 
 def _table(data: SpringData, turns: np.ndarray) -> Table:

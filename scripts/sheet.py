@@ -11,7 +11,7 @@ from coilset.meshes.errors import InputError, naming
 from coilset.meshes.spring import Spring
 from coilset.model.case import Case, read_case
 from coilset.model.results import goodman_figure
-from coilset.model.results.folder import make
+from coilset.model.results.folder import make, refuse_to_replace
 from coilset.model.standards import found, goodman
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.case_warnings import sheet_warnings
@@ -64,8 +64,8 @@ def sheet(
         spring = case.spring.build()
         made = case_sheet(case, spring, run, wire_name, lengths, GRADES[grade], surface, dynamic)
     diagram = _diagram(made) if pictures else None
-    if diagram is not None and (folder / FIGURE).exists() and not force:
-        raise InputError("already exists; use --force to overwrite it", "", folder / FIGURE)
+    if diagram is not None:
+        refuse_to_replace([folder / FIGURE], force)
     if run:
         console.say(f"first the number by the formula, then that of {results}", whole=True)
     for title, rows in sections(made):

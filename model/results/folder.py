@@ -92,6 +92,17 @@ def refuse_obstacles(folder: str | Path, files: Iterable[str], folders: Iterable
                              "--out", "--out", folder)  # fmt: skip
 
 
+def refuse_to_replace(paths: Iterable[Path], force: bool) -> None:
+    """Check whether files can be written, before any is.
+
+    Raises:
+        InputError: if one of them exists already and `force` is not given.
+    """
+    for path in paths:
+        if path.exists() and not force:
+            raise InputError("already exists; use --force to overwrite it", "", path)
+
+
 def refuse_results(folder: str | Path, force: bool) -> None:
     """Check whether a run may write into a folder, and leave it as it is.
 
