@@ -7,7 +7,7 @@ from pathlib import Path
 
 from rich.table import Table
 
-from coilset.meshes.errors import CoilsetError, InputError, naming
+from coilset.meshes.errors import InputError, naming
 from coilset.model.design import output
 from coilset.model.design.conditions import Condition
 from coilset.model.design.design import find, make_search
@@ -15,6 +15,7 @@ from coilset.model.design.evaluation import Evaluation
 from coilset.model.design.search import Found, Search
 from coilset.model.design.trade_offs import TradeOff, trade_offs
 from coilset.model.design.wish import Wish, read_wish
+from coilset.model.results.folder import clear, making
 from coilset.model.sweep.journal import Journal, read_records
 from coilset.model.threads import usual
 from coilset.scripts.console import Console
@@ -44,7 +45,7 @@ def design(wish_file: str, out: str | None, force: bool, resume: bool, threads: 
             if not resume:
                 assert log.stream is not None  # it is opened in advance
                 log.stream.truncate(0)
-                _clear(folder)
+                clear(folder, output.FILES)
             with closing(Journal(folder / "evaluations.jsonl")) as journal:
                 _design(console, wish, folder, journal, threads or usual(1))
     except InputError as error:
@@ -133,7 +134,7 @@ def _prepare(folder: Path, force: bool, resume: bool) -> bool:
         InputError: if it holds a design already, finished or not, or cannot be made.
     """
     new = not folder.exists()
-    try:
+    with making(folder):
         if not (force or resume):
             if (folder / "design.json").exists():
                 raise InputError(
@@ -143,22 +144,11 @@ def _prepare(folder: Path, force: bool, resume: bool) -> bool:
                 raise InputError("holds an unfinished search; give --resume to go on with it, --force to begin "
                                  "anew, or another --out", "--out", folder)  # fmt: skip
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot be made: {error.strerror}", "--out", folder) from None
     return new
-
-
-def _clear(folder: Path) -> None:
-    for name in output.FILES:
-        try:
-            (folder / name).unlink(missing_ok=True)
-        except OSError as error:
-            raise CoilsetError(f"{folder / name}: cannot be removed: {error.strerror}") from None
 
 
 def _forget(folder: Path, new: bool) -> None:
     """Remove all traces of a rejected wish."""
-    _clear(folder)
-    (folder / "log.txt").unlink(missing_ok=True)
+    clear(folder, (*output.FILES, "log.txt"))
     if new:
         folder.rmdir()

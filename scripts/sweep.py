@@ -12,7 +12,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from coilset.meshes.errors import InputError, SolveError
-from coilset.model.results.folder import clear, refuse_obstacles
+from coilset.model.results.folder import clear, making, refuse_obstacles
 from coilset.model.sweep.journal import Journal
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.pools import Pool, Workers
@@ -72,10 +72,8 @@ def _prepare(sweep_file: str, out: Path, force: bool, resume: bool, held: ExitSt
     journal = out / "journal.jsonl"
     if journal.exists() and not (force or resume):
         raise InputError("holds a sweep; use --resume to finish it, or --force to overwrite it", "--out", out)
-    try:
+    with making(out):
         out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot be made: {error.strerror}", "--out", out) from None
     held.enter_context(only_run(out))
     if force:
         clear(out, ("sweep.nc", "report.html", journal.name))

@@ -46,6 +46,15 @@ def make(folder: str | Path) -> None:
         raise CoilsetError(f"{folder}: cannot be made: {error.strerror}") from None
 
 
+@contextlib.contextmanager
+def making(folder: Path) -> Iterator[None]:
+    """Context in which what the system has against a results folder is an error of --out."""
+    try:
+        yield
+    except OSError as error:
+        raise InputError(f"cannot be made: {error.strerror}", "--out", folder) from None
+
+
 def reserve(path: Path, size: int) -> None:
     """Make sure that the disk has room for a file; the NetCDF library crashes otherwise.
 
@@ -113,14 +122,12 @@ def refuse_results(folder: str | Path, force: bool) -> None:
     refuse_obstacles(folder, [*plain, "log.txt", "checkpoint/state.npz", "checkpoint/steps.jsonl"],
                      ["checkpoint", "fields"])  # fmt: skip
     folder = Path(folder)
-    try:
+    with making(folder):
         if (folder / "summary.json").exists() and not force:
             raise InputError("already holds results; use --force to overwrite them, or another --out", "--out", folder)
         if (folder / "checkpoint" / "state.npz").exists() and not force:
             raise InputError("holds an interrupted run; use --resume to continue it, --force to start again, or "
                              "another --out", "--out", folder)  # fmt: skip
-    except OSError as error:
-        raise InputError(f"cannot be made: {error.strerror}", "--out", folder) from None
 
 
 def prepare(folder: str | Path, force: bool) -> Path:
@@ -131,10 +138,8 @@ def prepare(folder: str | Path, force: bool) -> Path:
     """
     refuse_results(folder, force)
     folder = Path(folder)
-    try:
+    with making(folder):
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"cannot be made: {error.strerror}", "--out", folder) from None
     if not os.access(folder, os.W_OK | os.X_OK):
         raise InputError("cannot be written to; give another --out", "--out", folder)
     return folder
