@@ -13,6 +13,23 @@ from typing import Any
 from coilset.meshes.errors import CoilsetError, InputError
 from coilset.model.results.record import SeatReactions, Step
 
+RECORDS = ("summary.json", "history.csv", "seats.csv", "points.nc", "checkpoint/*.npz", "checkpoint/*.jsonl")
+DERIVED = (
+    "fields/*.vtu",
+    "fields/*.pvd",
+    "characteristic.png",
+    "springs.png",
+    "cross_section.png",
+    "force_centre.png",
+    "seat_pressure.png",
+    "buckling_mode.png",
+    "section.png",
+    "goodman.png",
+    "animation.gif",
+    "report.html",
+)
+RESULTS = RECORDS + DERIVED
+
 
 @contextlib.contextmanager
 def whole(path: str | Path) -> Iterator[Path]:
@@ -53,36 +70,6 @@ def making(folder: Path) -> Iterator[None]:
         yield
     except OSError as error:
         raise InputError(f"cannot be made: {error.strerror}", "--out", folder) from None
-
-
-def reserve(path: Path, size: int) -> None:
-    """Make sure that the disk has room for a file; the NetCDF library crashes otherwise.
-
-    Raises:
-        OSError: if it does not.
-    """
-    if hasattr(os, "posix_fallocate"):
-        with open(path, "wb") as file:
-            os.posix_fallocate(file.fileno(), 0, size + HEADER)
-
-
-HEADER = 1 << 20  # maximum number of bytes in a NetCDF file besides its numbers
-RECORDS = ("summary.json", "history.csv", "seats.csv", "points.nc", "checkpoint/*.npz", "checkpoint/*.jsonl")
-DERIVED = (
-    "fields/*.vtu",
-    "fields/*.pvd",
-    "characteristic.png",
-    "springs.png",
-    "cross_section.png",
-    "force_centre.png",
-    "seat_pressure.png",
-    "buckling_mode.png",
-    "section.png",
-    "goodman.png",
-    "animation.gif",
-    "report.html",
-)
-RESULTS = RECORDS + DERIVED
 
 
 def refuse_obstacles(folder: str | Path, files: Iterable[str], folders: Iterable[str] = ()) -> None:

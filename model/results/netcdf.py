@@ -1,5 +1,6 @@
 """Labelled arrays and their NetCDF file, without the libraries for reading such files, which are slow to load."""
 
+import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -7,10 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coilset.model.results.folder import reserve, whole
+from coilset.model.results.folder import whole
 
 if TYPE_CHECKING:
     import xarray as xr
+
+HEADER = 1 << 20  # maximum number of bytes of a file besides its numbers
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,17 @@ class LabelledData:
         dims = set(self.variables[name].dims)
         return " ".join(one for one, coordinate in self.coordinates.items()
                         if coordinate.dims != (one,) and dims.issuperset(coordinate.dims))  # fmt: skip
+
+
+def reserve(path: Path, size: int) -> None:
+    """Make sure that the disk has room for a file of `size` bytes of numbers; the NetCDF library crashes otherwise.
+
+    Raises:
+        OSError: if it does not.
+    """
+    if hasattr(os, "posix_fallocate"):
+        with open(path, "wb") as file:
+            os.posix_fallocate(file.fileno(), 0, size + HEADER)
 
 
 def write_netcdf(target: str | Path, data: LabelledData) -> None:

@@ -11,7 +11,8 @@ import xarray as xr
 from coilset.model.case import Case
 from coilset.model.case.reference import entry_unit, entry_words
 from coilset.model.case.settings import located
-from coilset.model.results.folder import reserve, whole
+from coilset.model.results.folder import whole
+from coilset.model.results.netcdf import reserve
 from coilset.model.results.units import without_unit
 from coilset.model.sweep.journal import read_records
 from coilset.model.sweep.plan import Plan
