@@ -3,7 +3,7 @@
 import os
 import re
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from coilset.meshes.errors import InputError, naming
 from coilset.scripts.compiling import announce_compiling
@@ -93,14 +93,12 @@ def fit(
 
     With --back-stresses: a yield stress, its rise, and several back stresses from cyclic tests in one direction.
     """
-    import yaml
     from rich.table import Table
 
     from coilset.model.material import figures
     from coilset.model.material.file import UNITS
     from coilset.model.material.identification import cyclic, experiments
     from coilset.model.material.identification import fit as fitting
-    from coilset.model.results.folder import make, whole
     from coilset.scripts.console import Console
 
     announce_compiling()
@@ -120,10 +118,7 @@ def fit(
         _say_what_is_told(result, console)
     for test, scatter in zip(result.tests, result.scatter, strict=True):
         console.print(f"{test.name} ({test.kind}): rms residual {scatter:.3g} N/mm²")
-    make(file.parent)
-    with whole(file) as path:
-        path.write_text(yaml.safe_dump(result.material(name), sort_keys=False, allow_unicode=True), encoding="utf-8")
-    console.say(f"material file in {file}")
+    _write_material(file, result.material(name), console)
     _save(figures.fit(result, name), picture, console)
 
 
@@ -146,14 +141,12 @@ def creep(
     force: bool = FORCE,
 ) -> None:
     """Fit the constants of creep to relaxation tests, and write the material with them."""
-    import yaml
     from rich.table import Table
 
     from coilset.model.material import library
     from coilset.model.material.creep_figure import creep_figure
     from coilset.model.material.identification.creep_fit import UNITS, fit_creep
     from coilset.model.material.identification.relaxation_tests import read_relaxation
-    from coilset.model.results.folder import make, whole
     from coilset.scripts.console import Console
 
     for value, known, option in ((form, ("norton_bailey", "garofalo"), "--form"),
@@ -169,11 +162,8 @@ def creep(
     console.print(table)
     console.print(f"at {result.constants['temperature']:g} K and, of strain, {result.constants['stress']:g} N/mm²; "
                   f"residual {result.scatter:.2g} % of the load")  # fmt: skip
-    make(file.parent)
-    with whole(file) as path:
-        content = result.material(name, "coilset material creep, " + ", ".join(Path(one).name for one in data))
-        path.write_text(yaml.safe_dump(content, sort_keys=False, allow_unicode=True), encoding="utf-8")
-    console.say(f"material file in {file}")
+    source = "coilset material creep, " + ", ".join(Path(one).name for one in data)
+    _write_material(file, result.material(name, source), console)
     _save(creep_figure(result), picture, console)
 
 
@@ -188,6 +178,17 @@ def _free(folder: Path, force: bool, *names: str) -> list[Path]:
     paths = [folder / name for name in names]
     refuse_to_replace(paths, force)
     return paths
+
+
+def _write_material(file: Path, content: dict[str, Any], console: "Console") -> None:
+    import yaml
+
+    from coilset.model.results.folder import make, whole
+
+    make(file.parent)
+    with whole(file) as path:
+        path.write_text(yaml.safe_dump(content, sort_keys=False, allow_unicode=True), encoding="utf-8")
+    console.say(f"material file in {file}")
 
 
 def _save(figure: "Figure", path: Path, console: "Console") -> None:
