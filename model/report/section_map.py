@@ -7,7 +7,7 @@ from matplotlib.tri import LinearTriInterpolator, Triangulation
 
 from coilset.model.report.panel import DIVERGING, Panel, Trace, axis, said
 from coilset.model.results.opened import Run
-from coilset.model.results.rings import ROUND, refined, rings
+from coilset.model.results.rings import FilledSection
 from coilset.model.results.wire import inside
 from coilset.model.style import round_end
 
@@ -28,13 +28,14 @@ def normal_map(run: Run) -> Panel:
 
 def _panel(run: Run, name: str, quantity: str, which: int, sign: str) -> Panel:
     element = len(run.data["turn"]) // 2
-    places, carry, radius = _places(run, element)
-    fields = [_stresses(run, number, element, places, carry) for number in range(len(run.snapshots))]
+    radius = float(run.data["wire_radius"].values[element])
+    y, z = (run.data[axis_name].values[element, 0] for axis_name in "yz")
+    section = FilledSection(np.stack([y, z], axis=-1) / radius)
+    fields = [_stresses(run, number, element, section) for number in range(len(run.snapshots))]
     traces = []
     for number, both in enumerate(fields):
         end = round_end(max(float(np.abs(field).max()) for field in both))
-        traces.append(_map(places * radius, both[which], radius, end, number))
-    y, z = (run.data[axis_name].values[element, 0] for axis_name in "yz")
+        traces.append(_map(section.places * radius, both[which], radius, end, number))
     dots = {"type": "scatter", "mode": "markers", "x": y, "y": z, "marker": {"size": 2, "color": "#404040"}}
     traces.append({**dots, "hoverinfo": "skip", "showlegend": False})
     low, high = (said(float(f(fields[-1][which])), "MPa") for f in (np.min, np.max))
@@ -51,27 +52,15 @@ def _panel(run: Run, name: str, quantity: str, which: int, sign: str) -> Panel:
     )
 
 
-def _places(run: Run, element: int) -> tuple[np.ndarray, np.ndarray, float]:
-    """Places in wire radii, the matrix that carries values at the section points to those within, and the radius."""
-    radius = float(run.data["wire_radius"].values[element])
-    points = np.stack([run.data[name].values[element, 0] for name in "yz"], axis=-1) / radius
-    inner, carry = rings(points)
-    angle = 2.0 * np.pi * np.arange(ROUND) / ROUND
-    return np.concatenate([inner, np.stack([np.cos(angle), np.sin(angle)], axis=-1)]), carry, radius
+def _stresses(run: Run, snapshot: int, element: int, section: FilledSection) -> tuple[np.ndarray, np.ndarray]:
+    """Shear about the wire's axis and normal stress at the section's places."""
 
-
-def _stresses(run: Run, snapshot: int, element: int, places: np.ndarray, carry: np.ndarray) -> tuple[np.ndarray, ...]:
     def stress(name: str) -> np.ndarray:
-        within, rim = (
-            run.data[kind].sel(component=name).values[snapshot, element].mean(axis=0) for kind in ("history", "surface")
+        return section.values(
+            *(run.data[of].sel(component=name).values[snapshot, element].mean(axis=0) for of in ("history", "surface"))
         )
-        return np.concatenate([carry @ within, refined(rim, ROUND)])
 
-    y, z = places.T
-    distance = np.maximum(np.hypot(y, z), 1e-12)
-    here = inside(run)
-    around = here.sign * np.cos(here.angle) * (stress("t13") * y - stress("t12") * z) / distance
-    return around, stress("s11")
+    return section.shear_around(stress("t12"), stress("t13"), inside(run)), stress("s11")
 
 
 def _map(places: np.ndarray, values: np.ndarray, radius: float, end: float, choice: int) -> Trace:

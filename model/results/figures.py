@@ -15,7 +15,8 @@ from PIL import Image
 from coilset.model.results.folder import whole
 from coilset.model.results.labels import in_legend, named_phases, plain, unnamed
 from coilset.model.results.record import Result, Setup, Snapshot
-from coilset.model.results.rings import ROUND, refined, rings
+from coilset.model.results.rings import ROUND, FilledSection
+from coilset.model.section.rules import rim
 from coilset.model.style import DIVERGING, STYLE, levels
 
 NAMED = 6  # targets in a legend, at most: as many as there are colours
@@ -110,23 +111,16 @@ def _changed(set_mm: float, word: str, longer: str = "") -> str:
 def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
     """Stress over the cross-section at mid height, to the wire's surface: circumferential shear and normal stress."""
     n = len(setup.turns) - 1
-    angle = 2.0 * np.pi * np.arange(ROUND) / ROUND
-    inner, from_inner = rings(setup.rule.points)
-    points = np.concatenate([inner, np.stack([np.cos(angle), np.sin(angle)], axis=-1)])
-    radius = setup.wire_radius[n // 2]
-    y, z = radius * points.T
+    section, radius = FilledSection(setup.rule.points), setup.wire_radius[n // 2]
+    y, z = radius * section.places.T
+    edge = np.concatenate([rim(ROUND), rim(1)])
 
     def stress(name: str) -> np.ndarray:
         column = snapshot.components.index(name)
         states = snapshot.point_state, snapshot.surface_state
-        at_points, rim = (state[n // 2, ..., column].mean(axis=0) for state in states)
-        return np.concatenate([from_inner @ at_points, refined(rim, ROUND)])
+        return section.values(*(state[n // 2, ..., column].mean(axis=0) for state in states))
 
-    distance = np.hypot(points[:, 0], points[:, 1])
-    inwards = np.cos(setup.inside.angle) > 0
-    with_load = setup.inside.sign * (1.0 if inwards else -1.0)  # makes the shear of a compressed spring positive
-    around = stress("t13") * points[:, 0] - stress("t12") * points[:, 1]
-    around *= with_load / np.where(distance > 0, distance, 1.0)
+    around = section.shear_around(stress("t12"), stress("t13"), setup.inside)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8.2, 3.9), layout="constrained")
         panels = ((around, "shear about the wire's axis,\npositive with the load"), (stress("s11"), "normal stress"))
@@ -135,8 +129,8 @@ def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
             limit = max(float(np.abs(values).max()), 1e-9)
             shown = axes.tricontourf(y, z, values, levels=levels(-limit, limit), cmap=DIVERGING)
             axes.plot(*radius * setup.rule.points.T, "k.", ms=2, alpha=0.5)
-            axes.plot(radius * np.cos([*angle, 0.0]), radius * np.sin([*angle, 0.0]), "k-", lw=0.8)
-            direction = "towards" if inwards else "away from"
+            axes.plot(*radius * edge.T, "k-", lw=0.8)
+            direction = "towards" if np.cos(setup.inside.angle) > 0 else "away from"
             axes.set(aspect="equal", xlabel=f"{direction} the coil's axis in mm", ylabel="across in mm", title=name)
             figure.colorbar(shown, ax=axes, label="MPa", shrink=0.85)
         low, high = (plain(value, 2).replace("-", "−") for value in (around.min(), around.max()))

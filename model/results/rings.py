@@ -2,7 +2,34 @@
 
 import numpy as np
 
+from coilset.model.section.rules import rim
+from coilset.model.section.surface import Inside
+
 ROUND = 96  # points of a ring in a picture
+
+
+class FilledSection:
+    """A section in a picture: its rings of points, filled up, and the wire's surface.
+
+    Args:
+        points: of the section, in wire radii, shape (n, 2).
+
+    Attributes:
+        places: those of the picture, in wire radii, shape (m, 2); the last `ROUND` lie on the surface.
+    """
+
+    def __init__(self, points: np.ndarray) -> None:
+        inner, self._carry = rings(points)
+        self.places = np.concatenate([inner, rim(ROUND)])
+
+    def values(self, at_points: np.ndarray, on_surface: np.ndarray) -> np.ndarray:
+        """Values at the places, shape (m,), from those at the points and at equal angles on the surface."""
+        return np.concatenate([self._carry @ at_points, refined(on_surface, ROUND)])
+
+    def shear_around(self, t12: np.ndarray, t13: np.ndarray, inside: Inside) -> np.ndarray:
+        """Shear stress about the wire's axis, positive as in a compressed spring, from `values` of both components."""
+        y, z = self.places.T
+        return inside.sign * np.cos(inside.angle) * (t13 * y - t12 * z) / np.maximum(np.hypot(y, z), 1e-12)
 
 
 def rings(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
