@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coilset.model.report.panel import COLOURS, LINE, Panel, Trace, axis, said
+from coilset.model.report.panel import Panel, axis, curve, said
 from coilset.model.results.opened import Run
 from coilset.model.results.wire import inside, section_turns, shear_around
 
@@ -16,7 +16,8 @@ def stress_along_wire(run: Run) -> Panel:
     for number, name in enumerate(run.snapshots[1:], start=1):
         for side, angle, dash in SIDES:
             place = round((inside(run).angle + angle) / (2.0 * np.pi) * shear.shape[-1]) % shear.shape[-1]
-            traces.append(_line(f"{name}, {side}", turns, shear[number, ..., place].ravel(), number - 1, dash))
+            values = shear[number, ..., place].ravel()
+            traces.append(curve(turns, values, number - 1, dash=dash, name=f"{name}, {side}"))
     stays = run.summary["residual_shear_inside_MPa"]
     finding = (
         "Shear stress along the wire"
@@ -40,7 +41,7 @@ def moments_along_wire(run: Run) -> Panel:
     for number, _ in enumerate(run.snapshots):
         for place, (key, name) in enumerate(SHOWN.items()):
             values = run.data["resultants"].sel(resultant=key).values[number].ravel()
-            traces.append({**_line(name, turns, values, place, "solid"), "meta": {"choice": number}})
+            traces.append(curve(turns, values, place, dash="solid", name=name, meta={"choice": number}))
     torque = np.abs(run.data["resultants"].sel(resultant="Mt").values).reshape(len(run.snapshots), -1).max(axis=1)
     most = int(torque.argmax())
     finding = f"At {run.snapshots[most]} the wire carries a torque of up to {torque[most]:.4g} N mm"
@@ -52,14 +53,3 @@ def moments_along_wire(run: Run) -> Panel:
         {"xaxis": axis("turn from the bottom tip"), "yaxis": axis("moment, N mm")},
         tuple(run.snapshots),
     )
-
-
-def _line(name: str, x: np.ndarray, y: np.ndarray, number: int, dash: str) -> Trace:
-    return {
-        "type": "scatter",
-        "mode": "lines",
-        "name": name,
-        "x": x,
-        "y": y,
-        "line": {**LINE, "dash": dash, "color": COLOURS[number % len(COLOURS)]},
-    }

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from coilset.model.report.panel import COLOURS, LINE, Panel, axis
+from coilset.model.report.panel import Panel, axis, curve
 from coilset.model.results.opened import Run
 from coilset.model.style import round_end
 
@@ -21,18 +21,8 @@ def force_centre(run: Run) -> Panel | None:
     for number, seat in enumerate(("bottom", "top")):
         x, y, force = (run.data[f"{seat}_{name}"].values for name in ("centre_x_mm", "centre_y_mm", "force_N"))
         bears = np.abs(force) > FAINT * np.nanmax(np.abs(force), initial=0.0)
-        traces.append(
-            {
-                "type": "scatter",
-                "mode": "lines+markers",
-                "name": f"{seat} seat",
-                "x": x[bears],
-                "y": y[bears],
-                "text": [f"step {n}" for n in run.data["step"].values[bears]],
-                "marker": {"size": 5},
-                "line": {**LINE, "color": COLOURS[number]},
-            }
-        )
+        steps = [f"step {n}" for n in run.data["step"].values[bears]]
+        traces.append(curve(x[bears], y[bears], number, marker=5, name=f"{seat} seat", text=steps))
     most = int(np.nanargmax(np.abs(run.data["force_N"].values)))
     away = max(float(run.data[f"{seat}_eccentricity_mm"].values[most]) for seat in ("bottom", "top"))
     reach = REACH * float(np.nanmax(np.linalg.norm(run.data["position"].values[..., :2], axis=-1)))

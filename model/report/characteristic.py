@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coilset.model.report.panel import COLOURS, LINE, Panel, Trace, axis
+from coilset.model.report.panel import Panel, axis, curve
 from coilset.model.results.labels import in_legend
 from coilset.model.results.opened import Run
 
@@ -39,7 +39,7 @@ def characteristic(run: Run) -> Panel:
     """Force over travel, one line per phase, with the initial rate, block and set."""
     summary, traces = run.summary, []
     for number, (label, travel, force) in enumerate(phases(run)):
-        traces.append(_line(label, travel, force, number))
+        traces.append(curve(travel, force, number, marker=5, name=label))
     greatest, rate = summary["force_max_N"], summary["rate_N_per_mm"]
     if rate:
         x = np.array([0.0, greatest / rate])
@@ -106,7 +106,8 @@ def rate_curve(run: Run) -> Panel | None:
     for number, (label, travel, force) in enumerate(phases(run)):
         apart = np.append(True, np.abs(np.diff(travel)) > 1e-9 * np.ptp(travel))
         if apart.sum() > 2:
-            traces.append(_line(label, travel[apart], np.gradient(force[apart], travel[apart]), number))
+            rates = np.gradient(force[apart], travel[apart])
+            traces.append(curve(travel[apart], rates, number, marker=5, name=label))
     if not traces:
         return None
     rate = run.summary["rate_N_per_mm"]
@@ -119,15 +120,3 @@ def rate_curve(run: Run) -> Panel | None:
         {"xaxis": axis("travel, mm"), "yaxis": axis("rate, N/mm", rangemode="tozero")},
         height=HEIGHT,
     )
-
-
-def _line(name: str, x: np.ndarray, y: np.ndarray, number: int) -> Trace:
-    return {
-        "type": "scatter",
-        "mode": "lines+markers",
-        "name": name,
-        "x": x,
-        "y": y,
-        "marker": {"size": 5},
-        "line": {**LINE, "color": COLOURS[number % len(COLOURS)]},
-    }

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coilset.model.report.panel import COLOURS, Panel, axis
+from coilset.model.report.panel import COLOURS, Panel, axis, curve
 from coilset.model.results.opened import Run
 
 
@@ -38,20 +38,11 @@ def step_error(run: Run) -> Panel | None:
         if last is None
         else f"The step size causes an error of about {abs(last):.2g} N in the maximum force"
     )
-    trace = {
-        "type": "scatter",
-        "mode": "lines+markers",
-        "x": run.data["step"].values,
-        "y": error,
-        "marker": {"size": 5},
-        "line": {"color": COLOURS[1], "width": 2},
-        "showlegend": False,
-    }
     return Panel(
         "step_error",
         finding,
         f"{finding}. Estimated error over the steps.",
-        [trace],
+        [curve(run.data["step"].values, error, 1, marker=5, showlegend=False)],
         {"xaxis": axis("step"), "yaxis": axis("error of the force, N")},
         height=320,
     )

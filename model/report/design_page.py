@@ -12,7 +12,7 @@ from coilset.model.case.reference import entry_unit, entry_words
 from coilset.model.design.opened import FILE, read_design
 from coilset.model.report.answer import Number, answer
 from coilset.model.report.page import made_with
-from coilset.model.report.panel import COLOURS, LINE, Panel, axis
+from coilset.model.report.panel import Panel, axis, curve
 from coilset.model.report.render import write_page
 from coilset.model.results.labels import plain
 from coilset.model.sweep.dataset import quantity
@@ -64,17 +64,7 @@ def search(design: Mapping[str, Any], records: Sequence[Mapping[str, Any]]) -> P
     traces = []
     for place, (one, wish) in enumerate(zip(design["conditions"], wishes, strict=True)):
         off = [_off(record["values"][place : place + 1], wish) for record in records]
-        traces.append(
-            {
-                "type": "scatter",
-                "mode": "lines+markers",
-                "name": _named(one),
-                "x": numbers,
-                "y": np.array(off),
-                "marker": {"size": 7},
-                "line": {**LINE, "color": COLOURS[place % len(COLOURS)]},
-            }
-        )
+        traces.append(curve(numbers, np.array(off), place, marker=7, name=_named(one)))
     ended = "met all conditions" if design["met"] else "came as near as the bounds allow"
     finding = f"The search {ended} after {design['evaluations']} evaluations"
     return Panel(

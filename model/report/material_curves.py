@@ -7,7 +7,7 @@ from coilset.meshes.errors import InputError
 from coilset.model.material.file import MaterialFile
 from coilset.model.material.law import Law
 from coilset.model.material.programs import History, Program, Step, run
-from coilset.model.report.panel import COLOURS, LINE, Panel, axis
+from coilset.model.report.panel import Panel, axis, curve
 from coilset.model.results.opened import Run
 
 FAR = 12.0  # yield strains of torsion to which the point is twisted
@@ -26,21 +26,13 @@ def material_curve(results: Run) -> Panel | None:
     except InputError:
         return None
     far = history.strain[INCREMENTS, 1]
-    trace = {
-        "type": "scatter",
-        "mode": "lines",
-        "x": 100.0 * history.strain[:, 1],
-        "y": history.stress[:, 1],
-        "line": {**LINE, "color": COLOURS[0]},
-        "showlegend": False,
-    }
     at = f" at {temperature:g} K" if low < high else ""
     finding = f"{law.name}{at}: twisted to {100.0 * far:.2g} % shear, {abs(history.stress[INCREMENTS, 1]):.0f} MPa"
     return Panel(
         "material",
         finding,
         f"{finding}. Shear stress over shear strain of one point, there, back, and again.",
-        [trace],
+        [curve(100.0 * history.strain[:, 1], history.stress[:, 1], 0, showlegend=False)],
         {"xaxis": axis("shear strain, %"), "yaxis": axis("shear stress, MPa")},
         note=law.description + ". Source: " + law.source,
     )

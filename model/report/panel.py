@@ -4,12 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 Trace = dict[str, Any]
 
 # Okabe and Ito's colours, distinguishable with colour-vision deficiencies; used on light and dark backgrounds.
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
 DIVERGING = "RdBu"
-LINE = {"width": 2}
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,13 @@ class Panel:
 def axis(title: str, **more: Any) -> dict[str, Any]:
     """An axis with its quantity and unit."""
     return {"title": {"text": title}, **more}
+
+
+def curve(x: np.ndarray, y: np.ndarray, number: int, marker: int = 0, dash: str | None = None, **more: Any) -> Trace:
+    """A line in the colour of its number, with markers of so many pixels, if any."""
+    line = {"width": 2, "color": COLOURS[number % len(COLOURS)]} | ({"dash": dash} if dash else {})
+    marks = {"mode": "lines+markers", "marker": {"size": marker}} if marker else {"mode": "lines"}
+    return {"type": "scatter", **marks, "x": x, "y": y, "line": line, **more}
 
 
 def said(value: float, unit: str, digits: int = 0) -> str:
