@@ -1,11 +1,14 @@
 """Force over travel, and the rate along it."""
 
+from typing import Any
+
 import numpy as np
 
 from coilset.model.report.panel import Panel, axis, curve
 from coilset.model.results.labels import in_legend
 from coilset.model.results.opened import Run
 
+GREY = {"width": 1, "color": "#808080"}
 HEIGHT = 440  # pixels, the same for both, which stand side by side
 AGAIN = "For the second loading, add a phase to the load program, such as “- to: block”, and solve again."
 
@@ -37,67 +40,46 @@ def _times(number: int) -> str:
 
 def characteristic(run: Run) -> Panel:
     """Force over travel, one line per phase, with the initial rate, block and set."""
-    summary, traces = run.summary, []
-    for number, (label, travel, force) in enumerate(phases(run)):
-        traces.append(curve(travel, force, number, marker=5, name=label))
-    greatest, rate = summary["force_max_N"], summary["rate_N_per_mm"]
+    summary, parts = run.summary, phases(run)
+    traces = [curve(travel, force, number, marker=5, name=label) for number, (label, travel, force) in enumerate(parts)]
+    greatest, rate, set_mm = summary["force_max_N"], summary["rate_N_per_mm"], summary["set_mm"]
     if rate:
-        x = np.array([0.0, greatest / rate])
-        traces.append(
-            {
-                "type": "scatter",
-                "mode": "lines",
-                "name": f"initial rate {rate:.4g} N/mm",
-                "x": x,
-                "y": rate * x,
-                "line": {"dash": "dot", "width": 1, "color": "#808080"},
-            }
-        )
+        x, dots = np.array([0.0, greatest / rate]), {"dash": "dot", **GREY}
+        name = f"initial rate {rate:.4g} N/mm"
+        traces.append({"type": "scatter", "mode": "lines", "name": name, "x": x, "y": rate * x, "line": dots})
     block = summary["free_length_before_mm"] - summary["block_height_mm"]
-    shapes = [
-        {
-            "type": "line",
-            "x0": block,
-            "x1": block,
-            "yref": "paper",
-            "y0": 0,
-            "y1": 1,
-            "line": {"dash": "dash", "width": 1, "color": "#808080"},
-        }
-    ]
-    notes = [{"x": block, "y": 1, "yref": "paper", "yanchor": "bottom", "text": "block", "showarrow": False}]
-    set_mm = summary["set_mm"]
-    if set_mm:
-        notes.append(
-            {
-                "x": set_mm,
-                "ax": 0,
-                "y": 0,
-                "ay": 0,
-                "axref": "x",
-                "ayref": "y",
-                "text": "",
-                "arrowhead": 2,
-                "arrowside": "end+start",
-                "showarrow": True,
-                "arrowwidth": 1.2,
-            }
-        )
-        notes.append(
-            {"x": 0.5 * set_mm, "y": 0, "yanchor": "bottom", "text": f"set {set_mm:.3f} mm", "showarrow": False}
-        )
-    finding = f"Compressed with up to {greatest:.4g} N" + (
-        f", the spring sets {set_mm:.4g} mm" if set_mm is not None else ""
-    )
+    sets = f", the spring sets {set_mm:.4g} mm" if set_mm is not None else ""
+    finding = f"Compressed with up to {greatest:.4g} N{sets}"
     return Panel(
         "characteristic",
         finding,
         f"Axial force over travel. {finding}. Block is at {block:.4g} mm of travel.",
         traces,
-        {"xaxis": axis("travel, mm"), "yaxis": axis("axial force, N"), "shapes": shapes, "annotations": notes},
+        {"xaxis": axis("travel, mm"), "yaxis": axis("axial force, N"), **_block_and_set(block, set_mm)},
         height=HEIGHT,
-        note="" if set_mm is None or len(phases(run)) > 2 else AGAIN,
+        note="" if set_mm is None or len(parts) > 2 else AGAIN,
     )
+
+
+def _block_and_set(block: float, set_mm: float | None) -> dict[str, Any]:
+    """A line at the block, and an arrow along the set; parts of the layout."""
+    line = {
+        "type": "line",
+        "x0": block,
+        "x1": block,
+        "yref": "paper",
+        "y0": 0,
+        "y1": 1,
+        "line": {"dash": "dash", **GREY},
+    }
+    notes = [{"x": block, "y": 1, "yref": "paper", "yanchor": "bottom", "text": "block", "showarrow": False}]
+    if set_mm:
+        notes.append({"x": set_mm, "ax": 0, "y": 0, "ay": 0, "axref": "x", "ayref": "y", "text": "", "arrowhead": 2,
+                      "arrowside": "end+start", "showarrow": True, "arrowwidth": 1.2})  # fmt: skip
+        notes.append(
+            {"x": 0.5 * set_mm, "y": 0, "yanchor": "bottom", "text": f"set {set_mm:.3f} mm", "showarrow": False}
+        )
+    return {"shapes": [line], "annotations": notes}
 
 
 def rate_curve(run: Run) -> Panel | None:
