@@ -1,7 +1,6 @@
 """Why a wish is not met: the range reached within its bounds, from runs, and the reason if it is known."""
 
 import itertools
-from collections.abc import Callable
 
 import numpy as np
 from scipy.optimize import minimize
@@ -27,7 +26,7 @@ def look_around(search: Search, found: Found) -> None:
         for place in itertools.product(np.linspace(0.0, 1.0, LOOKS[n]), repeat=n):
             search.full(np.array(place))
     else:
-        answer = mapped(search, found)
+        answer = search.mapped(found.error)
         for number, sign in itertools.product(range(len(search.conditions)), (1.0, -1.0)):
             places = np.random.default_rng(0).random((SAMPLES, n)).round()  # corners
             search.full(min(places, key=lambda place: sign * answer(place)[number]))
@@ -98,19 +97,13 @@ def plastic_reason(search: Search, near: Evaluation) -> str:
             f"winding makes a longer spring ({slope:.2g} mm for each mm here)")  # fmt: skip
 
 
-def mapped(search: Search, found: Found) -> Callable[[np.ndarray], np.ndarray]:
-    """The surrogate, corrected by the runs."""
-    about, error, E = found.error
-    return lambda u: search.surrogate(u) + error + E @ (u - about)
-
-
 def _with_others_met(search: Search, found: Found, worst: int) -> str:
     """The range of a condition where the others are met, by the mapped surrogate; empty if there is no such point."""
-    answer, others = mapped(search, found), np.arange(len(found.off)) != worst
+    answer, others = search.mapped(found.error), np.arange(len(found.off)) != worst
     values = []
     for sign in (1.0, -1.0):
         end = minimize(
-            lambda u, sign=sign: sign * answer(u)[worst], found.error[0], method="SLSQP",
+            lambda u, sign=sign: sign * answer(u)[worst], found.error.about, method="SLSQP",
             bounds=[(0.0, 1.0)] * len(search.width), options={"maxiter": 40},
             constraints={"type": "eq", "fun": lambda u: answer(u)[others]},
         )  # fmt: skip

@@ -16,7 +16,7 @@ Everything is relative: x between its bounds, f − target over the target.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -40,6 +40,20 @@ FAR = 10.0  # in place of the surrogate's result where it has none
 START_GRID = 5  # starting points along each unknown for the search with the surrogate
 
 
+class SurrogateError(NamedTuple):
+    """Error of the surrogate as runs have found it, linear about a point.
+
+    Attributes:
+        about: unknowns, relative to their bounds, shape (n,).
+        value: of the relative deviations there, shape (m,).
+        slopes: shape (m, n).
+    """
+
+    about: np.ndarray
+    value: np.ndarray
+    slopes: np.ndarray
+
+
 @dataclass
 class Found:
     """Result of a search.
@@ -50,7 +64,7 @@ class Found:
         off: of the conditions, relative, shape (m,).
         slopes: ∂ off/∂(relative x), shape (m, n).
         met: whether all conditions are met to `TOLERANCE`.
-        error: of the surrogate there, and its slopes, which define the mapped surrogate.
+        error: SurrogateError about them.
         evaluations: all of them, in order.
     """
 
@@ -59,7 +73,7 @@ class Found:
     off: np.ndarray
     slopes: np.ndarray
     met: bool
-    error: tuple[np.ndarray, np.ndarray, np.ndarray]
+    error: SurrogateError
     evaluations: list[Evaluation] = field(default_factory=list)
 
 
@@ -243,10 +257,10 @@ class Search:
         return any(np.abs(self.slopes(self.surrogate, place)[:, column]).max() > FLAT * 100.0 for place in places)
 
     def mapped(
-        self, about: np.ndarray, off: np.ndarray, base: np.ndarray, E: np.ndarray
+        self, error: SurrogateError, others: Mapping[str, Any] | None = None
     ) -> Callable[[np.ndarray], np.ndarray]:
-        """The surrogate, corrected by the error found in runs."""
-        return lambda u: self.surrogate(u) + (off - base) + E @ (u - about)
+        """The surrogate, corrected by the error found in runs; `others` as in `surrogate`."""
+        return lambda u: self.surrogate(u, others) + error.value + error.slopes @ (u - error.about)
 
     def _nearest(self, u: np.ndarray, off: np.ndarray, base: np.ndarray, E: np.ndarray, reach: float) -> np.ndarray:
         """Where the mapped surrogate comes closest to the conditions, no farther away than `reach`."""
@@ -254,7 +268,7 @@ class Search:
         if np.abs(off).max() < 1e-3:  # the surrogate is practically linear over this distance, and has rounding errors
             slopes = self.slopes(self.surrogate, u) + E
             return self._solve(lambda v: off + slopes @ (v - u), u, low, high)
-        return self._solve(self.mapped(u, off, base, E), u, low, high)
+        return self._solve(self.mapped(SurrogateError(u, off - base, E)), u, low, high)
 
     def slopes(self, answer: Callable[[np.ndarray], np.ndarray], u: np.ndarray) -> np.ndarray:
         """∂ result/∂u by central differences, within the bounds, shape (m, n)."""
@@ -284,4 +298,4 @@ class Search:
         self, u: np.ndarray, best: Evaluation, off: np.ndarray, base: np.ndarray, E: np.ndarray, met: bool
     ) -> Found:
         slopes = self.slopes(self.surrogate, u) + E
-        return Found(self.value(u), best, off, slopes, met, (u, off - base, E), self.evaluations)
+        return Found(self.value(u), best, off, slopes, met, SurrogateError(u, off - base, E), self.evaluations)

@@ -54,13 +54,9 @@ def trade_offs(search: Search, found: Found, others: Mapping[str, Sequence[Any]]
 
 
 def _row(search: Search, found: Found, of: str, value: Any, others: dict[str, Any], shift: np.ndarray) -> TradeOff:
-    about, error, slopes = found.error
-
-    def answer(u: np.ndarray) -> np.ndarray:
-        return search.surrogate(u, others) + error + slopes @ (u - about) - shift
-
-    u = search.nearest(answer, about)
-    off = float(np.abs(answer(u)).max())
+    mapped = search.mapped(found.error, others)
+    u = search.nearest(lambda u: mapped(u) - shift, found.error.about)
+    off = float(np.abs(mapped(u) - shift).max())
     x = search.value(u)
     unknowns = dict(zip(search.evaluator.names, x.tolist(), strict=True))
     try:
