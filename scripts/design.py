@@ -9,7 +9,6 @@ from rich.table import Table
 
 from coilset.meshes.errors import InputError, naming
 from coilset.model.design import output
-from coilset.model.design.conditions import Condition
 from coilset.model.design.design import find, make_search
 from coilset.model.design.evaluation import Evaluation
 from coilset.model.design.search import Found, Search
@@ -86,15 +85,11 @@ class Progress:
         if found.failed:
             answer = f"fails: {found.reason}"
         else:
-            values = (f"{_name(one)} {value:.7g} {one.unit}"
+            values = (f"{one.words} {value:.7g} {one.unit}"
                       for one, value in zip(search.conditions, found.values, strict=True))  # fmt: skip
             answer = f"{', '.join(values)}, off by {abs(search.off(found.values)).max():.1e}"
         seconds = "known" if known else f"{found.seconds:.1f} s"
         self.console.print(f"{self.number:3d}  {unknowns}: {answer} ({seconds})", soft_wrap=True)
-
-
-def _name(one: Condition) -> str:
-    return one.words.removeprefix("such_that.")
 
 
 def _conclude(
@@ -103,7 +98,7 @@ def _conclude(
     for name, value in zip(search.evaluator.names, found.x, strict=True):
         console.print(f"[bold]{name} = {value:.7g}[/]")
     if not found.met:
-        parts = (f"{_name(one)} {value:.6g} for {one.wish:g} {one.unit}"
+        parts = (f"{one.words} {value:.6g} for {one.wish:g} {one.unit}"
                  for one, value in zip(search.conditions, found.best.values, strict=True))  # fmt: skip
         console.print(f"as close as possible (least squares): {', '.join(parts)}")
     console.print("estimates for other wishes and springs, by the uniform rod as the runs have corrected it:")

@@ -9,6 +9,7 @@ from coilset.meshes.errors import InputError
 from coilset.model.design.wish import Conditions, WishSpec
 from coilset.model.results.units import unit_of
 
+GROUP = "such_that."  # before the names of a wish's conditions
 MEASURING_STEPS = 2  # equal steps to a height at which a force is measured, and back: the path is elastic, or nearly so
 
 
@@ -29,9 +30,14 @@ class Condition:
     phase: int | None = None
 
     @property
+    def short_name(self) -> str:
+        """Without the group of the wish; of a number of the summary, its name there."""
+        return self.name.removeprefix(GROUP)
+
+    @property
     def words(self) -> str:
         """For progress and messages."""
-        return self.name if self.height is None else f"force at {self.height:g} mm"
+        return self.short_name if self.height is None else f"force at {self.height:g} mm"
 
     @property
     def asks(self) -> str | float:
@@ -65,12 +71,12 @@ def conditions(spec: WishSpec, base: Mapping[str, Any]) -> tuple[list[Condition]
     program = data["loading"]
     if isinstance(program, dict):  # {accuracy: …, program: […]}
         program = program["program"]
-    found = [Condition(f"such_that.{name}", value) for name, value in _numbers(spec.such_that)]
+    found = [Condition(f"{GROUP}{name}", value) for name, value in _numbers(spec.such_that)]
     missing = sorted({at.height for at in spec.such_that.force_at if _phase(program, at.height) is None}, reverse=True)
     released = _is_release(program[-1])
     needing = [one.name for one in found if "after" in one.name or "set_mm" in one.name or "residual" in one.name]
     if not released and (needing or missing):
-        name = needing[0] if needing else "such_that.force_at"
+        name = needing[0] if needing else f"{GROUP}force_at"
         raise InputError("needs an unloaded spring at the end; let the load program end with {to: {force: 0}}",
                          name)  # fmt: skip
     for height in missing:
@@ -78,7 +84,7 @@ def conditions(spec: WishSpec, base: Mapping[str, Any]) -> tuple[list[Condition]
     if missing:
         program.append({"to": {"force": 0}, "steps": MEASURING_STEPS})
     for number, at in enumerate(spec.such_that.force_at):
-        name = "such_that.force_at" + (f".{number}" if len(spec.such_that.force_at) > 1 else "")
+        name = f"{GROUP}force_at" + (f".{number}" if len(spec.such_that.force_at) > 1 else "")
         found.append(Condition(name, at.N, at.height, _phase(program, at.height)))
     return found, data
 

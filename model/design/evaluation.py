@@ -162,14 +162,14 @@ class Evaluator:
         values = [_read(one, summary, result) for one in self.conditions]
         phases = range(len(setup.phases))
         plan = tuple(tuple(step.progress for step in result.steps if step.phase == phase) for phase in phases)
-        missing = [one.words for one, value in zip(self.conditions, values, strict=True) if value is None]
+        missing = [one.name for one, value in zip(self.conditions, values, strict=True) if value is None]
         reason = f"{missing[0]} is not known of this run" if missing else ""
         return Evaluation(x, np.array(values, float), reason, plan, summary, time.perf_counter() - began)
 
 
 def _read(condition: Condition, summary: Mapping[str, Any], result: Result) -> float | None:
     if condition.phase is None:
-        return summary[condition.name.removeprefix("such_that.")]
+        return summary[condition.short_name]
     return [step for step in result.steps if step.phase == condition.phase][-1].force_N
 
 

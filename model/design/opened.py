@@ -10,12 +10,12 @@ import xarray as xr
 from coilset.meshes.errors import reading
 from coilset.model.case import Case
 from coilset.model.case.reference import entry_unit
+from coilset.model.design.conditions import GROUP
 from coilset.model.results.labelled import add_summary
 from coilset.model.results.units import unit_of
 from coilset.model.sweep.journal import read_records
 
 FILE = "design.json"
-PREFIX = "such_that."  # of a condition's name
 
 
 def open_design(folder: str | Path) -> xr.Dataset:
@@ -68,9 +68,9 @@ def _searched(design: dict[str, Any], records: list[dict[str, Any]]) -> xr.Datas
     for place, one in enumerate(design["conditions"]):
         column = [_number(record["values"][place : place + 1]) for record in records]
         of = {"units": one["unit"], "wish": one["wish"]}
-        data[one["name"].removeprefix(PREFIX)] = ("evaluation", column, of)
+        data[one["name"].removeprefix(GROUP)] = ("evaluation", column, of)
     slopes = [list(row.values()) for row in design["slopes"].values()]
-    names = [name.removeprefix(PREFIX) for name in design["slopes"]]
+    names = [name.removeprefix(GROUP) for name in design["slopes"]]
     return data.assign(slope=(("condition", "unknown"), slopes)).assign_coords(
         condition=names, unknown=list(design["found"])
     )

@@ -54,14 +54,14 @@ def refuse(search: Search, found: Found) -> None:
             reason = plastic_reason(search, near) if one.wish > most and "free_length_after" in one.name else ""
             raise InputError(
                 f"{one.wish:g} {one.unit} is out of reach{_at(one)}: between the bounds it goes from about {least:.6g} "
-                f"to {most:.6g} {one.unit}, the {end} with {_words(search, near)}{reason}", one.name)  # fmt: skip
+                f"to {most:.6g} {one.unit}, the {end} with {search.words(near.x)}{reason}", one.name)  # fmt: skip
     worst = int(np.abs(found.off).argmax())
     one = search.conditions[worst]
-    nearest = ", ".join(f"{other.words.removeprefix('such_that.')} {value:.6g} for {other.wish:g} {other.unit}"
+    nearest = ", ".join(f"{other.words} {value:.6g} for {other.wish:g} {other.unit}"
                         for other, value in zip(search.conditions, found.best.values, strict=True))  # fmt: skip
     raise InputError(f"{one.wish:g} {one.unit}{_at(one)} cannot be met together with the other conditions between "
                      f"these bounds{_with_others_met(search, found, worst)}; the nearest found is {nearest}, with "
-                     f"{_words(search, found.best)}{unfelt(search, found)}", one.name)  # fmt: skip
+                     f"{search.words(found.best.x)}{unfelt(search, found)}", one.name)  # fmt: skip
 
 
 def unfelt(search: Search, found: Found) -> str:
@@ -116,7 +116,3 @@ def _with_others_met(search: Search, found: Found, worst: int) -> str:
 
 def _at(one: Condition) -> str:
     return f" at {one.height:g} mm" if one.height is not None else ""
-
-
-def _words(search: Search, one: Evaluation) -> str:
-    return ", ".join(f"{name} = {value:.6g}" for name, value in zip(search.evaluator.names, one.x, strict=True))

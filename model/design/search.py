@@ -173,7 +173,7 @@ class Search:
             if there.failed:
                 reach = 0.5 * size
                 if reach < SETTLED:
-                    raise SolveError(f"the search cannot continue from {self.words(u)}: {there.reason}")
+                    raise SolveError(f"the search cannot continue from {self.words(self.value(u))}: {there.reason}")
                 continue
             off_there, base_there = self.off(there.values), self.surrogate(to)
             y = (off_there - base_there) - (off - base)
@@ -189,14 +189,12 @@ class Search:
             norms.append(float(np.linalg.norm(off)))
             if square and norms[-1] > ENOUGH * norms[max(len(norms) - 1 - PATIENCE, 0)] and len(norms) > PATIENCE:
                 return self._found(u, best, off, base, E, False)
-        raise SolveError(f"the search has not ended after {MOST} evaluations; the nearest is {self.words(u)}, off by "
-                         f"{np.abs(off).max():.2g}")  # fmt: skip
+        raise SolveError(f"the search has not ended after {MOST} evaluations; the nearest is "
+                         f"{self.words(self.value(u))}, off by {np.abs(off).max():.2g}")  # fmt: skip
 
-    def words(self, u: np.ndarray) -> str:
+    def words(self, x: np.ndarray) -> str:
         """Unknowns and their values."""
-        return ", ".join(
-            f"{name} = {value:.6g}" for name, value in zip(self.evaluator.names, self.value(u), strict=True)
-        )
+        return ", ".join(f"{name} = {value:.6g}" for name, value in zip(self.evaluator.names, x, strict=True))
 
     def _first(self) -> tuple[np.ndarray, Evaluation]:
         """The point where the uniform rod meets the conditions, or one near it at which a spring can be run."""
@@ -214,7 +212,7 @@ class Search:
                 if not found.failed:
                     self.plan = found.plan
                     return to, found
-                reason = reason or f"{found.reason} (with {self.words(to)})"
+                reason = reason or f"{found.reason} (with {self.words(self.value(to))})"
                 if part == 0.0:
                     break
         raise InputError(f"no spring can be run between these bounds; {reason}", "find")
@@ -224,7 +222,7 @@ class Search:
         self.plan = None
         found = self.full(u)
         if found.failed:
-            raise SolveError(f"no equilibrium with {self.words(u)}: {found.reason}")
+            raise SolveError(f"no equilibrium with {self.words(self.value(u))}: {found.reason}")
         self.plan = found.plan
         return u, found
 

@@ -74,7 +74,7 @@ def guess(case: Case, conditions: Sequence[Condition], load: Callable[[str], Law
         found, torque = _press(case, spring, law)
     except SolveError:
         return Guess(unknown, 0.0)
-    values = [found.get(one.name.removeprefix("such_that.") if one.phase is None else f"force {one.phase}", np.nan)
+    values = [found.get(one.short_name if one.phase is None else f"force {one.phase}", np.nan)
               for one in conditions]  # fmt: skip
     return Guess(np.array(values), torque)
 

@@ -47,7 +47,7 @@ def trade_offs(search: Search, found: Found, others: Mapping[str, Sequence[Any]]
             shift = np.zeros(len(search.conditions))
             shift[number] = sign * CHANGE
             wish = one.wish + sign * CHANGE * abs(one.wish)
-            yield _row(search, found, one.words.removeprefix("such_that."), wish, {}, shift)
+            yield _row(search, found, one.words, wish, {}, shift)
     for name, values in others.items():
         for value in values:
             yield _row(search, found, name, value, {name: value}, np.zeros(len(search.conditions)))

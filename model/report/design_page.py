@@ -9,6 +9,7 @@ import numpy as np
 from coilset.meshes.errors import reading
 from coilset.model.case import Case
 from coilset.model.case.reference import entry_unit, entry_words
+from coilset.model.design.conditions import GROUP
 from coilset.model.design.opened import FILE, read_design
 from coilset.model.report.answer import Number, answer
 from coilset.model.report.page import made_with
@@ -96,7 +97,7 @@ def _head(name: str) -> str:
 def _named(condition: Mapping[str, Any]) -> str:
     if condition["height_mm"] is not None:
         return f"force at {condition['height_mm']:g} mm"
-    return quantity(condition["name"].removeprefix("such_that."))[0]
+    return quantity(condition["name"].removeprefix(GROUP))[0]
 
 
 def _wish(design: Mapping[str, Any]) -> str:

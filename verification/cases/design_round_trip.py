@@ -108,7 +108,7 @@ def wish(study: Study | None, name: str, entries: dict[str, Any]) -> tuple[int, 
         written.write_text(yaml.safe_dump(found_data(search, found)), encoding="utf-8")
         if study is not None:
             for condition, value in zip(search.conditions, forward(search, written), strict=True):
-                quantity = f"{name}: {condition.words.removeprefix('such_that.')}, {condition.unit}"
+                quantity = f"{name}: {condition.words}, {condition.unit}"
                 study.check(quantity, value, condition.wish, "the wish", CLOSE)
     off = [float(np.abs(search.off(one.values)).max()) for one in search.evaluations if not one.failed]
     return len(search.width), search.evaluator.count, round(seconds, 1), round(worked, 1), off
@@ -119,7 +119,7 @@ def forward(search: Search, path: Path) -> list[float]:
     analysis = Analysis(read_case(path), MPI.COMM_SELF)
     steps = analysis.run().steps
     summary, forces = summarise(analysis.setup, analysis.result), {step.phase: step.force_N for step in steps}
-    return [summary[one.name.removeprefix("such_that.")] if one.phase is None else forces[one.phase]
+    return [summary[one.short_name] if one.phase is None else forces[one.phase]
             for one in search.conditions]  # fmt: skip
 
 
