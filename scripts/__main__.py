@@ -21,7 +21,7 @@ def main() -> None:
         signal.signal(signal.SIGINT, _leave)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
     gc.set_threshold(GARBAGE)
-    from coilset.scripts.main import run
+    from coilset.scripts.running import run
 
     run()
 

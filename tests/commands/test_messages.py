@@ -2,7 +2,8 @@
 
 import pytest
 
-from coilset.scripts.main import app, command_line_message
+from coilset.scripts.main import app
+from coilset.scripts.running import command_line_message
 
 NEARLY = [
     (["solv", "case.yaml"], "No such command 'solv'. Is solve meant?"),

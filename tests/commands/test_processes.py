@@ -206,7 +206,7 @@ def test_no_interrupt_is_held_when_the_shell_becomes_python(start, tmp_path):
 def test_an_interrupt_that_python_cannot_pass_on_is_raised_again(swallow):
     """In a destructor and in a callback from C."""
     program = (
-        "import os, signal, time\nfrom coilset.scripts.main import _listen\n_listen()\n"
+        "import os, signal, time\nfrom coilset.scripts.running import _listen\n_listen()\n"
         "def wait():\n    os.kill(os.getpid(), signal.SIGINT)\n    time.sleep(0.01)\n"
         f"try:\n    exec({swallow!r})\n    time.sleep(100)\nexcept KeyboardInterrupt:\n    print('heard')\n"
     )

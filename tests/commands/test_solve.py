@@ -31,7 +31,7 @@ def test_a_name_in_another_encoding_gets_one_line(tmp_path):
 DURING_A_CHECK_IS_BUILT = """
 import os, signal, time
 from pydantic import TypeAdapter
-from coilset.scripts import main
+from coilset.scripts import running
 
 class Entry:
     @classmethod
@@ -40,7 +40,7 @@ class Entry:
         print("built")
         return handler.generate_schema(int)
 
-main._listen()
+running._listen()
 try:
     TypeAdapter(Entry)
     time.sleep(60)

@@ -11,9 +11,9 @@ PROGRAM = """
 import sys
 from mpi4py import MPI
 from coilset.meshes.errors import InputError
-from coilset.scripts import main
+from coilset.scripts import main, running
 
-main.TOGETHER = 1.0
+running.TOGETHER = 1.0
 
 @main.app.command()
 def fail(where: int):
@@ -22,7 +22,7 @@ def fail(where: int):
     MPI.COMM_WORLD.barrier()
 
 sys.argv = ["coilset", "fail", "--", sys.argv[1]]
-main.run()
+running.run()
 """
 
 
