@@ -8,12 +8,14 @@ import signal
 import time
 from collections.abc import Callable
 from types import FrameType
-from typing import Any
-
-from mpi4py import MPI
+from typing import TYPE_CHECKING, Any
 
 from coilset.scripts.output import output_closed
 
+if TYPE_CHECKING:  # the command asks for the numbers below before MPI is started
+    from mpi4py import MPI
+
+INTERRUPTED = 128 + signal.SIGINT  # exit code
 STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1)  # SIGUSR1: how mpirun passes them on, see scripts/ranks.py
 ONE_SIGNAL = 0.5  # seconds within which several signals count as one: `timeout` signals a process and its group
 
@@ -24,13 +26,13 @@ class Interrupt:
     An exception inside PETSc's callbacks would be unsafe; between steps the state is consistent.
     """
 
-    def __init__(self, comm: MPI.Comm, say: Callable[[str], Any]):
+    def __init__(self, comm: "MPI.Comm", say: Callable[[str], Any]):
         self.comm, self.say, self.noted = comm, say, 0.0
 
     def _note(self, number: int, frame: FrameType | None) -> None:
         now = time.monotonic()
         if self.noted and now - self.noted > ONE_SIGNAL:
-            os._exit(128 + signal.SIGINT)  # the last checkpoint is complete in any case
+            os._exit(INTERRUPTED)  # the last checkpoint is complete in any case
         if not self.noted:
             self.noted = now
             self.say("finishing this step; once more ends at once")
@@ -51,6 +53,6 @@ class Interrupt:
         """Raise KeyboardInterrupt if any rank was interrupted or has lost its output; collective."""
         noted = bool(self.noted) or output_closed()
         if self.comm.size > 1:
-            noted = self.comm.allreduce(noted, op=MPI.LOR)
+            noted = self.comm.allreduce(int(noted)) > 0
         if noted:
             raise KeyboardInterrupt

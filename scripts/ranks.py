@@ -17,10 +17,10 @@ from typing import IO, Protocol
 
 from coilset.meshes.errors import InputError
 from coilset.model.processes import end_with_parent, folder_of_mpirun, mpi_environment, mpirun, usable_cores
+from coilset.scripts.interrupt import INTERRUPTED
 
 PARALLEL = ("solve", "sweep", "python")
 RANKS_A_CORE = 4
-INTERRUPTED = 128 + signal.SIGINT
 OUTPUT_CLOSED = 128 + signal.SIGPIPE
 OWN = (0, 2, 3, INTERRUPTED, OUTPUT_CLOSED)  # exit codes with a message of ours
 RULER = b"-" * 74  # rulers around mpirun's messages

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from coilset.meshes.errors import CoilsetError, InputError, printable
 from coilset.model.processes import first_rank
 from coilset.scripts.ending import Ending
+from coilset.scripts.interrupt import INTERRUPTED, ONE_SIGNAL
 from coilset.scripts.main import app
 from coilset.scripts.output import Output, output_closed
 from coilset.scripts.plain import typer
@@ -25,8 +26,6 @@ TOGETHER = 10.0  # seconds within which all ranks meet an error that concerns th
 SOON_TOGETHER = 2.0  # and an interruption
 HEARD = 0.5  # seconds for mpirun to pass on the output of a rank, before it ends the ranks and drops the rest
 LONGEST_MESSAGE = 400  # characters of a wrong command line that a message repeats
-INTERRUPTED = 128 + signal.SIGINT
-ONE_SIGNAL = 0.5  # seconds within which several signals count as one: `timeout` signals a process and its group
 SOON = 0.02  # seconds after which an interrupt that came during an import is tried again
 
 
