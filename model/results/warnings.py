@@ -99,7 +99,7 @@ def _slipped(setup: Setup, result: Result) -> Iterator[Warning]:
 
 def _wall(setup: Setup, result: Result) -> Iterator[Warning]:
     """At the end of a compression; a free spring that cools also gets shorter."""
-    accuracy, free = setup.limits.accuracy or WALL_FORCE, FREE * _greatest(result)
+    accuracy, free = setup.limits.accuracy or WALL_FORCE, FREE * result.greatest_force
     for before, step in pairwise(result.steps):
         travel = step.travel_mm - before.travel_mm
         if step.phase != before.phase or step.progress < 1.0 or travel <= 0.0 or step.force_N <= free:
@@ -237,12 +237,7 @@ def released(result: Result) -> bool:
     """Whether the spring is free of load now; one that has left a seat is held by its tip springs only."""
     if not result.steps or result.steps[-1].lift_off_mm:
         return False
-    return abs(result.snapshots[-1].force) <= FREE * _greatest(result)
-
-
-def _greatest(result: Result) -> float:
-    """The greatest force of any step, N."""
-    return max((abs(step.force_N) for step in result.steps), default=0.0)
+    return abs(result.snapshots[-1].force) <= FREE * result.greatest_force
 
 
 SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _wall, _penetration, _buckled, _unstable, _snapped)
