@@ -24,7 +24,7 @@ from coilset.model.libraries import WhenUsed
 from coilset.model.processes import end_with_parent, first_rank, number_of_ranks, usable_cores
 
 if TYPE_CHECKING:  # at run time in the process that draws
-    from coilset.model.results.pictures import Draw, Run
+    from coilset.model.results.pictures import Draw, Pictured
 
 PARTS = ("figures", "scene")  # of coilset.model.results.pictures
 MODEST = 5  # niceness of these processes relative to the one that solves
@@ -55,7 +55,7 @@ class Drawings:
                     stdout=subprocess.PIPE, env=self.environment, start_new_session=True, preexec_fn=end_with_parent,
                 )  # fmt: skip
 
-    def draw(self, out: Path, run: "Run") -> list[str]:
+    def draw(self, out: Path, run: "Pictured") -> list[str]:
         """Draw, and wait for the pictures; meanwhile SIGTERM raises KeyboardInterrupt, like SIGINT.
 
         Returns:
@@ -144,7 +144,7 @@ def draw_part(part: str, tasks: BinaryIO) -> dict[str, Any] | None:
         signal.signal(signal.SIGTERM, before)
 
 
-def _side_by_side(draws: "tuple[Draw, ...]", task: "tuple[Path, Run]") -> list[dict[str, Any]]:
+def _side_by_side(draws: "tuple[Draw, ...]", task: "tuple[Path, Pictured]") -> list[dict[str, Any]]:
     """What comes of each; all but the first are drawn by copies of this process, which have loaded what they need."""
     import multiprocessing
 
@@ -164,12 +164,12 @@ def _side_by_side(draws: "tuple[Draw, ...]", task: "tuple[Path, Run]") -> list[d
     return answers
 
 
-def _copy(answer: Any, draw: "Draw", task: "tuple[Path, Run]") -> None:
+def _copy(answer: Any, draw: "Draw", task: "tuple[Path, Pictured]") -> None:
     end_with_parent()
     answer.send(_drawn(draw, task))
 
 
-def _drawn(draw: "Draw", task: "tuple[Path, Run]") -> dict[str, Any]:
+def _drawn(draw: "Draw", task: "tuple[Path, Pictured]") -> dict[str, Any]:
     try:
         return {"problem": None, "warnings": draw(*task)}
     except CoilsetError as error:

@@ -16,7 +16,7 @@ from coilset.model.analysis import Analysis
 from coilset.model.case import Case, read_case
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.folder import DERIVED, clear, prepare, write_history, write_seats, write_summary
-from coilset.model.results.pictures import Run
+from coilset.model.results.pictures import Pictured
 from coilset.model.results.provenance import origin
 from coilset.model.results.record import Result, Setup, Step
 from coilset.model.results.summary import summarise
@@ -110,7 +110,7 @@ def _solve(
     for warning in summary["warnings"]:
         log.warning("warning: %s: %s", warning["name"], warning["message"])
     if drawings:
-        run = Run(analysis.setup, analysis.result, summary)
+        run = Pictured(analysis.setup, analysis.result, summary)
         try:
             on_first_rank(comm, lambda: _draw(drawings, out, run, telling))
         except CoilsetError as error:
@@ -157,6 +157,6 @@ def write_run(out: Path, setup: Setup, result: Result, summary: dict[str, Any], 
     write_summary(out, {**summary, "origin": made_with})
 
 
-def _draw(drawings: Drawings, out: Path, run: Run, telling: Lines) -> None:
+def _draw(drawings: Drawings, out: Path, run: Pictured, telling: Lines) -> None:
     for warning in drawings.draw(out, run):
         telling.warn(warning)

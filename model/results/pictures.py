@@ -11,7 +11,7 @@ MOST_SPRINGS = 4  # side by side in springs.png
 
 
 @dataclass(frozen=True)
-class Run:
+class Pictured:
     """What the pictures show.
 
     Attributes:
@@ -24,19 +24,19 @@ class Run:
     summary: Mapping[str, Any]
 
 
-Draw = Callable[[Path, Run], list[str]]
+Draw = Callable[[Path, Pictured], list[str]]
 
 
 def load_figures() -> tuple[Draw, ...]:
     """Load the libraries of the figures: all but the seats' pressure, and that, which takes as long."""
     from coilset.model.results import figures, seat_figures
 
-    def pressure(out: Path, run: Run) -> list[str]:
+    def pressure(out: Path, run: Pictured) -> list[str]:
         if run.result.steps:
             seat_figures.seat_pressure(out / "seat_pressure.png", run.setup, run.result)
         return []
 
-    def others(out: Path, run: Run) -> list[str]:
+    def others(out: Path, run: Pictured) -> list[str]:
         figures.characteristic(out / "characteristic.png", run.setup, run.result, run.summary)
         figures.cross_section(out / "cross_section.png", run.setup, run.result.snapshots[-1])
         if run.result.steps:
@@ -56,7 +56,7 @@ def load_scene() -> tuple[Draw, ...]:
 
     there = display.ensure()
 
-    def draw(out: Path, run: Run) -> list[str]:
+    def draw(out: Path, run: Pictured) -> list[str]:
         if not there:
             return ["springs.png is not drawn: there is no display and no Xvfb"]
         shots = run.result.snapshots

@@ -22,7 +22,7 @@ ABOVE = 0.22  # tangent of the angle of view above the horizontal
 
 
 @dataclass(frozen=True)
-class Frame:
+class Arrangement:
     """Arrangement of springs in a picture so that all of them fit, however tall.
 
     Attributes:
@@ -36,8 +36,8 @@ class Frame:
     column: float
 
     @classmethod
-    def of(cls, across: float, tall: float, springs: int) -> "Frame":
-        """The frame for a number of springs of the given width and height, mm."""
+    def of(cls, across: float, tall: float, springs: int) -> "Arrangement":
+        """That of a number of springs of the given width and height, mm."""
         seen = tall + ABOVE * across
         scale = min(WIDTH / (1.35 * across * springs), (MOST_HEIGHT - LABELS - BAR) / seen)
         column = max(1.35 * across, min(COLUMN, WIDTH / springs) / scale)
@@ -68,28 +68,26 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.nda
     low, high = float(x[:, 2].min() - radius.max()), float(x[:, 2].max() + radius.max())
     across = float(np.ptp(x[:, :2], axis=0).max()) + 2.0 * float(radius.max())
     aside = 0.5 * float(x[:, 0].min() + x[:, 0].max())  # a buckled spring deflects to one side
-    frame, end = (
-        Frame.of(across, high - low, len(snapshots)),
-        round_end(max(float(s.shear.max()) for s in snapshots), QUARTERED),
-    )
+    view = Arrangement.of(across, high - low, len(snapshots))
+    end = round_end(max(float(s.shear.max()) for s in snapshots), QUARTERED)
     force = max(abs(shot.force) for shot in snapshots)
-    middle = aside + 0.5 * frame.column * (len(snapshots) - 1)
-    plotter = pv.Plotter(off_screen=True, window_size=(WIDTH, frame.height))
+    middle = aside + 0.5 * view.column * (len(snapshots) - 1)
+    plotter = pv.Plotter(off_screen=True, window_size=(WIDTH, view.height))
     plotter.set_background("white")
     for place, shot in enumerate(snapshots):
         stress = shot.shear.max(axis=(1, 2))
         values = 0.5 * (np.append(stress, stress[-1]) + np.append(stress[0], stress))
-        mesh = tube(shot.x + np.array([place * frame.column, 0.0, 0.0]), radius, values, name)
+        mesh = tube(shot.x + np.array([place * view.column, 0.0, 0.0]), radius, values, name)
         plotter.add_mesh(
-            mesh, scalars=name, clim=(0.0, end), cmap="viridis", smooth_shading=True, scalar_bar_args=_bar(frame, name),
+            mesh, scalars=name, clim=(0.0, end), cmap="viridis", smooth_shading=True, scalar_bar_args=_bar(view, name),
         )  # fmt: skip
-        foot = [aside + place * frame.column, 0.0, high + (0.5 * ABOVE * across + 15.0 / frame.scale)]
+        foot = [aside + place * view.column, 0.0, high + (0.5 * ABOVE * across + 15.0 / view.scale)]
         plotter.add_point_labels([foot], [caption(shot, force)], font_size=20, text_color="black", shape=None,
                                  show_points=False, always_visible=True, justification_horizontal="center")  # fmt: skip
-    centre, away = 0.5 * (low + high) + 0.5 * (LABELS - BAR) / frame.scale, 10.0 * (high - low + across)
+    centre, away = 0.5 * (low + high) + 0.5 * (LABELS - BAR) / view.scale, 10.0 * (high - low + across)
     plotter.camera_position = [(middle, -away, centre + ABOVE * away), (middle, 0.0, centre), (0, 0, 1)]
     plotter.camera.parallel_projection = True
-    plotter.camera.parallel_scale = 0.5 * frame.height / frame.scale
+    plotter.camera.parallel_scale = 0.5 * view.height / view.scale
     try:
         with whole(path) as partial:
             plotter.screenshot(str(partial))
@@ -108,11 +106,11 @@ def caption(shot: Snapshot, greatest: float) -> str:
     return f"{shot.name}\n{plain(shot.height, 5)} mm, {plain(bears)} N"
 
 
-def _bar(frame: Frame, title: str) -> dict[str, Any]:
+def _bar(view: Arrangement, title: str) -> dict[str, Any]:
     """The colour bar, of the same size in all pictures; an empty line separates its title from the numbers."""
     bar = BAR - 28.0
     return {
         "title": f"{title}\n", "color": "black", "n_labels": 5, "fmt": "%.5g", "title_font_size": 17,
-        "label_font_size": 16, "position_x": 0.3, "width": 0.4, "position_y": 12 / frame.height,
-        "height": bar / frame.height,
+        "label_font_size": 16, "position_x": 0.3, "width": 0.4, "position_y": 12 / view.height,
+        "height": bar / view.height,
     }  # fmt: skip

@@ -21,7 +21,7 @@ from coilset.model.results.display import ensure
 from coilset.model.results.labels import plain
 from coilset.model.results.record import BucklingMode, Step
 from coilset.model.results.rings import ROUND
-from coilset.model.results.scene import ABOVE, BAR, COLUMN, LABELS, MOST_HEIGHT, WIDTH, Frame, caption, springs
+from coilset.model.results.scene import ABOVE, BAR, COLUMN, LABELS, MOST_HEIGHT, WIDTH, Arrangement, caption, springs
 from coilset.model.results.summary import summarise
 from coilset.model.standards import goodman
 from coilset.model.style import QUARTERED, round_end
@@ -30,12 +30,12 @@ from coilset.model.style import QUARTERED, round_end
 @pytest.mark.parametrize("springs", [1, 2, 4])
 @pytest.mark.parametrize(("across", "tall"), [(45.0, 35.0), (0.55, 0.6), (45.0, 800.0), (400.0, 10.0), (20.0, 160.0)])
 def test_springs_are_whole_in_their_picture(across, tall, springs):
-    frame = Frame.of(across, tall, springs)
-    assert frame.scale * (frame.column * (springs - 1) + across) < WIDTH
-    assert frame.scale * (tall + ABOVE * across) <= frame.height - LABELS - BAR + 1
-    assert frame.height <= MOST_HEIGHT + 1
-    assert frame.scale * frame.column >= min(COLUMN, WIDTH / springs) - 1e-9  # labels do not overlap
-    assert frame.column > across
+    view = Arrangement.of(across, tall, springs)
+    assert view.scale * (view.column * (springs - 1) + across) < WIDTH
+    assert view.scale * (tall + ABOVE * across) <= view.height - LABELS - BAR + 1
+    assert view.height <= MOST_HEIGHT + 1
+    assert view.scale * view.column >= min(COLUMN, WIDTH / springs) - 1e-9  # labels do not overlap
+    assert view.column > across
 
 
 @pytest.mark.parametrize(
