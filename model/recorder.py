@@ -39,9 +39,8 @@ class Recorder:
     """
 
     def __init__(
-        self, setup: Setup, rod: Rod, system: System, control: AxialControl, stability: Stability,
-        detailed: bool = True,
-    ) -> None:  # fmt: skip
+        self, setup: Setup, rod: Rod, system: System, control: AxialControl, stability: Stability, detailed: bool
+    ) -> None:
         self.setup, self.rod, self.system, self.control = setup, rod, system, control
         self.layout, self._stability, self._detailed = system.line, stability, detailed
         self.torque = system.state.add("torque", mean_torque(rod), Where.ELEMENT)

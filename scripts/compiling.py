@@ -34,7 +34,7 @@ class Announcement(logging.Handler):
         notice: the line.
     """
 
-    def __init__(self, say: Callable[[str], None], notice: str = NOTICE_OF_PART):
+    def __init__(self, say: Callable[[str], None], notice: str):
         super().__init__(logging.INFO)
         self.say, self.notice, self.said = say, notice, False
 

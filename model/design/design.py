@@ -28,7 +28,7 @@ def make_search(
         InputError: a condition that the load program cannot meet, or no spring between the bounds.
     """
     sought, data = conditions(wish.spec, wish.base)
-    evaluator = Evaluator(wish, sought, data, known, keep, report, threads)
+    evaluator = Evaluator(wish, sought, data, known or {}, keep, report, threads)
     bounds = np.array([[one.low, one.high] for one in wish.spec.find.values()])
     start = np.array([_given(data, name) for name in wish.spec.find])
     search = Search(evaluator, bounds, sought, start)

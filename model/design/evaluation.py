@@ -81,15 +81,15 @@ class Evaluator:
         wish: Wish,
         conditions: Sequence[Condition],
         data: Mapping[str, Any],
-        known: Mapping[str, Mapping[str, Any]] | None = None,
-        keep: Callable[[dict[str, Any]], object] = lambda record: None,
-        report: Callable[[Evaluation, bool], object] = lambda evaluation, known: None,
-        threads: int = 1,
+        known: Mapping[str, Mapping[str, Any]],
+        keep: Callable[[dict[str, Any]], object],
+        report: Callable[[Evaluation, bool], object],
+        threads: int,
     ) -> None:
         self.wish, self.conditions, self._data = wish, conditions, data
         self.names = list(wish.spec.find)
         self._asked = [*self.names, *(one.asks for one in conditions)]  # what `x` and `values` of a record are of
-        self._known = {name: record for name, record in (known or {}).items() if record.get("of") == self._asked}
+        self._known = {name: record for name, record in known.items() if record.get("of") == self._asked}
         self._keep, self._report = keep, report
         self._key, self._load = Keys(), cache(library.load)
         self.count, self.solves, self._threads = 0, 0, threads

@@ -56,7 +56,7 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
             _said(inside, "MPa", 1),
             f"at the inside of the middle coils{', ' + told if told else ''}",
         ),
-        Number("maximum force", _said(s["force_max_N"], "N", 1), _error(s["estimated_force_error_N"], "N")),
+        Number("maximum force", _said(s["force_max_N"], "N", 1), _error(s["estimated_force_error_N"])),
         Number("initial rate", _said(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
         Number("block height", _said(s["block_height_mm"], "mm", 2)),
     ]
@@ -66,10 +66,10 @@ def _said(value: float | None, unit: str, digits: int) -> str:
     return "not reached" if value is None else said(value, unit, digits)
 
 
-def _error(value: float | None, unit: str) -> str:
+def _error(value: float | None) -> str:
     if value is None:
         return "error due to the step size not estimated"
-    return f"{abs(value):.2g} {unit} estimated error due to the step size"
+    return f"{abs(value):.2g} N estimated error due to the step size"
 
 
 def _after(summary: Mapping[str, Any]) -> str:

@@ -17,6 +17,7 @@ from coilset.model.section.rules import DiskRule, rim
 WHOLE = 1.0  # a level from which on nothing is cut away
 DEEPEST = -0.999  # the wire that is left there is half a thousandth of its diameter thick
 FINE = 24  # points in each direction, for integrals of polynomials
+DEGREE = 6  # of the polynomials of the warping: the torsional stiffness is 2e-4 too high at half of a disk
 SLENDERNESS = 1.6  # points over the height for each of those across it
 
 
@@ -104,14 +105,13 @@ class Warping:
     Args:
         segment: Segment.
         bend: κ r.
-        degree: of the polynomials; with 6 the torsional stiffness is 2e-4 too high at half of a disk.
 
     Attributes:
         stiffness: shear stiffness of (γ2, γ3, φ′) over G π r², with φ′ in 1/r, shape (3, 3).
     """
 
-    def __init__(self, segment: Segment, bend: float = 0.0, degree: int = 6) -> None:
-        self._basis, self._bend = segment.basis(degree), bend
+    def __init__(self, segment: Segment, bend: float) -> None:
+        self._basis, self._bend = segment.basis(DEGREE), bend
         places, weights = segment.fine
         weights = weights / (1.0 - bend * places[:, 0])
         e, slopes = self._unwarped(places), self._slopes(places)

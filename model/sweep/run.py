@@ -13,7 +13,7 @@ from coilset.model.sweep.pools import Pool
 AHEAD = 2  # tasks submitted per worker, so that none is idle
 
 
-def finished(path: str | Path, retry: bool = False) -> set[str]:
+def finished(path: str | Path, retry: bool) -> set[str]:
     """Keys of the cases in a journal, without the failed ones if they are to be rerun."""
     return {record["key"] for record in read_records(path) if not (retry and record["status"] == "failed")}
 

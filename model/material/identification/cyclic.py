@@ -144,7 +144,7 @@ def fit_back_stresses(tests: Iterable[Test], G: float, nu: float, terms: int, te
         if test.kind not in AXIS:
             problem = "is a test of both tension and torsion; back stresses are fitted to tests in one direction"
             raise test.error(problem)
-        check_units(test, (2.0 * float(G) * (1.0 + float(nu)), float(G)))
+        check_units(test, float(G), float(nu))
     paths = [_path(test, G, nu) for test in tests]
     _refuse_one_way(paths)
     found, enough, best = None, 1, math.inf

@@ -51,7 +51,7 @@ def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool | None = Non
     """
     tests = tuple(tests)
     for test in tests:
-        check_units(test, (2.0 * float(G) * (1.0 + float(nu)), float(G)))
+        check_units(test, float(G), float(nu))
     kinds = {kind: [test for test in tests if test.kind == kind] for kind in ("tension", "torsion", "combined")}
     isotropic = bool(tests) and len(kinds["tension"]) == len(tests)
     saturates = not isotropic if saturates is None else saturates
@@ -71,8 +71,9 @@ def fit(tests: Iterable[Test], G: float, nu: float, saturates: bool | None = Non
     return result(model, minima, tests, float(temperature))
 
 
-def check_units(test: Test, moduli: tuple[float, float]) -> None:
-    """Refuse a test whose first loaded reading is far softer than the elastic moduli E and G allow, N/mm²."""
+def check_units(test: Test, G: float, nu: float) -> None:
+    """Refuse a test whose first loaded reading is far softer than the elastic constants allow, G in N/mm²."""
+    moduli = 2.0 * G * (1.0 + nu), G
     for component in COMPONENTS[test.kind]:
         strain, stress = np.abs(test.strain[:, component]), np.abs(test.stress[:, component])
         first = int(np.argmax(stress >= LOADED * stress.max()))
