@@ -8,6 +8,7 @@ import logging
 import math
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from functools import partial
 from typing import TypeVar
 
 from petsc4py import PETSc
@@ -275,7 +276,7 @@ class Continuation:
             # no snaps while time passes: a path that ends there ends the run
             if not outcome.converged and path.moment is None and self._ends_here(size, outcome):
                 there = size if self._unstable is None else unstable_at
-                beside = self._snap(lambda to=begun.done + there: path.load(to))  # type: ignore[misc]
+                beside = self._snap(partial(path.load, begun.done + there))
                 if beside.converged:
                     outcome, size = beside, there
                 self._unstable = None  # once a step

@@ -9,7 +9,7 @@ Readings of one specimen that err together make the intervals too narrow.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import least_squares
+from scipy.optimize import OptimizeResult, least_squares
 from scipy.stats import t as student
 
 from coilset.meshes.errors import InputError, SolveError
@@ -167,7 +167,7 @@ def modulus(law: Law, tests: Readings) -> np.ndarray:
     return 3.0 * G if tests.kind == "torsion" else E
 
 
-def _adjusted(problem: _Problem, start: tuple[float, float, float]):  # type: ignore[no-untyped-def]
+def _adjusted(problem: _Problem, start: tuple[float, float, float]) -> OptimizeResult:
     """Least squares from a start, with log c₀ found first by trying."""
     bounds = np.array([BOUNDS[name] for name in problem.names]).T
     tries = [np.array([log_strain, *start, np.log(0.5 * problem.stress)])[: len(problem.names)]
