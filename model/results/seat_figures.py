@@ -1,5 +1,6 @@
 """Figures of the seats: path of the force centre, pressure along the end coils, active turns."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -121,11 +122,12 @@ def _roughly(distance: float) -> str:
     return f"{float(f'{distance:.2g}'):g}"
 
 
-def seat_pressure(path: str | Path, setup: Setup, result: Result) -> bool:
-    """Pressure along both end coils in every step, length of wire in contact, and active turns.
+def seat_pressure(path: str | Path, setup: Setup, result: Result) -> None:
+    """Pressure along both end coils in every step, length of wire in contact, and active turns; nothing without seats.
 
-    Returns:
-        False, and nothing is drawn, if there are no seats.
+    Args:
+        path: PNG to write.
+        setup, result: of the run.
     """
     seats = {
         contact.end: (kind, contact)
@@ -133,8 +135,7 @@ def seat_pressure(path: str | Path, setup: Setup, result: Result) -> bool:
         if contact.end and len(contact.wire_turns)
     }
     if not seats or not result.seats:
-        return False
-    travel = np.array([step.travel_mm for step in result.steps])
+        return
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9.6, 6.4), layout="constrained")
         (*maps,), (lengths, turns) = figure.subplots(2, 2)
@@ -149,36 +150,46 @@ def seat_pressure(path: str | Path, setup: Setup, result: Result) -> bool:
             axes.set_title(f"{pressed} the {end} seat")
         if shown is not None:
             figure.colorbar(shown, ax=maps, label="force per length of wire in N/mm", format="{x:g}")
-        styles = phase_styles(setup)
-        for index, steps in phases(result).items():
-            for end in seats:
-                values = column(result, end, "length_mm")[steps]
-                lengths.plot(travel[steps], values, styles[index], marker="o", **DRAWN[end])
-            for name, _words, drawn in TURNS:
-                turns.plot(travel[steps], shown_turns(setup, result, name)[steps], styles[index], marker="o", **drawn)
-        for end in seats:
-            lengths.plot([], [], "-", marker="o", **DRAWN[end], label=f"{end} seat")
-        for name, words, drawn in TURNS:
-            beyond = sum(getattr(one, name) > most_turns(setup) for one in result.seats)
-            aside = f" (beyond {most_turns(setup):g} turns: {beyond} of the steps)" if beyond else ""
-            turns.plot([], [], "-", marker="o", **drawn, label=words + aside)
         most = result.seats[int(np.argmax(np.abs([step.force_N for step in result.steps])))]
+        _over_travel(lengths, setup, result, [
+            (column(result, end, "length_mm"), f"{end} seat", DRAWN[end]) for end in seats
+        ])  # fmt: skip
         bearing = " and ".join(f"{getattr(most, end).length_mm:.3g}" for end in seats)
         lengths.set(xlabel="travel in mm", ylabel="wire in contact with the seat in mm",
                     title=f"{bearing} mm bear at the greatest force")  # fmt: skip
+        _over_travel(turns, setup, result, [
+            (shown_turns(setup, result, name), words + _beyond(setup, result, name), drawn)
+            for name, words, drawn in TURNS
+        ])  # fmt: skip
         turns.set(xlabel="travel in mm", ylabel="turns", ylim=(0.0, most_turns(setup)),
                   title=_active(most.active_turns, most_turns(setup)))  # fmt: skip
-        for axes in (lengths, turns):
-            name_styles(axes, setup)
-            axes.legend(fontsize=7, **OVER_LINES)
-            axes.grid(lw=0.3)
         save(figure, path)
-    return True
+
+
+def _over_travel(
+    axes: Axes, setup: Setup, result: Result, curves: Sequence[tuple[np.ndarray, str, dict[str, Any]]]
+) -> None:
+    """Values of the steps over travel, with their names and styles, in the line of each phase."""
+    travel, styles = np.array([step.travel_mm for step in result.steps]), phase_styles(setup)
+    for index, steps in phases(result).items():
+        for values, _name, drawn in curves:
+            axes.plot(travel[steps], values[steps], styles[index], marker="o", **drawn)
+    for _values, name, drawn in curves:
+        axes.plot([], [], "-", marker="o", **drawn, label=name)
+    name_styles(axes, setup)
+    axes.legend(fontsize=7, **OVER_LINES)
+    axes.grid(lw=0.3)
 
 
 def _active(turns: float, most: float) -> str:
     """How many turns bear the greatest force; where these are beyond what is shown, or NaN, they say nothing."""
     return f"At the greatest force {turns:.3g} turns are active" if turns <= most else "Turns over travel"
+
+
+def _beyond(setup: Setup, result: Result, name: str) -> str:
+    """How many steps have more turns than are shown; empty if none has."""
+    beyond = sum(getattr(one, name) > most_turns(setup) for one in result.seats)
+    return f" (beyond {most_turns(setup):g} turns: {beyond} of the steps)" if beyond else ""
 
 
 def most_turns(setup: Setup) -> float:
