@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from coilset.model.report.panel import Panel, axis, curve
+from coilset.model.report.panel import Panel, Trace, axis, curve
 from coilset.model.results.opened import Run
 from coilset.model.style import round_end
 
@@ -63,31 +63,12 @@ def contact(run: Run) -> Panel | None:
         return None
     pressure, traces = run.data["pressure"], []
     bears: list[str] = []
-    turns, steps, heights = (run.data[name].values for name in ("wire_turn", "step", "seat_height_mm"))
     greatest = float(np.nanmax(pressure.values, initial=0.0))
     for kind in pressure["contact"].values:
         values = np.nan_to_num(pressure.sel(contact=kind).values)
-        row, place = np.nonzero(values > 0.0)
-        if not len(row):
-            continue
-        edge = {"width": 0.7, "color": "#808080"}
-        marker = {"symbol": "square", "size": 9, "color": values[row, place], "colorscale": "Viridis", "cmin": 0.0,
-                  "line": edge}  # fmt: skip
-        bar = {"title": {"text": "N/mm"}, "thickness": 14}
-        traces.append(
-            {
-                "type": "scatter",
-                "mode": "markers",
-                "x": turns[place],
-                "y": steps[row],
-                "text": [f"{height:.4g} mm high" for height in heights[row]],
-                "marker": {**marker, "cmax": round_end(greatest), "showscale": True, "colorbar": bar},
-                "meta": {"choice": len(bears)},
-                "hovertemplate": "turn %{x:.2f}, step %{y}, %{text}<br>%{marker.color:.3g} N/mm<extra></extra>",
-                "showlegend": False,
-            }
-        )
-        bears.append(str(kind))
+        if (values > 0.0).any():
+            traces.append(_pressures(run, values, greatest, len(bears)))
+            bears.append(str(kind))
     if not bears:
         return None
     ends = float(run.data["turn"].values[0]), float(run.data["turn"].values[-1])
@@ -101,3 +82,23 @@ def contact(run: Run) -> Panel | None:
         tuple(bears),
         choice="contact of",
     )
+
+
+def _pressures(run: Run, values: np.ndarray, greatest: float, choice: int) -> Trace:
+    """A square where a kind of contact bears: `values`, shape (steps, points), N/mm, as colours up to `greatest`."""
+    turns, steps, heights = (run.data[name].values for name in ("wire_turn", "step", "seat_height_mm"))
+    row, place = np.nonzero(values > 0.0)
+    marker = {"symbol": "square", "size": 9, "color": values[row, place], "colorscale": "Viridis", "cmin": 0.0,
+              "line": {"width": 0.7, "color": "#808080"}, "cmax": round_end(greatest), "showscale": True,
+              "colorbar": {"title": {"text": "N/mm"}, "thickness": 14}}  # fmt: skip
+    return {
+        "type": "scatter",
+        "mode": "markers",
+        "x": turns[place],
+        "y": steps[row],
+        "text": [f"{height:.4g} mm high" for height in heights[row]],
+        "marker": marker,
+        "meta": {"choice": choice},
+        "hovertemplate": "turn %{x:.2f}, step %{y}, %{text}<br>%{marker.color:.3g} N/mm<extra></extra>",
+        "showlegend": False,
+    }
