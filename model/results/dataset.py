@@ -1,20 +1,18 @@
-"""Fields of the snapshots: a labelled data set of the section points, and line meshes for ParaView."""
+"""The labelled data set of a run: section points at the snapshots, the wire and the pressure on it after each step."""
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from coilset.model.results.folder import make, whole
 from coilset.model.results.netcdf import LabelledData, Variable, write_netcdf
 from coilset.model.results.record import Result, Setup, Snapshot
 from coilset.model.results.warnings import run_warnings
 from coilset.model.section.ground import section_points
 from coilset.model.section.rules import SURFACE_POINTS
-from coilset.model.section.surface import component, shear
 
 RESULTANTS = ["N", "Q2", "Q3", "Mt", "M2", "M3"]
 
@@ -115,30 +113,10 @@ def with_origin(data: LabelledData, setup: Setup, result: Result, origin: Mappin
     warnings = [asdict(warning) for warning in run_warnings(setup, result)]
     texts = {name: value if isinstance(value, str) else json.dumps(value) for name, value in origin.items()}
     renamed = {"material_file" if name == "material" else name: text for name, text in texts.items()}
-    return data.with_attrs({**renamed, "warnings": json.dumps(warnings), "complete": str(result.complete).lower()})
+    told = {"warnings": json.dumps(warnings), "complete": str(result.complete).lower()}
+    return replace(data, attrs={**data.attrs, **renamed, **told})
 
 
 def write_points(folder: str | Path, data: LabelledData) -> None:
     """points.nc (NetCDF 4)."""
     write_netcdf(Path(folder) / "points.nc", data)
-
-
-def write_fields(folder: str | Path, setup: Setup, snapshots: Sequence[Snapshot]) -> None:
-    """fields/NN.vtu: the line mesh at each snapshot with resultants and the maximum stresses, for ParaView."""
-    import meshio
-
-    folder = Path(folder) / "fields"
-    make(folder)
-    n = len(setup.turns) - 1
-    cells = [("line", np.stack([np.arange(n), np.arange(1, n + 1)], axis=1))]
-    for number, shot in enumerate(snapshots):
-        mean = shot.resultants.mean(axis=1)
-        data = {name: [mean[:, k]] for k, name in enumerate(RESULTANTS)}
-        data["shear_max_MPa"] = [shot.shear.max(axis=(1, 2))]
-        data["normal_max_MPa"] = [np.abs(shot.point_state[..., 0]).max(axis=(1, 2))]
-        data["work_max_MPa"] = [component(shot.point_state, shot.components, "b").max(axis=(1, 2))]
-        data["surface_shear_max_MPa"] = [shear(shot.surface_state, shot.components).max(axis=(1, 2))]
-        data["surface_shear_inside_MPa"] = [setup.inside.shear(shot.surface_state, shot.components).mean(axis=1)]
-        data["wire_radius_mm"] = [setup.wire_radius]
-        with whole(folder / f"{number:02d}.vtu") as path:
-            meshio.write(path, meshio.Mesh(shot.x, cells, cell_data=data))

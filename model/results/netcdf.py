@@ -44,10 +44,6 @@ class LabelledData:
         return replace(self, variables={**self.variables, **other.variables},
                        coordinates={**self.coordinates, **other.coordinates})  # fmt: skip
 
-    def with_attrs(self, attrs: Mapping[str, str]) -> "LabelledData":
-        """A copy with more attributes."""
-        return replace(self, attrs={**self.attrs, **attrs})
-
     def to_xarray(self) -> "xr.Dataset":
         """The same as an `xarray.Dataset`, which is also what `xarray.open_dataset` gives of the file."""
         import xarray as xr

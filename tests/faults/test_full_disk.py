@@ -21,7 +21,7 @@ from coilset.meshes.errors import CoilsetError
 from coilset.model import examples
 from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.results import dataset, figures, folder, scene, seat_figures
+from coilset.model.results import dataset, fields, figures, folder, scene, seat_figures
 from coilset.model.results.checkpoint import Checkpoint
 from coilset.model.results.display import ensure
 from coilset.model.results.grid_file import write_grid
@@ -81,7 +81,7 @@ WRITERS = {
     "history": lambda out, one: folder.write_history(out, one.result.steps),
     "seats": lambda out, one: folder.write_seats(out, one.result.seats),
     "points": lambda out, one: dataset.write_points(out, dataset.point_state(one.setup, one.result)),
-    "fields": lambda out, one: dataset.write_fields(out, one.setup, one.result.snapshots),
+    "fields": lambda out, one: fields.write_fields(out, one.setup, one.result.snapshots),
     "checkpoint": save,
     "characteristic": characteristic,
     "cross-section": lambda out, one: figures.cross_section(out / "a.png", one.setup, one.result.snapshots[-1]),

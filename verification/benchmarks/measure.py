@@ -150,7 +150,7 @@ def pair(watch: Stopwatch, stage: str) -> list[float]:
 
 def write(watch: Stopwatch, analysis: "Analysis") -> None:
     """Everything that `coilset solve` writes, into a folder that is thrown away."""
-    from coilset.model.results import dataset, display, figures, scene
+    from coilset.model.results import dataset, display, fields, figures, scene
     from coilset.model.results.folder import write_history, write_summary
     from coilset.model.results.summary import summarise
 
@@ -161,7 +161,7 @@ def write(watch: Stopwatch, analysis: "Analysis") -> None:
         with watch.stage("output"):
             write_history(folder, result.steps)
             dataset.write_points(folder, dataset.point_state(analysis.setup, result))
-            dataset.write_fields(folder, analysis.setup, result.snapshots)
+            fields.write_fields(folder, analysis.setup, result.snapshots)
             write_summary(folder, summary)
         with watch.stage("pictures"):
             figures.characteristic(folder / "characteristic.png", analysis.setup, result, summary)
