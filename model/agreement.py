@@ -1,4 +1,4 @@
-"""What one rank finds out, all ranks know: an error on one of them alone would leave the others waiting."""
+"""What one rank finds out, all ranks know: an error on one alone would leave the others waiting; sums and maxima."""
 
 from collections.abc import Callable
 from typing import TypeVar
@@ -29,3 +29,13 @@ def on_first_rank(comm: MPI.Comm, action: Callable[[], Found]) -> Found | None:
         kind, text = shared
         raise kind(text)
     return found
+
+
+def sum_of_ranks(comm: MPI.Comm, value: float) -> float:
+    """Sum of a value over all ranks; collective."""
+    return comm.allreduce(float(value)) if comm.size > 1 else float(value)
+
+
+def max_of_ranks(comm: MPI.Comm, value: float) -> float:
+    """Maximum of a value over all ranks; collective."""
+    return comm.allreduce(float(value), op=MPI.MAX) if comm.size > 1 else float(value)

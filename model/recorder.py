@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from coilset.model.agreement import max_of_ranks
 from coilset.model.case.phases import AnyPhase, TimePhase
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.convergence import Outcome
@@ -18,7 +19,7 @@ from coilset.model.results.record import BucklingMode, Frame, Result, SeatReacti
 from coilset.model.results.seat_reactions import faint_force, mean_torque, seat_reactions
 from coilset.model.results.shape import LeastRise, clearance
 from coilset.model.results.warnings import step_warnings
-from coilset.model.rod.rod import Rod, comm_max
+from coilset.model.rod.rod import Rod
 from coilset.model.section import surface
 from coilset.model.state import Where
 from coilset.model.warning import Warning
@@ -128,7 +129,7 @@ class Recorder:
     def _greatest_plastic_work(self) -> float:
         """Maximum b* on the wire's surface at the last equilibrium, N/mm²; collective."""
         work = surface.component(self.rod.surface_state, self.rod.sections.components, "b")
-        return comm_max(self.system.comm, work.max(initial=0.0))
+        return max_of_ranks(self.system.comm, work.max(initial=0.0))
 
     def _load_loss(self, phase: int, force: float, loading: Sequence[AnyPhase]) -> float | None:
         """Percentage of the force lost since time began to pass at constant height; None if it does not."""

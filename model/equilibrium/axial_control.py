@@ -5,6 +5,7 @@ from typing import Literal
 
 import numpy as np
 
+from coilset.model.agreement import sum_of_ranks
 from coilset.model.contact.base import ENDS, LEVEL, SEAT_DOFS
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.load import Load
@@ -91,7 +92,7 @@ class AxialControl:
     def _force(self, reactions: np.ndarray) -> float:
         here = self.axial - self.layout.start
         mine = float(reactions[here]) if 0 <= here < len(reactions) else 0.0
-        return -(self.layout.comm.allreduce(mine) if self.layout.comm.size > 1 else mine)
+        return -sum_of_ranks(self.layout.comm, mine)
 
     def centre(self, end: str, x: np.ndarray) -> np.ndarray:
         """Centre of the seat, or where the axis meets the head, at station positions `x`, shape (3,), mm."""

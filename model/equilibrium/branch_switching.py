@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from petsc4py import PETSc
 
+from coilset.model.agreement import sum_of_ranks
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.load import Drag, Load
 from coilset.model.equilibrium.newton import Start
@@ -117,7 +118,7 @@ class Snap:
         if unstable is not None and self.solve(load, Start(unstable)).converged:
             weakest = self.stability.weakest(load)
             came, mode = self.system.increments.getArray(readonly=True), weakest.mode.getArray(readonly=True)
-            side = -1.0 if self._sum((weights * came) @ mode) > 0.0 else 1.0
+            side = -1.0 if sum_of_ranks(self.system.comm, (weights * came) @ mode) > 0.0 else 1.0
             origin = side * self.control.branch_amplitude * radius * mode
             self.system.commit()
         else:
@@ -138,7 +139,7 @@ class Snap:
             return replace(outcome, converged=False)
         way = self.system.increments.getArray(readonly=True).copy()
         force = drag.forces(way)
-        descent.released += 0.5 * float(self._sum((descent.drag_force + force) @ way))
+        descent.released += 0.5 * sum_of_ranks(self.system.comm, (descent.drag_force + force) @ way)
         descent.drag_force, descent.origin = force, np.zeros_like(way)
         descent.moved, descent.failed = moved, 0
         descent.weakest = weakest = self.stability.weakest(load)
@@ -160,10 +161,6 @@ class Snap:
             return None
         self.system.commit()
         way = self.system.state["increments"].equilibrium
-        released = descent.released + 0.5 * float(self._sum(descent.drag_force @ way))
+        released = descent.released + 0.5 * sum_of_ranks(self.system.comm, descent.drag_force @ way)
         # less than nothing: yielding took up more of the push than the way set free, and nothing drives the spring on
         return replace(outcome, left_branch=True, released=max(released, 0.0))
-
-    def _sum(self, value: float) -> float:
-        comm = self.system.comm
-        return comm.allreduce(float(value)) if comm.size > 1 else float(value)

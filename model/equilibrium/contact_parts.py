@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from mpi4py import MPI
 
+from coilset.model.agreement import max_of_ranks
 from coilset.model.contact.base import Augmented, Contact, Contribution, HasMemory, LimitsStep
 from coilset.model.contact.memory import Memory
 from coilset.model.equilibrium.layout import LineLayout
@@ -63,7 +64,7 @@ class ContactParts:
         """Maximum penetration of coils and seats, mm, cheaper than `evaluate`; collective."""
         trial = self.surroundings.trial(x, seats)
         deepest = max(contact.max_penetration(trial) for contact in self._limiting)
-        return self.comm.allreduce(deepest, op=MPI.MAX) if self.comm.size > 1 else deepest
+        return max_of_ranks(self.comm, deepest)
 
     def gathered(self, parts: list[Contribution]) -> list[Contribution]:
         """What `evaluate` gave, of all ranks, without stiffness, for output; collective.

@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from mpi4py import MPI
 from numba import njit
 
+from coilset.model.agreement import max_of_ranks, sum_of_ranks
 from coilset.model.equilibrium.layout import Layout
 from coilset.model.extremes import largest
 from coilset.model.state import Field
@@ -111,21 +111,21 @@ class Load:
     @cached_property
     def prescribed(self) -> float:
         """Norm of the prescribed increments; collective when it is first asked for."""
-        return float(np.sqrt(self._sum(self.increments @ self.increments)))
+        return float(np.sqrt(sum_of_ranks(self.layout.comm, self.increments @ self.increments)))
 
     def multiple_of(self, other: "Load") -> float:
         """The factor by which it prescribes what another load on the same unknowns does; collective."""
-        return self._sum(self.increments @ other.increments) / other.prescribed**2
+        return sum_of_ranks(self.layout.comm, self.increments @ other.increments) / other.prescribed**2
 
     @cached_property
     def _greatest(self) -> float:
         """The greatest of the prescribed increments of all ranks; collective when it is first asked for."""
-        return self._max(largest(self.increments))
+        return max_of_ranks(self.layout.comm, largest(self.increments))
 
     def misses(self, increments: np.ndarray, load_factor: float) -> bool:
         """Whether the increments, this rank's part, miss prescribed ones by more than rounding; collective."""
         off = _largest_miss(self.held, self.increments, load_factor, increments)
-        return self._max(off) > 1e-12 * self._greatest
+        return max_of_ranks(self.layout.comm, off) > 1e-12 * self._greatest
 
     def reached(self, increments: np.ndarray) -> float:
         """Fraction of the step reached by the increments, from the largest prescribed one, else 1; collective."""
@@ -138,12 +138,6 @@ class Load:
         if self.layout.comm.size > 1:
             size, part = max(self.layout.comm.allgather((size, part)))
         return part if size > 0.0 else 1.0
-
-    def _sum(self, value: float) -> float:
-        return self.layout.comm.allreduce(float(value)) if self.layout.comm.size > 1 else float(value)
-
-    def _max(self, value: float) -> float:
-        return self.layout.comm.allreduce(float(value), op=MPI.MAX) if self.layout.comm.size > 1 else float(value)
 
 
 def _mine(layout: Layout, entries: Mapping[int, float]) -> tuple[np.ndarray, np.ndarray]:

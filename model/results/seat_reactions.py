@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
+from coilset.model.agreement import sum_of_ranks
 from coilset.model.contact.base import ENDS, SEAT_DOFS, Contact, Contribution
 from coilset.model.contact.bearing import bearing_on_seat, pressures_on, turns_without
 from coilset.model.contact.resultants import Wrench
@@ -128,9 +129,7 @@ def active_turns(rod: Rod, turns: np.ndarray, force: float, torque: np.ndarray) 
         turns: of the stations, shape (n + 1,).
         force, torque: ΔF, change of the axial force, N, and that of `mean_torque`.
     """
-    line = rod.line
-    active = _active_turns(torque, force, rod.x, rod.cells, turns, line.element)
-    return rod.comm.allreduce(active) if rod.comm.size > 1 else active
+    return sum_of_ranks(rod.comm, _active_turns(torque, force, rod.x, rod.cells, turns, rod.line.element))
 
 
 @njit(cache=True)

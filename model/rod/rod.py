@@ -6,12 +6,12 @@ from functools import cached_property
 
 import numpy as np
 from dolfinx import fem
-from mpi4py import MPI
 from petsc4py import PETSc
 
 from coilset.meshes.compat import geometry_dofs
 from coilset.meshes.line import LineMesh
 from coilset.meshes.placement import Placement, straight
+from coilset.model.agreement import max_of_ranks, sum_of_ranks
 from coilset.model.body import Moment
 from coilset.model.extremes import largest
 from coilset.model.material.creep_law import CreepLaw
@@ -32,11 +32,6 @@ from coilset.model.state import Field, State, Where
 from coilset.model.threads import Threads
 
 EPSILON = float(np.finfo(float).eps)
-
-
-def comm_max(comm: MPI.Comm, value: float) -> float:
-    """Maximum of a value over all ranks."""
-    return comm.allreduce(float(value), op=MPI.MAX) if comm.size > 1 else float(value)
 
 
 class Rod:
@@ -110,11 +105,12 @@ class Rod:
         self._increment, self._correction = self.increment.x.array, self.correction.x.array
         self._finer: FinerPath | None = None
         self._residual, self._tangent = compiled_forms(self.comm).on(vars(self.coefficients), x, self._nodes)
-        self.largest_radius = comm_max(self.comm, self.radius.max(initial=0.0))
+        self.largest_radius = max_of_ranks(self.comm, self.radius.max(initial=0.0))
         self.axial_force = law.E * np.pi * self.largest_radius**2  # E A
         self.extent = float(np.ptp(line.stations, axis=0).max())
-        self._constraint_weight = comm_max(self.comm, (law.E * np.pi * self.radius**2 / self.l0).max(initial=0.0))
-        self._bending_stiffness = comm_max(self.comm, (law.E * np.pi * self.radius**4 / 4.0 / self.l0).max(initial=0.0))
+        axial, bending = law.E * np.pi * self.radius**2 / self.l0, law.E * np.pi * self.radius**4 / 4.0 / self.l0
+        self._constraint_weight = max_of_ranks(self.comm, axial.max(initial=0.0))
+        self._bending_stiffness = max_of_ranks(self.comm, bending.max(initial=0.0))
         self._start(x)
 
     def _start(self, x: np.ndarray) -> None:
@@ -300,8 +296,8 @@ class Rod:
         which short elements raise. And a strain of the wire of 1e-14, so that a step without any change of load also
         counts as being at rest.
         """
-        greatest = comm_max(self.comm, largest(increments))
+        greatest = max_of_ranks(self.comm, largest(increments))
         greatest = min(greatest, self.extent)  # a diverging body is not at rest
-        size = self.comm.allreduce(len(increments)) if self.comm.size > 1 else len(increments)
+        size = sum_of_ranks(self.comm, len(increments))
         stiffest = max(greatest * self.constraint_weight, self._bending_stiffness)
         return max(EPSILON * math.sqrt(size) * stiffest, 1e-14 * self.axial_force)
