@@ -96,7 +96,7 @@ class Foresees(Protocol):
         """Build the tangents with the forces of the trial state."""
         ...
 
-    def forces_without_turning(self, vector: np.ndarray, length: float) -> None:
+    def forces_without_second_order(self, vector: np.ndarray, length: float) -> None:
         """Add the internal forces at the trial state, which lies `length` of the correction away.
 
         They are as in Body, but without the contribution of strains of second order in the correction.

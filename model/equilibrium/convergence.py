@@ -138,9 +138,9 @@ class EquilibriumTest:
         self._first = self._least = np.inf
         self._least_at = 0
 
-    def begin(self, norm: float, feigned: float = 0.0) -> None:
+    def begin(self, norm: float, spurious: float = 0.0) -> None:
         """Begin a solve with the initial norm of the residual, and the size of spurious forces of corrections."""
-        self._first, self._least, self._least_at = max(norm, feigned), norm, 0
+        self._first, self._least, self._least_at = max(norm, spurious), norm, 0
 
     def is_met(self, found: Imbalance, tolerance: float, rounding: float) -> bool:
         """Whether it is an equilibrium to ε = `tolerance`, or to `rounding`, N."""

@@ -5,6 +5,8 @@ tangent is built with the forces that the correction foresees, see coilset.model
 what the residual is without these spurious forces.
 """
 
+from functools import partial
+
 import numpy as np
 from petsc4py import PETSc
 
@@ -48,7 +50,7 @@ class Foreseeing:
         self._length, self.used = None, False
 
     def start(self, guess: PETSc.Vec) -> None:
-        """Take a start for a correction of the last equilibrium: its finite turns feign forces like any other's."""
+        """Take a start for a correction of the last equilibrium: its finite rotations cause spurious forces, too."""
         system = self.system
         if system.touches:
             return
@@ -72,22 +74,23 @@ class Foreseeing:
             self.body.correction.x.scatter_forward()
         self.body.predict()
 
-    def correct(self, length: float, feigns: bool) -> None:
+    def correct(self, length: float, only_spurious: bool) -> None:
         """The predicted correction is made.
 
         Args:
             length: share of it that is made.
-            feigns: as in StepLength.
+            only_spurious: as in StepLength.
         """
-        self._length = length if feigns or self.always or not self.system.touches else None
+        self._length = length if only_spurious or self.always or not self.system.touches else None
 
     def forget(self) -> None:
         """The next state is not that to which the last correction led."""
         self._length = None
 
-    def residual_without_turning(self, load: Load, load_factor: float, length: float, F: PETSc.Vec) -> None:
+    def residual_without_second_order(self, load: Load, load_factor: float, length: float, F: PETSc.Vec) -> None:
         """As System.residual at the last evaluation, `length` of the predicted correction away."""
-        self.system.residual_with(lambda forces: self.body.forces_without_turning(forces, length), load, load_factor, F)
+        forces = partial(self.body.forces_without_second_order, length=length)
+        self.system.residual_with(forces, load, load_factor, F)
 
     def tangent(self, increments: PETSc.Vec, load: Load, matrix: TangentMatrix, at_step_start: bool) -> None:
         """As System.tangent, with the foreseen forces where a correction has led here; collective."""

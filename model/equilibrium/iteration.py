@@ -219,7 +219,7 @@ class Iteration:
         step = self.search(x, y, self.F, self.load, self.load_factor, self._foreseeing)
         self._step_length = step.contact_limit * step.value
         if self._foreseeing is not None:
-            self._foreseeing.correct(self._step_length, step.feigns)
+            self._foreseeing.correct(self._step_length, step.only_spurious)
         for factor in (step.contact_limit, step.value):
             if factor != 1.0:
                 y.scale(factor)

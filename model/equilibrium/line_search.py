@@ -31,13 +31,13 @@ class StepLength(NamedTuple):
         contact_limit: factor of the correction that contacts allow.
         value: final factor of the correction, from the search for the zero of the work.
         ends_on_the_way: whether the step misses prescribed increments that the full correction would meet.
-        feigns: whether it is accepted only because forces without the spurious ones of finite rotations have decreased.
+        only_spurious: whether it increases the spurious forces of finite rotations alone: without them, they decrease.
     """
 
     contact_limit: float
     value: float
     ends_on_the_way: bool
-    feigns: bool
+    only_spurious: bool
 
 
 class WorkSearch:
@@ -72,7 +72,7 @@ class WorkSearch:
         allowed = self.limit.allowed(system.max_penetration)
         pending = load.misses(x.getArray(readonly=True), load_factor)
         y.copy(self._direction)
-        limit, length, feigns = 1.0, 1.0, False
+        limit, length, only_spurious = 1.0, 1.0, False
         work, norm = self._at(1.0)
         if system.max_penetration > allowed and (limit := self.limit.step_length(x, y, -1.0)) < 1.0:
             self._direction.scale(limit)
@@ -84,25 +84,25 @@ class WorkSearch:
             F.copy(self._force)
             start_work, start_norm = start = self._work_and_norm()
             if not self._is_right(start, work, norm):
-                feigns = self._is_right(start, *self._without_turning(limit, length))
-                if not feigns:
+                only_spurious = self._is_right(start, *self._without_second_order(limit, length))
+                if not only_spurious:
                     crosses_zero = start_work > 0.0 > work
                     length = (self._zero(start_work, length, work) if crosses_zero else
                               self._back(start_norm, length, norm))  # fmt: skip
-        return StepLength(limit, length, pending and limit * length < 1.0, feigns)
+        return StepLength(limit, length, pending and limit * length < 1.0, only_spurious)
 
     def _is_right(self, start: tuple[float, float], work: float, norm: float) -> bool:
         """Whether norm or work of the forces have decreased."""
         return norm < start[1] or abs(work) <= self.control.accepted_work * abs(start[0])
 
-    def _without_turning(self, limit: float, length: float) -> tuple[float, float]:
+    def _without_second_order(self, limit: float, length: float) -> tuple[float, float]:
         """Work and norm at the last evaluation, at `length`, without the spurious forces of finite rotations.
 
         In a slender rod these grow over a correction that is nevertheless right; the next one removes them.
         """
         if self._foreseeing is None:
             return np.inf, np.inf
-        self._foreseeing.residual_without_turning(self._load, self._load_factor, limit * length, self._force)
+        self._foreseeing.residual_without_second_order(self._load, self._load_factor, limit * length, self._force)
         return self._work_and_norm()
 
     def _at(self, length: float) -> tuple[float | None, float]:

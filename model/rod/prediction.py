@@ -125,7 +125,7 @@ class Prediction:
         out *= length
         out += self.forces
 
-    def take_turning_off(self, length: float) -> None:
+    def take_second_order_off(self, length: float) -> None:
         """Take the part of second-order strains off the forces after `length` of the correction: s − D (e − e_lin).
 
         In an elastic rod they are the foreseen ones then; where the wire yields, the reduction by yielding remains.

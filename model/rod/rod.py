@@ -254,10 +254,10 @@ class Rod:
         """Build the tangents with the actual section forces; see Foresees."""
         self.coefficients.foreseen[:] = self.coefficients.s
 
-    def forces_without_turning(self, vector: np.ndarray, length: float) -> None:
+    def forces_without_second_order(self, vector: np.ndarray, length: float) -> None:
         """As `internal_forces`, without the contribution of strains of second order in the correction; see Foresees."""
         actual = self.coefficients.s.copy()
-        self._prediction.take_turning_off(length)
+        self._prediction.take_second_order_off(length)
         self.internal_forces(vector)
         self.coefficients.s[:] = actual
 

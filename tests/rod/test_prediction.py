@@ -44,7 +44,7 @@ def test_foreseen_forces_are_the_derivative_of_the_forces(turned):
     np.testing.assert_array_equal(rod.coefficients.foreseen, forces)
 
 
-def test_without_turning_an_elastic_rod_has_its_foreseen_forces(turned):
+def test_without_strains_of_second_order_an_elastic_rod_has_its_foreseen_forces(turned):
     """After 0.7 of a correction of 0.1 rad and 10 mm; the forces themselves differ from the foreseen ones by far."""
     rod, base, direction = turned
     direction[rod.numbering.u] *= 100.0
@@ -55,7 +55,7 @@ def test_without_turning_an_elastic_rod_has_its_foreseen_forces(turned):
     there = at(rod, base + 0.7 * direction)
     rod.foresee(0.7)
     found, expected = (np.zeros(len(base)) for _ in range(2))
-    rod.forces_without_turning(found, 0.7)
+    rod.forces_without_second_order(found, 0.7)
     np.testing.assert_array_equal(rod.coefficients.s, there)
     assert np.abs(there - rod.coefficients.foreseen).max() > 0.02 * np.abs(rod.coefficients.foreseen).max()
     rod.coefficients.s[:] = rod.coefficients.foreseen
