@@ -26,7 +26,7 @@ from coilset.meshes.errors import SolveError
 from coilset.model.material.law import Law
 from coilset.model.material.points import initial_state
 from coilset.model.section.rules import DiskRule, polar, upper_half
-from coilset.model.section.uniform import RISE, Rod, force_shear, step
+from coilset.model.section.uniform import RISE, Coil, force_shear, step
 
 SMALLEST_PART = 2.0**-8  # of a step, below which the step is abandoned
 
@@ -152,7 +152,7 @@ def _press(
         across, along = np.zeros_like(y), np.ones_like(y)
         if not plain:
             across, along = force_shear(0.5 * d, 0.5 * d * y, 0.5 * d * z, bend)
-        rod = Rod(p, R, h, j, 0.5 * d * y, 0.5 * d * z, area, bend, across, along, by_force, free)
+        coil = Coil(p, R, h, j, 0.5 * d * y, 0.5 * d * z, area, bend, across, along, by_force, free)
         last = 0.0
         for k in range(targets.shape[1]):
             start, end = force[i], targets[i, k]
@@ -163,7 +163,7 @@ def _press(
             while done < 1.0:
                 value = end if done + part >= 1.0 else start + (done + part) * (end - start)
                 elastic = direction != last  # when the load reverses, and when continuing from a given state
-                good, axial, about = step(rod, value, elastic, q[i], points[i], new, sections[i], tangents[i])
+                good, axial, about = step(coil, value, elastic, q[i], points[i], new, sections[i], tangents[i])
                 if good:
                     force[i], torque[i] = axial, about
                     done, last = done + part, direction

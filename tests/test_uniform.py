@@ -9,17 +9,17 @@ from coilset.meshes.errors import SolveError
 from coilset.model import uniform
 from coilset.model.material import library
 from coilset.model.section.rules import polar, upper_half
-from coilset.model.section.uniform import Rod, force_shear, integrate, residual_and_tangent, strains
+from coilset.model.section.uniform import Coil, force_shear, integrate, residual_and_tangent, strains
 
 COIL = np.array([5.0, 40.0, 12.0, 2.5])
 
 
-def rod(law, free=True):
+def coil(law, free=True):
     rule, R, h = polar(), 20.0, 12.0 / (2 * np.pi)
     y, z = 2.5 * np.ascontiguousarray(rule.points.T)
     j = math.hypot(R, h)
     bend, area = R / j**2, np.pi * 6.25 * rule.weights
-    return Rod(law.parameters(), R, h, j, y, z, area, bend, *force_shear(2.5, y, z, bend), True, free)
+    return Coil(law.parameters(), R, h, j, y, z, area, bend, *force_shear(2.5, y, z, bend), True, free)
 
 
 def forces(case, q, old_E, points):
@@ -34,7 +34,7 @@ def forces(case, q, old_E, points):
 
 def test_tangent_in_a_plastic_state():
     law = library.load("ck15")
-    case = rod(law)
+    case = coil(law)
     start = np.array([20.0, math.atan2(case.h, 20.0), case.h, 1.0])
     points = uniform.unloaded(COIL, law, polar()).points[0]
     q = start + np.array([0.02, -0.02, -0.4, 0.005])

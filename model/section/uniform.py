@@ -20,7 +20,7 @@ ROUNDING = 1e-13  # below which, times the maximum resultant, nothing is out of 
 
 # One coil and how it is driven: constants of the law; radius R, rise h, j = √(R² + h²); places and areas of the points;
 # dm/dy, R/j² or, for a plain section, 0; m ∂(γ₁₂, γ₁₃)/∂Γ₃ at the points.
-Rod = namedtuple("Rod", "p R h j y z area bend across along by_force free")
+Coil = namedtuple("Coil", "p R h j y z area bend across along by_force free")
 
 
 @njit(cache=True)
@@ -35,20 +35,20 @@ def force_shear(r: float, y: np.ndarray, z: np.ndarray, bend: float) -> tuple[np
 
 
 @njit(**INLINE)
-def strains(rod: Rod, q: np.ndarray, E: np.ndarray) -> None:
+def strains(coil: Coil, q: np.ndarray, E: np.ndarray) -> None:
     """Write E = (Γ₁, Γ₃, K₁, K₃) at the coordinates q."""
-    c, s, j = math.cos(q[INCLINATION]), math.sin(q[INCLINATION]), rod.j
+    c, s, j = math.cos(q[INCLINATION]), math.sin(q[INCLINATION]), coil.j
     around, up = q[TURN] * q[RADIUS], q[RISE]
     E[0] = (around * c + up * s) / j - 1.0
     E[1] = (up * c - around * s) / j
-    E[2] = q[TURN] * s / j - rod.h / j**2
-    E[3] = q[TURN] * c / j - rod.R / j**2
+    E[2] = q[TURN] * s / j - coil.h / j**2
+    E[3] = q[TURN] * c / j - coil.R / j**2
 
 
 @njit(**INLINE)
-def derivatives(rod: Rod, q: np.ndarray, S: np.ndarray, B: np.ndarray, H: np.ndarray) -> None:
+def derivatives(coil: Coil, q: np.ndarray, S: np.ndarray, B: np.ndarray, H: np.ndarray) -> None:
     """Write B = ∂E/∂q and H = Σ S_k ∂²E_k/∂q², both 4 × 4."""
-    c, s, j = math.cos(q[INCLINATION]), math.sin(q[INCLINATION]), rod.j
+    c, s, j = math.cos(q[INCLINATION]), math.sin(q[INCLINATION]), coil.j
     r, up, λ = q[RADIUS], q[RISE], q[TURN]
     B[:] = 0.0
     B[0, RADIUS], B[0, INCLINATION], B[0, RISE], B[0, TURN] = λ * c, up * c - λ * r * s, s, r * c
@@ -70,7 +70,7 @@ def derivatives(rod: Rod, q: np.ndarray, S: np.ndarray, B: np.ndarray, H: np.nda
 
 @njit(**INLINE)
 def integrate(
-    rod: Rod,
+    coil: Coil,
     E: np.ndarray,
     old_E: np.ndarray,
     old: np.ndarray,
@@ -86,19 +86,19 @@ def integrate(
     """
     S[:] = 0.0
     T[:] = 0.0
-    for k in range(len(rod.y)):
-        y, z = rod.y[k], rod.z[k]
-        m = 1.0 + y * rod.bend
+    for k in range(len(coil.y)):
+        y, z = coil.y[k], coil.z[k]
+        m = 1.0 + y * coil.bend
         stretched, before = m + E[0] + y * E[3], m + old_E[0] + y * old_E[3]
         if not stretched > 0.0:
             return False
         e11 = math.log(stretched / before)
-        across, along = rod.across[k], rod.along[k]
+        across, along = coil.across[k], coil.along[k]
         g12 = (across * (E[1] - old_E[1]) + (E[2] - old_E[2]) * z) / m
         g13 = (along * (E[1] - old_E[1]) - y * (E[2] - old_E[2])) / m
-        if rod_point(rod.p, old[k], e11, g12, g13, new[k], C) < 0:
+        if rod_point(coil.p, old[k], e11, g12, g13, new[k], C) < 0:
             return False
-        dA = rod.area[k] * m
+        dA = coil.area[k] * m
         # ∂(ε₁₁, γ₁₂, γ₁₃)/∂E: (a, 0, 0, ya), b (0, across, z, 0), b (0, along, −y, 0)
         a, b = 1.0 / stretched, 1.0 / m
         σ, t2, t3 = new[k, 0] * dA, new[k, 1] * dA, new[k, 2] * dA
@@ -134,25 +134,25 @@ def integrate(
 
 
 @njit(cache=True)
-def residual_and_tangent(rod: Rod, q: np.ndarray, S: np.ndarray, T: np.ndarray, f: np.ndarray, K: np.ndarray) -> None:
+def residual_and_tangent(coil: Coil, q: np.ndarray, S: np.ndarray, T: np.ndarray, f: np.ndarray, K: np.ndarray) -> None:
     """Write f = ∂W/∂q per radian (N, and N mm for ϑ and λ) and its derivative K; ∂W/∂h̄ is the force that pulls."""
     B, H = np.empty((4, 4)), np.empty((4, 4))
-    derivatives(rod, q, S, B, H)
+    derivatives(coil, q, S, B, H)
     for a in range(4):
         f[a] = 0.0
         for k in range(4):
-            f[a] += rod.j * S[k] * B[k, a]
+            f[a] += coil.j * S[k] * B[k, a]
         for b in range(4):
             K[a, b] = H[a, b]
             for k in range(4):
                 for l in range(4):
                     K[a, b] += B[k, a] * T[k, l] * B[l, b]
-            K[a, b] *= rod.j
+            K[a, b] *= coil.j
 
 
 @njit(cache=True)
 def step(
-    rod: Rod,
+    coil: Coil,
     value: float,
     elastic: bool,
     q: np.ndarray,
@@ -164,7 +164,7 @@ def step(
     """One step: to the rise `value` (mm/rad), or under the axial force `value` (compression positive, N).
 
     Args:
-        rod: Rod.
+        coil: Coil.
         elastic: begin with the elastic tangent, not with that of the last step.
         q, points: coordinates and point states at the last equilibrium; replaced if there is a new one.
         new: room for point states.
@@ -175,24 +175,24 @@ def step(
     """
     E, old_E, C = np.empty(4), np.empty(4), np.empty((3, 3))
     f, K, held = np.empty(4), np.empty((4, 4)), np.zeros(4, dtype=np.bool_)
-    trial, scale = q.copy(), np.array([1.0, 1.0 / rod.R, 1.0, 1.0 / rod.R])
+    trial, scale = q.copy(), np.array([1.0, 1.0 / coil.R, 1.0, 1.0 / coil.R])
     kept_S, kept_T = S.copy(), T.copy()
-    held[RISE], held[TURN] = not rod.by_force, not rod.free
-    strains(rod, q, old_E)
-    good = integrate(rod, old_E, old_E, points, new, C, S, T) if elastic else True
+    held[RISE], held[TURN] = not coil.by_force, not coil.free
+    strains(coil, q, old_E)
+    good = integrate(coil, old_E, old_E, points, new, C, S, T) if elastic else True
     load = 0.0
     for iteration in range(MAX_ITERATIONS):
         if not good:
             break
-        residual_and_tangent(rod, trial, S, T, f, K)
+        residual_and_tangent(coil, trial, S, T, f, K)
         force, torque = -f[RISE], f[TURN]
-        f[RISE] += value if rod.by_force else 0.0
+        f[RISE] += value if coil.by_force else 0.0
         size = 0.0
         for a in range(4):
             if not held[a]:
                 size = max(size, abs(f[a] * scale[a]))
         if iteration == 0:
-            load = abs(f[RISE]) if rod.by_force else np.abs(K[:, RISE] * scale).max() * abs(value - q[RISE])
+            load = abs(f[RISE]) if coil.by_force else np.abs(K[:, RISE] * scale).max() * abs(value - q[RISE])
         elif size <= max(PRECISION * load, ROUNDING * np.abs(S).max()):
             q[:], points[:] = trial, new
             return True, force, torque
@@ -201,10 +201,10 @@ def step(
                 for b in range(4):
                     K[a, b] = 1.0 if a == b else 0.0
                 f[a] = 0.0
-        if iteration == 0 and not rod.by_force:
+        if iteration == 0 and not coil.by_force:
             f[RISE] = q[RISE] - value
         trial -= np.linalg.solve(K, f)
-        strains(rod, trial, E)
-        good = integrate(rod, E, old_E, points, new, C, S, T)
+        strains(coil, trial, E)
+        good = integrate(coil, E, old_E, points, new, C, S, T)
     S[:], T[:] = kept_S, kept_T
     return False, 0.0, 0.0
