@@ -131,6 +131,11 @@ class Constants(Strict):
         Annotated[NonNormality, Tag("(constants)")] | Word, Discriminator(_kind), Field(description=NONE)
     ]
 
+    @property
+    def terms(self) -> tuple[BackStress, ...]:
+        """The back stresses that saturate (Chaboche); empty where there is the one of ζ, or none."""
+        return self.kinematic.terms if isinstance(self.kinematic, Chaboche) else ()
+
 
 class Heating(Strict):
     """Adiabatic heating: the fraction `dissipated` of the plastic work b* heats the material."""

@@ -1,4 +1,4 @@
-"""The law of a material file: its checks, and the array of its constants for the kernels."""
+"""The law of a material file: its properties, and the array of its constants for the kernels."""
 
 import math
 from collections.abc import Iterator
@@ -12,6 +12,7 @@ from coilset.meshes.errors import InputError
 from coilset.model.entries.entry import Strict
 from coilset.model.material import functions as fn
 from coilset.model.material.back_stresses import BackStresses, columns
+from coilset.model.material.checks import check_combinations, check_functions
 from coilset.model.material.curve import AnyCurve
 from coilset.model.material.file import UNITS, Chaboche, Constants, Creep, MaterialFile, Validity
 
@@ -38,20 +39,9 @@ class Law:
         self._temperatures = np.array([at.temperature for at in data.temperatures])
         self._curves: dict[int, np.ndarray] = {}  # of the temperatures whose k² is given by points
         self._rows = np.array([self._row(i, at) for i, at in enumerate(data.temperatures)])
-        if np.any(np.diff(self._temperatures) <= 0):
-            self._fail("temperatures", f"{self._temperatures.tolist()} K do not ascend; sort the entries, none twice")
-        if data.heating and len(self._rows) == 1:
-            self._fail("heating", "plastic work warms the material; give its constants at two temperatures at least")
-        if len({at.isotropic == "none" for at in data.temperatures}) == 2:
-            self._fail("temperatures", "isotropic is 'none' at some temperatures only; give it at all or at none")
-        self._terms = self._back_stresses()
-        if data.heating and data.creep and data.creep.hardening == "time":
-            self._fail("creep.hardening", "points that plastic work heats have no common time; give strain")
-        if spin and data.creep:
-            self._fail("creep", "there is none with spin; leave out creep, or the spin")
-        if data.rate:
-            self._check_rate()
-        self._check_functions()
+        check_combinations(self)
+        self._terms = np.array([[(2.0 / 3.0 * one.C, one.gamma) for one in at.terms] for at in data.temperatures])
+        check_functions(self)
 
     @property
     def name(self) -> str:
@@ -120,8 +110,7 @@ class Law:
     @property
     def n_terms(self) -> int:
         """Number of back stresses that saturate (Chaboche); 0: there is the one of ζ, or none."""
-        kinematic = self.data.temperatures[0].kinematic
-        return len(kinematic.terms) if isinstance(kinematic, Chaboche) else 0
+        return len(self.data.temperatures[0].terms)
 
     @property
     def yield_stress(self) -> float:
@@ -144,7 +133,7 @@ class Law:
         at = self.data.temperatures[self.temperatures.index(temperature)]
         for section in (at.elasticity, at.isotropic, getattr(at.isotropic, "saturation", None), at.kinematic):
             yield from _entries(section)
-        for i, term in enumerate(at.kinematic.terms if isinstance(at.kinematic, Chaboche) else ()):
+        for i, term in enumerate(at.terms):
             yield from ((f"{name}_{i + 1}", found) for name, found in _entries(term))
         yield from _entries(at.non_normality)
 
@@ -186,6 +175,10 @@ class Law:
         parts = (part.model_dump_json().encode() for part in sections if part)
         return self.parameters().tobytes() + terms + b"".join(parts) + np.float64(self.validity.plastic_work).tobytes()
 
+    def refuse(self, place: str, problem: str) -> NoReturn:
+        """Raise InputError about an entry of its file."""
+        raise InputError(problem, place, self.file)
+
     def known(self, temperature: float) -> float:
         """The temperature, K, as a number.
 
@@ -197,7 +190,7 @@ class Law:
             known = f"only for {low:g} K" if low == high else f"for {low:g} to {high:g} K"
             if low <= temperature + CELSIUS <= high:
                 known += f"; {temperature:g} °C is {temperature + CELSIUS:g} K"
-            self._fail("temperature", f"{temperature:g} K is outside the table of '{self.name}', known {known}")
+            self.refuse("temperature", f"{temperature:g} K is outside the table of '{self.name}', known {known}")
         return float(temperature)
 
     def moduli(self, temperature: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray]:
@@ -240,35 +233,6 @@ class Law:
         flat = self._terms.reshape(len(self._terms), -1)
         return np.array([np.interp(temperature, self._temperatures, column) for column in flat.T]).reshape(-1, 2)
 
-    def _back_stresses(self) -> np.ndarray:
-        """⅔C and γ of the back stresses that saturate, shape (temperatures, terms, 2)."""
-        found = [at.kinematic.terms if isinstance(at.kinematic, Chaboche) else () for at in self.data.temperatures]
-        if len({len(terms) for terms in found}) > 1:
-            self._fail("temperatures", "not all have the same number of back stresses; give as many terms at each")
-        if self.n_terms:
-            if any(at.non_normality != "none" for at in self.data.temperatures):
-                self._fail("temperatures", "several back stresses go with normality only; make non_normality 'none'")
-            parts = (self.data.heating, "heating"), (self.data.creep, "creep"), (self.data.rate, "rate")
-            for part, word in parts:
-                if part:
-                    self._fail(word, "goes not with several back stresses; leave it out, or give kinematic constants")
-            if self.spin:
-                self._fail("temperatures.0.kinematic", "several back stresses have no spin; leave out the spin")
-        return np.array([[(2.0 / 3.0 * one.C, one.gamma) for one in terms] for terms in found])
-
-    def _fail(self, place: str, problem: str) -> NoReturn:
-        raise InputError(problem, place, self.file)
-
-    def _check_rate(self) -> None:
-        """Yield that depends on the rate goes with hardening alone."""
-        for part, word in ((self.data.heating, "heating"), (self.data.creep, "creep")):
-            if part:
-                self._fail("rate", f"goes not with {word}; leave one of both out")
-        if any(at.isotropic == "none" for at in self.data.temperatures):
-            self._fail("rate", "a material that never yields has no rate-dependent yield; leave it out")
-        if any(at.non_normality != "none" for at in self.data.temperatures):
-            self._fail("rate", "goes with normality only; make non_normality 'none', or leave rate out")
-
     def _row(self, i: int, at: Constants) -> np.ndarray:
         row = np.zeros(fn.ROW_LENGTH)
         G, nu = at.elasticity.G, at.elasticity.nu
@@ -290,7 +254,7 @@ class Law:
                 second = k.saturation
                 k1 = k.first_branch(second.b1)
                 if abs(k1 - second.k1_squared) > 1e-4 * k1:
-                    self._fail(
+                    self.refuse(
                         f"temperatures.{i}.isotropic.saturation.k1_squared",
                         f"{second.k1_squared:g} N²/mm⁴, but the first branch ends at {k1:.6g}; k² must not jump at b1",
                     )
@@ -301,29 +265,6 @@ class Law:
         if at.non_normality != "none":
             row[fn.KAPPA] = at.non_normality.a / (2 * G)
         return row
-
-    def _check_functions(self) -> None:
-        """k² > 0, 2ζ + k²′ ≥ 0 and κ k²′ < 2 over the range of validity: else (3.1.9) is not positive."""
-        work = np.linspace(0, self.validity.plastic_work, 2001)
-        for i, row in enumerate(self._rows):
-            above = self._rows[min(i + 1, len(self._rows) - 1), fn.ROW_T]
-            # Between two temperatures, too: the product of the interpolated κ and k²′ may be larger than at both.
-            for temperature in np.unique(np.linspace(row[fn.ROW_T], above, 5)):
-                if math.isinf(row[fn.K0]):
-                    continue
-                k2, dk2, zeta, _, kappa, _ = self.functions(work, temperature)
-                place = f"temperatures.{i}."
-                for entry, name, unit, values, broken, rule in (
-                    ("isotropic", "k²", " N²/mm⁴", k2, ~(k2 > 0), "must be positive"),
-                    ("isotropic", "2ζ + k²′", " N/mm²", 2 * zeta + dk2, 2 * zeta + dk2 < 0, "must not be negative"),
-                    ("non_normality.a", "κ k²′", "", kappa * dk2, kappa * dk2 >= 2,
-                     "must stay below 2, or (3.1.9) is not positive definite"),
-                ):  # fmt: skip
-                    if broken.any():
-                        at = int(np.argmax(broken))
-                        where = f"at b* = {work[at]:g} N/mm² and {temperature:g} K"
-                        self._fail(place + entry, f"{name} = {values[at]:.4g}{unit} {where}; it {rule}"
-                                   " (checked up to validity.plastic_work)")  # fmt: skip
 
 
 def _entries(section: object) -> Iterator[tuple[str, tuple[float, str]]]:
