@@ -23,7 +23,7 @@ from coilset.model.results.folder import make, whole
 from coilset.model.results.provenance import changed, provenance
 from coilset.model.results.record import BucklingMode, Result, Snapshot
 from coilset.model.results.step_journal import StepJournal
-from coilset.model.results.turns import Turns
+from coilset.model.results.two_files import TwoFiles
 from coilset.model.state import State
 from coilset.model.warning import Warning
 
@@ -60,7 +60,7 @@ class Checkpoint:
     def __init__(self, folder: str | Path, case: Case) -> None:
         self.folder = Path(folder) / "checkpoint"
         self.case, self.provenance = case.model_dump(mode="json"), provenance(case)
-        self.journal, self.state = StepJournal(self.folder / "steps.jsonl"), Turns(self.folder / "state.npz")
+        self.journal, self.state = StepJournal(self.folder / "steps.jsonl"), TwoFiles(self.folder / "state.npz")
         self._snapshots = 0  # that are written, or were read
 
     # ---- saving ----------------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Two files that take turns: one is complete and has the name, the next is written over the other."""
+"""Two files, written one after the other: one is complete and has the name, the next is written over the other."""
 
 import contextlib
 import ctypes
@@ -13,7 +13,7 @@ AT_FDCWD, RENAME_EXCHANGE = -100, 2  # of Linux's renameat2, which other systems
 RENAME = getattr(ctypes.CDLL(None), "renameat2", None)
 
 
-class Turns:
+class TwoFiles:
     """A file that is written again and again, and complete at any moment.
 
     A new file each time, renamed once it is written, would do as well, but its room in memory and on the disk has to be

@@ -3,8 +3,8 @@
 import pytest
 
 from coilset.meshes.errors import CoilsetError
-from coilset.model.results import turns
-from coilset.model.results.turns import Turns
+from coilset.model.results import two_files
+from coilset.model.results.two_files import TwoFiles
 
 
 class Half(Exception):
@@ -18,11 +18,11 @@ def write_half(file):
         raise Half
 
 
-@pytest.mark.parametrize("exchange", [turns._exchange, lambda one, other: False])
+@pytest.mark.parametrize("exchange", [two_files._exchange, lambda one, other: False])
 def test_what_is_written_in_turns_is_always_complete(tmp_path, monkeypatch, exchange):
     """Also if it becomes shorter, ends half way, or the file system cannot exchange names."""
-    monkeypatch.setattr(turns, "_exchange", exchange)
-    file = Turns(tmp_path / "state.npz")
+    monkeypatch.setattr(two_files, "_exchange", exchange)
+    file = TwoFiles(tmp_path / "state.npz")
     for content in (b"first", b"a longer second", b"3", b"the longest of all", b"fifth"):
         with file.next() as next_one:
             next_one.write(content)
@@ -36,7 +36,7 @@ def test_what_is_written_in_turns_is_always_complete(tmp_path, monkeypatch, exch
 
 def test_what_cannot_be_written_is_said(tmp_path):
     with pytest.raises(CoilsetError, match=r"state\.npz: cannot be written: No such file"):
-        write_half(Turns(tmp_path / "missing" / "state.npz"))
+        write_half(TwoFiles(tmp_path / "missing" / "state.npz"))
 
 
 def test_files_change_names_where_the_system_can(tmp_path):
@@ -44,6 +44,6 @@ def test_files_change_names_where_the_system_can(tmp_path):
     one, other = tmp_path / "one", tmp_path / "other"
     one.write_text("one")
     other.write_text("other")
-    if not turns._exchange(one, other):
+    if not two_files._exchange(one, other):
         pytest.skip("this file system cannot exchange names")
     assert (one.read_text(), other.read_text()) == ("other", "one")
