@@ -14,10 +14,9 @@ from typing import Any
 from rich.table import Table
 
 from coilset.model.analysis import Analysis
-from coilset.model.results.contact_state import contact_words
 from coilset.model.results.record import Step
 from coilset.scripts.console import Console
-from coilset.scripts.step_words import HEAD, quantity, step_row
+from coilset.scripts.step_words import HEAD, contact_words, quantity, step_row
 
 SOON = 5.0  # seconds; with less elapsed or left, the remaining time is not printed
 
