@@ -39,7 +39,6 @@ class Continuation:
         penetration_limit: penetration beyond which a state is rejected, mm.
         starts: starting points for solving a load for a step of the given length, to be tried in order; default: the
             guess of the last steps, then the last equilibrium.
-
         stability: Stability; None: stability is not checked.
         step_error: StepError; None: the error is unknown, and automatic steps depend on convergence alone.
 

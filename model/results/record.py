@@ -24,6 +24,11 @@ class Step:
     failed before it too, see coilset.model.equilibrium.convergence.Outcome.
 
     Attributes:
+        number: from 1 on; phase: number of the phase that it belongs to, from 0 on.
+        progress: part of the phase that is behind at its end.
+        seat_height_mm: distance of the seats or heads; travel_mm: that of the unloaded spring, less this.
+        cuts: how often it was cut.
+        contacts: closed contact elements; penetration_mm: the greatest of coils and seats.
         force_N: axial force of the seats or heads on the spring, compression positive; 0 where a seat is left.
         negative_pivots: negative eigenvalues of the tangent; the state is unstable if there are any.
         left_branch: 1 if the spring snapped on the way to it, from a path that ends or is unstable, else 0.
