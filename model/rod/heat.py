@@ -10,8 +10,8 @@ equilibrium is found again after the heat of each step.
 """
 
 import numpy as np
-from mpi4py import MPI
 
+from coilset.model.agreement import max_of_ranks
 from coilset.model.material.creep_law import HOURS, TEMPERATURE
 from coilset.model.material.law import Law
 from coilset.model.rod.finer_path import CLOCKS
@@ -106,7 +106,7 @@ class WireHeat:
         totals = self._totals.equilibrium
         totals += generated, given_off
         self._nodes.equilibrium[:] = equation.temperature.x.array[equation.dofs]
-        hottest = rod.mesh.comm.allreduce(self._nodes.equilibrium.max(initial=0.0), op=MPI.MAX)
+        hottest = max_of_ranks(rod.mesh.comm, self._nodes.equilibrium.max(initial=0.0))
         self._clock.equilibrium[:2] = self._clock.equilibrium[0] + seconds / 3600.0, hottest
         rod.state.restore()
 

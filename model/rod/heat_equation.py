@@ -13,14 +13,12 @@ import numpy as np
 import ufl
 from dolfinx import fem
 from dolfinx.fem.petsc import assemble_matrix, assemble_vector
-from mpi4py import MPI
 from petsc4py import PETSc
 
 from coilset.meshes.compat import geometry_dofs
 from coilset.meshes.line import LineMesh
+from coilset.model.agreement import sum_of_ranks
 from coilset.model.rod import forms
-
-SOLVER = {"ksp_type": "preonly", "pc_type": "lu", "pc_factor_mat_solver_type": "mumps"}
 
 
 @dataclass(frozen=True)
@@ -123,11 +121,9 @@ class HeatEquation:
         matrix.assemble()
         vector.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
         solver = PETSc.KSP().create(self.line.mesh.comm)
-        options = PETSc.Options()
-        solver.setOptionsPrefix("heat_")
-        for name, value in SOLVER.items():
-            options[f"heat_{name}"] = value
-        solver.setFromOptions()
+        solver.setType(PETSc.KSP.Type.PREONLY)
+        solver.pc.setType(PETSc.PC.Type.LU)
+        solver.pc.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
         solver.setOperators(matrix)
         solution = matrix.createVecRight()
         solver.solve(vector, solution)
@@ -149,4 +145,4 @@ class HeatEquation:
         return ends[:, :1] + (ends[:, 1:] - ends[:, :1]) * abscissae
 
     def _sum(self, form: fem.Form) -> float:
-        return float(self.line.mesh.comm.allreduce(fem.assemble_scalar(form), op=MPI.SUM))
+        return sum_of_ranks(self.line.mesh.comm, fem.assemble_scalar(form))
