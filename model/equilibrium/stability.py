@@ -6,8 +6,6 @@ show the signs of the pivots at the last iterate for nothing; where one of them 
 a matrix, the symmetric part is factorised at the state itself.
 """
 
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -152,17 +150,3 @@ def _rayleigh_ritz(matrix: PETSc.Mat, scale: PETSc.Vec, block: list[PETSc.Vec]) 
             vector.axpy(float(weight), part)
         combined.append(vector)
     return values, combined
-
-
-def vanishing(points: Sequence[tuple[float, float]]) -> float:
-    """Where the lowest eigenvalue vanishes, by a parabola through its last three values; NaN if it does not fall.
-
-    Args:
-        points: travel, mm, and eigenvalue of stable states, in the order of the path.
-    """
-    if len(points) < 3:
-        return math.nan
-    travel, values = np.array(points[-3:]).T
-    ahead = np.roots(np.polyfit(travel - travel[-1], values, 2))
-    ahead = ahead.real[(np.abs(ahead.imag) < 1e-12) & (ahead.real >= 0.0)]
-    return float(travel[-1] + ahead.min()) if len(ahead) and values[-1] < values[-2] else math.nan

@@ -2,12 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import hypot, inf, isfinite
+from math import hypot, inf, isfinite, nan
 
 import numpy as np
 from numba import njit
 
-from coilset.model.equilibrium.stability import vanishing
 from coilset.model.results.record import Step
 
 SIDEWAYS = 0.05  # of the mean diameter: an axis that has deflected this far has buckled, however gradually
@@ -72,6 +71,20 @@ def critical_travel(steps: Sequence[Step]) -> float:
             apart.append((travel, value))
     travels = [vanishing(apart[:k]) for k in range(3, len(apart) + 1) if apart[k - 1][1] < FALLEN * first]
     return min((travel for travel in travels if isfinite(travel)), default=vanishing(apart))
+
+
+def vanishing(points: Sequence[tuple[float, float]]) -> float:
+    """Where the lowest eigenvalue vanishes, by a parabola through its last three values; NaN if it does not fall.
+
+    Args:
+        points: travel, mm, and eigenvalue of stable states, in the order of the path.
+    """
+    if len(points) < 3:
+        return nan
+    travel, values = np.array(points[-3:]).T
+    ahead = np.roots(np.polyfit(travel - travel[-1], values, 2))
+    ahead = ahead.real[(np.abs(ahead.imag) < 1e-12) & (ahead.real >= 0.0)]
+    return float(travel[-1] + ahead.min()) if len(ahead) and values[-1] < values[-2] else nan
 
 
 def _has_buckled(step: Step, diameter: float, critical: float) -> bool:

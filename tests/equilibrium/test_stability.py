@@ -13,8 +13,8 @@ from coilset.model.case import Case
 from coilset.model.equilibrium.branch_switching import Snap
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.settings import StepControl
-from coilset.model.equilibrium.stability import negative_pivots, vanishing
-from coilset.model.results.buckling import axis_offset, buckling, critical_travel
+from coilset.model.equilibrium.stability import negative_pivots
+from coilset.model.results.buckling import axis_offset, buckling, critical_travel, vanishing
 from coilset.model.results.record import Step
 from coilset.model.results.summary import summarise
 from coilset.scripts.telling import Lines
