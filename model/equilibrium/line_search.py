@@ -62,6 +62,8 @@ class WorkSearch:
         """Step length from `x` along −y, with the residual `F` at x; the three are not changed; collective.
 
         Args:
+            x, y, F: increments, correction and residual.
+            load, load_factor: the fraction of a load that is sought.
             foreseeing: predicts the forces after the whole correction; None: they are not foreseen.
         """
         system, control = self.system, self.control

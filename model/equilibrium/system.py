@@ -250,6 +250,7 @@ class System:
 
         Args:
             add_forces: adds them to this rank's unknowns and the ghosts'.
+            load, load_factor, F: as in `residual`.
         """
         internal = self._reactions.trial.copy()
         self._assemble_internal(add_forces)
@@ -281,6 +282,8 @@ class System:
         """Derivative of the residual into `matrix`; collective.
 
         Args:
+            increments, load: as in `residual`.
+            matrix: written.
             at_step_start: begin with a matrix that has places for the contacts as they are now only.
         """
         self.evaluate(increments)

@@ -60,9 +60,9 @@ class WarpingSections:
         rule: DiskRule,
         radius: np.ndarray,
         placement: Placement,
-        temperature: float | None = None,
-        degree: int = 3,
-        threads: Threads | None = None,
+        temperature: float | None,
+        degree: int,
+        threads: Threads | None,
     ) -> None:
         self.threads = threads or Threads()
         self.radius, self.placement = radius, placement
