@@ -130,7 +130,7 @@ def build_continuation(
     steps, accuracy = case.solver.control.steps, case.steps_error
     error = None if accuracy is None else StepError(control, accuracy, steps)
     limit = case.contact.penetration_limit * 2.0 * least_radius
-    return Continuation(newton, steps, limit, None, stability, error)
+    return Continuation(newton, steps, limit, stability=stability, step_error=error)
 
 
 def build_setup(
@@ -147,6 +147,20 @@ def build_setup(
     warnings = (*case_warnings(case, spring, law), *past_warnings(rod, case.spring), *wire.warnings)
     elastic = case_elastic(case, law)
     buckling = buckling_travel(spring, elastic.shear_modulus / elastic.young_modulus)
-    return Setup(spring, law.name, case.ends, tuple(phase.label for phase in case.loading), wire.turns, wire.radius,
-                 rod.rule, records, case.mesh.section.kind, wire.placement, buckling, limits, tuple(case.rates_at),
-                 warnings, coiling_diameter)  # fmt: skip
+    return Setup(
+        spring=spring,
+        material=law.name,
+        ends=case.ends,
+        phases=tuple(phase.label for phase in case.loading),
+        turns=wire.turns,
+        wire_radius=wire.radius,
+        rule=rod.rule,
+        contacts=records,
+        section_kind=case.mesh.section.kind,
+        placement=wire.placement,
+        buckling_travel=buckling,
+        limits=limits,
+        rates_at=tuple(case.rates_at),
+        warnings=warnings,
+        coiling_diameter=coiling_diameter,
+    )

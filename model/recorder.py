@@ -71,24 +71,13 @@ class Recorder:
         Args:
             phase: number of the phase; taken: the step that led there; loading: all phases.
         """
-        height, force, last = self.control.height, self.control.force, self.system.last
-        greatest = max(self.result.greatest_force, abs(force))
-        x, turns = self.layout.gather(self.rod.x), self.setup.turns
-        pulls = self.setup.ends == "seats" and force < -faint_force(self.rod, greatest)
-        lift_off = max(clearance(self.system, x), 0.0) if pulls else 0.0
-        bears = 0.0 if lift_off else force + 0.0  # the pull of the tip springs is ignored; and zero has no sign
-        weakest = self._weakest()
-        step = Step(taken.number, phase, taken.progress, height, self.setup.spring.free_length - height, bears,
-                    taken.outcome.iterations, taken.outcome.evaluations, taken.outcome.failed_solves, taken.cuts,
-                    last.closed, self.system.max_penetration,
-                    taken.outcome.negative_pivots, int(taken.outcome.left_branch), taken.outcome.released,
-                    axis_offset(x, self.rod.line.stations, turns), weakest.value if weakest else None,
-                    self._greatest_plastic_work(), lift_off,
-                    self._least_rise.of(x), *self._errors(taken.outcome),
-                    hours=float(self.rod.clock[0]), temperature_K=self.rod.hottest,
-                    load_loss_percent=self._load_loss(phase, force, loading))  # fmt: skip
+        x, weakest = self.layout.gather(self.rod.x), self._weakest()
+        greatest = max(self.result.greatest_force, abs(self.control.force))
+        step = self._step(phase, taken, loading, x, weakest, greatest)
         if weakest and (self.result.mode is None or weakest.value < self.result.mode.eigenvalue):
-            mode = BucklingMode(step.travel_mm, bears, weakest.value, x, self._stability.displacements(weakest.mode))
+            mode = BucklingMode(
+                step.travel_mm, step.force_N, weakest.value, x, self._stability.displacements(weakest.mode)
+            )
             self.result = replace(self.result, mode=mode)
         before, seats, frames = self.result, self.result.seats, self.result.frames
         if self._detailed:
@@ -97,6 +86,48 @@ class Recorder:
         if self._detailed:
             self._announce(before)
         return step
+
+    def _step(
+        self,
+        phase: int,
+        taken: StepTaken,
+        loading: Sequence[AnyPhase],
+        x: np.ndarray,
+        weakest: Weakest | None,
+        greatest: float,
+    ) -> Step:
+        """The last equilibrium, stations at `x`, with the greatest force so far, N; collective."""
+        height, force, outcome = self.control.height, self.control.force, taken.outcome
+        pulls = self.setup.ends == "seats" and force < -faint_force(self.rod, greatest)
+        lift_off = max(clearance(self.system, x), 0.0) if pulls else 0.0
+        force_error, height_error = self._errors(outcome)
+        return Step(
+            number=taken.number,
+            phase=phase,
+            progress=taken.progress,
+            seat_height_mm=height,
+            travel_mm=self.setup.spring.free_length - height,
+            force_N=0.0 if lift_off else force + 0.0,  # the pull of the tip springs is ignored; and zero has no sign
+            iterations=outcome.iterations,
+            evaluations=outcome.evaluations,
+            failed_solves=outcome.failed_solves,
+            cuts=taken.cuts,
+            contacts=self.system.last.closed,
+            penetration_mm=self.system.max_penetration,
+            negative_pivots=outcome.negative_pivots,
+            left_branch=int(outcome.left_branch),
+            released_energy_Nmm=outcome.released,
+            axis_offset_mm=axis_offset(x, self.rod.line.stations, self.setup.turns),
+            least_eigenvalue=weakest.value if weakest else None,
+            plastic_work_max_N_per_mm2=self._greatest_plastic_work(),
+            lift_off_mm=lift_off,
+            least_rise=self._least_rise.of(x),
+            estimated_force_error_N=force_error,
+            estimated_height_error_mm=height_error,
+            hours=float(self.rod.clock[0]),
+            temperature_K=self.rod.hottest,
+            load_loss_percent=self._load_loss(phase, force, loading),
+        )
 
     def _announce(self, before: Result) -> None:
         """Log the warnings that the last step has brought; `before` is the result without it.
