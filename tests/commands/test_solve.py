@@ -40,6 +40,7 @@ class Entry:
         print("built")
         return handler.generate_schema(int)
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # tests in the background ignore it
 running._listen()
 try:
     TypeAdapter(Entry)
