@@ -14,8 +14,8 @@ TOLD = 8  # steps whose travel is told at the axis, about
 
 
 def force_centre(run: Run) -> Panel | None:
-    """Path of the force centre on both seats; None for a spring without steps."""
-    if "bottom_centre_x_mm" not in run.data:
+    """Path of the force centre on both seats; None for a spring without steps, or without a force."""
+    if "bottom_centre_x_mm" not in run.data or not run.data["force_N"].values.any():
         return None
     traces = []
     for number, seat in enumerate(("bottom", "top")):

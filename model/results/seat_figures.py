@@ -107,12 +107,16 @@ def force_centre(path: str | Path, setup: Setup, result: Result) -> None:
 def _at_greatest(result: Result, force: np.ndarray) -> str:
     """Where the greatest force passes."""
     step = int(np.argmax(force))
+    if not force[step]:
+        return "No force acts on the seats"
     away = max(getattr(result.seats[step], end).eccentricity_mm for end in ENDS)
     return f"At {plain(float(force[step]))} N the force passes {_roughly(away)} mm beside the axis"
 
 
 def _farthest(result: Result, strong: np.ndarray) -> str:
-    """How far from the axis the force passes in the `strong` steps."""
+    """How far from the axis the force passes in the `strong` steps; nothing of an unloaded spring."""
+    if not strong.any():
+        return ""
     away = max((column(result, end, "eccentricity_mm")[strong].max(initial=0.0) for end in ENDS), default=0.0)
     return f"With {100 * FAINT:g} % of that or more, up to {_roughly(away)} mm"
 

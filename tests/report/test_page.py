@@ -14,6 +14,7 @@ import pytest
 
 from coilset.meshes.errors import InputError
 from coilset.model.material import library
+from coilset.model.report.bearing import force_centre
 from coilset.model.report.characteristic import characteristic, phases
 from coilset.model.report.glossary import GLOSSARY
 from coilset.model.report.material_curves import material_curve
@@ -129,6 +130,12 @@ def test_a_law_that_never_yields_has_no_curve(folder):
     assert material_curve(run) is not None
     elastic = library.load("elastic").data.model_dump_json()
     assert material_curve(replace(run, data=run.data.assign_attrs(material_file=elastic))) is None
+
+
+def test_an_unloaded_spring_has_no_force_centre(folder):
+    run = open_run(folder)
+    assert force_centre(run) is not None
+    assert force_centre(replace(run, data=run.data.assign(force_N=0.0 * run.data["force_N"]))) is None
 
 
 def test_a_law_that_warms_out_of_its_table_has_no_curve(folder):

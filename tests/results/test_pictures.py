@@ -132,6 +132,17 @@ def test_a_pulled_spring_is_not_called_pressed(analysis, monkeypatch, force, way
     assert rate.get_ydata()[1] == pytest.approx(force, rel=1e-12)
 
 
+def test_the_force_centre_of_an_unloaded_spring_has_no_numbers(analysis, monkeypatch):
+    """Its seats' records hold none: titles said `nan mm beside the axis`."""
+    titles = []
+    monkeypatch.setattr(seat_figures, "save", lambda figure, path: titles.extend(a.get_title() for a in figure.axes))
+    result, none = analysis.result, {"centre_x_mm": np.nan, "centre_y_mm": np.nan, "eccentricity_mm": np.nan}
+    seats = [replace(one, bottom=replace(one.bottom, **none), top=replace(one.top, **none)) for one in result.seats]
+    free = replace(result, steps=tuple(replace(one, force_N=0.0) for one in result.steps), seats=tuple(seats))
+    seat_figures.force_centre("", analysis.setup, free)
+    assert titles == ["No force acts on the seats", ""]
+
+
 def test_each_of_a_few_steps_is_named_beside_the_pressure(analysis, monkeypatch):
     """The greatest force is that of one of them; of many steps, nine are."""
     drawn = []
