@@ -84,6 +84,9 @@ def read_nest(path: str | Path) -> Nest:
         if case.seats.bottom.moves or case.seats.top.moves:
             raise InputError("seats that tilt or move aside are shared by both springs of a nest, which is not known; "
                              "give rigid ones", "seats", file)  # fmt: skip
+        if "conical" in (case.seats.bottom.shape, case.seats.top.shape):
+            raise InputError("a cone touches each spring of a nest at a height of its own, so that they have none in "
+                             "common; give other seats", "seats", file)  # fmt: skip
         if case.heat is not None:
             raise InputError("takes time to flow, and the seats of a nest take none; leave it out", "heat", file)
         cases.append(case)

@@ -143,6 +143,16 @@ def test_wrong_nests(change, message, tmp_path):
     assert message in str(error.value)
 
 
+def test_a_nest_does_not_stand_on_cones(tmp_path):
+    """A cone of 10° touches the inner spring, of 8 mm less radius, 1.4 mm lower than the outer one."""
+    nest, file = write(tmp_path), tmp_path / "inner.yaml"
+    case = yaml.safe_load(file.read_text(encoding="utf-8")) | {"seats": {"top": {"shape": "conical", "angle": 10.0}}}
+    case["loading"] = [{"to": {"height": 28.0}}]
+    file.write_text(yaml.safe_dump(case), encoding="utf-8")
+    with pytest.raises(InputError, match="seats: a cone touches each spring of a nest at a height of its own"):
+        read_nest(nest)
+
+
 def test_heat_flows_in_no_nest(tmp_path):
     """Its seats take no time, so that all of it would stay where the wire has flowed."""
     nest, file = write(tmp_path), tmp_path / "outer.yaml"
