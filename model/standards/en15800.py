@@ -15,7 +15,8 @@ from coilset.model.standards import en13906
 
 Grade = Literal[1, 2, 3]
 FACTORS = {1: 0.63, 2: 1.0, 3: 1.6}  # Q of the grades
-WIDEST_D, LONGEST, FEWEST_TURNS, INDICES = 200.0, 630.0, 2.0, (4.0, 20.0)  # range of validity of the standard, mm
+# range of validity of the standard, table 1, mm; annex A has more of wire up to 20 mm
+WIRES, WIDEST_D, LONGEST, FEWEST_TURNS, INDICES = (0.07, 16.0), 200.0, 630.0, 2.0, (4.0, 20.0)
 DIAMETERS = (0.63, 1.0, 1.6, 2.5, 4.0, 6.3, 10.0, 16.0, 25.0, 31.5, 40.0, 50.0, 63.0, 80.0, 100.0, 125.0, 160.0, 200.0)
 # tolerance of D in mm, a row for each range of D: grades 1, 2, 3 with w of 4 to 8, 8 to 14, 14 to 20 each
 COIL = (
@@ -54,6 +55,8 @@ class Tolerances:
 def outside(d: float, D: float, n: float, length: float) -> str | None:
     """The reason why the standard does not cover a spring; None if it does."""
     w = D / d
+    if not WIRES[0] <= d <= WIRES[1]:
+        return f"d = {d:g} mm is outside of {WIRES[0]:g} to {WIRES[1]:g} mm"
     if not INDICES[0] <= w <= INDICES[1]:
         return f"w = {w:.3g} is outside of {INDICES[0]:g} to {INDICES[1]:g}"
     if not DIAMETERS[0] <= D <= WIDEST_D:
@@ -74,10 +77,14 @@ def tolerances(grade: Grade, shear_modulus: float, d: float, D: float, n: float,
     reason = outside(d, D, n, length)
     if reason:
         raise ValueError(reason)
-    w, row = D / d, COIL[max(bisect_left(DIAMETERS, D) - 1, 0)]
-    column = 3 * (grade - 1) + bisect_left((8.0, 14.0), w)
     free = force_spread(d, D, n) * FACTORS[grade] / en13906.rate(shear_modulus, d, D, n)
-    return Tolerances(row[column], free, LEAN[grade] * length, PARALLELISM[grade] * (D + d))
+    return Tolerances(coil_diameter(grade, d, D), free, LEAN[grade] * length, PARALLELISM[grade] * (D + d))
+
+
+def coil_diameter(grade: Grade, d: float, D: float) -> float:
+    """Tolerance of the mean diameter by the table, mm."""
+    row, column = COIL[max(bisect_left(DIAMETERS, D) - 1, 0)], bisect_left((8.0, 14.0), D / d)
+    return row[3 * (grade - 1) + column]
 
 
 def force_spread(d: float, D: float, n: float) -> float:

@@ -3,7 +3,7 @@
 import pytest
 from catalogue import CATALOGUE, G
 
-from coilset.model.standards.en15800 import COIL, DIAMETERS, force_tolerance, outside, tolerances
+from coilset.model.standards.en15800 import COIL, DIAMETERS, coil_diameter, force_tolerance, outside, tolerances
 
 
 @pytest.mark.parametrize("printed", CATALOGUE, ids=lambda printed: printed.name)
@@ -35,8 +35,8 @@ GRADE_2 = [(1.0, 0.07, 0.10, 0.15), (1.6, 0.08, 0.10, 0.15), (2.5, 0.10, 0.15, 0
 @pytest.mark.parametrize("row", GRADE_2)
 def test_coil_diameter_of_grade_2(row):
     D = row[0]
-    assert [tolerances(2, G, D / w, D, 5, 50.0).coil_diameter for w in (8.0, 14.0, 20.0)] == list(row[1:])
-    assert [tolerances(2, G, D / w, D, 5, 50.0).coil_diameter for w in (4.0, 8.1, 14.1)] == list(row[1:])
+    assert [coil_diameter(2, D / w, D) for w in (8.0, 14.0, 20.0)] == list(row[1:])
+    assert [coil_diameter(2, D / w, D) for w in (4.0, 8.1, 14.1)] == list(row[1:])
 
 
 def test_ranges_of_the_diameter_end_where_they_say():
@@ -55,6 +55,8 @@ def test_springs_that_it_does_not_cover():
     assert outside(4.0, 32.0, 5, 80.0) is None
     assert outside(4.0, 14.0, 5, 80.0) == "w = 3.5 is outside of 4 to 20"
     assert outside(4.0, 32.0, 1.5, 80.0) == "n = 1.5 active turns are fewer than 2"
-    assert outside(20.0, 240.0, 5, 400.0) == "D = 240 mm is outside of 0.63 to 200 mm"
+    assert outside(18.0, 150.0, 5, 400.0) == "d = 18 mm is outside of 0.07 to 16 mm"  # iTeh's and DIN's abstracts
+    assert outside(0.06, 0.9, 5, 5.0) == "d = 0.06 mm is outside of 0.07 to 16 mm"
+    assert outside(15.0, 240.0, 5, 400.0) == "D = 240 mm is outside of 0.63 to 200 mm"
     with pytest.raises(ValueError, match="L0 = 700 mm is above 630 mm"):
         tolerances(2, G, 4.0, 32.0, 50, 700.0)
