@@ -126,6 +126,16 @@ def test_wrong_wires_have_one_line(ask, message):
     assert str(error.value).startswith(message)
 
 
+@pytest.mark.parametrize(
+    ("inches", "of_A228", "of_A227"), [(0.032, 82700, 80700), (0.063, 81700, 80000), (0.125, 81000, 79300)]
+)
+def test_moduli_of_wires_of_the_tables_sizes(inches, of_A228, of_A227):
+    """Shigley's table 10-5 has ranges in inches that end with a size of wire."""
+    for name, wanted in (("ASTM A228", of_A228), ("ASTM A227", of_A227)):
+        assert wire(name).elastic(round(25.4 * inches, 4)).shear_modulus == wanted
+        assert wire(name).elastic(25.4 * (inches + 0.001)).shear_modulus < wanted
+
+
 def test_numbers_without_their_sources_are_refused():
     number = {"value": 1.0, "sources": ["a"], "sure": "one source"}
     strength = {"pieces": [{"form": "power", "diameters": [1, 2], "at_1_mm": 1, "exponent": 1}], **number}
