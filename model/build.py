@@ -35,6 +35,7 @@ from coilset.model.threads import Threads
 from coilset.model.warning import Warning
 
 PENETRATION = 0.02  # usual maximum penetration in wire diameters; a case may allow more
+AUGMENTED = 2.0  # times the maximum penetration: up to there contacts are augmented although the case does not say so
 
 
 @dataclass(frozen=True)
@@ -96,9 +97,13 @@ def build_newton(case: Case, system: System) -> Newton:
     """Newton's method, or the other one that the case names."""
     solver, contact = case.solver, case.contact
     control, wire_diameter = solver.control.newton, 2.0 * system.line.rod.largest_radius
-    limit = ContactLimit(system, control, free_penetration(control, contact.penetration_limit) * wire_diameter)
-    return Newton(system, build_method(case, system.line, solver.method), solver.tolerance, control, limit,
-                  contact.augmentation_tolerance or np.inf)  # fmt: skip
+    limit = contact.penetration_limit * wire_diameter
+    tolerance, augmented = contact.augmentation_tolerance or limit, np.inf
+    if contact.augmentation_tolerance is None:  # a much deeper state is on the wrong side, or from too long a step
+        augmented = AUGMENTED * limit
+    return Newton(system, build_method(case, system.line, solver.method), solver.tolerance, control,
+                  ContactLimit(system, control, free_penetration(control, contact.penetration_limit) * wire_diameter),
+                  tolerance, augmented)  # fmt: skip
 
 
 def build_method(case: Case, layout: LineLayout, name: str) -> Method:

@@ -121,12 +121,12 @@ class ContactSpec(Strict):
     penetration_limit: Annotated[
         float,
         Unit("wire diameters"),
-        Field(gt=0, description="penetration, in wire diameters, beyond which a step is rejected"),
+        Field(gt=0, description="penetration, in wire diameters, above which contacts are augmented or steps rejected"),
     ] = 0.02
     augmentation_tolerance: Annotated[
         float | None,
         Unit("mm"),
-        Field(gt=0, description="maximum penetration, mm, enforced by augmented Lagrangians; default: not enforced"),
+        Field(gt=0, description="maximum penetration, mm, enforced by augmented Lagrangians; default: the limit"),
     ] = None
     friction: FrictionSpec = FrictionSpec()
 

@@ -161,8 +161,7 @@ class Continuation:
             limit = self.penetration_limit
             reason = (
                 f"coils or seats would lie {depth:.4g} mm in each other, more than the {limit:.4g} mm of "
-                f"contact.penetration_limit; try contact.augmentation_tolerance: {0.1 * limit:.1g} to press them "
-                "apart, or a greater limit"
+                "contact.penetration_limit; try a stiffer contact.bedding, or a greater limit"
             )
             return replace(outcome, converged=False, reason=reason, refused=True)
         if outcome.converged and (refusal := self.refusal()) is not None:

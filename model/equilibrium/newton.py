@@ -5,7 +5,7 @@ there. The law is integrated over the whole step in any case: parts change how a
 """
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +21,8 @@ from coilset.model.equilibrium.settings import NewtonControl
 from coilset.model.equilibrium.system import System
 
 log = logging.getLogger("coilset.steps")
+
+FEW_AUGMENTATIONS, LESS = 5, 0.9  # after so many of them, penetrations are less than this part of what they were
 
 
 @dataclass(frozen=True)
@@ -43,6 +45,7 @@ class Newton:
         limit: ContactLimit; None: corrections are not limited.
         augmentation_tolerance: maximum penetration, mm, that is let be; a greater one is worked off by augmented
             Lagrange: contacts are pressed harder by what they have sunk in, and the step is solved on.
+        augmented: maximum penetration, mm, that is worked off; a state with a deeper one is left as it is.
         prepare: called with PETSc's matrix after each tangent, for preconditioners that are not PETSc's.
 
     Raises:
@@ -61,10 +64,11 @@ class Newton:
         control: NewtonControl | None = None,
         limit: ContactLimit | None = None,
         augmentation_tolerance: float = np.inf,
+        augmented: float = np.inf,
         prepare: Callable[[PETSc.Mat], object] = lambda matrix: None,
     ) -> None:
         self.system, self.control = system, control or NewtonControl()
-        self.augmentation_tolerance = augmentation_tolerance
+        self.augmentation_tolerance, self.augmented = augmentation_tolerance, augmented
         self.limit = limit or ContactLimit(system, self.control, np.inf)
         self.foreseeing = Foreseeing.of(system, self.control.foreseen_forces)
         self.iteration = Iteration(system, method, tolerance, self.control, self.limit, prepare)
@@ -93,15 +97,25 @@ class Newton:
         """
         self.iteration.begin(load, foreseeing)
         self.system.reset_contacts()
-        outcome, augmentations = self._solve(start or Start()), 0
-        while outcome.converged and (left := self.system.max_penetration) > self.augmentation_tolerance:
-            if augmentations == self.control.augmentations:
-                reason = f"a penetration of {left:.3g} mm is left after {augmentations} augmentations"
+        outcome, depths = self._solve(start or Start()), list[float]()
+        while outcome.converged and self.augmentation_tolerance < self.system.max_penetration <= self.augmented:
+            depths.append(self.system.max_penetration)
+            if self._in_vain(depths):
+                reason = f"a penetration of {depths[-1]:.3g} mm is left after {len(depths) - 1} augmentations"
                 return replace(outcome, converged=False, reason=reason)
             self.system.augment()
             outcome = outcome + self._solve(Start(self.system.increments.copy()))
-            augmentations += 1
         return outcome
+
+    def _in_vain(self, depths: Sequence[float]) -> bool:
+        """Whether contacts are augmented no more: by penetrations before each augmentation, the last one's included.
+
+        Where bodies lie solid on each other they do not become less any more.
+        """
+        few = FEW_AUGMENTATIONS
+        if len(depths) > self.control.augmentations:
+            return True
+        return len(depths) > few and depths[-1] > LESS * depths[-1 - few]
 
     def _solve(self, start: Start) -> Outcome:
         """As `_attempt`, with the contacts as they are pressed now."""

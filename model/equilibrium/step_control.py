@@ -130,5 +130,6 @@ class StepSizes:
         easy, hard = outcome.iterations <= control.easy, outcome.iterations >= control.hard
         factor = control.growth if easy else control.shrinkage if hard else 1.0
         if outcome.estimate is not None:
-            factor = min(outcome.estimate.factor, control.shrinkage if hard else control.growth)
+            least = control.finest / size  # up to there its error does not shorten a step
+            factor = min(max(outcome.estimate.factor, least), control.shrinkage if hard else control.growth)
         return min(control.largest, factor * size)
