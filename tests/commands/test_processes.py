@@ -225,6 +225,19 @@ def test_ctrl_c_while_the_environment_is_looked_for(start, example, tmp_path):
     running.until(lambda: not running.alive())
 
 
+@pytest.mark.parametrize("number", range(4))
+def test_ctrl_c_while_the_cache_folder_is_made(start, example, tmp_path, number):
+    """Only the shell hears of it, which waits for mkdir there, and forgot it most of the time."""
+    cache = tmp_path / "cache"
+    running = start(coilset("solve", example, "--out", "out", *LONG), COILSET_CACHE=str(cache),
+                    COILSET_PYTHON=sys.executable)  # fmt: skip
+    while not (cache / "checkouts").exists():
+        pass
+    time.sleep(3e-4 * number)
+    os.kill(running.process.pid, signal.SIGINT)
+    assert running.process.wait(PATIENCE) in (130, -signal.SIGINT)  # by its trap, or where it has none yet
+
+
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_closed_output_is_a_gentle_end(start, example, ranks):
     """`solve | head -3`."""
