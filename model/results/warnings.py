@@ -91,8 +91,8 @@ def _slipped(setup: Setup, result: Result) -> Iterator[Warning]:
     if first is not None:
         least, place = min(_rise(step) for step in result.steps), _place(first)
         message = (
-            f"coils have slipped past each other since {place}: one is {least:.2g} times as high above the next as "
-            "where they lie on each other; friction between them, contact.friction.coils, may hold them"
+            f"coils have slipped past each other since {place}: the rise from one to the next is {least:.2g} of that "
+            "of coils that lie on each other; contact.friction.coils may hold them"
         )
         yield Warning("coils slipped", place, message, least, SLIPPED)
 
