@@ -48,7 +48,7 @@ def accuracy_warning(error: float, asked: float, place: str, of: str = "the forc
         return None
     message = (
         f"{of} is uncertain by about {100 * error:.2g} %{size and f', {size},'} because of the step size, more than "
-        f"the case's accuracy of {100 * asked:.2g} %; use smaller steps"
+        f"the case's accuracy of {100 * asked:.2g} %; a smaller accuracy or more steps reduce it"
     )
     return Warning("step error", place, message, error, asked)
 
