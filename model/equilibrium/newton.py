@@ -101,7 +101,10 @@ class Newton:
         while outcome.converged and self.augmentation_tolerance < self.system.max_penetration <= self.augmented:
             depths.append(self.system.max_penetration)
             if self._in_vain(depths):
-                reason = f"a penetration of {depths[-1]:.3g} mm is left after {len(depths) - 1} augmentations"
+                reason = (
+                    f"a penetration of {depths[-1]:.3g} mm is left after {len(depths) - 1} augmentations, "
+                    "as where the wire lies solid on itself"
+                )
                 return replace(outcome, converged=False, reason=reason)
             self.system.augment()
             outcome = outcome + self._solve(Start(self.system.increments.copy()))

@@ -100,6 +100,16 @@ def test_coils_that_sink_in_too_far_are_pressed_apart(make):
     assert forces[1] != pytest.approx(forces[0], rel=1e-5)
 
 
+def test_a_spring_that_is_solid_before_its_block_ends_there(make):
+    """Augmentation, which cannot help, is given up early; a spring of two turns lies 6 mm above the drawing's block."""
+    shape = "{shape: double cone, ends: 42.41, middle: 61.42}"
+    spring = f"spring={{wire_diameter: 7.06, mean_diameter: {shape}, turns: 2, pitch: 21.63}}"
+    analysis = make("[{to: block}]", spring, "mesh.elements_per_turn=16")
+    with pytest.raises(SolveError, match=r"mm is left after 5 augmentations, as where the wire lies solid on itself"):
+        analysis.run()
+    assert analysis.result.steps[-1].travel_mm == pytest.approx(36.5, abs=0.5)
+
+
 def listened(analysis):
     """The list that the outcomes of all solves of an analysis go to, in their order."""
     outcomes, solve = [], analysis.newton.solve
