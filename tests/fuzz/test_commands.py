@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from coilset.meshes.errors import CoilsetError
 from coilset.model import build
 from coilset.model.slice import analysis as slices
-from coilset.scripts import design, main, material, mesh, ranks, report, solve, sweep, verify, warm
+from coilset.scripts import design, main, material, mesh, ranks, report, running, solve, sweep, verify, warm
 from coilset.scripts import slice as slice_command
 from coilset.scripts.plain import typer
 from coilset.verification.benchmarks import everyday
@@ -114,7 +114,7 @@ def run(words):
     except Exception as error:
         if not hasattr(error, "format_message"):  # of click
             raise
-        return "refused", main.command_line_message(error)
+        return "refused", running.command_line_message(error)
 
 
 def test_spoilt_command_lines(place, monkeypatch):
