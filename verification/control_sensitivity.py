@@ -35,8 +35,8 @@ GROWTHS = {name for control in CONTROLS.values() for name, kind in get_type_hint
 SWITCHES = ("foreseen_forces",)
 FREE_PENETRATION = 0.02  # wire diameters: the contacts' limit, which stands where no number is given
 AUTOMATIC = (  # of automatic steps only
-    "automatic", "easy", "hard", "growth", "shrinkage", "largest", "step_share", "tolerated_share", "finest", "caution",
-    "least_factor",
+    "automatic", "easy", "hard", "growth", "shrinkage", "largest", "step_share", "least_rest", "tolerated_share",
+    "finest", "caution", "least_factor",
 )  # fmt: skip
 COLUMNS = ("spring", "variant", "iterations", "evaluations", "failures", "cuts", "steps", "ended")
 PETSC_SEARCH = "cp"
@@ -155,7 +155,10 @@ def page(files: Iterable[Path]) -> None:
     for control in CONTROLS.values():
         for field in fields(control):
             low, high = halved_and_doubled(field.name, value := getattr(control(), field.name))
-            cells = [_compared(springs, f"{field.name} = {tried:g}") for tried in (low, high)]
+            names = [f"{field.name} = {tried:g}" for tried in (low, high)]
+            if not any(names[0] in rows for rows in springs.values()):
+                continue  # not tried
+            cells = [_compared(springs, name) for name in names]
             shown = FREE_PENETRATION if value is None and field.name not in SWITCHES else value
             worse = (", ".join(str(cell[k]) for cell in cells) for k in (1, 2))
             print(f"| `{field.name}` | {shown} | {cells[0][0]} | {cells[1][0]} | {' | '.join(worse)} |")
