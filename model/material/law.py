@@ -39,9 +39,9 @@ class Law:
         self._temperatures = np.array([at.temperature for at in data.temperatures])
         self._curves: dict[int, np.ndarray] = {}  # of the temperatures whose k² is given by points
         self._rows = np.array([self._row(i, at) for i, at in enumerate(data.temperatures)])
-        check_combinations(self)
+        check_combinations(data, spin, self.refuse)
         self._terms = np.array([[(2.0 / 3.0 * one.C, one.gamma) for one in at.terms] for at in data.temperatures])
-        check_functions(self)
+        check_functions(data, self.functions, self.refuse)
 
     @property
     def name(self) -> str:
