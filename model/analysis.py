@@ -79,10 +79,10 @@ class Analysis:
         contacts = build_contacts(case.contact, seats, spring, wire.turns, self.rod.line.stations, self.law.E)
         self.layout = LineLayout(self.rod)
         self.system = System(self.rod, self.layout, contacts, seats_at(spring.free_length))
-        self.newton = build_newton(case, self.system)
+        least_radius = float(wire.radius.min())
+        self.newton = build_newton(case, self.system, least_radius)
         self.control = build_control(case, spring, self.system)
         self.stability = Stability(self.newton.iteration)
-        least_radius = float(wire.radius.min())
         self.continuation = build_continuation(case, self.newton, self.control, self.stability, least_radius)
         self.continuation.refusal = self._passed
         self.program = LoadProgram(self.control, self.continuation)

@@ -93,17 +93,26 @@ def build_heat(case: Case, rod: Rod) -> WireHeat | None:
     return WireHeat(rod, heat_constants(rod.law, spec.conductivity, spec.convection, spec.tips, start))
 
 
-def build_newton(case: Case, system: System) -> Newton:
-    """Newton's method, or the other one that the case names."""
+def _deepest(case: Case, least_radius: float) -> float:
+    """Penetration above which contacts are augmented or states rejected, mm, by that of the thinnest element."""
+    return case.contact.penetration_limit * 2.0 * least_radius
+
+
+def build_newton(case: Case, system: System, least_radius: float) -> Newton:
+    """Newton's method, or the other one that the case names.
+
+    Args:
+        least_radius: of the elements, mm.
+    """
     solver, contact = case.solver, case.contact
     control, wire_diameter = solver.control.newton, 2.0 * system.line.rod.largest_radius
-    limit = contact.penetration_limit * wire_diameter
-    tolerance, augmented = contact.augmentation_tolerance or limit, np.inf
-    if contact.augmentation_tolerance is None:  # a much deeper state is on the wrong side, or from too long a step
-        augmented = AUGMENTED * limit
-    return Newton(system, build_method(case, system.line, solver.method), solver.tolerance, control,
-                  ContactLimit(system, control, free_penetration(control, contact.penetration_limit) * wire_diameter),
-                  tolerance, augmented)  # fmt: skip
+    limit = ContactLimit(system, control, free_penetration(control, contact.penetration_limit) * wire_diameter)
+    tolerance, augmented = contact.augmentation_tolerance, np.inf
+    if tolerance is None:  # a much deeper state is on the wrong side, or from too long a step
+        tolerance = _deepest(case, least_radius)
+        augmented = AUGMENTED * tolerance
+    return Newton(system, build_method(case, system.line, solver.method), solver.tolerance, control, limit, tolerance,
+                  augmented)  # fmt: skip
 
 
 def build_method(case: Case, layout: LineLayout, name: str) -> Method:
@@ -134,8 +143,7 @@ def build_continuation(
     """
     steps, accuracy = case.solver.control.steps, case.steps_error
     error = None if accuracy is None else StepError(control, accuracy, steps)
-    limit = case.contact.penetration_limit * 2.0 * least_radius
-    return Continuation(newton, steps, limit, stability=stability, step_error=error)
+    return Continuation(newton, steps, _deepest(case, least_radius), stability=stability, step_error=error)
 
 
 def build_setup(

@@ -115,10 +115,8 @@ class Newton:
 
         Where bodies lie solid on each other they do not become less any more.
         """
-        few = FEW_AUGMENTATIONS
-        if len(depths) > self.control.augmentations:
-            return True
-        return len(depths) > few and depths[-1] > LESS * depths[-1 - few]
+        few, made = FEW_AUGMENTATIONS, len(depths) - 1
+        return made >= self.control.augmentations or (made >= few and depths[-1] > LESS * depths[-1 - few])
 
     def _solve(self, start: Start) -> Outcome:
         """As `_attempt`, with the contacts as they are pressed now."""

@@ -100,6 +100,15 @@ def test_coils_that_sink_in_too_far_are_pressed_apart(make):
     assert forces[1] != pytest.approx(forces[0], rel=1e-5)
 
 
+def test_what_is_augmented_begins_where_states_are_rejected(make):
+    """A fiftieth of the thinnest wire, 3 mm, also where most of it is thicker."""
+    wire = "{turns: [0, 1.25, 2.5], values: [3.0, 5.0, 3.0], interpolation: linear}"
+    analysis = make("[{to: block}]", f"spring.wire_diameter={wire}")
+    thinnest = 2.0 * analysis.setup.wire_radius.min()
+    assert thinnest == pytest.approx(3.0, abs=0.1)
+    assert analysis.newton.augmentation_tolerance == analysis.continuation.penetration_limit == 0.02 * thinnest
+
+
 def test_a_spring_that_is_solid_before_its_block_ends_there(make):
     """Augmentation, which cannot help, is given up early; a spring of two turns lies 6 mm above the drawing's block."""
     shape = "{shape: double cone, ends: 42.41, middle: 61.42}"
