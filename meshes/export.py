@@ -8,9 +8,9 @@ import gmsh
 import meshio
 import numpy as np
 
-from coilset.meshes.errors import InputError
-from coilset.meshes.geometry import Spring
-from coilset.meshes.measured import WIRE_DIAMETER
+from coilset.meshes.springs.geometry import Spring
+from coilset.meshes.springs.measured import WIRE_DIAMETER
+from coilset.model.base.errors import InputError
 
 SURFACES = (".stl",)  # formats of surfaces, which hold no line elements
 

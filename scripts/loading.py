@@ -4,7 +4,7 @@ import contextlib
 import gc
 from collections.abc import Iterator
 
-from coilset.model.libraries import link_beside
+from coilset.model.runtime.libraries import link_beside
 
 
 @contextlib.contextmanager

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-from coilset.meshes.errors import InputError
-from coilset.model.entries.entry import shortened
+from coilset.model.base.entry import shortened
+from coilset.model.base.errors import InputError
 from coilset.verification import cases
 from coilset.verification.study import Study
 

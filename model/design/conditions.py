@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.design.wish import Conditions, WishSpec
-from coilset.model.results.units import unit_of
+from coilset.model.results.records.units import unit_of
 
 GROUP = "such_that."  # before the names of a wish's conditions
 MEASURING_STEPS = 2  # equal steps to a height at which a force is measured, and back: the path is elastic, or nearly so
@@ -77,8 +77,7 @@ def conditions(spec: WishSpec, base: Mapping[str, Any]) -> tuple[list[Condition]
     needing = [one.name for one in found if "after" in one.name or "set_mm" in one.name or "residual" in one.name]
     if not released and (needing or missing):
         name = needing[0] if needing else f"{GROUP}force_at"
-        raise InputError("needs an unloaded spring at the end; let the load program end with {to: {force: 0}}",
-                         name)  # fmt: skip
+        raise InputError("needs an unloaded spring at the end; let the load program end with {to: {force: 0}}", name)
     for height in missing:
         program.append({"to": {"height": height}, "steps": MEASURING_STEPS})
     if missing:
@@ -95,8 +94,11 @@ def _numbers(wished: Conditions) -> list[tuple[str, float]]:
 
 def _phase(program: Sequence[Mapping[str, Any]], height: float) -> int | None:
     """Number of the last phase that goes to a height, None if there is none."""
-    there = [number for number, phase in enumerate(program)
-             if isinstance(phase.get("to"), dict) and phase["to"].get("height") == height]  # fmt: skip
+    there = [
+        number
+        for number, phase in enumerate(program)
+        if isinstance(phase.get("to"), dict) and phase["to"].get("height") == height
+    ]
     return there[-1] if there else None
 
 

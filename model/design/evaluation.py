@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from coilset.meshes.errors import CoilsetError, InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import CoilsetError, InputError
 from coilset.model.case.settings import put
 from coilset.model.design.conditions import Condition
 from coilset.model.design.surrogate import Guess, guess
 from coilset.model.design.wish import Wish
 from coilset.model.material import library
-from coilset.model.results.record import Result, Setup
-from coilset.model.results.summary import summarise
+from coilset.model.results.records.record import Result, Setup
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 from coilset.model.sweep.evaluate import plain
 from coilset.model.sweep.keys import Keys
 
@@ -182,5 +182,6 @@ def _of_record(record: Mapping[str, Any]) -> Evaluation:
     """The Evaluation in a line of the journal."""
     values = np.array([np.nan if value is None else value for value in record["values"]])
     plan = tuple(tuple(marks) for marks in record["plan"])
-    return Evaluation(np.array(record["x"]), values, record["reason"], plan, record["summary"], record["seconds"],
-                      record["wrong"])  # fmt: skip
+    return Evaluation(
+        np.array(record["x"]), values, record["reason"], plan, record["summary"], record["seconds"], record["wrong"]
+    )

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from coilset.meshes.errors import reading
+from coilset.model.base.errors import reading
 from coilset.model.case import Case
 from coilset.model.case.reference import entry_unit
 from coilset.model.design.conditions import GROUP
-from coilset.model.results.labelled import add_summary
-from coilset.model.results.units import unit_of
+from coilset.model.results.files.labelled import add_summary
+from coilset.model.results.records.units import unit_of
 from coilset.model.sweep.journal import read_records
 
 FILE = "design.json"
@@ -40,8 +40,12 @@ def open_design(folder: str | Path) -> xr.Dataset:
         data = _searched(design, records)
         _add_trade_offs(data, design)
         add_summary(data, design["summary"])
-        data.attrs |= {"case": json.dumps(design["origin"]["case"]), "versions": design["origin"]["versions"],
-                       "met": int(design["met"]), "method": design["method"]}  # fmt: skip
+        data.attrs |= {
+            "case": json.dumps(design["origin"]["case"]),
+            "versions": design["origin"]["versions"],
+            "met": int(design["met"]),
+            "method": design["method"],
+        }
     return data
 
 

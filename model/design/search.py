@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from coilset.meshes.errors import InputError, SolveError
+from coilset.model.base.errors import InputError, SolveError
 from coilset.model.design.conditions import Condition
 from coilset.model.design.evaluation import Evaluation, Evaluator, Plan
 
@@ -189,8 +189,10 @@ class Search:
             norms.append(float(np.linalg.norm(off)))
             if square and norms[-1] > ENOUGH * norms[max(len(norms) - 1 - PATIENCE, 0)] and len(norms) > PATIENCE:
                 return self._found(u, best, off, base, E, False)
-        raise SolveError(f"the search has not ended after {MOST} evaluations; the nearest is "
-                         f"{self.words(self.value(u))}, off by {np.abs(off).max():.2g}")  # fmt: skip
+        raise SolveError(
+            f"the search has not ended after {MOST} evaluations; the nearest is "
+            f"{self.words(self.value(u))}, off by {np.abs(off).max():.2g}"
+        )
 
     def words(self, x: np.ndarray) -> str:
         """Unknowns and their values."""
@@ -246,7 +248,9 @@ class Search:
                     raise InputError(
                         "no condition depends on it: the results do not change from "
                         f"{self.value(u)[column]:.6g} to {self.value(to)[column]:.6g}; leave it out, or give a "
-                        "condition that depends on it", f"find.{self.evaluator.names[column]}")  # fmt: skip
+                        "condition that depends on it",
+                        f"find.{self.evaluator.names[column]}",
+                    )
         return E
 
     def _felt_elsewhere(self, column: int) -> bool:
@@ -286,8 +290,9 @@ class Search:
         """Bounded least squares."""
         room = 1e-12
         start = np.clip(u, low + room, np.maximum(high - room, low + room))
-        found = least_squares(answer, start, bounds=(low, high), diff_step=SLOPE_STEP, xtol=1e-12, ftol=1e-14,
-                              gtol=1e-14, max_nfev=60)  # fmt: skip
+        found = least_squares(
+            answer, start, bounds=(low, high), diff_step=SLOPE_STEP, xtol=1e-12, ftol=1e-14, gtol=1e-14, max_nfev=60
+        )
         x = found.x
         x = np.where(x - low < 1e-9, low, x)  # the solver stays strictly inside: the bound itself is meant
         return np.where(high - x < 1e-9, high, x)

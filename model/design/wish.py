@@ -8,11 +8,11 @@ from typing import Annotated, Any, Self
 from annotated_types import Unit
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.entry import Strict, check_entries, shortened
+from coilset.model.base.errors import InputError
+from coilset.model.base.yaml import read_data
 from coilset.model.case.case import Case, check, read_case_data
 from coilset.model.case.settings import located
-from coilset.model.entries.entry import Strict, check_entries, shortened
-from coilset.model.entries.yaml import read_data
 
 KIND = "a wish holds the entries find: and such_that:, and those of a case or case: with the name of its file"
 
@@ -118,8 +118,10 @@ class WishSpec(Strict):
     def _enough(self) -> Self:
         conditions = sum(len(value) if isinstance(value, list) else value is not None for _, value in self.such_that)
         if conditions < len(self.find):
-            raise ValueError(f"{len(self.find)} unknowns and {conditions} condition(s): give as many conditions as "
-                             "unknowns, or more, which are met as well as they can be (least squares)")  # fmt: skip
+            raise ValueError(
+                f"{len(self.find)} unknowns and {conditions} condition(s): give as many conditions as "
+                "unknowns, or more, which are met as well as they can be (least squares)"
+            )
         for name in self.trade_offs:
             if name in self.find:
                 raise ValueError(f"trade_offs.{name}: is an unknown; give an entry that is not")
@@ -159,8 +161,11 @@ def read_wish(path: str | Path) -> Wish:
     spec, folder = check_entries(own, WishSpec, path), path.parent
     if spec.case is not None:
         if base:
-            raise InputError("is an entry of a case, and case: names one already; give it there, or leave case: out",
-                             shortened(next(iter(base))), path)  # fmt: skip
+            raise InputError(
+                "is an entry of a case, and case: names one already; give it there, or leave case: out",
+                shortened(next(iter(base))),
+                path,
+            )
         base, folder = read_case_data(folder / spec.case), (folder / spec.case).parent
     base = copy.deepcopy({name: located(name, value, folder.absolute()) for name, value in base.items()})
     check(base, path if spec.case is None else folder / Path(spec.case).name)

@@ -7,12 +7,12 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from coilset.model.base.style import STYLE
+from coilset.model.figures.figures import save
 from coilset.model.nest.nest import Pressed
-from coilset.model.results.figures import save
-from coilset.model.results.folder import write_table
-from coilset.model.results.provenance import origin
-from coilset.model.results.summary import summarise
-from coilset.model.style import STYLE
+from coilset.model.results.files.folder import write_table
+from coilset.model.results.records.provenance import origin
+from coilset.model.results.records.summary import summarise
 
 STEPS = "nest.csv"
 COLUMNS = ("step", "seat_height_mm", "force_N", "outer_force_N", "inner_force_N", "clearance_mm")
@@ -57,8 +57,11 @@ def draw(path: Path, pressed: Pressed, found: dict[str, Any]) -> None:
         axes.axvline(pressed.plan.block, color="0.6", lw=0.8, ls="--", label=f"block, {pressed.plan.block:.4g} mm high")
         axes.invert_xaxis()
         lost = "" if found["set_mm"] is None else f", the nest sets {found['set_mm']:.3f} mm"
-        axes.set(xlabel="height in mm", ylabel="axial force in N",
-                 title=f"Pressed with up to {found['force_max_N']:.4g} N{lost}")  # fmt: skip
+        axes.set(
+            xlabel="height in mm",
+            ylabel="axial force in N",
+            title=f"Pressed with up to {found['force_max_N']:.4g} N{lost}",
+        )
         axes.legend(fontsize=8)
         axes.grid(lw=0.3)
         save(figure, path)

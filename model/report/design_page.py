@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from coilset.meshes.errors import reading
+from coilset.model.base.errors import reading
 from coilset.model.case import Case
 from coilset.model.case.reference import entry_unit, entry_words
 from coilset.model.design.conditions import GROUP
@@ -15,7 +15,7 @@ from coilset.model.report.answer import Number, answer
 from coilset.model.report.page import made_with
 from coilset.model.report.panel import Panel, axis, curve
 from coilset.model.report.render import write_page
-from coilset.model.results.labels import plain
+from coilset.model.results.records.labels import plain
 from coilset.model.sweep.dataset import quantity
 
 LEAST_OFF = 1e-12  # relative, to which the figure goes down
@@ -55,7 +55,7 @@ def write_design_report(folder: str | Path) -> Path:
         trade_offs=[_trade_off(row, names) for row in design["trade_offs"]],
         case=case,
         made_with=made_with(design["origin"]),
-    )  # fmt: skip
+    )
 
 
 def search(design: Mapping[str, Any], records: Sequence[Mapping[str, Any]]) -> Panel:
@@ -73,9 +73,11 @@ def search(design: Mapping[str, Any], records: Sequence[Mapping[str, Any]]) -> P
         finding,
         f"{finding}. Distance of each condition from its wish, relative, over the evaluations.",
         traces,
-        {"xaxis": axis("evaluation", dtick=1 if len(records) < 16 else None),
-         "yaxis": axis("off by, relative", type="log", exponentformat="power")},
-    )  # fmt: skip
+        {
+            "xaxis": axis("evaluation", dtick=1 if len(records) < 16 else None),
+            "yaxis": axis("off by, relative", type="log", exponentformat="power"),
+        },
+    )
 
 
 def _off(values: list[float | None], wish: float) -> float:
@@ -128,8 +130,12 @@ def _of(name: str) -> str:
 def _trade_off(row: Mapping[str, Any], names: list[str]) -> dict[str, Any]:
     force = "N" if row["of"].startswith("force at ") else ""
     value = plain(row["value"], 6) if isinstance(row["value"], float) else str(row["value"])
-    numbers = [*(row["unknowns"][name] for name in names),
-               row["wire_length_mm"], row["free_length_before_mm"], row["torque"]]  # fmt: skip
+    numbers = [
+        *(row["unknowns"][name] for name in names),
+        row["wire_length_mm"],
+        row["free_length_before_mm"],
+        row["torque"],
+    ]
     return {
         "of": f"{_of(row['of'])} {value} {_unit(row['of']) or quantity(row['of'])[1] or force}".strip(),
         "numbers": ["–" if number is None else plain(number, 5) for number in numbers],

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coilset.meshes.geometry import Spring
+from coilset.meshes.springs.geometry import Spring
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.rate import torsion_rate
 from coilset.model.standards.steel import STEEL, Elastic

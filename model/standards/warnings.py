@@ -4,12 +4,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from coilset.meshes.checks import TOUCH
-from coilset.meshes.ends import touching_pitch
-from coilset.meshes.geometry import Spring
+from coilset.meshes.springs.checks import TOUCH
+from coilset.meshes.springs.ends import touching_pitch
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.base.warning import Warning
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.steel import STEEL, Elastic
-from coilset.model.warning import Warning
 
 INDEX_USUAL = (4.0, 20.0)  # EN 15800, table 1: cold coiled springs
 WIRE_USUAL = (0.07, 20.0)  # mm; EN 15800, table 1 and, from 16 mm on, annex A

@@ -11,14 +11,15 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.errors import CoilsetError, InputError, SolveError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import CoilsetError, InputError, SolveError
 from coilset.model.case import read_case
-from coilset.model.results import folder as folders
-from coilset.model.results import provenance, state_file
-from coilset.model.results.checkpoint import Checkpoint
-from coilset.scripts.log import run_log
-from coilset.scripts.solve import solve
+from coilset.model.results.files import folder as folders
+from coilset.model.results.files import state_file
+from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.results.records import provenance
+from coilset.model.run.analysis import Analysis
+from coilset.scripts.commands.solve import solve
+from coilset.scripts.terminal.log import run_log
 
 COMM = MPI.COMM_SELF
 SMALL = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "loading=[{to: {travel: 2}, steps: 2}]"]
@@ -168,9 +169,11 @@ def members(folder):
 
 def changes_of(name):
     """Without an array, with another shape of it, and with a number that is none."""
-    return [lambda arrays: arrays.pop(name),
-            lambda arrays: arrays.update({name: arrays[name][1:]}),
-            lambda arrays: arrays[name].flat.__setitem__(0, np.nan)]  # fmt: skip
+    return [
+        lambda arrays: arrays.pop(name),
+        lambda arrays: arrays.update({name: arrays[name][1:]}),
+        lambda arrays: arrays[name].flat.__setitem__(0, np.nan),
+    ]
 
 
 def spoilt_at(path, name, place, size):
@@ -201,8 +204,11 @@ def test_damage_at_every_array_gets_one_line(example, folder):
     analysis = Analysis(case, COMM)
     before, state = analysis.system.state["x"].trial.copy(), folder / "checkpoint" / STATE
     spoilt = [(member[0], content) for member in members(folder) for content in spoilt_at(*member)]
-    spoilt += [(state, rewritten(state, rewrite_fields, change))
-               for name, _ in analysis.system.state.items() for change in changes_of(name)]  # fmt: skip
+    spoilt += [
+        (state, rewritten(state, rewrite_fields, change))
+        for name, _ in analysis.system.state.items()
+        for change in changes_of(name)
+    ]
     assert len(spoilt) > 75
     for path, content in spoilt:
         whole = path.read_bytes()

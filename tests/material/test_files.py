@@ -2,7 +2,7 @@
 
 import pytest
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.material import library, programs
 
 CK15 = (library.FOLDER / "ck15.yaml").read_text(encoding="utf-8")

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from coilset.meshes.drawing import drawing
-from coilset.meshes.errors import InputError
-from coilset.meshes.spring import SpringSpec
-from coilset.scripts.mesh import mesh
+from coilset.meshes.springs.spring import SpringSpec
+from coilset.model.base.errors import InputError
+from coilset.scripts.commands.mesh import mesh
 
 SPRINGS = Path(__file__).parents[2] / "examples" / "springs"
 

@@ -7,7 +7,7 @@ import pytest
 import yaml
 from scipy.integrate import quad
 
-from coilset.meshes.spring import SpringSpec
+from coilset.meshes.springs.spring import SpringSpec
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "springs"
 EXACT = 1e-9

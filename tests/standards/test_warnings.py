@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.spring import MeasuredSpec, SpringSpec
+from coilset.meshes.springs.spring import MeasuredSpec, SpringSpec
 from coilset.model.case import read_case
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.case_warnings import case_warnings
