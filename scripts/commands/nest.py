@@ -14,8 +14,8 @@ from coilset.model.results.files.folder import RESULTS, clear, make, prepare, re
 from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.record import Step
 from coilset.model.results.records.summary import summarise
+from coilset.model.results.run_files import write_run
 from coilset.model.runtime.threads import usual
-from coilset.scripts.commands.solve import write_run
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.step_words import quantity, without_minus
 from coilset.scripts.terminal.target import results_folder

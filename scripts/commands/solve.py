@@ -6,7 +6,6 @@ import os
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from mpi4py import MPI
 
@@ -15,10 +14,11 @@ from coilset.model.base.errors import CoilsetError, InputError, SolveError, nami
 from coilset.model.case import Case, read_case
 from coilset.model.figures.pictures import Pictured
 from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.results.files.folder import DERIVED, clear, prepare, write_history, write_seats, write_summary
+from coilset.model.results.files.folder import clear, prepare
 from coilset.model.results.records.provenance import origin
-from coilset.model.results.records.record import Result, Setup, Step
+from coilset.model.results.records.record import Step
 from coilset.model.results.records.summary import summarise
+from coilset.model.results.run_files import write_run
 from coilset.model.run.analysis import Analysis
 from coilset.model.runtime.threads import usual
 from coilset.scripts.interrupt import Interrupt
@@ -142,20 +142,6 @@ def _run(
     except (SolveError, KeyboardInterrupt) as error:
         return error
     return None
-
-
-def write_run(out: Path, setup: Setup, result: Result, summary: dict[str, Any], made_with: dict[str, Any]) -> None:
-    """Write the results of a run, without pictures, into its folder."""
-    from coilset.model.results.files import dataset
-    from coilset.model.results.files.fields import write_fields
-
-    clear(out, DERIVED)  # a continued run still has the pictures and the page of before
-    write_history(out, result.steps)
-    write_seats(out, result.seats)
-    points = dataset.point_state(setup, result)
-    dataset.write_points(out, dataset.with_origin(points, setup, result, made_with))
-    write_fields(out, setup, result.snapshots)
-    write_summary(out, {**summary, "origin": made_with})
 
 
 def _draw(drawings: Drawings, out: Path, run: Pictured, telling: Lines) -> None:

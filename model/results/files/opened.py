@@ -58,7 +58,7 @@ def open_run(folder: str | Path) -> Run:
             data = file.load()
         for name in ("history", "seats"):
             path = folder / f"{name}.csv"
-            data = data.merge(_table(path), compat="override", join="outer")
+            data = data.merge(table(path), compat="override", join="outer")
     except (OSError, ValueError, KeyError) as error:
         raise unreadable(path, error) from None
     if "origin" not in summary:
@@ -66,7 +66,7 @@ def open_run(folder: str | Path) -> Run:
     return Run(folder, summary, data)
 
 
-def _table(path: Path) -> xr.Dataset:
+def table(path: Path) -> xr.Dataset:
     """Columns of a CSV as variables along `step`, NaN for empty fields."""
     rows = np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True, encoding="utf-8"))
     names = rows.dtype.names or ()
