@@ -15,8 +15,9 @@ from numba.extending import overload
 from coilset.model.base.kernel import KERNEL
 from coilset.model.material.creep import creep
 from coilset.model.material.creep import rod as creep_rod
+from coilset.model.material.law.terms import BackStresses
 from coilset.model.material.point import rod, solid
-from coilset.model.material.point.back_stresses import BackStresses, back_stress_map
+from coilset.model.material.point.back_stresses import back_stress_map
 from coilset.model.material.point.rod_points import return_map_points
 
 

@@ -11,7 +11,8 @@ from coilset.model.base.errors import InputError, SolveError
 from coilset.model.base.kernel import KERNEL
 from coilset.model.material.law.functions import CHANGE, TOLERANCE
 from coilset.model.material.law.law import Law
-from coilset.model.material.point.back_stresses import BackStresses, back_stress_map
+from coilset.model.material.law.terms import BackStresses
+from coilset.model.material.point.back_stresses import back_stress_map
 from coilset.model.material.point.heun import rod_heun, solid_heun
 from coilset.model.material.point.local import FAILED, TOO_HOT
 from coilset.model.material.point.rod_points import return_map_points

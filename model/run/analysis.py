@@ -1,4 +1,4 @@
-"""From a case to its result: its parts, as coilset.model.run.build makes them, go through the load program → records."""
+"""From a case to its records: the parts made by coilset.model.run.build go through the load program."""
 
 import logging
 import math

@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-SOURCES = Path(__file__).resolve().parent
+SOURCES = Path(__file__).resolve().parents[1]  # all of model
 
 
 def keep_by_content() -> None:

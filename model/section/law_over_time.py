@@ -8,7 +8,7 @@ from coilset.model.material.creep.creep import Creeping
 from coilset.model.material.creep.law import CREEP_COLUMNS, TEMPERATURE, CreepLaw
 from coilset.model.material.creep.rate import RateLaw, law_in_time
 from coilset.model.material.law.law import Law
-from coilset.model.material.point.back_stresses import BackStresses
+from coilset.model.material.law.terms import BackStresses
 from coilset.model.material.points import initial_state
 
 

@@ -14,7 +14,7 @@ from coilset.model.material.law import functions as fn
 from coilset.model.material.law.checks import check_combinations, check_functions
 from coilset.model.material.law.curve import AnyCurve
 from coilset.model.material.law.file import UNITS, Chaboche, Constants, Creep, MaterialFile, Validity
-from coilset.model.material.point.back_stresses import BackStresses, columns
+from coilset.model.material.law.terms import BackStresses, columns
 
 CELSIUS = 273.15  # K at 0 °C
 

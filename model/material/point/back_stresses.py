@@ -29,10 +29,9 @@ from numba import njit
 
 from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.law.functions import TEMPERATURE, elasticity, functions
+from coilset.model.material.law.terms import BackStresses
 from coilset.model.material.point.local import FAILED, MAX_ITERATIONS, yield_crossing
 
-# What the law's kernels take in the place of the parameter array: that array, and ⅔Cᵢ and γᵢ, shape (terms, 2).
-BackStresses = namedtuple("BackStresses", "plastic terms")
 # The stage's answer at b: |n| − k and its slope, Λ and q with their slopes in b.
 Stage = namedtuple("Stage", "off slope multiplier d_multiplier length d_length k2")
 
@@ -40,11 +39,6 @@ GAMMA = 1.0 - math.sqrt(0.5)
 PRECISION = 1e-13  # of |n| − k, over k
 TWO_THIRDS = math.sqrt(2.0 / 3.0)
 ROD = 3  # components
-
-
-def columns(components: int, terms: int) -> int:
-    """How many numbers all back stresses but the last add to a point's state."""
-    return components * (terms - 1)
 
 
 @njit(**KERNEL)

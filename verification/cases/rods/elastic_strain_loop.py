@@ -10,8 +10,8 @@ shear angle γ they are
 
 so that ½ E ε γ of shear remains to first order, 21.0 MPa here where σ rose to 2,100 MPa. The program's stress is a
 function of the elastic strain, namely the one that the closed form gives after stretch and twist
-(`model/material/point/spin.py`): both components must agree with the closed form as long as the bar is only stretched and
-then twisted, and nothing may remain.
+(`model/material/point/spin.py`): both components must agree with the closed form as long as the bar is only stretched
+and then twisted, and nothing may remain.
 
 Tolerance: 1e-6 MPa, in any number of steps; the maximum found is 3e-10.
 """

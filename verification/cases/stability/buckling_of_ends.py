@@ -4,8 +4,8 @@ Wire 5, D 40, pitch 12, elastic, 16 rods per turn as by default (with 8, that of
 hold the wire's tips sideways and against rotation, unless a case says otherwise, and stay parallel. A spring between
 them therefore buckles as it does between clamped heads, with the coefficient ½ of EN 13906-1, and both are compared
 with Haringx's clamped column (`references/stability.py`). What is judged is the travel at which the lowest eigenvalue
-vanishes, as reported by a run (`model/results/records/buckling.py`). The numbers of turns include whole and fractional ones;
-with a fractional number the ends push the axis to one side from the start.
+vanishes, as reported by a run (`model/results/records/buckling.py`). The numbers of turns include whole and fractional
+ones; with a fractional number the ends push the axis to one side from the start.
 
 Beyond that travel the stable branch is drawn: the force hardly rises while the axis deflects.
 
