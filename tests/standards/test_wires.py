@@ -170,7 +170,8 @@ WRONG = [
     ),
     (
         lambda: wire("EN 10270-3 1.4401").strength(1.2),
-        "material.wire: the strength of 'EN 10270-3 1.4401' is not known at 1.2 mm; known for 0.05 to 1 and 1.5 to 6 mm",
+        "material.wire: the strength of 'EN 10270-3 1.4401' is not known at 1.2 mm; "
+        "known for 0.05 to 1 and 1.5 to 6 mm",
     ),
 ]
 
