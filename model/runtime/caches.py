@@ -7,6 +7,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from coilset.model.runtime.switches import enabled
+
 SOURCES = Path(__file__).resolve().parents[1]  # all of model
 
 
@@ -36,11 +38,15 @@ def load_without_compiler() -> None:
     """
     from numba.core import entrypoints
 
-    _set_up_when_compiling()
-    _sought_when_called()
-    _link_when_compiling()
-    _import_nothing()
-    if hasattr(entrypoints, "_already_initialized"):
+    for name, change in (
+        ("compiler", _set_up_when_compiling),
+        ("lookup", _sought_when_called),
+        ("bitcode", _link_when_compiling),
+        ("imports", _import_nothing),
+    ):
+        if enabled(name):
+            change()
+    if enabled("compiler") and hasattr(entrypoints, "_already_initialized"):
         entrypoints._already_initialized = True  # no extensions of numba: it would look through all installed packages
 
 

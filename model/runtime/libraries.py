@@ -10,6 +10,8 @@ from importlib.util import find_spec
 from types import ModuleType
 from typing import Any
 
+from coilset.model.runtime.switches import enabled
+
 UNUSED = ("dolfinx.utils", "dolfinx.nls", "dolfinx.plot", "coverage", "meshio._cli")
 """Modules that others import without using them; these take as long to load as all of coilset's own."""
 
@@ -54,9 +56,11 @@ class WhenUsed:
 
 def load_when_used() -> None:
     """Put off what is in UNUSED; pydantic looks through no libraries for plug-ins, and does not check its own work."""
-    sys.meta_path.insert(0, WhenUsed(UNUSED))
-    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
-    os.environ.setdefault("PYDANTIC_SKIP_VALIDATING_CORE_SCHEMAS", "1")  # of what it compiles from our classes
+    if enabled("modules"):
+        sys.meta_path.insert(0, WhenUsed(UNUSED))
+    if enabled("checks"):
+        os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+        os.environ.setdefault("PYDANTIC_SKIP_VALIDATING_CORE_SCHEMAS", "1")  # of what it compiles from our classes
 
 
 def link_beside(then: Callable[[], object]) -> None:
@@ -73,7 +77,7 @@ def link_beside(then: Callable[[], object]) -> None:
     Args:
         then: what that thread does afterwards.
     """
-    if not find_spec("dolfinx_solver"):
+    if enabled("linking") and not find_spec("dolfinx_solver"):
         os.environ.setdefault("UCX_MEM_EVENTS", "n")
         threading.Thread(target=_link, args=(then,), daemon=True).start()
 

@@ -13,6 +13,7 @@ from mpi4py import MPI
 
 from coilset.model.base.errors import CoilsetError, InputError, SolveError
 from coilset.model.case import read_case
+from coilset.model.material import library
 from coilset.model.results.files import folder as folders
 from coilset.model.results.files import state_file
 from coilset.model.results.files.checkpoint import Checkpoint
@@ -289,7 +290,7 @@ def test_one_run_at_a_time_works_in_a_folder(example, folder):
 
 
 def test_changed_constants_of_a_material_file_are_seen(example, tmp_path):
-    source = (Path(provenance.__file__).parents[1] / "material" / "library" / "ck15.yaml").read_text(encoding="utf-8")
+    source = (library.FOLDER / "ck15.yaml").read_text(encoding="utf-8")
     material = tmp_path / "mine.yaml"
     material.write_text(source, encoding="utf-8")
     case = read_case(example, [*SMALL, f"material={material}"])
