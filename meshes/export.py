@@ -111,6 +111,8 @@ def _write_gmsh(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarray
             point = gmsh.model.addDiscreteEntity(0)
             gmsh.model.mesh.addElementsByType(point, 15, [tags[-1] + point], [node])
             gmsh.model.addPhysicalGroup(0, [point], name=name)
+        with open(path, "wb"):  # where a file cannot be written, gmsh raises an exception without the reason
+            pass
         gmsh.write(str(path))
         for name, values in data.items():
             view = gmsh.view.add(name)

@@ -8,6 +8,7 @@ from annotated_types import Unit
 from pydantic import Field, ValidationInfo, field_validator
 
 from coilset.meshes.springs import functions
+from coilset.meshes.springs.axis import Axis
 from coilset.meshes.springs.checks import refuse
 from coilset.meshes.springs.ends import OPEN, Ends, bottom_and_top
 from coilset.meshes.springs.geometry import Spring
@@ -24,10 +25,12 @@ WIRE_DIAMETER = "wire_diameter"
 
 
 class MeasuredSpec(Strict):
-    """A spring whose centre line was measured. The file's z axis is the axis of the spring; lengths are in mm.
+    """A spring whose centre line was measured; the file's z axis runs through its coils; lengths are in mm.
 
-    The points become mean radius and height over the polar angle, interpolated by a cubic spline: a helix remains
-    exactly a helix. The wire diameter is interpolated without overshoot.
+    The points are moved so that the axis fitted to them is the z axis, if they have two turns or more and eight points
+    a turn; otherwise the file's z axis is the spring's. They become mean radius and height over the
+    polar angle, interpolated by a cubic spline: a helix remains exactly a helix. The wire diameter is interpolated
+    without overshoot.
     """
 
     file: Annotated[str, Field(description="CSV with the columns x, y, z, wire_diameter, or a mesh that meshio reads")]
@@ -65,6 +68,10 @@ class MeasuredSpec(Strict):
         if points[-1, 2] < points[0, 2]:  # the bottom end comes first
             points, wire, numbers = points[::-1], wire[::-1], numbers[::-1]
         turn, hand, phase = _turns(points, numbers, path)
+        axis = Axis.of(points, turn[-1])
+        if axis is not None:
+            points = axis.moved(points)
+            turn, hand, phase = _turns(points, numbers, path)
         # radius and height have the same noise as a coordinate
         fit = functions.smoothed if self.noise > 0 else lambda t, y, noise: functions.tabulated(t, y, "spline")
         radius = fit(turn, np.hypot(points[:, 0], points[:, 1]), self.noise)
@@ -75,7 +82,8 @@ class MeasuredSpec(Strict):
             raise InputError(
                 f"{closed:g} end turns, but the centre line has only {turn[-1]:.4g} turns", "spring.end_coils"
             )
-        spring = Spring(radius, height, functions.tabulated(turn, wire, "monotone"), hand, bottom, top, phase)
+        wires = functions.tabulated(turn, wire, "monotone")
+        spring = Spring(radius, height, wires, hand, bottom, top, phase, axis)
         return refuse(spring, "", str(path))
 
 

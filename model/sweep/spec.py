@@ -50,6 +50,8 @@ RESPONSES = (
     "estimated_set_error_mm",
     "load_loss_percent",
     "coiling_diameter_mm",
+    "measured_axis_offset_mm",
+    "measured_axis_tilt_deg",
     "steps",
     "iterations",
     "evaluations",

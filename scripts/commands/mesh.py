@@ -11,14 +11,12 @@ from rich.table import Table
 from coilset.meshes.springs.spring import Spring
 from coilset.model.base.errors import InputError, naming
 from coilset.model.case import read_case
-from coilset.model.results.files.folder import make, refuse_to_replace, whole
+from coilset.model.results.files.folder import DRAWN, make, refuse_to_replace, whole
 from coilset.model.standards.data import SpringData, spring_data
 from coilset.model.standards.warnings import spring_warnings
 from coilset.model.standards.wires.law import case_elastic, case_law
 from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.target import results_folder
-
-FILES = ("drawing.png", "spring.png")
 
 
 def mesh(
@@ -56,7 +54,7 @@ def mesh(
         spring = case.spring.build()
         turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
         elastic = case_elastic(case, case_law(case, spring))
-    refuse_to_replace([folder / name for name in FILES if pictures] + [Path(path) for path in write], force)
+    refuse_to_replace([folder / name for name in DRAWN if pictures] + [Path(path) for path in write], force)
     console.print(_table(spring_data(spring, elastic), turns))
     for warning in spring_warnings(spring, elastic):
         console.warn(warning.message)
@@ -93,9 +91,9 @@ def _draw(spring: Spring, out: Path, name: str, console: Console) -> None:
 
     size = f"{plain(spring.turns)} turns, {plain(spring.free_length)} mm long"
     with mpl.rc_context(STYLE):
-        save(drawing.drawing(spring, f"{name}: {size}"), out / FILES[0])
+        save(drawing.drawing(spring, f"{name}: {size}"), out / DRAWN[0])
     if not display.ensure():
-        console.warn(f"{FILES[1]} is not drawn: there is no display and no Xvfb")
+        console.warn(f"{DRAWN[1]} is not drawn: there is no display and no Xvfb")
         return
-    with whole(out / FILES[1]) as path:
+    with whole(out / DRAWN[1]) as path:
         view.picture(spring, path)

@@ -14,7 +14,7 @@ from coilset.model.base.errors import CoilsetError, InputError, SolveError, nami
 from coilset.model.case import Case, read_case
 from coilset.model.figures.pictures import Pictured
 from coilset.model.results.files.checkpoint import Checkpoint
-from coilset.model.results.files.folder import clear, prepare
+from coilset.model.results.files.folder import DRAWN, RESULTS, clear, prepare
 from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.record import Step
 from coilset.model.results.records.summary import summarise
@@ -63,7 +63,7 @@ def solve(
         with naming(case_file):
             analysis = Analysis(case, comm, threads=threads or usual(comm.size))
         on_first_rank(comm, lambda: _prepare(folder, analysis.case, force, resume))
-        on_first_rank(comm, lambda: _begin(stack.enter_context(run_log(folder)), folder, resume))
+        on_first_rank(comm, lambda: _begin(stack.enter_context(run_log(folder)), folder, force, resume))
         drawings = (drawings or stack.enter_context(Drawings(os.environ))) if pictures else None
         _solve(telling, analysis, case_file, folder, drawings, resume, interactive, interrupt)
 
@@ -76,12 +76,15 @@ def _prepare(folder: Path, case: Case, force: bool, resume: bool) -> None:
     prepare(folder, force or resume)
 
 
-def _begin(log: logging.FileHandler, out: Path, resume: bool) -> None:
-    """Remove everything of an earlier run from the folder, except what is to be continued."""
+def _begin(log: logging.FileHandler, out: Path, force: bool, resume: bool) -> None:
+    """Remove everything of an earlier run from the folder, except what is to be continued.
+
+    Pictures of `coilset mesh` may be of this spring, made before it is solved; where results are replaced, they go.
+    """
     if not resume:
         assert log.stream is not None  # it is opened in advance
         log.stream.truncate(0)
-        clear(out)
+        clear(out, RESULTS + DRAWN if force else RESULTS)
 
 
 def _solve(

@@ -17,6 +17,7 @@ from coilset.model.material import library
 from coilset.model.results.files import folder as folders
 from coilset.model.results.files import state_file
 from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.results.files.opened import open_run
 from coilset.model.results.records import provenance
 from coilset.model.run.analysis import Analysis
 from coilset.scripts.commands.solve import solve
@@ -56,6 +57,21 @@ def resume(example, folder, *more):
 def test_an_undamaged_one_goes_on(example, folder):
     resume(example, folder)
     assert json.loads((folder / "summary.json").read_text())["steps"] == 2
+
+
+@pytest.mark.parametrize("force", [False, True])
+def test_pictures_of_mesh_go_only_where_results_are_replaced(example, tmp_path, force):
+    (tmp_path / "drawing.png").write_text("of this spring, or of another")
+    solve(example, tmp_path, force, SMALL, False, comm=COMM)
+    assert (tmp_path / "drawing.png").exists() != force
+
+
+@pytest.mark.parametrize("name", ["history.csv", "seats.csv"])
+def test_an_empty_table_is_one_line(example, tmp_path, name):
+    solve(example, tmp_path, False, SMALL, False, comm=COMM)
+    (tmp_path / name).write_text("")
+    with pytest.raises(InputError, match=rf"{name}: is not readable: it is empty"):
+        open_run(tmp_path)
 
 
 def test_a_continued_run_leaves_nothing_that_shows_the_earlier_numbers(example, folder):

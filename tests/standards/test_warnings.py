@@ -66,7 +66,7 @@ WARNED = [
     ),
     (
         {"pitch": table([0, 2, 3, 6], [5.0, 5.0, 12.0, 12.0])},
-        "coils of the body touch before any load, between turns 0 and 2; their pitch is 5 mm",
+        "coils of the body touch before any load, between turns 0 and 2.11; their pitch is 5 mm",
     ),
 ]
 

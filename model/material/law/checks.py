@@ -74,7 +74,10 @@ def check_functions(data: MaterialFile, functions: Functions, refuse: Refuse) ->
             continue
         # Between two temperatures, too: the product of the interpolated κ and k²′ may be larger than at both.
         for temperature in np.unique(np.linspace(known[i], known[min(i + 1, len(known) - 1)], 5)):
-            k2, dk2, zeta, _, kappa, _ = functions(work, temperature)
+            values_at = functions(work, temperature)
+            if not np.isfinite(values_at).all():
+                refuse(f"temperatures.{i}", f"its functions overflow at {temperature:g} K; are the units N and mm?")
+            k2, dk2, zeta, _, kappa, _ = values_at
             for entry, name, unit, values, broken, rule in (
                 ("isotropic", "k²", " N²/mm⁴", k2, ~(k2 > 0), "must be positive"),
                 ("isotropic", "2ζ + k²′", " N/mm²", 2 * zeta + dk2, 2 * zeta + dk2 < 0, "must not be negative"),

@@ -29,6 +29,8 @@ DERIVED = (
     "report.html",
 )
 RESULTS = RECORDS + DERIVED
+DRAWN = ("drawing.png", "spring.png")
+"""Pictures of the unloaded spring by `coilset mesh`."""
 
 
 @contextlib.contextmanager

@@ -68,6 +68,8 @@ def open_run(folder: str | Path) -> Run:
 
 def table(path: Path) -> xr.Dataset:
     """Columns of a CSV as variables along `step`, NaN for empty fields."""
+    if not path.stat().st_size:
+        raise ValueError("it is empty")
     rows = np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True, encoding="utf-8"))
     names = rows.dtype.names or ()
     if not names or len(rows.shape) == 0 or names == ("step",):

@@ -26,6 +26,7 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
     forces = [step.force_N for step in result.steps]
     greatest = max(forces, default=0.0, key=abs)
     released = is_released(result)
+    axis = setup.spring.measured_axis
     before, buckled = setup.spring.free_length, buckling(result.steps, setup.mean_diameter)
     after = setup.outer_length(last.x) if released else None
     return {
@@ -48,6 +49,8 @@ def summarise(setup: Setup, result: Result) -> dict[str, Any]:
         **step_errors(result),
         "load_loss_percent": load_loss(result),
         "coiling_diameter_mm": setup.coiling_diameter,
+        "measured_axis_offset_mm": axis.offset if axis else None,
+        "measured_axis_tilt_deg": axis.tilt if axis else None,
         "steps": len(result.steps),
         "iterations": sum(step.iterations for step in result.steps),
         "evaluations": sum(step.evaluations for step in result.steps),
