@@ -48,13 +48,17 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
     )
     inside = s["residual_shear_inside_MPa"]
     told = "" if inside is None or inside == 0.0 else "against the load" if inside < 0.0 else "with the load"
+    turn = s.get("residual_shear_inside_turn")
+    at = "" if turn is None else f" at turn {turn:.2f}"
+    lengths = [f"{one['free_length_mm']:.3f} mm after release {k}" for k, one in enumerate(s.get("releases") or [], 1)]
+    earlier = f", {', '.join(lengths[:-1])}" if len(lengths) > 1 else ""
     return [
         Number("set", _said(s["set_mm"], "mm", 3), share),
-        Number("free length", _said(after, "mm", 3), f"after; {before:.3f} mm before"),
+        Number("free length", _said(after, "mm", 3), f"after; {before:.3f} mm before{earlier}"),
         Number(
             "residual shear stress",
             _said(inside, "MPa", 1),
-            f"at the inside of the middle coils{', ' + told if told else ''}",
+            f"inside of the coil{at}{', ' + told if told else ''}",
         ),
         Number("maximum force", _said(s["force_max_N"], "N", 1), _error(s["estimated_force_error_N"])),
         Number("initial rate", _said(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
@@ -63,7 +67,7 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
 
 
 def _said(value: float | None, unit: str, digits: int) -> str:
-    return "not reached" if value is None else said(value, unit, digits)
+    return "none" if value is None else said(value, unit, digits)
 
 
 def _error(value: float | None) -> str:
