@@ -127,7 +127,7 @@ class Contribution:
 
     @property
     def deepest(self) -> float:
-        """Maximum penetration, mm; 0 where nothing touches."""
+        """Maximum penetration, mm; 0 where no contact."""
         return self._extent[1]
 
 
@@ -192,7 +192,7 @@ class LimitsStep(Contact, Protocol):
     """A contact that limits the penetration caused by a correction of the iteration."""
 
     def max_penetration(self, trial: TrialPositions) -> float:
-        """Maximum penetration, mm; 0 where nothing touches. Cheaper than `evaluate`, and writes nothing."""
+        """Maximum penetration, mm; 0 where no contact. Cheaper than `evaluate`, and writes nothing."""
         ...
 
 

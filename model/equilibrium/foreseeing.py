@@ -1,6 +1,6 @@
 """Forces that a correction foresees, between Newton's method and a body that Foresees them.
 
-Where nothing touches, and after a correction that increases only the spurious forces of finite rotations, the next
+Where no contact, and after a correction that increases only the spurious forces of finite rotations, the next
 tangent is built with the forces that the correction foresees, see coilset.model.rod.prediction. The line search asks
 what the residual is without these spurious forces.
 """

@@ -140,7 +140,7 @@ class Newton:
     def _in_parts(self) -> tuple[int, int, int]:
         """Solve the step whole, or balance it roughly on the way where contacts stop it.
 
-        Where nothing touches, a part would fail just as the whole: the step is to be cut. So it is where the law finds
+        Where no contact, a part would fail just as the whole: the step is to be cut. So it is where the law finds
         no stress, and `touches` is therefore False: a part leads to the same increments, for which there is none.
 
         Returns:

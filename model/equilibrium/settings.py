@@ -42,7 +42,7 @@ class NewtonControl:
         smallest_contact_step: share of a correction that is made whatever it does to the contacts.
         contact_bisections: number of bisections to find the share of a correction that the contacts allow.
         foreseen_forces: whether the stiffness of rotating rods is built with the forces that the last correction
-            predicts; left out: where nothing touches, and after corrections that increase only spurious forces.
+            predicts; left out: where no contact, and after corrections that increase only spurious forces.
     """
 
     __pydantic_config__: ClassVar[ConfigDict] = STRICT

@@ -47,7 +47,9 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
         f"{100.0 * s['set_mm'] / before:.1f} % of the free length" if s["set_mm"] is not None else "it was not released"
     )
     inside = s["residual_shear_inside_MPa"]
-    told = "" if inside is None or inside == 0.0 else "against the load" if inside < 0.0 else "with the load"
+    told = ""
+    if inside:  # positive as in a compressed spring, so that it is the load's sign of a spring that is pulled
+        told = "with the load" if inside * s["force_max_N"] > 0.0 else "against the load"
     turn = s.get("residual_shear_inside_turn")
     at = "" if turn is None else f" at turn {turn:.2f}"
     lengths = [f"{one['free_length_mm']:.3f} mm after release {k}" for k, one in enumerate(s.get("releases") or [], 1)]

@@ -9,7 +9,7 @@ from coilset.model.case import Case
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.en15800 import Grade
 from coilset.model.standards.found import Found
-from coilset.model.standards.sheet import Sheet, working_lengths
+from coilset.model.standards.sheet import Sheet, pulls, working_lengths
 from coilset.model.standards.wires import wire
 from coilset.model.standards.wires.law import case_elastic, case_law
 
@@ -61,6 +61,8 @@ def case_sheet(
         run,
         not case.ends_turn,
         law.first_yield(case.temperature),
+        law.data.tensile_strength if isinstance(case.material, str) else None,
+        pulls(case, spring),
     )
     if lengths:
         return made

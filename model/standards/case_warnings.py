@@ -9,7 +9,7 @@ from coilset.model.case import Case
 from coilset.model.material.law.law import Law
 from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
-from coilset.model.standards.sheet import Sheet, working_lengths
+from coilset.model.standards.sheet import Sheet, pulls, working_lengths
 from coilset.model.standards.steel import Elastic
 from coilset.model.standards.warnings import spring_warnings
 from coilset.model.standards.wires import wire
@@ -26,7 +26,7 @@ def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
         law: its material.
     """
     elastic = case_elastic(case, law)
-    own = spring_warnings(spring, elastic)
+    own = [one for one in spring_warnings(spring, elastic) if not (one.name == "buckling" and pulls(case, spring))]
     return (*_renamed(case), *_estimated(case), *own, *_working(case, spring, elastic))
 
 
@@ -48,6 +48,8 @@ def _estimated(case: Case) -> Iterator[Warning]:
 
 def _working(case: Case, spring: Spring, elastic: Elastic) -> list[Warning]:
     """Warnings about the load program, for cylinders of constant wire diameter, to which the formulas apply."""
+    if pulls(case, spring):  # the standards are for compression springs
+        return []
     try:
         cylinder = Cylinder.of(spring)
     except InputError:
@@ -66,9 +68,11 @@ def sheet_warnings(made: Sheet, to_block: list[float]) -> list[Warning]:
         made: Sheet.
         to_block: the block length, mm, if the spring is compressed to it; checked for stress only.
     """
-    found = gap_warnings(made.spring, made.lengths, made.dynamic)
+    if made.pulled:
+        return []
+    found = gap_warnings(made)
     if made.wire:
-        found += stress_warnings(made.spring, made.elastic.shear_modulus, [*made.lengths, *to_block], made.wire)
+        found += stress_warnings(made, [*made.lengths, *to_block], made.wire)
     if made.cycle and made.endured:
         found += endurance_warnings(made.cycle, made.endured)
     return found

@@ -10,7 +10,8 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError
 
 CylinderEnds = Literal["open", "closed", "closed and ground", "mixed"]
-SAME = 1e-9  # maximum relative change of coil and wire diameter along a cylinder
+SAME = 1e-9  # maximum relative change of coil and wire diameter along a cylinder, and of a constant pitch
+PARTS = 400  # of the active turns of a variable pitch
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,7 @@ class Cylinder:
         pitch: mean rise of an active turn.
         ends: form of both ends; `mixed` if they differ.
         solid: block length of the geometry, with every coil touching the next.
+        pitches: of the active turns at the middles of equal parts, if the pitch of the body varies; else empty.
     """
 
     d: float
@@ -36,6 +38,7 @@ class Cylinder:
     pitch: float
     ends: CylinderEnds
     solid: float
+    pitches: tuple[float, ...] = ()
 
     @classmethod
     def of(cls, spring: Spring) -> "Cylinder":
@@ -65,7 +68,24 @@ class Cylinder:
             pitch,
             ends,
             spring.block_height,
+            _pitches(spring),
         )
+
+    def series_force(self, travel: float, turn_rate: float) -> float:
+        """Force at a travel of coils that close one by one, N: the s(F) = ∫ min(F/R₁, p − d) dt of docs/springs.md.
+
+        Args:
+            travel: from the free length, mm.
+            turn_rate: R₁ = G d⁴/(8 D³), the rate of one turn, N/mm.
+
+        Returns:
+            The force at which s is the travel; that at which the last coil closes, if it is more than all coils have.
+        """
+        play = np.maximum(np.array(self.pitches) - self.d, 0.0)
+        closing = turn_rate * np.sort(play)  # the forces at which the parts close
+        part = self.n / len(play)
+        at_closing = part * np.minimum(closing[:, None] / turn_rate, play).sum(axis=1)
+        return float(np.interp(travel, np.append(0.0, at_closing), np.append(0.0, closing)))
 
     @property
     def index(self) -> float:
@@ -76,3 +96,14 @@ class Cylinder:
     def pitch_angle(self) -> float:
         """α of the active turns, rad."""
         return atan(self.pitch / (pi * self.D))
+
+
+def _pitches(spring: Spring) -> tuple[float, ...]:
+    """Pitches of the active turns, mm; empty if that of the body between the transitions is constant."""
+    start, end = spring.bottom.end_turns, spring.turns - spring.top.end_turns
+    body = np.linspace(start + spring.bottom.transition_turns, end - spring.top.transition_turns, PARTS)
+    pitch = spring.pitch(body)
+    if np.ptp(pitch) <= SAME * pitch.max():
+        return ()
+    middles = start + (end - start) * (np.arange(PARTS) + 0.5) / PARTS
+    return tuple(spring.pitch(middles).tolist())

@@ -5,11 +5,8 @@ L0 free and Lc block length. N, mm, MPa, kg; frequency in Hz.
 """
 
 from math import pi, sqrt
-from typing import Literal
 
 from coilset.model.standards.buckling import critical_travel
-
-Ends = Literal["closed and ground", "closed"]
 
 __all__ = [
     "block_length",
@@ -25,6 +22,7 @@ __all__ = [
     "wire_length",
 ]
 
+HOT_COILED = 20.0  # mm; wire above it is coiled hot: EN 15800 ends at 20 mm with its annex A
 DYNAMIC_GAPS = 1.5  # EN 13906-1: Sa of cold coiled springs under alternating load over that under static load
 
 
@@ -49,24 +47,35 @@ def stress_correction(w: float) -> float:
     return (w + 0.5) / (w - 0.75)
 
 
-def block_length(ends: Ends, turns: float, greatest_d: float) -> float:
-    """Upper bound of the block length of a cold coiled spring, mm.
+def is_hot_coiled(d: float) -> bool:
+    """Whether wire of a diameter, mm, is coiled hot."""
+    return d > HOT_COILED
 
-    Lc = n_t d_max for closed and ground ends, (n_t + 1.5) d_max for closed ends that are not ground.
+
+def block_length(ends: str, turns: float, maximum_d: float, hot: bool = False) -> float | None:
+    """Upper bound of the block length, mm; None where no formula was found.
+
+    Cold coiled: Lc = n_t d_max for closed and ground ends, (n_t + 1.5) d_max for closed ends that are not ground; the
+    standard has none for open ends. Hot coiled: (n_t − 0.3) d_max for closed and ground ends.
 
     Args:
-        ends: form of the ends; the standard has no block length for open ends of cold coiled springs.
+        ends: form of the ends.
         turns: n_t, all turns.
-        greatest_d: d_max, wire diameter with its tolerance, mm.
+        maximum_d: d_max, wire diameter with its tolerance, mm.
+        hot: whether it is coiled hot.
     """
-    return (turns if ends == "closed and ground" else turns + 1.5) * greatest_d
+    beyond = {"closed and ground": -0.3} if hot else {"closed and ground": 0.0, "closed": 1.5}
+    return (turns + beyond[ends]) * maximum_d if ends in beyond else None
 
 
 def gap_sum(d: float, D: float, n: float, dynamic: bool = False) -> float:
-    """Minimum sum of the gaps between the active coils of a cold coiled spring, Sa = n (0.0015 D²/d + 0.1 d), mm.
+    """Minimum sum of the gaps between the active coils, mm, which remains at the smallest length Ln = Lc + Sa.
 
-    It remains at the smallest permissible working length Ln = Lc + Sa; under alternating load it is 1.5 times as much.
+    Cold coiled: Sa = n (0.0015 D²/d + 0.1 d), and 1.5 times as much under alternating load. Hot coiled: Sa = 0.02 n
+    (D + d); what alternating load adds to it was not found.
     """
+    if is_hot_coiled(d):
+        return 0.02 * n * (D + d)
     return n * (0.0015 * D**2 / d + 0.1 * d) * (DYNAMIC_GAPS if dynamic else 1.0)
 
 

@@ -38,6 +38,8 @@ class Row:
 
 def sections(sheet: Sheet) -> list[tuple[str, list[Row]]]:
     """All rows under their headings; headings without rows are omitted."""
+    if sheet.pulled:
+        return [("Dimensions", list(_dimensions(sheet))), ("Rate", list(_pulled(sheet)))]
     parts = {
         "Dimensions": _dimensions,
         "Rate, block and buckling": _spring,
@@ -63,6 +65,8 @@ def _dimensions(sheet: Sheet) -> Iterator[Row]:
     yield Row("free length L0", s.length, "mm", "", GIVEN, after, f"set {set_mm:.4g} mm" if after else "")
     yield Row("wire length l", nominal, "mm", "π D n_t", DERIVED, helix, "the helix is longer by 1/cos α")
     yield Row("mass m", 1e3 * en13906.mass(ρ, s.d, nominal), "g", "ρ π d² l/4", DERIVED, mass, "as the wire length")
+    if sheet.pulled:
+        return
     growth = en13906.outer_diameter_growth(s.d, s.D, s.pitch)
     grown = sheet.found.growth if sheet.found and sheet.was_at_block else None
     yield Row(
@@ -76,33 +80,42 @@ def _dimensions(sheet: Sheet) -> Iterator[Row]:
     )
 
 
+def _rate(sheet: Sheet) -> Row:
+    """The rate, beside that of the finished spring where a run gives it."""
+    finished, first = sheet.at_run("rate_30_70_after_N_per_mm"), sheet.at_run("rate_N_per_mm")
+    why = "at first touch, where end turns carry load too; with curvature and direct shear"
+    if finished is not None:
+        why = "of the finished spring, between 30 and 70 % of its travel"
+    found = first if finished is None else finished
+    return Row("rate R", sheet.rate, "N/mm", "G d⁴/(8 D³ n)", DERIVED, found, why)
+
+
+def _pulled(sheet: Sheet) -> Iterator[Row]:
+    """Of a spring that the load program pulls."""
+    yield _rate(sheet)
+    yield Row("all others", None, why="EN 13906-1 and EN 15800 are for compression springs; this one is pulled")
+
+
 def _spring(sheet: Sheet) -> Iterator[Row]:
     s, e = sheet.spring, sheet.elastic
     rate, solid = sheet.rate, s.solid
     softer = pitch_compliance(s.pitch_angle, poisson_ratio(e), "held" if sheet.held else "turning")
-    yield Row(
-        "rate R",
-        rate,
-        "N/mm",
-        "G d⁴/(8 D³ n)",
-        DERIVED,
-        sheet.at_run("rate_N_per_mm"),
-        "at first touch, where end turns bear, too; with curvature and direct shear",
-    )
+    yield _rate(sheet)
     held = "(½ − ν)" if sheet.held else "(1 − ν)/(2 (1 + ν))"
     formula = f"R/(1 + tan²α {held} + …), α = {degrees(s.pitch_angle):.1f}°"
     yield Row("R of a rising wire", rate / softer, "N/mm", formula, DERIVED)
-    formula = {"closed and ground": "n_t d_max", "closed": "(n_t + 1.5) d_max"}.get(s.ends, "")
-    why = "the formula is an upper bound; the geometry's coils touch"
-    if sheet.block is None:
-        why = f"EN 13906-1 has none for {s.ends} ends"
-    yield Row("block length Lc", sheet.block, "mm", formula, TWO, sheet.at_run("block_height_mm"), why)
+    hot = en13906.is_hot_coiled(s.d)
+    cold_formulas = {"closed and ground": "n_t d_max", "closed": "(n_t + 1.5) d_max"}
+    formula = "(n_t − 0.3) d_max, hot coiled" if hot else cold_formulas.get(s.ends, "")
+    why = "" if sheet.block is not None else f"no formula was found for {s.ends} ends{' of hot coiled springs' * hot}"
+    yield Row("block length Lc", sheet.block, "mm", formula if sheet.block else "", ONE if hot else TWO, why=why)
+    yield Row("block of the geometry", solid, "mm", "where the coils touch; Lc is an upper bound", DERIVED)
     force = sheet.at_run("force_max_N") if sheet.was_at_block else None
     yield Row(
         "force at block Fc",
-        rate * (s.length - solid),
+        sheet.force(solid),
         "N",
-        f"R (L0 − {solid:.4g} mm)",
+        f"{sheet.force_formula}, L = {solid:.4g} mm",
         DERIVED,
         force,
         _why_block(sheet),
@@ -134,20 +147,17 @@ def _why_block(sheet: Sheet) -> str:
 def _stresses(sheet: Sheet) -> Iterator[Row]:
     s, wire = sheet.spring, sheet.wire
     k, τ = en13906.stress_correction(s.index), sheet.stress(s.solid)
-    found = sheet.at_run("shear_max_MPa") if sheet.was_at_block else None
-    yield Row(
-        "stress τc",
-        τ,
-        "MPa",
-        "8 D Fc/(π d³)",
-        DERIVED,
-        found,
-        "maximum true shear stress on the surface of the middle turns",
-    )
+    force, true = (sheet.at_run(name) if sheet.was_at_block else None for name in ("force_max_N", "shear_max_MPa"))
+    nominal = None if force is None else en13906.stress(force, s.d, s.D)
+    yield Row("stress τc", τ, "MPa", "8 D Fc/(π d³)", DERIVED, nominal, "nominal, of the force found")
     yield Row("stress correction k", k, "", "(w + 0.5)/(w − 0.75)", TWO)
-    yield Row("corrected stress τkc", k * τ, "MPa", "k τc", TWO)
+    why = "maximum true shear stress on the surface of the middle turns"
+    yield Row("corrected stress τkc", k * τ, "MPa", "k τc", TWO, true, why)
     if wire is None:
-        yield Row("allowed at block", None, "MPa", why="the material is not a standard wire; give --wire")
+        if sheet.strength is not None:
+            yield Row("tensile strength Rm", sheet.strength, "MPa", "of the material file", GIVEN)
+        why = "the allowed share of Rm depends on the wire; give --wire"
+        yield Row("allowed at block", None, "MPa", why=why)
         return
     strength, share = wire.entry.strength, wire.entry.block_stress
     yield Row("minimum tensile strength Rm", wire.strength(s.d), "MPa", wire.name, SHORT[strength.sure])
@@ -158,10 +168,11 @@ def _stresses(sheet: Sheet) -> Iterator[Row]:
 
 def _working(sheet: Sheet) -> Iterator[Row]:
     s, k = sheet.spring, en13906.stress_correction(sheet.spring.index)
-    gaps = en13906.gap_sum(s.d, s.D, s.n, sheet.dynamic)
-    yield Row("least sum of gaps Sa", gaps, "mm", f"{'1.5 ' * sheet.dynamic}n (0.0015 D²/d + 0.1 d)", TWO)
-    if sheet.block is not None:
-        yield Row("smallest length Ln", sheet.block + gaps, "mm", "Lc + Sa", TWO)
+    gaps, hot = en13906.gap_sum(s.d, s.D, s.n, sheet.dynamic), en13906.is_hot_coiled(s.d)
+    formula = "0.02 n (D + d), hot coiled" if hot else f"{'1.5 ' * sheet.dynamic}n (0.0015 D²/d + 0.1 d)"
+    yield Row("minimum sum of gaps Sa", gaps, "mm", formula, ONE if hot else TWO)
+    formula = "Lc + Sa" if sheet.block is not None else f"{s.solid:.4g} mm + Sa"
+    yield Row("smallest length Ln", sheet.shortest + gaps, "mm", formula, ONE if hot else TWO)
     for length in sorted(sheet.lengths, reverse=True):
         τ, force = sheet.stress(length), sheet.found.force_at(length) if sheet.found else None
         real = None if force is None else en13906.stress(force, s.d, s.D)
@@ -169,14 +180,14 @@ def _working(sheet: Sheet) -> Iterator[Row]:
             f"force at {length:.5g} mm",
             sheet.force(length),
             "N",
-            "R (L0 − L)",
+            sheet.force_formula,
             DERIVED,
             force,
             _why_force(sheet, length),
         )
         yield Row("  stress τ", τ, "MPa", "8 D F/(π d³)", DERIVED, real, "nominal, of the force found")
         yield Row("  corrected stress τk", k * τ, "MPa", "k τ", TWO, None if real is None else k * real, "the same")
-        yield Row("  sum of gaps", length - s.solid, "mm", f"L − {s.solid:.4g} mm", DERIVED)
+        yield Row("  sum of gaps", length - sheet.shortest, "mm", f"L − {sheet.shortest:.4g} mm", DERIVED)
 
 
 def _why_force(sheet: Sheet, length: float) -> str:
@@ -226,8 +237,8 @@ def _endurance(sheet: Sheet) -> Iterator[Row]:
     yield Row("lower stress τk1", cycle.lower, "MPa", "k τ", TWO)
     yield Row("range τkh", cycle.upper - cycle.lower, "MPa", "τk2 − τk1", TWO)
     if endured is None:
-        why = f"no line of {sheet.wire.name}, {sheet.surface}, was found" if sheet.wire else "give --wire"
-        yield Row("range that is endured", None, "MPa", why=why)
+        why = f"no fatigue data for {sheet.wire.name}, {sheet.surface}" if sheet.wire else "give --wire"
+        yield Row("permissible stress range", None, "MPa", why=why)
         return
     residual = sheet.found.residual if sheet.found else None
     shifted = None if residual is None else endured.stress_range(cycle.shifted(residual).lower)
@@ -237,7 +248,7 @@ def _endurance(sheet: Sheet) -> Iterator[Row]:
         else (f"with the residual {residual:.1f} MPa; the lines hold for set springs, so it may count twice")
     )
     formula = f"Goodman, {endured.times} times, {endured.surface}"
-    yield Row("range that is endured", endured.stress_range(cycle.lower), "MPa", formula, ONE, shifted, why)
+    yield Row("permissible stress range", endured.stress_range(cycle.lower), "MPa", formula, ONE, shifted, why)
 
 
 def _tolerances(sheet: Sheet) -> Iterator[Row]:

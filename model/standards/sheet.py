@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.case import Case
 from coilset.model.case.phases import Phase
 from coilset.model.standards import en13906, en15800, goodman
 from coilset.model.standards.cylinder import Cylinder
@@ -29,6 +31,8 @@ class Sheet:
         found: results of a run; None without one.
         held: whether the ends of the run cannot turn about the spring's axis.
         yield_stress: of the run's material in tension, MPa; None if it is unknown or the material is elastic.
+        strength: tensile strength Rm that the material's file gives, MPa; None if it gives none.
+        pulled: whether the load program pulls the spring; the standards here are for compression springs.
     """
 
     spring: Cylinder
@@ -42,6 +46,8 @@ class Sheet:
     found: Found | None = None
     held: bool = False
     yield_stress: float | None = None
+    strength: float | None = None
+    pulled: bool = False
 
     @property
     def rate(self) -> float:
@@ -49,8 +55,16 @@ class Sheet:
         return en13906.rate(self.elastic.shear_modulus, self.spring.d, self.spring.D, self.spring.n)
 
     def force(self, length: float) -> float:
-        """Nominal force at a length, N."""
-        return self.rate * (self.spring.length - length)
+        """Nominal force at a length, N: R (L0 − L), or that of coils of variable pitch, which close one by one."""
+        travel = self.spring.length - length
+        if not self.spring.pitches:
+            return self.rate * travel
+        return self.spring.series_force(travel, self.rate * self.spring.n)
+
+    @property
+    def force_formula(self) -> str:
+        """How `force` is found, in symbols."""
+        return "s = ∫ min(F/R₁, p − d) dt" if self.spring.pitches else "R (L0 − L)"
 
     def stress(self, length: float) -> float:
         """Nominal uncorrected shear stress at a length, MPa."""
@@ -60,9 +74,12 @@ class Sheet:
     def block(self) -> float | None:
         """Lc of the standard, mm; None for ends without a formula."""
         s = self.spring
-        if s.ends not in ("closed and ground", "closed"):
-            return None
-        return en13906.block_length(s.ends, s.turns, s.d + self.tolerance_of_wire)
+        return en13906.block_length(s.ends, s.turns, s.d + self.tolerance_of_wire, en13906.is_hot_coiled(s.d))
+
+    @property
+    def shortest(self) -> float:
+        """The block length from which gaps are counted: Lc of the standard, or the geometry's where there is none."""
+        return self.spring.solid if self.block is None else self.block
 
     @property
     def tolerance_of_wire(self) -> float:
@@ -93,6 +110,15 @@ class Sheet:
     def at_run(self, name: str) -> float | None:
         """An entry of the run's summary; None without a run, or if the run did not get that far."""
         return self.found.get(name) if self.found else None
+
+
+def pulls(case: Case, spring: Spring) -> bool:
+    """Whether a load program pulls the spring and never compresses it."""
+    goals = [phase.goal(spring.free_length, spring.block_height) for phase in case.targets]
+    free = spring.free_length
+    pulled = [value > free if kind == "height" else value < 0.0 for kind, value in goals]
+    pressed = [value < free if kind == "height" else value > 0.0 for kind, value in goals]
+    return any(pulled) and not any(pressed)
 
 
 def working_lengths(phases: Sequence[Phase], free_length: float, rate: float, block: float) -> list[float]:

@@ -1,53 +1,61 @@
 """What a spring maker would warn about at the working lengths and in presetting; see `warnings` for the spring."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from coilset.model.base.warning import Warning
 from coilset.model.standards import en13906
-from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.goodman import Cycle, Line
 from coilset.model.standards.wires.wire import Wire
+
+if TYPE_CHECKING:  # a sheet's file imports the formulas
+    from coilset.model.standards.sheet import Sheet
 
 ROUNDING = 1e-6  # of the travel to block: what a spring sets by less is none
 PRESETTING_LEAST = 0.1  # of the travel to block; a rule of thumb without a source
 
 
-def gap_warnings(spring: Cylinder, lengths: Sequence[float], dynamic: bool = False) -> list[Warning]:
-    """Working lengths, mm, at which the gaps between the coils add up to less than Sa of EN 13906-1."""
-    needed = en13906.gap_sum(spring.d, spring.D, spring.n, dynamic)
+def gap_warnings(made: "Sheet") -> list[Warning]:
+    """Working lengths at which the gaps between the coils add up to less than Sa of EN 13906-1."""
+    spring = made.spring
+    needed = en13906.gap_sum(spring.d, spring.D, spring.n, made.dynamic)
     return [
         Warning(
             "gap",
             "loading",
-            f"at {length:.4g} mm the gaps between the coils add up to "
-            f"{length - spring.solid:.3g} mm, less than the {needed:.3g} mm of EN 13906-1",
-            length - spring.solid,
+            f"at {length:.4g} mm the gaps between the coils add up to {length - made.shortest:.3g} mm above the block "
+            f"length of {made.shortest:.4g} mm, less than the {needed:.3g} mm of EN 13906-1",
+            length - made.shortest,
             needed,
             "mm",
         )
-        for length in lengths
-        if length - spring.solid < needed
+        for length in made.lengths
+        if length - made.shortest < needed
     ]
 
 
-def stress_warnings(spring: Cylinder, shear_modulus: float, lengths: Sequence[float], wire: Wire) -> list[Warning]:
+def stress_warnings(made: "Sheet", lengths: Sequence[float], wire: Wire) -> list[Warning]:
     """Lengths, mm, at which the nominal stress exceeds that allowed for the wire at block.
 
-    It is corrected for the wire's curvature where the allowed one is meant so.
+    It is that of the run's force where there is a run, and corrected for the wire's curvature where the allowed one is
+    meant so.
     """
+    spring = made.spring
     allowed, of = wire.block_stress(spring.d), wire.entry.block_stress.of
-    rate = en13906.rate(shear_modulus, spring.d, spring.D, spring.n)
     factor = en13906.stress_correction(spring.index) if of == "corrected stress" else 1.0
     found = []
     for length in lengths:
-        stress = factor * en13906.stress(rate * (spring.length - length), spring.d, spring.D)
+        computed = made.found.force_at(length) if made.found else None
+        force = made.force(length) if computed is None else computed
+        stress = factor * en13906.stress(force, spring.d, spring.D)
         if stress > allowed:
+            source = "formula" if computed is None else "run"
             found.append(
                 Warning(
                     "stress",
                     "loading",
-                    f"at {length:.4g} mm the nominal {of} is {stress:.4g} N/mm², above the "
-                    f"{allowed:.4g} N/mm² allowed for {wire.name}",
+                    f"at {length:.4g} mm the {of} of the {source}'s {force:.4g} N is {stress:.4g} MPa, above the "
+                    f"{allowed:.4g} MPa allowed for {wire.name}",
                     stress,
                     allowed,
                     "MPa",
@@ -65,8 +73,8 @@ def endurance_warnings(cycle: Cycle, endured: Line) -> list[Warning]:
         Warning(
             "endurance",
             "loading",
-            f"the corrected stress varies by {spread:.4g} N/mm² over {cycle.lower:.4g} "
-            f"N/mm²; the limit is {allowed:.4g} N/mm² for {endured.times} cycles, {endured.surface}",
+            f"the corrected stress varies by {spread:.4g} MPa over {cycle.lower:.4g} "
+            f"MPa; the limit is {allowed:.4g} MPa for {endured.times} cycles, {endured.surface}",
             spread,
             allowed,
             "MPa",

@@ -73,6 +73,40 @@ def run_program(
 
 
 @app.command()
+def certificate(
+    strength: float = typer.Option(..., "--rm", min=0.0, help="tensile strength Rm, MPa"),
+    proof_stress: float = typer.Option(..., "--rp02", min=0.0, help="0.2 % proof stress Rp0.2, MPa"),
+    elastic_limit: float = typer.Option(None, min=0.0, help="elastic limit, MPa [default: an estimate, 2 Rp0.2 - Rm]"),
+    shear_modulus: float = typer.Option(81500.0, "--G", min=0.0, help="shear modulus, MPa"),
+    poisson: float = typer.Option(0.26, "--nu", min=-1.0, max=0.5, help="Poisson's ratio"),
+    name: str = typer.Option("wire", help="name of the material"),
+    source: str = typer.Option("test certificate", help="where the numbers come from"),
+    out: str = OUT,
+    force: bool = FORCE,
+) -> None:
+    """Write a material file from what a wire's certificate states, and print what it assumes."""
+    import yaml
+
+    from coilset.model.results.files.folder import make, whole
+    from coilset.model.standards.wires.certificate import Certificate
+    from coilset.scripts.terminal.console import Console
+
+    (file,) = _free(_folder(out, name), force, f"{name}.yaml")
+    stated = Certificate(strength, proof_stress, shear_modulus, poisson, elastic_limit)
+    data = stated.material(name, source)
+    make(file.parent)
+    with whole(file) as path:
+        head = f"# Made by coilset material certificate from Rm {strength:g} and Rp0.2 {proof_stress:g} MPa.\n"
+        text = yaml.safe_dump(data, sort_keys=False, allow_unicode=True, width=120)
+        path.write_text(head + text, encoding="utf-8")
+    curve, console = stated.curve(), Console()
+    console.print(f"yield begins at {curve.start:.5g} MPa in tension, {curve.start / 3**0.5:.5g} MPa in torsion")
+    console.print(f"it saturates at {curve.saturation:.5g} MPa of true stress; a4 = {curve.rate:.4g} mm²/N")
+    console.print(f"assumed: {stated.assumptions}", soft_wrap=True)
+    console.say(f"material in {file}")
+
+
+@app.command()
 def fit(
     data: list[str] = DATA,
     shear_modulus: float = typer.Option(..., "--G", min=0.0, help="shear modulus, N/mm²"),

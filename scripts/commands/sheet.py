@@ -66,11 +66,13 @@ def sheet(
     diagram = _diagram(made) if pictures else None
     if diagram is not None:
         refuse_to_replace([folder / FIGURE], force)
-    if run:
-        console.say(f"first the number by the formula, then that of {results}", whole=True)
-    for title, rows in sections(made):
+    parts = sections(made)
+    width = max(len(row.label) for _, rows in parts for row in rows)
+    beside = f"{'run':>9}  " if run else ""
+    console.print(f"  {'':{width}} {'formula':>9} {'':5} {beside}[dim]how it is computed; check[/]", soft_wrap=True)
+    for title, rows in parts:
         console.print(f"[bold]{title}[/]")
-        for line in _lines(rows, run is not None):
+        for line in _lines(rows, run is not None, width):
             console.print(line, soft_wrap=True)
     if run and made.wire and not str(run.summary.get("material")).startswith(made.wire.name):
         console.print(f"the run was made with the material {run.summary.get('material')}, not with {made.wire.name}")
@@ -124,14 +126,13 @@ def _warnings(spring: Spring, made: Sheet) -> list[Warning]:
     cylinder = made.spring
     warnings = [*spring_warnings(spring, made.elastic), *sheet_warnings(made, [cylinder.solid])]
     set_mm = made.at_run("set_mm")
-    if set_mm is not None and made.was_at_block:  # any other run is no presetting
+    if set_mm and made.was_at_block:  # any other run is no presetting
         warnings += filter(None, [presetting_warning(set_mm, cylinder.length - cylinder.solid)])
     return warnings
 
 
-def _lines(rows: Sequence[Row], beside: bool) -> Iterator[str]:
+def _lines(rows: Sequence[Row], beside: bool, width: int) -> Iterator[str]:
     """Text of a section: label, value, unit, result, formula and how it was checked; reasons on lines below."""
-    width = max(len(row.label) for row in rows)
     for row in rows:
         found = _number(row.found) if row.found is not None else ""
         parts = [

@@ -60,7 +60,7 @@ def slice_case(
         console.warn(warning.message)
     targets = ", ".join(phase.label for phase in case.loading)
     console.say(f"{Path(case_file).name}: slice with {analysis.body.u.size + 2} unknowns, to {targets}")
-    console.print(f"{HEAD}  touching")
+    console.print(f"{HEAD}  contacts")
     failure = None
     try:
         analysis.run(lambda step: console.print(_row(step)))

@@ -28,7 +28,7 @@ def without_minus(value: float, digits: int) -> str:
 
 
 def contact_words(kinds: "Sequence[ContactRecord]", reactions: "SeatReactions") -> str:
-    """Which kinds of contact press on the wire: `both seats, coils`, `bottom seat`, or `nothing touches`.
+    """Which kinds of contact press on the wire: `both seats, coils`, `bottom seat`, or `no contact`.
 
     Args:
         kinds: of the Setup.
@@ -37,4 +37,4 @@ def contact_words(kinds: "Sequence[ContactRecord]", reactions: "SeatReactions") 
     names = [kinds[number].name for number in sorted({int(row[0]) for row in reactions.pressure if row[2] > 0.0})]
     if {"bottom seat", "top seat"} <= set(names):
         names = ["both seats", *(name for name in names if not name.endswith(" seat"))]
-    return ", ".join(names) or "nothing touches"
+    return ", ".join(names) or "no contact"

@@ -54,7 +54,7 @@ class Lines:
             return
         if resumed:
             self.say(f"continuing after step {analysis.continuation.number}")
-        self.say(f"{HEAD}{'points':>7}  touching")  # a row fits in 80 columns
+        self.say(f"{HEAD}{'points':>7}  contacts")  # a row fits in 80 columns
 
     def step(self, step: Step) -> None:
         """A step has been found."""

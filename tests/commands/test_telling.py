@@ -60,7 +60,7 @@ def test_json_has_the_rows_of_the_history_and_the_summary(said):
     summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     assert end["summary"] == {name: value for name, value in summary.items() if name != "origin"}
     assert [step["done"] for step in steps] == pytest.approx([1 / 6, 2 / 6, 3 / 6, 3 / 4, 1.0])
-    assert [step["touching"] for step in steps] == [*SEATS * 2, "both seats, coils", *SEATS, "nothing touches"]
+    assert [step["touching"] for step in steps] == [*SEATS * 2, "both seats, coils", *SEATS, "no contact"]
 
 
 def test_quiet_says_warnings_alone(said):

@@ -11,7 +11,7 @@ CLAMPED = ["ends=clamped", "mesh={elements_per_turn: 10, section: {rule: abramow
 
 @pytest.fixture
 def make(example):
-    """The example between clamped heads, where nothing touches; further entries."""
+    """The example between clamped heads, where no contact; further entries."""
     return lambda *entries: Analysis(read_case(example, [*CLAMPED, *entries]), MPI.COMM_SELF)
 
 

@@ -102,8 +102,8 @@ WRONG = {
     ),
     "unknown key": (
         lambda c: c.update(colour="red"),
-        "colour: unknown entry; the entries here are name, description, source, units, validity, temperatures, heating,"
-        " creep, rate",
+        "colour: unknown entry; the entries here are name, description, source, units, validity, temperatures,"
+        " tensile_strength, heating, creep, rate",
     ),
     "misspelt key": (
         lambda c: at(c)["isotropic"].update(k0_square=1),

@@ -79,13 +79,16 @@ SOURCES = {
     "corrected stress τkc": Source(K * stress(27.0), 1e-3),
     "minimum tensile strength Rm": Source(RM, 5 / RM),
     "allowed at block": Source(0.56 * RM, 5 / RM, (ONE,)),  # SpringOne alone
-    "least sum of gaps Sa": Source(LN - TURNS * d, 1e-3),  # printed least length less coils of 3.6 mm
+    "block of the geometry": Source(TURNS * d, 1e-9),  # ground tips of half the wire
+    "minimum sum of gaps Sa": Source(LN - TURNS * d, 1e-3),  # printed least length less coils of 3.6 mm
     "smallest length Ln": Source(LN + TURNS * 0.03, 1e-3),  # the same with d_max
     "natural frequency": Source(half_wave(PRINTED.R, DENSITY * torus_volume(d, D, n)), 1e-4),
     "work to block": Source(1e-3 * np.trapezoid(force(WAY), L0 - WAY), 1e-4),
     "lower stress τk1": Source(K * stress(LONG), 1e-3),
     "range τkh": Source(K * (stress(LN) - stress(LONG)), 1e-3),
-    "range that is endured": Source(float(np.interp(K * stress(LONG), LOWER, UPPER)) - K * stress(LONG), 1e-2, (ONE,)),
+    "permissible stress range": Source(
+        float(np.interp(K * stress(LONG), LOWER, UPPER)) - K * stress(LONG), 1e-2, (ONE,)
+    ),
     "mean diameter ±": Source(PRINTED.De_tolerance, 1e-9),
     "free length ±": Source(PRINTED.L0_tolerance, 0.005 / 1.44),
     f"force at {LN:g} mm ±": Source(25.38, 0.005 / 25.38),  # printed
@@ -99,7 +102,7 @@ for _length in (LN, LONG):
         f"force at {_length:g} mm": Source(force(_length), 1e-4),
         f"stress τ, {_length:g} mm": Source(stress(_length), 1e-4),
         f"corrected stress τk, {_length:g} mm": Source(K * stress(_length), 1e-3),
-        f"sum of gaps, {_length:g} mm": Source(_length - TURNS * d, 1e-9),
+        f"sum of gaps, {_length:g} mm": Source(_length - TURNS * (d + 0.03), 1e-9),
     }
 
 

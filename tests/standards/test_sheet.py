@@ -13,10 +13,12 @@ from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
 from coilset.model.standards import found, goodman
 from coilset.model.standards.case_sheet import case_sheet
+from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.rows import sections
 from coilset.model.standards.sheet import Sheet
 from coilset.model.standards.wires import names, wire
+from coilset.model.standards.wires.law import case_law
 from coilset.scripts.commands.sheet import list_wires, sheet
 
 # HeliSpring, spring S.198: wire DM of 5 mm, De 39.6, n 9.5, n_t 11.5, L0 105.8, 280 N at 88.5 mm, 620 N at 67.5 mm
@@ -37,11 +39,11 @@ def test_printed_sheet_of_another_program():
     assert shown["rate R"].value == pytest.approx(16.181, abs=5e-4)
     assert shown["force at 88.5 mm"].value == pytest.approx(280, abs=0.1)
     assert shown["force at 67.5 mm"].value == pytest.approx(620, abs=0.4)
-    assert shown["least sum of gaps Sa"].value == pytest.approx(12.3, abs=0.06)
+    assert shown["minimum sum of gaps Sa"].value == pytest.approx(12.3, abs=0.06)
     assert shown["block length Lc"].value == pytest.approx(11.5 * 5.035)  # d_max with the tolerance of EN 10270-1
     # τ = 8 · 34.6 · 280/(π 125) = 197.4, k = 7.42/6.17
     assert shown["lower stress τk1"].value == pytest.approx(1.2026 * 197.4, rel=1e-3)
-    assert shown["range that is endured"].value is None  # no endurance of DM is known
+    assert shown["permissible stress range"].value is None  # no endurance of DM is known
     assert all(row.sure or row.value is None for row in shown.values())
 
 
@@ -122,7 +124,7 @@ def test_values_that_were_found_stand_beside_the_formulas(tmp_path):
     # ½ √(R/m), m of 9.5 of 11.5 turns of 1260 mm: 16 N/mm, 7.85e-6 · π 5²/4 · 1040.9 mm = 0.16044 kg
     assert shown["natural frequency"].found == pytest.approx(0.5 * np.sqrt(16e3 / 0.16044), rel=1e-4)
     assert shown["travel to buckling"].found is None
-    endured = shown["range that is endured"]
+    endured = shown["permissible stress range"]
     line = goodman.line(wire("EN 10270-1 DH").endurance(), 5.0)
     assert endured.value == pytest.approx(line.stress_range(shown["lower stress τk1"].value))
     assert endured.found == pytest.approx(line.stress_range(shown["lower stress τk1"].value - 60.0))
@@ -190,7 +192,7 @@ def test_a_set_is_held_against_presetting_where_the_run_was_at_block(case, tmp_p
     (folder / "history.csv").write_text(f"seat_height_mm,force_N\n{least},700\n104.8,0\n", encoding="utf-8")
     sheet(case, folder, pictures=False)
     printed = capsys.readouterr().out
-    assert printed.startswith(f"first the number by the formula, then that of {folder}\n")
+    assert printed.split()[:2] == ["formula", "run"]
     assert ("presetting takes 1 mm" in " ".join(printed.split())) == said
 
 
@@ -216,7 +218,7 @@ def test_results_of_another_spring_are_told(case, tmp_path, capsys, changes, sai
 
 def test_command_draws_nothing_without_a_wire(case, tmp_path, capsys):
     sheet(case, out=tmp_path / "out")
-    assert "the material is not a standard wire; give --wire" in capsys.readouterr().out
+    assert "the allowed share of Rm depends on the wire; give --wire" in capsys.readouterr().out
     assert not (tmp_path / "out").exists()
 
 
@@ -230,9 +232,9 @@ def test_wires_are_listed(capsys):
             assert wire(name).citation(entry) in printed
     list_wires("EN 10270-2 FDC")
     printed = capsys.readouterr().out
-    assert "d = 0.5 to 17: 1834 − 488 lg d, at most 1900 N/mm²" in printed
+    assert "d = 0.5 to 17: 1834 − 488 lg d, at most 1900 MPa" in printed
     assert "0.56 Rm, uncorrected stress" in printed
-    assert "1e+07 times: upper stress 375 − 117 lg d over 0, 889 − 263 lg d over 669 − 183 lg d N/mm²" in printed
+    assert "1e+07 times: upper stress 375 − 117 lg d over 0, 889 − 263 lg d over 669 − 183 lg d MPa" in printed
     assert "not found: endurance of all wires of CrV, SiCr and SiCrV" in printed
     with pytest.raises(InputError, match="'copper' is not a known wire"):
         list_wires("copper")
@@ -282,3 +284,18 @@ def test_wrong_questions(case, tmp_path):
     with pytest.raises(InputError, match="is not a result of coilset solve"):
         found.read(folder)
     shutil.rmtree(folder)
+
+
+def test_a_pulled_spring_gets_no_rows_for_compression_springs(tmp_path):
+    path = tmp_path / "pulled.yaml"
+    path.write_text(
+        "spring: {wire_diameter: 2, mean_diameter: 16, turns: 8, pitch: 2.04}\nmaterial: {wire: EN 10270-1 SH}\n"
+        "ends: clamped\nloading: [{to: {travel: -20}}, {to: {force: 0}}]\n"
+    )
+    case = read_case(path)
+    spring = case.spring.build()
+    made = case_sheet(case, spring, None)
+    assert [title for title, _ in sections(made)] == ["Dimensions", "Rate"]
+    assert "for compression springs; this one is pulled" in rows(made)["all others"].why
+    names_of = {warning.name for warning in case_warnings(case, spring, case_law(case, spring))}
+    assert not names_of & {"buckling", "gap", "stress"}

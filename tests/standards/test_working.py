@@ -1,11 +1,18 @@
 """Warnings at working lengths and about presetting, each just on either side of its bound."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
 from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.base.errors import InputError
 from coilset.model.base.warning import Warning
+from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
+from coilset.model.standards.found import Found
+from coilset.model.standards.sheet import Sheet
+from coilset.model.standards.steel import STEEL, Elastic
 from coilset.model.standards.wires import wire
 from coilset.model.standards.working import gap_warnings, presetting_warning, stress_warnings
 
@@ -20,6 +27,10 @@ SPEC = {
 
 def cylinder(**entries):
     return Cylinder.of(SpringSpec.model_validate(SPEC | entries).build())
+
+
+def made(spring, lengths=(), shear_modulus=81500.0, dynamic=False):
+    return Sheet(spring, Elastic(shear_modulus, 206e3, STEEL.density), 1e3, lengths=lengths, dynamic=dynamic)
 
 
 def test_cylinder_of_a_spring():
@@ -40,22 +51,23 @@ def test_other_shapes_are_refused():
 
 
 def test_gap():
-    # Sa = 5.5 (0.0015 · 32²/4 + 0.4) = 4.312 mm over the block length of 28 mm
-    assert gap_warnings(cylinder(), [50.0, 32.32]) == []
-    (found,) = gap_warnings(cylinder(), [50.0, 32.3])
-    assert (
-        found.message == "at 32.3 mm the gaps between the coils add up to 4.3 mm, less than the 4.31 mm of EN 13906-1"
+    # Sa = 5.5 (0.0015 · 32²/4 + 0.4) = 4.312 mm over Lc = 7.5 · 4 = 30 mm; the geometry's coils touch at 28 mm
+    assert gap_warnings(made(cylinder(), [50.0, 34.32])) == []
+    (found,) = gap_warnings(made(cylinder(), [50.0, 34.3]))
+    assert found.message == (
+        "at 34.3 mm the gaps between the coils add up to 4.3 mm above the block length of 30 mm, less than the 4.31 mm "
+        "of EN 13906-1"
     )
     assert found.limit == pytest.approx(4.312)
-    assert len(gap_warnings(cylinder(), [32.32], dynamic=True)) == 1
+    assert len(gap_warnings(made(cylinder(), [34.32], dynamic=True))) == 1
 
 
 def test_stress():
     # R = 81500 · 4⁴/(8 · 32³ · 5.5) = 14.47 N/mm; τ = 8 D R s/(π d³) = 18.42 s; 0.56 (2230 − 820 lg 4) = 972.3 N/mm²
     known = wire("EN 10270-1 SH")
     bound = 972.35 / 18.425
-    assert stress_warnings(cylinder(free_length=90.0), 81500.0, [90 - bound + 0.1], known) == []
-    (found,) = stress_warnings(cylinder(free_length=90.0), 81500.0, [90 - bound - 0.1], known)
+    assert stress_warnings(made(cylinder(free_length=90.0)), [90 - bound + 0.1], known) == []
+    (found,) = stress_warnings(made(cylinder(free_length=90.0)), [90 - bound - 0.1], known)
     assert found.name == "stress"
     assert found.limit == pytest.approx(972.3, abs=0.1)
     assert "allowed for EN 10270-1 SH" in found.message
@@ -66,9 +78,9 @@ def test_stress_of_american_wire_is_corrected():
     known, spring = wire("ASTM A228"), cylinder(free_length=90.0)
     # G = 80,000: τ = 18.086 s; k = 8.5/7.25; Rm of the table at 4 mm, between 1744 and 1717
     bound = 0.45 * known.strength(4.0) / (18.086 * 8.5 / 7.25)
-    assert stress_warnings(spring, 80000.0, [90 - bound + 0.1], known) == []
-    (found,) = stress_warnings(spring, 80000.0, [90 - bound - 0.1], known)
-    assert "the nominal corrected stress is" in found.message
+    assert stress_warnings(made(spring, shear_modulus=80000.0), [90 - bound + 0.1], known) == []
+    (found,) = stress_warnings(made(spring, shear_modulus=80000.0), [90 - bound - 0.1], known)
+    assert "the corrected stress of the formula's" in found.message
     assert found.limit == pytest.approx(0.45 * 1726, rel=5e-3)
 
 
@@ -84,3 +96,51 @@ def test_presetting():
     elastic = presetting_warning(-9e-15, 32.0)  # by rounding
     assert elastic is not None
     assert elastic.message.startswith("presetting takes 0 mm, 0 % of")
+
+
+VARIABLE = {  # a valve spring of variable pitch: the close coils close first
+    "wire_diameter": 4.0,
+    "outer_diameter": 32.0,
+    "turns": 7.5,
+    "pitch": {"turns": [0.0, 7.5], "values": [6.0, 14.5], "interpolation": "linear"},
+    "end_coils": "closed and ground",
+}
+
+
+def variable():
+    return Cylinder.of(SpringSpec.model_validate(VARIABLE).build())
+
+
+def test_coils_of_variable_pitch_close_one_by_one():
+    """s(F) = ∫ min(F/R₁, p − d) dt over the active turns, by the trapezoidal rule; R (L0 − L) is too low near block."""
+    spring, turn_rate = variable(), 81500.0 * 4.0**4 / (8 * 28.0**3)
+    geometry = SpringSpec.model_validate(VARIABLE).build()
+    turn = np.linspace(1.0, 6.5, 100_001)
+    play = geometry.pitch(turn) - 4.0
+    for force in (100.0, 400.0, 900.0):
+        travel = np.trapezoid(np.minimum(force / turn_rate, play), turn)
+        assert spring.series_force(float(travel), turn_rate) == pytest.approx(force, rel=1e-3)
+        assert made(spring).force(spring.length - travel) == pytest.approx(force, rel=1e-3)
+    assert made(spring).force(spring.solid) == pytest.approx(turn_rate * play.max(), rel=2e-3)
+    assert made(spring).force(spring.solid) > 1.4 * made(spring).rate * (spring.length - spring.solid)
+
+
+def test_the_stress_of_a_variable_pitch_is_checked_by_its_own_force():
+    """By R (L0 − L) the spring passed, with 63 % of the force; with a run, the run's force decides."""
+    known, spring = wire("EN 10270-2 VDSiCr"), variable()
+    (formula,) = stress_warnings(made(spring), [spring.solid], known)
+    assert "of the formula's 1" in formula.message
+    run = Found({}, np.array([spring.length, spring.solid]), np.array([0.0, 1031.0]), None, None)
+    (found,) = stress_warnings(replace(made(spring), found=run), [spring.solid], known)
+    assert "of the run's 1031 N is 1149 MPa" in found.message  # 8 D F/(π d³)
+    low = replace(run, forces=np.array([0.0, 500.0]))
+    assert stress_warnings(replace(made(spring), found=low), [spring.solid], known) == []
+
+
+def test_springs_of_thick_wire_are_coiled_hot():
+    """Ground: Lc = (n_t − 0.3) d, Sa = 0.02 n (D + d); no formula for unground ones."""
+    hot = cylinder(wire_diameter=25.0, mean_diameter=150.0, free_length=420.0)
+    assert made(hot).block == pytest.approx(7.2 * 25.0)
+    assert en13906.gap_sum(25.0, 150.0, 5.5) == pytest.approx(0.02 * 5.5 * 175.0)
+    assert made(cylinder(wire_diameter=25.0, mean_diameter=150.0, free_length=420.0, end_coils="closed")).block is None
+    assert made(cylinder(wire_diameter=20.0, mean_diameter=150.0, free_length=420.0)).block == pytest.approx(150.0)

@@ -74,19 +74,18 @@ def check_functions(data: MaterialFile, functions: Functions, refuse: Refuse) ->
             continue
         # Between two temperatures, too: the product of the interpolated κ and k²′ may be larger than at both.
         for temperature in np.unique(np.linspace(known[i], known[min(i + 1, len(known) - 1)], 5)):
-            values_at = functions(work, temperature)
-            if not np.isfinite(values_at).all():
-                refuse(f"temperatures.{i}", f"its functions overflow at {temperature:g} K; are the units N and mm?")
-            k2, dk2, zeta, _, kappa, _ = values_at
+            with np.errstate(all="ignore"):  # what overflows is refused below
+                k2, dk2, zeta, _, kappa, _ = values_at = functions(work, temperature)
+                product, slopes = kappa * dk2, 2 * zeta + dk2
             for entry, name, unit, values, broken, rule in (
                 ("isotropic", "k²", " N²/mm⁴", k2, ~(k2 > 0), "must be positive"),
-                ("isotropic", "2ζ + k²′", " N/mm²", 2 * zeta + dk2, 2 * zeta + dk2 < 0, "must not be negative"),
+                ("isotropic", "2ζ + k²′", " N/mm²", slopes, slopes < 0, "must not be negative"),
                 (
                     "non_normality.a",
                     "κ k²′",
                     "",
-                    kappa * dk2,
-                    kappa * dk2 >= 2,
+                    product,
+                    product >= 2,
                     "must stay below 2, or (3.1.9) is not positive definite",
                 ),
             ):
@@ -97,3 +96,5 @@ def check_functions(data: MaterialFile, functions: Functions, refuse: Refuse) ->
                         f"temperatures.{i}.{entry}",
                         f"{name} = {values[first]:.4g}{unit} {where}; it {rule} (checked up to validity.plastic_work)",
                     )
+            if not np.isfinite(values_at).all():
+                refuse(f"temperatures.{i}", f"its functions overflow at {temperature:g} K; are the units N and mm?")

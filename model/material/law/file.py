@@ -208,6 +208,11 @@ class MaterialFile(Strict):
         tuple[Constants, ...],
         Field(strict=False, min_length=1, description="a list with the constants at one or more temperatures"),
     ]
+    tensile_strength: Annotated[
+        float | None,
+        Unit("MPa"),
+        Field(gt=0, description="tensile strength Rm of the wire, for the sheet and its checks, MPa"),
+    ] = None
     heating: Heating | None = None
     creep: Annotated[Creep | None, Field(description="constants of creep; left out: the material does not creep")] = (
         None

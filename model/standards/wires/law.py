@@ -8,6 +8,7 @@ from coilset.model.material import library
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
 from coilset.model.standards.steel import STEEL, Elastic
+from coilset.model.standards.wires.certificate import saturating
 from coilset.model.standards.wires.hardening import Curve, curve
 from coilset.model.standards.wires.library import wire
 from coilset.model.standards.wires.wire import ROOM_TEMPERATURE, Wire
@@ -16,7 +17,7 @@ SAME = 0.02  # maximum relative change of the diameter along one wire
 ASSUMPTIONS = (
     "estimate, until a test of the wire is given: saturating isotropic hardening (Voce, in the plastic work) through "
     "the elastic limit {elastic:.4g} and the 0.2 % proof stress {proof:.4g} to the least strength {strength:.4g} "
-    "N/mm²; a uniform plastic strain of {uniform:.2g} % follows from it. The same in torsion after von Mises; no "
+    "MPa; a uniform plastic strain of {uniform:.2g} % follows from it. The same in torsion after von Mises; no "
     "Bauschinger effect, which makes residual stresses of strongly preset springs too high; no stresses from drawing "
     "and coiling, no change by tempering; delivered wire is stronger than the least strength, by up to 17 % in "
     "EN 10270-1"
@@ -52,32 +53,18 @@ def wire_law(name: str, diameter: float, spin: bool = False) -> Law:
     """
     known = wire(name)
     elastic, found = known.elastic(diameter), hardening_curve(known, diameter)
-    peak, strength = found.stress_at_greatest_force, known.strength(diameter)
-    start, saturation = found.start**2 / 1.5, found.saturation**2 / 1.5
-    remark = ASSUMPTIONS.format(
+    strength = known.strength(diameter)
+    data = saturating(found, elastic.shear_modulus, poisson_ratio(elastic))
+    data["validity"]["remark"] = ASSUMPTIONS.format(
         elastic=known.entry.elastic_limit.at(diameter) * strength,
         proof=known.entry.proof_stress.at(diameter) * strength,
         strength=strength,
         uniform=100 * found.uniform_strain,
     )
-    data = {
+    data |= {
         "name": f"{known.name}, {diameter:g} mm",
         "description": f"Spring wire {known.name} of {diameter:g} mm; hardening is an estimate",
         "source": "strength " + known.citation(known.entry.strength),
-        "units": "N, mm, K",
-        "validity": {"plastic_work": found.work(peak), "remark": remark},
-        "temperatures": [
-            {
-                "temperature": ROOM_TEMPERATURE,
-                "elasticity": {"G": elastic.shear_modulus, "nu": poisson_ratio(elastic)},
-                "isotropic": {
-                    "k0_squared": start,
-                    "saturation": {"b1": 0.0, "k1_squared": start, "k_inf_squared": saturation, "a4": found.rate},
-                },
-                "kinematic": "none",
-                "non_normality": "none",
-            }
-        ],
     }
     return Law(MaterialFile.model_validate(data), spin)
 
@@ -100,14 +87,23 @@ def case_elastic(case: Case, law: Law) -> Elastic:
     Raises:
         InputError: a temperature that the material does not know.
     """
-    check_known(law, case.temperature, "temperature")
+    if isinstance(case.material, str):
+        check_known(law, case.temperature, "temperature")
+    elif case.temperature not in (None, ROOM_TEMPERATURE):
+        raise InputError(
+            f"{case.temperature:g} K: the strength of a named wire is known at {ROOM_TEMPERATURE:g} K only, and its "
+            "standard does not say how it falls with temperature; give a material file for this temperature",
+            "temperature",
+        )
     E, G = law.moduli(law.reference_temperature if case.temperature is None else case.temperature)
     return Elastic(float(G), float(E), STEEL.density)
 
 
 def case_strength(case: Case, spring: Spring) -> float | None:
-    """Minimum tensile strength Rm of a case's wire, MPa; None if its material is not a standard wire."""
-    return None if isinstance(case.material, str) else wire(case.material.wire).strength(wire_diameter(spring))
+    """Tensile strength Rm of a case's wire, MPa: its standard's minimum, or that of a material file; else None."""
+    if isinstance(case.material, str):
+        return library.load(case.material).data.tensile_strength
+    return wire(case.material.wire).strength(wire_diameter(spring))
 
 
 def wire_diameter(spring: Spring) -> float:

@@ -16,11 +16,11 @@ from coilset.model.standards.wires.file import (
 from coilset.model.standards.wires.wire import Wire
 
 LABELS = {
-    "young_modulus": ("Young's modulus E", "N/mm²"),
-    "shear_modulus": ("shear modulus G", "N/mm²"),
+    "young_modulus": ("Young's modulus E", "MPa"),
+    "shear_modulus": ("shear modulus G", "MPa"),
     "density": ("density", "kg/mm³"),
     "shear_modulus_decrease": ("decrease of G over its value", "1/K"),
-    "strength": ("minimum tensile strength Rm", "N/mm²"),
+    "strength": ("minimum tensile strength Rm", "MPa"),
     "block_stress": ("shear stress allowed at block", "Rm"),
     "elastic_limit": ("elastic limit in tension", "Rm"),
     "proof_stress": ("0.2 % proof stress", "Rm"),
@@ -32,7 +32,7 @@ def described(wire: Wire) -> list[tuple[str, str, str]]:
     """What, the number over the diameter d in mm, and its certainty with sources, of all that is known of a wire."""
     found = []
     for name, entry in wire.entry.sourced():
-        label, unit = LABELS.get(name, (name, "N/mm²"))
+        label, unit = LABELS.get(name, (name, "MPa"))
         found.append((label, f"{_number(entry)} {unit}{_which(entry)}", wire.citation(entry)))
     return found
 
