@@ -99,7 +99,7 @@ SHAPES = {
         6,
         66,
         conical_length(26, 14, 3, 11) + cylindrical_length(14, 3, 11),
-        contacts_rise(flattened(-4, 6), 6, 4),
+        touching_rise(flattened(-4, 6), 6, 4),
     ),
 }
 
