@@ -11,6 +11,7 @@ from coilset.meshes.errors import reading
 from coilset.model.report.answer import Number
 from coilset.model.report.panel import COLOURS, Panel, axis
 from coilset.model.report.render import write_page
+from coilset.model.report.warning_words import in_words
 from coilset.model.results.labelled import labelled
 from coilset.model.sweep import findings
 from coilset.model.sweep.sensitivity import rank_correlation
@@ -117,7 +118,9 @@ def _warnings(data: xr.Dataset) -> list[str]:
     for text in data["warnings"].values:
         for name in filter(None, str(text).split(", ")):
             names[name] = names.get(name, 0) + 1
-    return [f"{name}: in {count} of {data.sizes['case']} cases" for name, count in names.items()]
+    cases = data.sizes["case"]
+    return [f"{in_words(name)} (in {f'all {cases}' if count == cases else f'{count} of {cases}'} cases)"
+            for name, count in names.items()]  # fmt: skip
 
 
 def _ranked(data: xr.Dataset, of: str) -> list[tuple[str, float, np.ndarray]]:

@@ -1,15 +1,13 @@
 """A sweep as one labelled data set: inputs, responses, characteristic and status of each case."""
 
 import json
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from coilset.model.case import Case
-from coilset.model.case.reference import entry_unit, entry_words
+from coilset.model.case.names import entry_name
 from coilset.model.case.settings import located
 from coilset.model.results.folder import whole
 from coilset.model.results.netcdf import reserve
@@ -101,18 +99,18 @@ def _attributes(words: str, unit: str) -> dict[str, str]:
 def _input(plan: Plan, k: int) -> tuple[Any, dict[str, str]]:
     """Values of an input for all cases, words where they are not all numbers, and its attributes."""
     vary, values = plan.spec.vary[plan.names[k]], [row[k] for row in plan.rows]
-    words = vary.label or _plain_words(plan.names)[k]
+    words = vary.label or _plain_words(plan)[k]
     if not are_numbers(values):
         return np.array([str(value) for value in values], dtype=object), _attributes(words, vary.unit or "")
-    units = {entry_unit(Case, entry) for entry in vary.entries or [plan.names[k]]}
+    units = {entry_name(entry).unit for entry in plan.entries(plan.names[k])}
     own = units.pop() if len(units) == 1 else ""
     return np.array(values, dtype=float), _attributes(words, own if vary.unit is None else vary.unit)
 
 
-def _plain_words(names: Sequence[str]) -> list[str]:
+def _plain_words(plan: Plan) -> list[str]:
     """Names of inputs in words; the entries themselves if two of them had the same."""
-    found = [entry_words(name) for name in names]
-    return found if len(set(found)) == len(found) else list(names)
+    found = [entry_name(name, plan.base).words for name in plan.names]
+    return found if len(set(found)) == len(found) else list(plan.names)
 
 
 def write(path: str | Path, data: xr.Dataset) -> None:
