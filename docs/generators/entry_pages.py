@@ -6,7 +6,7 @@ from pathlib import Path
 from coilset.model.case import reference
 from coilset.model.case.case import Case
 from coilset.model.case.reference import Form, Group, Row
-from coilset.model.design.wish import WishSpec
+from coilset.model.design.file import DesignFile
 from coilset.model.material.file import MaterialFile
 from coilset.model.material.programs import Program
 from coilset.model.nest.file import NestFile
@@ -20,8 +20,8 @@ FILES = {  # name of the page: its title, what the file is for, its model
                  "one with remarks.", MaterialFile),
     "program": ("The program file", "Targets of strain and stress for one point: the file of `coilset material test`.",
                 Program),
-    "wish": ("The wish", "A case, entries of it to find, and conditions: the file of `coilset design`. "
-             "[Find dimensions](../../how-to/design.md) shows one.", WishSpec),
+    "design": ("The design file", "A case, unknowns in it, and conditions: the file of `coilset design`. "
+               "[Find dimensions](../../how-to/design.md) shows examples.", DesignFile),
     "nest": ("The nest file", "Two springs between the same seats: the file of `coilset nest`. "
              "[Nested springs](../../how-to/nested.md) shows one.", NestFile),
     "sweep": ("The sweep file", "A base case, and entries that vary: the file of `coilset sweep`.", SweepSpec),

@@ -11,20 +11,13 @@ from coilset.model.case.names import entry_name
 from coilset.model.case.settings import located
 from coilset.model.results.folder import whole
 from coilset.model.results.netcdf import reserve
-from coilset.model.results.units import without_unit
+from coilset.model.results.units import quantity
 from coilset.model.sweep.journal import read_records
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.spec import are_numbers
 from coilset.model.version import versions
 
 CURVE = {"travel_mm": "mm", "seat_height_mm": "mm", "force_N": "N", "phase": "1"}
-
-
-def quantity(name: str) -> tuple[str, str]:
-    """Description and unit of a response from its name, as in `set_mm`."""
-    stem, unit = without_unit(name)
-    words = stem.replace("_", " ")
-    return f"maximum {words.removesuffix(' max')}" if words.endswith(" max") else words, unit
 
 
 def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
