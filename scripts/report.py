@@ -1,10 +1,10 @@
-"""`coilset report`: one page of a run, a design or a sweep, to read and to pass on."""
+"""`coilset report`: one page of a run, a design, a nest or a sweep, to read and to pass on."""
 
 import os
 from pathlib import Path
 
 from coilset.meshes.errors import InputError
-from coilset.model.report import design_page, sweep_page
+from coilset.model.report import design_page, nest_page, sweep_page
 from coilset.model.report.page import write_report
 from coilset.model.report.render import NAME
 from coilset.model.results.opened import open_run
@@ -23,6 +23,8 @@ def report(folder: str | Path) -> None:
         path = sweep_page.write_sweep_report(folder)
     elif (folder / design_page.FILE).is_file():
         path = design_page.write_design_report(folder)
+    elif (folder / nest_page.FILE).is_file():
+        path = nest_page.write_nest_report(folder)
     else:
         path = write_report(open_run(folder))
     size = path.stat().st_size / 1e6
