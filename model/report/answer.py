@@ -44,19 +44,22 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
     s = summary
     before, after = s["free_length_before_mm"], s["free_length_after_mm"]
     share = (
-        f"{100.0 * s['set_mm'] / before:.1f} % of the free length" if s["set_mm"] is not None else "it was not released"
+        f"{100.0 * s['set_mm'] / before:.1f} % of the free length"
+        if s["set_mm"] is not None
+        else "the spring was not released"
     )
     inside = s["residual_shear_inside_MPa"]
-    told = "" if inside is None or inside == 0.0 else "against the load" if inside < 0.0 else "with the load"
+    against = "" if inside is None or inside == 0.0 else "against the load" if inside < 0.0 else "with the load"
     return [
         Number("set", _said(s["set_mm"], "mm", 3), share),
         Number("free length", _said(after, "mm", 3), f"after; {before:.3f} mm before"),
         Number(
             "residual shear stress",
             _said(inside, "MPa", 1),
-            f"at the inside of the middle coils{', ' + told if told else ''}",
+            f"at the inside of the middle coils{', ' + against if against else ''}",
         ),
         Number("maximum force", _said(s["force_max_N"], "N", 1), _error(s["estimated_force_error_N"])),
+        Number("maximum shear stress", _said(s["shear_inside_max_MPa"], "MPa", 0), "at the inside of the coil"),
         Number("initial rate", _said(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
         Number("block height", _said(s["block_height_mm"], "mm", 2)),
     ]

@@ -40,6 +40,7 @@ def write_design_report(folder: str | Path) -> Path:
     with reading(folder / FILE):
         case = (folder / "found.yaml").read_text(encoding="utf-8")
         design["summary"]["set_mm"], design["origin"]["case"], design["trade_offs"], design["choices"]
+        design["is_one_of_many"]
         names = [EntryName(one["words"], one["unit"]) for one in design["unknowns"].values()]
         sought = [EntryName(design["unknowns"][name]["words"], design["unknowns"][name]["unit"])
                   for name in next(iter(design["slopes"].values()))]  # fmt: skip

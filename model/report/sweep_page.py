@@ -1,4 +1,4 @@
-"""The page of a sweep: all its cases in a table to filter, sort and open, and what decides."""
+"""The page of a sweep: all its cases in a table to filter, sort and open, and which input matters most."""
 
 import json
 from pathlib import Path
@@ -44,7 +44,7 @@ def write_sweep_report(folder: str | Path) -> Path:
     return write_page(
         folder,
         "sweep",
-        [("What decides", panels)],
+        [("Which input matters most", panels)],
         {"columns": columns, "curves": _curves(data), "files": _files(data)},
         title=f"{folder.resolve().name}: {data.sizes['case']} cases",
         subtitle=f"{data.sizes['case']} cases; {', '.join(names)} varied ({data.attrs['design'].replace('_', ' ')})",
