@@ -129,9 +129,14 @@ def _condition(one: Mapping[str, Any]) -> dict[str, Any]:
         "words": one["words"],
         "target": _wanted(one, one["target"]),
         "value": f"{plain(one['value'], 7)} {one['unit']}",
-        "off": f"{100.0 * abs(one['residual']):.1g} %" + (" inside the limit" if inside else ""),
+        "off": _percent(one["residual"]) + (" inside the limit" if inside else ""),
         "met": "yes, not active" if inside else ("yes" if one["met"] else "no") + (", active" if _sense(one) else ""),
     }
+
+
+def _percent(part: float) -> str:
+    percent = 100.0 * abs(part)
+    return f"{plain(percent, 2)} %" if percent >= 1e-3 else "below 0.001 %"
 
 
 def _slopes(design: Mapping[str, Any]) -> list[tuple[str, list[str]]]:

@@ -13,6 +13,7 @@ from coilset.meshes.errors import InputError
 from coilset.model.report.design_page import write_design_report
 from coilset.model.sweep.journal import read_records
 from coilset.scripts.design import design
+from coilset.scripts.report import report
 
 FIND, SUCH = {"loading.0.to.height": [18, 34]}, {"free_length_after_mm": 25.0}
 
@@ -109,3 +110,22 @@ def test_a_journal_of_another_design_is_kept_and_not_read_as_of_this_one(design_
         design(str(path), str(out), False, True)
     assert (out / "evaluations.jsonl").read_text().startswith(journal)
     assert (out / "design.json").exists()
+
+
+def test_the_page_has_the_characteristic_of_the_spring_that_was_found(design_file, tmp_path, capsys):
+    """Which is solved for it, once; a page of another design does not take these results."""
+    out = tmp_path / "out"
+    design(str(design_file(FIND, SUCH)), str(out), False, False)
+    capsys.readouterr()
+    report(out)
+    assert "solving" in capsys.readouterr().out
+    figures = unpacked((out / "report.html").read_text(encoding="utf-8"), "data")["figures"]
+    assert list(figures) == ["characteristic", "spring", "search"]
+    said = json.loads((out / "design.json").read_text(encoding="utf-8"))
+    own = json.loads((out / "found" / "summary.json").read_text(encoding="utf-8"))
+    assert own["free_length_after_mm"] == pytest.approx(said["conditions"][0]["value"], rel=1e-9)
+    report(out)
+    assert "solving" not in capsys.readouterr().out
+    design(str(design_file(FIND, {"free_length_after_mm": 26.0})), str(out), True, False)
+    page = write_design_report(out).read_text(encoding="utf-8")
+    assert list(unpacked(page, "data")["figures"]) == ["search"]
