@@ -180,9 +180,9 @@ def sheet(
 
 @app.command()
 def report(
-    results: str = typer.Argument(metavar="RESULTS", help="results folder of a run, a design or a sweep"),
+    results: str = typer.Argument(metavar="RESULTS", help="results folder of a run, a design, a nest or a sweep"),
 ) -> None:
-    """Write a page of a run, a design or a sweep; it opens from disk without a network."""
+    """Write a page of a run, a design, a nest or a sweep; it opens from disk without a network."""
     announce_compiling()
     from coilset.scripts.report import report as write_page
 

@@ -52,7 +52,7 @@ def test_no_command_works_for_a_folder_that_cannot_be_written_to(example, tmp_pa
     case = str(example)
     results, closed = tmp_path / "results", tmp_path / "closed"
     solve(example, results, False, SMALL, False)
-    (tmp_path / "wish.yaml").write_text(
+    (tmp_path / "design.yaml").write_text(
         f"case: {case}\nfind: {{loading.0.to.height: [18, 34]}}\nsuch_that: {{set_mm: 1}}\nchange: {{}}\n"
     )
     closed.mkdir()
@@ -60,8 +60,8 @@ def test_no_command_works_for_a_folder_that_cannot_be_written_to(example, tmp_pa
         folder.chmod(0o555)
     commands = ["solve CASE", "slice CASE", "mesh CASE", "sheet CASE", "sweep SWEEP", "verify", "bench",
                 "material show ck15", "material test ck15 PROGRAM", "examples ck15_presetting",
-                "design WISH"]  # fmt: skip
-    files = {"CASE": case, "SWEEP": str(example.parent / "sweeps" / "tolerances.yaml"), "WISH": "wish.yaml",
+                "design DESIGN"]  # fmt: skip
+    files = {"CASE": case, "SWEEP": str(example.parent / "sweeps" / "tolerances.yaml"), "DESIGN": "design.yaml",
              "PROGRAM": str(example.parent / "material" / "tension.yaml")}  # fmt: skip
     lines = [[*(files.get(word, word) for word in command.split()), "--out", out]
              for command in commands for out in ("closed", "closed/below")]  # fmt: skip

@@ -33,7 +33,7 @@ COMMANDS = {  # a right line each, and the options that it takes besides
     "material show ck15": ["--out", "there", "--force"],
     "material test ck15 program.yaml": ["--integrator", "heun", "--no-spin", "--out", "there", "--force"],
     "material fit test.csv --G 80000 --nu 0.3": ["--temperature", "300", "--no-saturation", "--name", "mine"],
-    "design wish.yaml": ["--force", "--resume", "--out", "there"],
+    "design design.yaml": ["--force", "--resume", "--out", "there"],
     "report run": ["--force", "--out", "there"],
     "bench": ["--full", "--cold", "--against", "taken", "--out", "there"],
     "compile": ["--force"],
@@ -41,7 +41,7 @@ COMMANDS = {  # a right line each, and the options that it takes besides
     "examples ck15_presetting": ["--force", "--out", "there"],
     "-n 2 solve case.yaml": ["--force"],
 }  # fmt: skip
-WISH = "case: case.yaml\nfind: {spring.pitch: [11.0, 13.0]}\nsuch_that: {set_mm: 13}\n"
+DESIGN = "case: case.yaml\nfind: {spring.pitch: [11.0, 13.0]}\nsuch_that: {set_mm: 13}\n"
 SETTINGS = ["spring.wire_diameter=4", "spring.pitch=5", "loading.0.steps=x", "loading.9.steps=1", "mesh=1", "=1", "a=b",
             "material=nowhere.yaml", "ends=clamped", "contact.friction.seats=0.1", "loading=[{to: {force: 1e9}}]",
             "seats.top.tilt=free", "spring.turns=[", "mesh.elements_per_turn=1e6", "rates_at=[1]"]  # fmt: skip
@@ -81,7 +81,7 @@ def place(tmp_path, monkeypatch):
                          ("test.csv", "material/fit/tension.csv")):  # fmt: skip
         (tmp_path / name).write_bytes((EXAMPLES / source).read_bytes())
     (tmp_path / "sweep.yaml").write_text("case: case.yaml\nvary: {spring.pitch: [11.0, 12.0]}\n")
-    (tmp_path / "wish.yaml").write_text(WISH)
+    (tmp_path / "design.yaml").write_text(DESIGN)
     (tmp_path / "taken").write_text("mine")
     (tmp_path / "run").mkdir()
     monkeypatch.chdir(tmp_path)

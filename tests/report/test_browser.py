@@ -68,11 +68,11 @@ def design_page(tmp_path_factory):
     """The height to which a spring must be pressed for its length, and what else could be had."""
     folder = tmp_path_factory.mktemp("design")
     loading = [{"to": {"height": 16.0}, "steps": 3}, {"to": {"force": 0}, "steps": 2}]
-    wish = {**CASE, "ends": "clamped", "mesh": {"elements_per_turn": 6, "section": {"radial": 2, "angular": 4}},
+    entries = {**CASE, "ends": "clamped", "mesh": {"elements_per_turn": 6, "section": {"radial": 2, "angular": 4}},
             "loading": loading, "find": {"loading.0.to.height": [14.0, 19.0]},
             "such_that": {"free_length_after_mm": 18.0}, "trade_offs": {"spring.pitch": [11.0, 13.0]}}  # fmt: skip
-    (folder / "wish.yaml").write_text(yaml.safe_dump(wish))
-    design(folder / "wish.yaml", str(folder / "out"), False, False)
+    (folder / "design.yaml").write_text(yaml.safe_dump(entries))
+    design(folder / "design.yaml", str(folder / "out"), False, False)
     return write_design_report(folder / "out")
 
 
