@@ -14,14 +14,14 @@ from types import ModuleType
 import xarray as xr
 
 from coilset.model.design.opened import FILE, open_design
-from coilset.model.results.labelled import labelled
+from coilset.model.results.files.labelled import labelled
 
 
 class _Open(ModuleType):
     """This module, which can be called."""
 
     def __call__(self, folder: str | Path) -> xr.Dataset:
-        """Results of a run, a sweep or a design; see coilset.model.results.labelled, coilset.model.design.opened."""
+        """Results of a run, a slice, a sweep or a design, as labelled data."""
         return open_design(folder) if Path(folder, FILE).is_file() else labelled(folder)
 
 

@@ -10,7 +10,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from coilset.meshes.geometry import Spring
+from coilset.meshes.springs.geometry import Spring
 
 PIECES_PER_TURN = 96
 OUTLINE = 1.0  # width of an outline, points

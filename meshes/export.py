@@ -8,9 +8,9 @@ import gmsh
 import meshio
 import numpy as np
 
-from coilset.meshes.errors import InputError
-from coilset.meshes.geometry import Spring
-from coilset.meshes.measured import WIRE_DIAMETER
+from coilset.meshes.springs.geometry import Spring
+from coilset.meshes.springs.measured import WIRE_DIAMETER
+from coilset.model.base.errors import InputError
 
 SURFACES = (".stl",)  # formats of surfaces, which hold no line elements
 
@@ -111,6 +111,8 @@ def _write_gmsh(points: np.ndarray, coil: np.ndarray, data: dict[str, np.ndarray
             point = gmsh.model.addDiscreteEntity(0)
             gmsh.model.mesh.addElementsByType(point, 15, [tags[-1] + point], [node])
             gmsh.model.addPhysicalGroup(0, [point], name=name)
+        with open(path, "wb"):  # where a file cannot be written, gmsh raises an exception without the reason
+            pass
         gmsh.write(str(path))
         for name, values in data.items():
             view = gmsh.view.add(name)

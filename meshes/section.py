@@ -9,9 +9,9 @@ import gmsh
 import numpy as np
 from mpi4py import MPI
 
-from coilset.meshes.compat import mesh_from_gmsh
-from coilset.meshes.errors import InputError
 from coilset.meshes.section_shapes import Outline
+from coilset.model.base.compat import mesh_from_gmsh
+from coilset.model.base.errors import InputError
 
 MOST_ACROSS = 100  # triangles across a section: 140,000 unknowns with sides of degree 2
 SAMPLES = 4001  # points on each curve in the search for the section's extent
@@ -66,8 +66,9 @@ def section_mesh(
         InputError: values that do not define a mesh, or an outline that gmsh cannot fill.
     """
     if not 1 <= across <= MOST_ACROSS:
-        raise InputError(f"{across:g} is not possible; give 1 to {MOST_ACROSS} triangles across the section",
-                         "section.across")  # fmt: skip
+        raise InputError(
+            f"{across:g} is not possible; give 1 to {MOST_ACROSS} triangles across the section", "section.across"
+        )
     if degree not in (2, 3):
         raise InputError(f"{degree} is not possible; give 2 or 3", "section.degree")
     gmsh.initialize(["coilset", "-v", "1"], readConfigFiles=False, interruptible=False)
@@ -142,8 +143,13 @@ def _sizes(
     distance, threshold = field.add("Distance"), field.add("Threshold")
     field.setNumbers(distance, "CurvesList", curves)
     field.setNumber(distance, "Sampling", 200)
-    for name, value in (("InField", distance), ("SizeMin", size / surface), ("SizeMax", size),
-                        ("DistMin", 0.5 * size / surface), ("DistMax", 2.0 * size)):  # fmt: skip
+    for name, value in (
+        ("InField", distance),
+        ("SizeMin", size / surface),
+        ("SizeMax", size),
+        ("DistMin", 0.5 * size / surface),
+        ("DistMax", 2.0 * size),
+    ):
         field.setNumber(threshold, name, value)
     field.setAsBackgroundMesh(threshold)
     left, right, low, high = extent

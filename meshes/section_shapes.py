@@ -13,7 +13,7 @@ from typing import Protocol
 import gmsh
 import numpy as np
 
-from coilset.meshes.errors import InputError, naming
+from coilset.model.base.errors import InputError, naming
 
 CLOSEST = 1e-6  # distance below which two points of an outline are one, over its size
 
@@ -110,11 +110,14 @@ class Curve:
         before = np.roll(points, 1, axis=0)  # a point that is given twice, as the first one at the end, counts once
         points = points[np.linalg.norm(points - before, axis=1) > CLOSEST * np.ptp(points, axis=0).max()]
         if len(points) < 3 or not abs(signed_area(points)) > 0:
-            raise InputError("the curve encloses no area; give its points in their order round the section",
-                             "section.points")  # fmt: skip
+            raise InputError(
+                "the curve encloses no area; give its points in their order round the section", "section.points"
+            )
         if crosses_itself(points):
-            raise InputError("the curve crosses or touches itself; give its points in their order round the section",
-                             "section.points")  # fmt: skip
+            raise InputError(
+                "the curve crosses or touches itself; give its points in their order round the section",
+                "section.points",
+            )
         object.__setattr__(self, "points", points if signed_area(points) > 0 else points[::-1])
 
     @classmethod
@@ -136,8 +139,9 @@ class Curve:
             except ValueError:
                 if number == rows[0][0] and not any(map(_is_number, row)):
                     continue  # the columns' names
-                raise InputError(f"'{','.join(row)}' is not a pair of numbers ξ, η in mm", f"line {number}",
-                                 path) from None  # fmt: skip
+                raise InputError(
+                    f"'{','.join(row)}' is not a pair of numbers ξ, η in mm", f"line {number}", path
+                ) from None
             points.append((ξ, η))
         with naming(path):
             return cls(np.array(points), smooth)
@@ -170,15 +174,21 @@ def crosses_itself(points: np.ndarray) -> bool:
     low, high = np.minimum(a, b), np.maximum(a, b)
 
     def side(p: np.ndarray, q: np.ndarray, r: np.ndarray) -> np.ndarray:
-        return np.sign((q[..., 0] - p[..., 0]) * (r[..., 1] - p[..., 1])
-                       - (q[..., 1] - p[..., 1]) * (r[..., 0] - p[..., 0]))  # fmt: skip
+        return np.sign(
+            (q[..., 0] - p[..., 0]) * (r[..., 1] - p[..., 1]) - (q[..., 1] - p[..., 1]) * (r[..., 0] - p[..., 0])
+        )
 
     i, j = np.triu_indices(len(points), 2)
     apart = (j - i) < len(points) - 1
     i, j = i[apart], j[apart]
     near = np.all((low[i] <= high[j]) & (low[j] <= high[i]), axis=1)  # or else two sides of one straight line would do
-    return bool(np.any(near & (side(a[i], b[i], a[j]) * side(a[i], b[i], b[j]) <= 0)
-                       & (side(a[j], b[j], a[i]) * side(a[j], b[j], b[i]) <= 0)))  # fmt: skip
+    return bool(
+        np.any(
+            near
+            & (side(a[i], b[i], a[j]) * side(a[i], b[i], b[j]) <= 0)
+            & (side(a[j], b[j], a[i]) * side(a[j], b[j], b[i]) <= 0)
+        )
+    )
 
 
 def _rounded(corners: np.ndarray, radius: float) -> list[int]:
@@ -206,8 +216,11 @@ def _rounded(corners: np.ndarray, radius: float) -> list[int]:
 
 # constructor, and the minimum and maximum number of lengths
 WORDS: dict[str, tuple[Callable[..., Outline], int, int]] = {
-    "round": (round_wire, 1, 1), "oval": (Oval, 2, 2), "rectangle": (rectangle, 2, 3), "trapezoid": (Trapezoid, 3, 4),
-}  # fmt: skip
+    "round": (round_wire, 1, 1),
+    "oval": (Oval, 2, 2),
+    "rectangle": (rectangle, 2, 3),
+    "trapezoid": (Trapezoid, 3, 4),
+}
 FORMS = "round:d, oval:width:height, rectangle:width:height[:corner], trapezoid:width:inside:outside[:corner] in mm"
 
 

@@ -8,9 +8,9 @@ import gmsh
 import numpy as np
 from mpi4py import MPI
 
-from coilset.meshes.compat import mesh_from_gmsh, unghosted
-from coilset.meshes.errors import InputError
 from coilset.meshes.solid_grid import SectionGrid, gmsh_cylinder
+from coilset.model.base.compat import mesh_from_gmsh, unghosted
+from coilset.model.base.errors import InputError
 
 GRID = SectionGrid()  # default for a wire
 

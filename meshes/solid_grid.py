@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import gmsh
 import numpy as np
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 
 
 @dataclass(frozen=True)

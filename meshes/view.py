@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pyvista as pv
 
-from coilset.meshes.geometry import Spring
+from coilset.meshes.springs.geometry import Spring
 
 STATIONS_PER_TURN = 64
 

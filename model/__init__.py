@@ -1,7 +1,7 @@
 """The mechanics of coilset: material, section, rod, contact, solid, problem, solvers, loading and results."""
 
-from coilset.model.caches import keep_by_content
-from coilset.model.libraries import load_in_order, load_when_used
+from coilset.model.runtime.caches import keep_by_content
+from coilset.model.runtime.libraries import load_in_order, load_when_used
 
 load_when_used()
 load_in_order()

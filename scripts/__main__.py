@@ -20,7 +20,10 @@ def main() -> None:
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, _leave)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
-    gc.set_threshold(GARBAGE)
+    from coilset.model.runtime.switches import enabled
+
+    if enabled("garbage"):
+        gc.set_threshold(GARBAGE)
     from coilset.scripts.running import run
 
     run()

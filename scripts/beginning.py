@@ -3,9 +3,9 @@
 import os
 from pathlib import Path
 
-from coilset.model.processes import first_rank
-from coilset.model.version import __version__
-from coilset.scripts.target import results_folder
+from coilset.model.base.version import __version__
+from coilset.model.runtime.processes import first_rank
+from coilset.scripts.terminal.target import results_folder
 
 
 def announce_begin(does: str, file: str, out: str | None) -> None:

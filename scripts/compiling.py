@@ -16,8 +16,8 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from coilset.model.caches import SOURCES, load_without_compiler
-from coilset.model.processes import end_with_parent, first_rank
+from coilset.model.runtime.caches import SOURCES, load_without_compiler
+from coilset.model.runtime.processes import end_with_parent, first_rank
 
 NOTICE = "coilset: compiling forms and kernels, once after an installation or a change; this takes some minutes ..."
 NOTICE_OF_PART = "coilset: compiling what this command needs, once ..."
@@ -75,15 +75,23 @@ def compile_first(check: Callable[[], object] = bool, say: Callable[[str], None]
     check()
     say(NOTICE)
     begun = time.monotonic()
-    environment = {name: value for name, value in os.environ.items()
-                   if name.startswith(ALLOWED) or not name.startswith(OF_A_RANK)}  # fmt: skip
+    environment = {
+        name: value for name, value in os.environ.items() if name.startswith(ALLOWED) or not name.startswith(OF_A_RANK)
+    }
     with contextlib.suppress(OSError):  # if nothing can be stored, each process compiles for itself
         done.parent.mkdir(parents=True, exist_ok=True)
         with open(done.with_suffix(".lock"), "w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             if not done.exists():
-                subprocess.run(COMPILE, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                               stderr=subprocess.DEVNULL, check=False, preexec_fn=end_with_parent)  # fmt: skip
+                subprocess.run(
+                    COMPILE,
+                    env=environment,
+                    stdin=subprocess.DEVNULL,
+                    stdout=subprocess.DEVNULL,
+                    stderr=subprocess.DEVNULL,
+                    check=False,
+                    preexec_fn=end_with_parent,
+                )
     if done.exists():
         say(f"coilset: compiled in {time.monotonic() - begun:.0f} s")
 
@@ -91,7 +99,7 @@ def compile_first(check: Callable[[], object] = bool, say: Callable[[str], None]
 def compiled() -> Path:
     """The file that marks all kernels of this version, checkout and Python as compiled; it lies beside them."""
     kind = hashlib.sha256(repr((str(SOURCES), sys.version, sys.prefix)).encode())
-    return Path(os.environ["NUMBA_CACHE_DIR"]) / f"compiled-{kind.hexdigest()[:16]}"  # see coilset.model.caches
+    return Path(os.environ["NUMBA_CACHE_DIR"]) / f"compiled-{kind.hexdigest()[:16]}"  # see coilset.model.runtime.caches
 
 
 def announce_compiling(say: Callable[[str], None] = _to_stderr, notice: str = NOTICE_OF_PART) -> Announcement:

@@ -9,6 +9,8 @@ import atexit
 import os
 import sys
 
+from coilset.model.runtime.switches import enabled
+
 
 class Ending:
     """Ends the process once all else that is registered has run.
@@ -24,6 +26,8 @@ class Ending:
     def _end(self) -> None:
         sys.stdout.flush()
         sys.stderr.flush()
+        if not enabled("ending"):
+            return
         if "petsc4py.PETSc" in sys.modules:
             sys.modules["petsc4py.PETSc"]._finalize()
         if "mpi4py.MPI" in sys.modules:

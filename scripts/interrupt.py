@@ -10,7 +10,7 @@ from collections.abc import Callable
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
-from coilset.scripts.output import output_closed
+from coilset.scripts.terminal.output import output_closed
 
 if TYPE_CHECKING:  # the command asks for the numbers below before MPI is started
     from mpi4py import MPI

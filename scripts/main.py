@@ -3,14 +3,14 @@
 import os
 import sys
 
-from coilset.meshes.errors import InputError
-from coilset.model.processes import number_of_ranks, usable_cores
+from coilset.model.base.errors import InputError
+from coilset.model.runtime.processes import number_of_ranks, usable_cores
 from coilset.scripts.beginning import announce_begin
+from coilset.scripts.commands.material import app as material
 from coilset.scripts.compiling import NOTICE, announce_compiling, compile_first, compiled
 from coilset.scripts.loading import keeping, load_for_solve
-from coilset.scripts.material import app as material
 from coilset.scripts.plain import typer
-from coilset.scripts.target import file_targets, folder_target, page_target
+from coilset.scripts.terminal.target import file_targets, folder_target, page_target
 
 HELP = """How far does a coil spring set, and what stress remains in it?
 
@@ -34,7 +34,7 @@ THREADS = typer.Option(
 
 def _show_version(wanted: bool) -> None:
     if wanted:
-        from coilset.model.version import versions
+        from coilset.model.base.version import versions
 
         print(versions())
         raise typer.Exit
@@ -75,7 +75,7 @@ def solve(
     threads: int = THREADS,
 ) -> None:
     """Take a spring through its load program and write the results."""
-    from coilset.scripts.drawing import Drawings
+    from coilset.scripts.terminal.drawing import Drawings
 
     if quiet + json + verbose > 1:
         raise InputError("are three ways to print a run; give one of them", "--quiet, --json, --verbose")
@@ -89,11 +89,22 @@ def solve(
         announce_compiling()
         with keeping():
             load_for_solve()
-            from coilset.scripts.solve import solve as run_case
+            from coilset.scripts.commands.solve import solve as run_case
 
         voice = "quiet" if quiet else "json" if json else "lines"
-        run_case(case, out, force, settings, pictures, resume, interactive, drawings=drawings, voice=voice,
-                 verbose=verbose, threads=threads)  # fmt: skip
+        run_case(
+            case,
+            out,
+            force,
+            settings,
+            pictures,
+            resume,
+            interactive,
+            drawings=drawings,
+            voice=voice,
+            verbose=verbose,
+            threads=threads,
+        )
 
 
 def _check_case(case: str, settings: list[str]) -> None:
@@ -113,7 +124,7 @@ def slice_(
     pictures: bool = typer.Option(True, help="draw the figure"),
 ) -> None:
     """Solve a cylindrical spring as a 3D body, through a single section of its wire, and write the results."""
-    from coilset.scripts.slice import slice_case
+    from coilset.scripts.commands.slice import slice_case
 
     slice_case(case, out, force, settings, section, across, pictures)
 
@@ -127,7 +138,7 @@ def nest(
     threads: int = THREADS,
 ) -> None:
     """Press two nested springs together between the same seats: summed force, set and stress of each, their room."""
-    from coilset.scripts.nest import nest as press
+    from coilset.scripts.commands.nest import nest as press
 
     announce_compiling()
     press(file, out, force, pictures, threads)
@@ -147,7 +158,7 @@ def mesh(
     pictures: bool = typer.Option(True, help="draw the spring"),
 ) -> None:
     """Print the data of a spring, draw it, and write its mesh."""
-    from coilset.scripts.mesh import mesh as mesh_case
+    from coilset.scripts.commands.mesh import mesh as mesh_case
 
     mesh_case(case, out, force, settings, write, pictures)
 
@@ -170,7 +181,7 @@ def sheet(
     pictures: bool = typer.Option(True, help="draw the Goodman diagram"),
 ) -> None:
     """Print rate, stresses, lengths and tolerances by the standards, beside the results of a run."""
-    from coilset.scripts import sheet as sheets
+    from coilset.scripts.commands import sheet as sheets
 
     if wires:
         sheets.list_wires(wire)
@@ -184,7 +195,7 @@ def report(
 ) -> None:
     """Write a page of a run, a design, a nest or a sweep; it opens from disk without a network."""
     announce_compiling()
-    from coilset.scripts.report import report as write_page
+    from coilset.scripts.commands.report import report as write_page
 
     write_page(results)
 
@@ -194,7 +205,7 @@ def fields(
     results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
 ) -> None:
     """Write time series of a run for ParaView: centre line, wire as a tube, section points."""
-    from coilset.scripts.show import fields as write_fields
+    from coilset.scripts.commands.show import fields as write_fields
 
     write_fields(results)
 
@@ -204,7 +215,7 @@ def animate(
     results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
 ) -> None:
     """Write an animation of a run: the spring through its load program, coloured by stress."""
-    from coilset.scripts.show import animate as draw
+    from coilset.scripts.commands.show import animate as draw
 
     draw(results)
 
@@ -226,7 +237,7 @@ def sweep(
     announce_begin("sweeps", sweep_file, out)
     compile_first(lambda: _check_sweep(sweep_file))
     with Workers((jobs or usable_cores()) if number_of_ranks() == 1 else 0, dict(os.environ)) as workers:
-        from coilset.scripts.sweep import sweep as run_sweep
+        from coilset.scripts.commands.sweep import sweep as run_sweep
 
         run_sweep(sweep_file, out, force, resume, retry, workers, ranks_per_case, pictures)
 
@@ -250,7 +261,7 @@ def design(
 
     compile_first(lambda: read_design_file(file))
     announce_compiling()
-    from coilset.scripts.design import design as run_design
+    from coilset.scripts.commands.design import design as run_design
 
     run_design(file, out, force, resume, threads)
 
@@ -268,7 +279,7 @@ def verify(
     ),
 ) -> None:
     """Compare with tables, closed-form solutions and finer models; exit 1 on any deviation."""
-    from coilset.scripts import verify as verification
+    from coilset.scripts.commands import verify as verification
 
     if show:
         verification.show()
@@ -286,7 +297,7 @@ def bench(
 ) -> None:
     """Measure run time by stage, number of elements and ranks, and cases per hour."""
     compile_first()
-    from coilset.scripts.bench import bench as run_benchmarks
+    from coilset.scripts.commands.bench import bench as run_benchmarks
 
     run_benchmarks(out, full, cold, against)
 
@@ -309,7 +320,7 @@ def examples(
     force: bool = typer.Option(False, "--force", help="overwrite existing files"),
 ) -> None:
     """List the examples, or copy one as a starting point."""
-    from coilset.scripts import examples as shipped
+    from coilset.scripts.commands import examples as shipped
 
     if name is None:
         shipped.show()
@@ -320,7 +331,7 @@ def examples(
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})
 def test(context: typer.Context) -> None:
     """Run the tests, in serial and under MPI: about ten minutes on two cores. Arguments are passed to pytest."""
-    from coilset.scripts.test import test as run_tests
+    from coilset.scripts.commands.test import test as run_tests
 
     raise typer.Exit(run_tests(context.args))
 

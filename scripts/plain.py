@@ -3,8 +3,11 @@
 import os
 import sys
 
-os.environ.setdefault("TYPER_USE_RICH", "0")  # for typer >= 0.17
-_LOADED = "rich" in sys.modules
+from coilset.model.runtime.switches import enabled
+
+if enabled("rich"):
+    os.environ.setdefault("TYPER_USE_RICH", "0")  # for typer >= 0.17
+_LOADED = "rich" in sys.modules or not enabled("rich")
 if not _LOADED:
     sys.modules["rich"] = None  # type: ignore[assignment]  # to older ones: rich is not installed
 

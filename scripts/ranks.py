@@ -15,8 +15,8 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import IO, Protocol
 
-from coilset.meshes.errors import InputError
-from coilset.model.processes import end_with_parent, folder_of_mpirun, mpi_environment, mpirun, usable_cores
+from coilset.model.base.errors import InputError
+from coilset.model.runtime.processes import end_with_parent, folder_of_mpirun, mpi_environment, mpirun, usable_cores
 from coilset.scripts.interrupt import INTERRUPTED
 
 PARALLEL = ("solve", "sweep", "python")
@@ -39,8 +39,9 @@ def check(ranks: int, command: str) -> None:
     given = os.environ.get("COILSET_MAX_RANKS", "")
     most = int(given) if given.isdigit() else RANKS_A_CORE * cores
     if ranks > most:
-        raise InputError(f"{ranks} ranks on {cores} cores; give at most {most}, or set COILSET_MAX_RANKS to allow more",
-                         "-n")  # fmt: skip
+        raise InputError(
+            f"{ranks} ranks on {cores} cores; give at most {most}, or set COILSET_MAX_RANKS to allow more", "-n"
+        )
 
 
 def launch(ranks: int, arguments: Sequence[str]) -> int:
@@ -53,9 +54,15 @@ def launch(ranks: int, arguments: Sequence[str]) -> int:
 def _run(command: list[str], environment: dict[str, str]) -> int:
     """Run mpirun, and pass on what it says, and the signals that come; its exit code."""
     process = subprocess.Popen(
-        command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, bufsize=0, env=environment,
-        process_group=0, preexec_fn=end_with_parent,
-    )  # fmt: skip
+        command,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        bufsize=0,
+        env=environment,
+        process_group=0,
+        preexec_fn=end_with_parent,
+    )
     stops: list[int] = []  # exit codes for what stopped it
 
     def stop(code: int) -> None:
@@ -66,8 +73,10 @@ def _run(command: list[str], environment: dict[str, str]) -> int:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop(INTERRUPTED))
     messages = MpirunMessages(sys.stderr.buffer)
-    pumps = [_pump(process.stdout, sys.stdout.buffer, lambda: stop(OUTPUT_CLOSED)),
-             _pump(process.stderr, messages, lambda: None)]  # fmt: skip
+    pumps = [
+        _pump(process.stdout, sys.stdout.buffer, lambda: stop(OUTPUT_CLOSED)),
+        _pump(process.stderr, messages, lambda: None),
+    ]
     code = process.wait()
     for pump in pumps:
         pump.join()

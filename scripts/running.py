@@ -10,13 +10,13 @@ from difflib import get_close_matches
 from types import FrameType
 from typing import TYPE_CHECKING, Any
 
-from coilset.meshes.errors import CoilsetError, InputError, printable
-from coilset.model.processes import first_rank
+from coilset.model.base.errors import CoilsetError, InputError, printable
+from coilset.model.runtime.processes import first_rank
 from coilset.scripts.ending import Ending
 from coilset.scripts.interrupt import INTERRUPTED, ONE_SIGNAL
 from coilset.scripts.main import app
-from coilset.scripts.output import Output, output_closed
 from coilset.scripts.plain import typer
+from coilset.scripts.terminal.output import Output, output_closed
 
 if TYPE_CHECKING:  # commands load what they need
     from mpi4py import MPI
@@ -138,7 +138,7 @@ def _listen() -> None:
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, interrupt)
     if "COILSET_RANKS" in os.environ:
-        from coilset.model.processes import end_with_parent
+        from coilset.model.runtime.processes import end_with_parent
 
         end_with_parent()
         signal.signal(signal.SIGUSR1, interrupt)

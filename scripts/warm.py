@@ -6,13 +6,13 @@ import sys
 
 from mpi4py import MPI
 
-from coilset.model.analysis import Analysis
 from coilset.model.case import Case, read_case
 from coilset.model.design.surrogate import guess
-from coilset.model.examples import EXAMPLES
 from coilset.model.material import library
-from coilset.model.processes import end_with_parent, folder_of_mpirun, mpi_environment, mpirun
 from coilset.model.report.material_curves import there_and_back
+from coilset.model.run.analysis import Analysis
+from coilset.model.run.examples import EXAMPLES
+from coilset.model.runtime.processes import end_with_parent, folder_of_mpirun, mpi_environment, mpirun
 
 LOADING = "loading=[{to: {travel: 16}, steps: 4}, {to: {force: 0}, steps: 1}]"
 CREEPING = "loading=[{to: {force: 650}, steps: 2}, {hold: {hours: 1}, steps: 1}]"
@@ -43,9 +43,15 @@ def warm() -> None:
 def warm_ranks() -> None:
     """Let two ranks press the example: they factorise in another way. Where no mpirun starts them, nothing is done."""
     with folder_of_mpirun() as folder, contextlib.suppress(OSError):
-        subprocess.run([*mpirun(2), sys.executable, "-m", __name__], env=mpi_environment() | folder, check=False,
-                       stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                       preexec_fn=end_with_parent)  # fmt: skip
+        subprocess.run(
+            [*mpirun(2), sys.executable, "-m", __name__],
+            env=mpi_environment() | folder,
+            check=False,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            preexec_fn=end_with_parent,
+        )
 
 
 if __name__ == "__main__":

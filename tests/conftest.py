@@ -8,10 +8,10 @@ import pytest
 from mpi4py import MPI
 
 from coilset.meshes.line import line_mesh
-from coilset.model.analysis import Analysis
 from coilset.model.material import library
-from coilset.model.results.checkpoint import Checkpoint
+from coilset.model.results.files.checkpoint import Checkpoint
 from coilset.model.rod.rod import Rod
+from coilset.model.run.analysis import Analysis
 from coilset.model.section.rules import polar
 
 os.environ.setdefault("COILSET_THREADS", "1")  # the tests' own processes run side by side already

@@ -8,13 +8,13 @@ import pytest
 
 WAIT = """
 import sys
-from coilset.model.libraries import UNUSED, Waiting
+from coilset.model.runtime.libraries import UNUSED, Waiting
 import dolfinx, numba
 print(all(type(sys.modules[name]) is Waiting for name in UNUSED if name in sys.modules))
 """
 AGAIN = """
 import sys
-from coilset.model.libraries import Waiting, WhenUsed
+from coilset.model.runtime.libraries import Waiting, WhenUsed
 sys.meta_path.insert(0, WhenUsed(["matplotlib.pyplot"]))
 import matplotlib.pyplot
 import matplotlib.pyplot as plt

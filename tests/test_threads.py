@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model import threads
-from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.rod import section_states
-from coilset.model.threads import LEAST, Threads
+from coilset.model.run.analysis import Analysis
+from coilset.model.runtime import threads
+from coilset.model.runtime.threads import LEAST, Threads
 
 
 def test_parts_are_even_and_large_enough():
@@ -33,8 +33,13 @@ def test_threads_change_no_bit(example, monkeypatch, kept):
     """Of points on trial that are kept, and of a long rod's, of which each thread keeps one element's."""
     monkeypatch.setattr(section_states, "KEPT", kept)
     monkeypatch.setattr(threads, "LEAST", 64)
-    settings = ["loading.0.to={travel: 6}", "loading.0.steps=2", "loading.1.steps=1",
-                "mesh.section.radial=2", "mesh.section.angular=8"]  # fmt: skip
+    settings = [
+        "loading.0.to={travel: 6}",
+        "loading.0.steps=2",
+        "loading.1.steps=1",
+        "mesh.section.radial=2",
+        "mesh.section.angular=8",
+    ]
     found = []
     for number in (1, 2, 3):
         analysis = Analysis(read_case(example, settings), MPI.COMM_SELF, threads=number)

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from coilset.meshes.errors import SolveError
-from coilset.model import uniform
+from coilset.model.base.errors import SolveError
 from coilset.model.material import library
 from coilset.model.section.rules import polar, upper_half
-from coilset.model.section.uniform import Coil, force_shear, integrate, residual_and_tangent, strains
+from coilset.model.uniform import rod as uniform
+from coilset.model.uniform.section import Coil, force_shear, integrate, residual_and_tangent, strains
 
 COIL = np.array([5.0, 40.0, 12.0, 2.5])
 

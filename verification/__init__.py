@@ -1,6 +1,6 @@
 """Comparisons with tables, closed solutions, finer meshes and the 3D model, each with its source and tolerance.
 
-A case is a module `cases/some_name.py`; `coilset verify some-name` finds it by its file's name. It holds
+A case is a module `some_name.py` in a folder of `cases`, which `coilset verify some-name` finds by its name. It holds
 
 - a docstring: the first line says what is compared with what; the rest, where the reference comes from, what the
   tolerance is based on, and what was found;

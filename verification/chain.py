@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from coilset.meshes.errors import SolveError
+from coilset.model.base.errors import SolveError
 from coilset.model.material import library
-from coilset.model.material.file import MaterialFile
-from coilset.model.material.law import Law
+from coilset.model.material.law.file import MaterialFile
+from coilset.model.material.law.law import Law
 from coilset.model.section.rules import DiskRule, polar
 from coilset.verification.frame import Frame
 

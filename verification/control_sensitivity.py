@@ -21,23 +21,37 @@ from typing import TextIO, get_type_hints
 
 from mpi4py import MPI
 
-from coilset.meshes.errors import SolveError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import SolveError
 from coilset.model.case import read_case
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.settings import Growth, NewtonControl, StepControl
-from coilset.model.examples import EXAMPLES
+from coilset.model.run.analysis import Analysis
+from coilset.model.run.examples import EXAMPLES
 from coilset.verification.listen import listen
 
 CONTROLS: dict[str, type[NewtonControl] | type[StepControl]] = {"newton": NewtonControl, "steps": StepControl}
-GROWTHS = {name for control in CONTROLS.values() for name, kind in get_type_hints(control, include_extras=True).items()
-           if kind is Growth}  # fmt: skip
+GROWTHS = {
+    name
+    for control in CONTROLS.values()
+    for name, kind in get_type_hints(control, include_extras=True).items()
+    if kind is Growth
+}
 SWITCHES = ("foreseen_forces",)
 FREE_PENETRATION = 0.02  # wire diameters: the contacts' limit, which stands where no number is given
 AUTOMATIC = (  # of automatic steps only
-    "automatic", "easy", "hard", "growth", "shrinkage", "largest", "step_share", "least_rest", "tolerated_share",
-    "finest", "caution", "least_factor",
-)  # fmt: skip
+    "automatic",
+    "easy",
+    "hard",
+    "growth",
+    "shrinkage",
+    "largest",
+    "step_share",
+    "least_rest",
+    "tolerated_share",
+    "finest",
+    "caution",
+    "least_factor",
+)
 COLUMNS = ("spring", "variant", "iterations", "evaluations", "failures", "cuts", "steps", "ended")
 PETSC_SEARCH = "cp"
 
@@ -114,18 +128,17 @@ def variants(names: Iterable[str], steps: str | int) -> Iterator[tuple[str, list
     yield f"{PETSC_SEARCH} of PETSc", [*in_steps(steps), f"solver.options.snes_linesearch_type={PETSC_SEARCH}"]
     if not chosen or chosen & set(AUTOMATIC):
         yield "automatic steps", in_steps("auto")
-        yield f"{PETSC_SEARCH} of PETSc, automatic", [
-            *in_steps("auto"), f"solver.options.snes_linesearch_type={PETSC_SEARCH}"
-        ]  # fmt: skip
+        yield (
+            f"{PETSC_SEARCH} of PETSc, automatic",
+            [*in_steps("auto"), f"solver.options.snes_linesearch_type={PETSC_SEARCH}"],
+        )
     for group, control in CONTROLS.items():
         for field in fields(control):
             if chosen and field.name not in chosen:
                 continue
             kind = "auto" if group == "steps" and field.name in AUTOMATIC else steps
             for value in halved_and_doubled(field.name, getattr(control(), field.name)):
-                yield f"{field.name} = {value:g}", [
-                    *in_steps(kind), f"solver.control.{group}.{field.name}={value!r}"
-                ]  # fmt: skip
+                yield f"{field.name} = {value:g}", [*in_steps(kind), f"solver.control.{group}.{field.name}={value!r}"]
 
 
 def table(springs: Iterable[str], names: Iterable[str], steps: str | int, given: Sequence[str], out: TextIO) -> None:

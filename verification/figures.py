@@ -24,12 +24,25 @@ def iterations(axes: Axes, labels: Sequence[str], columns: Sequence[Column], tit
         shift = 0.16 * (k - 0.5 * (len(columns) - 1))
         for numbers, filled, name in ((theirs, "none", "thesis"), (ours, colour, "coilset")):
             values = np.array([np.nan if n is None else n for n in numbers], dtype=float)
-            axes.plot(place + shift, values, "o", ms=7 if filled == "none" else 4, mfc=filled, mec=colour,
-                      label=f"{method}, {name}")  # fmt: skip
+            axes.plot(
+                place + shift,
+                values,
+                "o",
+                ms=7 if filled == "none" else 4,
+                mfc=filled,
+                mec=colour,
+                label=f"{method}, {name}",
+            )
             lost = np.isnan(values)
             if lost.any():
-                axes.plot((place + shift)[lost], np.full(lost.sum(), top), "x", color=colour, ms=6,
-                          label=f"{method}, {name}: diverged")  # fmt: skip
+                axes.plot(
+                    (place + shift)[lost],
+                    np.full(lost.sum(), top),
+                    "x",
+                    color=colour,
+                    ms=6,
+                    label=f"{method}, {name}: diverged",
+                )
     axes.set_xticks(place, labels, rotation=90)
     axes.set(ylabel="iterations, one step per row", title=title, ylim=(-0.05 * top, 1.06 * top))
     axes.grid(lw=0.3)

@@ -8,7 +8,7 @@ from mpi4py import MPI
 from scipy.spatial.transform import Rotation
 
 from coilset.meshes.frame import frame_mesh
-from coilset.meshes.placement import Placement
+from coilset.meshes.springs.placement import Placement
 from coilset.model.contact.base import Contact
 from coilset.model.equilibrium.contact_limit import ContactLimit
 from coilset.model.equilibrium.continuation import Continuation
@@ -19,7 +19,7 @@ from coilset.model.equilibrium.methods import rod_method
 from coilset.model.equilibrium.newton import Newton, Start
 from coilset.model.equilibrium.settings import NewtonControl
 from coilset.model.equilibrium.system import System
-from coilset.model.material.law import Law
+from coilset.model.material.law.law import Law
 from coilset.model.rod.rod import Rod
 from coilset.model.section.rules import DiskRule
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from difflib import get_close_matches
 
-from coilset.meshes.errors import InputError
-from coilset.model.entries.entry import shortened
+from coilset.model.base.entry import shortened
+from coilset.model.base.errors import InputError
 from coilset.verification import cases
 from coilset.verification.study import Study
 
@@ -26,7 +26,13 @@ class Case:
 
 def names() -> list[str]:
     """Names of all cases, in alphabetical order."""
-    return sorted(module.name.replace("_", "-") for module in pkgutil.iter_modules(cases.__path__))
+    return sorted(_modules())
+
+
+def _modules() -> dict[str, str]:
+    """Name of each case → its module, in any folder of `cases`."""
+    found = pkgutil.walk_packages(cases.__path__, f"{cases.__name__}.")
+    return {one.name.rpartition(".")[2].replace("_", "-"): one.name for one in found if not one.ispkg}
 
 
 def load(name: str) -> Case:
@@ -35,10 +41,11 @@ def load(name: str) -> Case:
     Raises:
         InputError: if there is none of this name.
     """
-    if name not in names():
-        near = get_close_matches(name, names(), 1)
+    modules = _modules()
+    if name not in modules:
+        near = get_close_matches(name, modules, 1)
         hint = f"is {near[0]} meant?" if near else "coilset verify --list lists them"
         raise InputError(f"'{shortened(name)}' is not a case; {hint}", "verify")
-    module = importlib.import_module(f"{cases.__name__}.{name.replace('-', '_')}")
+    module = importlib.import_module(modules[name])
     title, _, text = (inspect.getdoc(module) or "").partition("\n")
     return Case(name, title, text.strip(), getattr(module, "FAST", False), module.run)

@@ -10,8 +10,8 @@ from typing import Any, SupportsFloat
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.results.figures import add_title, save
-from coilset.model.results.folder import make, whole
+from coilset.model.figures.figures import add_title, save
+from coilset.model.results.files.folder import make, whole
 
 KINDS = ("relative", "absolute", "at_most")
 
@@ -154,8 +154,15 @@ class Study:
             add_title(figure, self.finding)
             save(figure, self.folder / file)
         checks = [asdict(check) | {"deviation": check.deviation, "verdict": check.verdict} for check in self.checks]
-        record = {"case": name, "passed": self.passed, "stopped": self.stopped, "checks": checks,
-                  "tables": self.tables, "notes": self.notes, "figures": self.figures}  # fmt: skip
+        record = {
+            "case": name,
+            "passed": self.passed,
+            "stopped": self.stopped,
+            "checks": checks,
+            "tables": self.tables,
+            "notes": self.notes,
+            "figures": self.figures,
+        }
         with whole(self.folder / "record.json") as path:
             path.write_text(json.dumps(json_ready(record), indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 

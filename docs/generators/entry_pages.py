@@ -7,29 +7,52 @@ from coilset.model.case import reference
 from coilset.model.case.case import Case
 from coilset.model.case.reference import Form, Group, Row
 from coilset.model.design.file import DesignFile
-from coilset.model.material.file import MaterialFile
+from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.programs import Program
 from coilset.model.nest.file import NestFile
 from coilset.model.sweep.spec import SweepSpec
 
 FILES = {  # name of the page: its title, what the file is for, its model
-    "case": ("The case file", "A spring, its material, its ends, its mesh and its load program: the file of "
-             "`coilset solve`, `coilset slice`, `coilset mesh` and `coilset sheet`.", Case),
-    "material": ("The material file", "The constants of a law, at one temperature or more: the file of "
-                 "`coilset material`, and of the entry `material` of a case. [Material](../../material.md) has a whole "
-                 "one with remarks.", MaterialFile),
-    "program": ("The program file", "Targets of strain and stress for one point: the file of `coilset material test`.",
-                Program),
-    "design": ("The design file", "A case, unknowns in it, and conditions: the file of `coilset design`. "
-               "[Find dimensions](../../how-to/design.md) shows examples.", DesignFile),
-    "nest": ("The nest file", "Two springs between the same seats: the file of `coilset nest`. "
-             "[Nested springs](../../how-to/nested.md) shows one.", NestFile),
+    "case": (
+        "The case file",
+        "A spring, its material, its ends, its mesh and its load program: the file of "
+        "`coilset solve`, `coilset slice`, `coilset mesh` and `coilset sheet`.",
+        Case,
+    ),
+    "material": (
+        "The material file",
+        "The constants of a law, at one temperature or more: the file of "
+        "`coilset material`, and of the entry `material` of a case. [Material](../../material.md) has a whole "
+        "one with remarks.",
+        MaterialFile,
+    ),
+    "program": (
+        "The program file",
+        "Targets of strain and stress for one point: the file of `coilset material test`.",
+        Program,
+    ),
+    "design": (
+        "The design file",
+        "A case, unknowns in it, and conditions: the file of `coilset design`. "
+        "[Find dimensions](../../how-to/design.md) shows examples.",
+        DesignFile,
+    ),
+    "nest": (
+        "The nest file",
+        "Two springs between the same seats: the file of `coilset nest`. "
+        "[Nested springs](../../how-to/nested.md) shows one.",
+        NestFile,
+    ),
     "sweep": ("The sweep file", "A base case, and entries that vary: the file of `coilset sweep`.", SweepSpec),
-}  # fmt: skip
+}
 NAMES = {  # of groups, where the name of the class alone would not do
-    "Chaboche": "Chaboche", "HeatSpec": "heat flow", "NonNormality": "non-normality", "RambergOsgood": "Ramberg-Osgood",
-    "Swift": "Swift", "Voce": "Voce",
-}  # fmt: skip
+    "Chaboche": "Chaboche",
+    "HeatSpec": "heat flow",
+    "NonNormality": "non-normality",
+    "RambergOsgood": "Ramberg-Osgood",
+    "Swift": "Swift",
+    "Voce": "Voce",
+}
 COLUMNS = ("entry", "takes", "unit", "default", "range", "meaning")
 
 

@@ -10,8 +10,15 @@ from pathlib import Path
 from sphinx.application import Sphinx
 
 INSTALLED = Path("/usr/share/javascript/mathjax")
-PARTS = ("MathJax.js", "config/TeX-AMS_CHTML.js", "extensions", "fonts/HTML-CSS/TeX/woff", "jax/element",
-         "jax/input/TeX", "jax/output/CommonHTML")  # fmt: skip
+PARTS = (
+    "MathJax.js",
+    "config/TeX-AMS_CHTML.js",
+    "extensions",
+    "fonts/HTML-CSS/TeX/woff",
+    "jax/element",
+    "jax/input/TeX",
+    "jax/output/CommonHTML",
+)
 
 
 def configuration() -> dict[str, object]:

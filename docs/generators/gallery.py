@@ -29,13 +29,15 @@ MATERIAL = EXAMPLES / "material"
 COMMANDS: dict[str, tuple[list[str], dict[str, str]]] = {
     "drawing": (["mesh", str(EXAMPLES / "springs/closed_and_ground.yaml")], {"drawing": "spring_drawing"}),
     "functions": (["material", "show", "ck15"], {"functions": "material_functions"}),
-    "fit": (["material", "fit", *map(str, sorted((MATERIAL / "fit").glob("*.csv"))), "--G", "84000", "--nu", "0.28989"],
-            {"fit": "material_fit_example"}),
+    "fit": (
+        ["material", "fit", *map(str, sorted((MATERIAL / "fit").glob("*.csv"))), "--G", "84000", "--nu", "0.28989"],
+        {"fit": "material_fit_example"},
+    ),
     **{
         name: (["material", "test", "ck15", str(MATERIAL / f"{name}.yaml")], {name: f"material_{name}"})
         for name in ("tension_torsion", "torsion_reversal", "torsion_tension")
     },
-}  # fmt: skip
+}
 
 
 def draw(name: str) -> None:

@@ -16,8 +16,11 @@ def write(folder: Path) -> None:
     for name in names:
         replace(folder / f"{name}.md", page(name))
     entries = "\n".join(names)
-    replace(folder / "index.md", "# Python\n\nEvery module of the program's library, by packages. The README shows how "
-            f"a case is run from Python.\n\n```{{toctree}}\n:maxdepth: 1\n\n{entries}\n```\n")  # fmt: skip
+    replace(
+        folder / "index.md",
+        "# Python\n\nEvery module of the program's library, by packages. The README shows how "
+        f"a case is run from Python.\n\n```{{toctree}}\n:maxdepth: 1\n\n{entries}\n```\n",
+    )
 
 
 def packages() -> list[str]:

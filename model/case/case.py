@@ -9,14 +9,14 @@ from typing import Annotated, Any, ClassVar, Literal, Self, TypeVar
 from annotated_types import Unit
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
-from coilset.meshes.spring import SpringEntry, SpringSpec
-from coilset.meshes.stations import ElementsPerTurn
+from coilset.meshes.springs.spring import SpringEntry, SpringSpec
+from coilset.meshes.springs.stations import ElementsPerTurn
+from coilset.model.base.entry import Strict, Whole, check_entries
+from coilset.model.base.yaml import read_data
 from coilset.model.case.heat import HeatSpec
 from coilset.model.case.phases import AnyPhase, Phase
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.case.settings import assign, located
-from coilset.model.entries.entry import Strict, Whole, check_entries
-from coilset.model.entries.yaml import read_data
 from coilset.model.equilibrium.settings import MethodName, NewtonControl, StepControl
 from coilset.model.section import rules
 
@@ -26,9 +26,11 @@ class SectionSpec(Strict):
 
     kind: Annotated[
         Literal["plane", "curved", "warping"],
-        Field(description="plane: as in the thesis; curved: fibres of a curved wire, warping due to the transverse "
-                          "force; warping: free warping, all six stresses"),
-    ] = "curved"  # fmt: skip
+        Field(
+            description="plane: as in the thesis; curved: fibres of a curved wire, warping due to the transverse "
+            "force; warping: free warping, all six stresses"
+        ),
+    ] = "curved"
     spin: Annotated[
         bool,
         Field(
@@ -57,8 +59,10 @@ class SectionSpec(Strict):
         exact = 5 if self.rule == "abramowitz9" else min(4 * self.radial, self.angular) - 1
         needed = 2 * self.degree - 2
         if self.kind == "warping" and exact < needed:
-            raise ValueError(f"the rule is exact for polynomials of degree {exact}, warping of degree {self.degree} "
-                             f"needs {needed}; give more points or a lower degree")  # fmt: skip
+            raise ValueError(
+                f"the rule is exact for polynomials of degree {exact}, warping of degree {self.degree} "
+                f"needs {needed}; give more points or a lower degree"
+            )
         return self
 
     @property
@@ -194,9 +198,13 @@ class Case(Strict):
     """A case; units mm, N, MPa, K."""
 
     ELSEWHERE: ClassVar[dict[str, str]] = {
-        "outer": "coilset nest", "inner": "coilset nest", "vary": "coilset sweep", "find": "coilset design",
-        "case": "coilset sweep or coilset design", "temperatures": "the entry material",
-    }  # fmt: skip
+        "outer": "coilset nest",
+        "inner": "coilset nest",
+        "vary": "coilset sweep",
+        "find": "coilset design",
+        "case": "coilset sweep or coilset design",
+        "temperatures": "the entry material",
+    }
     spring: Annotated[SpringEntry, Field(description="the spring's drawing, or the file of a measured one")]
     material: Annotated[
         Material, Field(description="name of a library material, path of a material file, or {wire: name of a wire}")
@@ -219,12 +227,13 @@ class Case(Strict):
         Field(description="where the heat of plastic work flows; left out: it stays where it is produced"),
     ] = None
     accuracy: Annotated[
-        Annotated[Literal["none"], Tag("(word)")]
-        | Annotated[Part, Unit("1"), Field(gt=0, lt=1), Tag("(part)")],
+        Annotated[Literal["none"], Tag("(word)")] | Annotated[Part, Unit("1"), Field(gt=0, lt=1), Tag("(part)")],
         Discriminator(lambda value: "(word)" if value == "none" else "(part)"),
-        Field(description="error in force that automatic steps may cause, relative to the maximum force, such as "
-                          "0.2 %; none: errors of steps are not estimated, and all phases give their steps"),
-    ] = 0.002  # fmt: skip
+        Field(
+            description="error in force that automatic steps may cause, relative to the maximum force, such as "
+            "0.2 %; none: errors of steps are not estimated, and all phases give their steps"
+        ),
+    ] = 0.002
     loading: Annotated[
         list[AnyPhase],
         Field(strict=False, min_length=1, description="the load program: targets and waiting times, in order"),
@@ -268,11 +277,11 @@ class Case(Strict):
     @model_validator(mode="after")
     def _past_of_fibres(self) -> Self:
         if self.past and self.mesh.section.kind == "warping":
-            raise ValueError(f"spring.{self.past[0]} needs sections of fibres; give mesh.section.kind: curved "
-                             "or plane")  # fmt: skip
+            raise ValueError(f"spring.{self.past[0]} needs sections of fibres; give mesh.section.kind: curved or plane")
         if "made_by" in self.past and self.mesh.axis == "chords":
-            raise ValueError("spring.made_by: coiling bends the wire to its axis, but chords are straight; give "
-                             "mesh.axis: curved")  # fmt: skip
+            raise ValueError(
+                "spring.made_by: coiling bends the wire to its axis, but chords are straight; give mesh.axis: curved"
+            )
         return self
 
     @model_validator(mode="after")

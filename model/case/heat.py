@@ -5,7 +5,7 @@ from typing import Annotated
 from annotated_types import Unit
 from pydantic import Field
 
-from coilset.model.entries.entry import Strict
+from coilset.model.base.entry import Strict
 
 
 class HeatSpec(Strict):

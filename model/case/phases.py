@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Self
 from annotated_types import Unit
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
-from coilset.model.entries.entry import Strict, Whole
+from coilset.model.base.entry import Strict, Whole
 
 
 class Target(Strict):
@@ -55,9 +55,11 @@ class Stepped(Strict):
         | Annotated[Literal["auto"], Tag("(word)")]
         | Annotated[Marks, Tag("(list)")],
         Discriminator(_form),
-        Field(description="auto: as long as accuracy and convergence allow; or a number of equal steps; or the "
-                          "fractions of the phase at which the steps end"),
-    ] = "auto"  # fmt: skip
+        Field(
+            description="auto: as long as accuracy and convergence allow; or a number of equal steps; or the "
+            "fractions of the phase at which the steps end"
+        ),
+    ] = "auto"
 
     def count(self, automatic: int) -> int:
         """Number of its steps; that of an automatic phase as it is planned, `automatic`."""
@@ -78,9 +80,13 @@ class Phase(Stepped):
     seconds: Annotated[
         float | None,
         Unit("s"),
-        Field(gt=0, le=1e9, description="duration of a phase, where heat flows (entry `heat`) or yield depends on "
-                                        "the rate; without it a step is infinitely slow"),
-    ] = None  # fmt: skip
+        Field(
+            gt=0,
+            le=1e9,
+            description="duration of a phase, where heat flows (entry `heat`) or yield depends on "
+            "the rate; without it a step is infinitely slow",
+        ),
+    ] = None
 
     @property
     def label(self) -> str:

@@ -101,13 +101,22 @@ def _visit(model: type, place: str, found: dict[type, Group]) -> None:
 def rows(model: type) -> list[Row]:
     """The entries of one group, without those of the groups in it."""
     if issubclass(model, BaseModel):
-        return [_row(item.alias or name, item.annotation, item.metadata, _default(item), item.description)
-                for name, item in model.model_fields.items()]  # fmt: skip
+        return [
+            _row(item.alias or name, item.annotation, item.metadata, _default(item), item.description)
+            for name, item in model.model_fields.items()
+        ]
     assert is_dataclass(model)
     hints, meanings = get_type_hints(model, include_extras=True), attributes(model)
-    return [_row(item.name, hints[item.name], (), _shown(item.default, item.default is MISSING),
-                 meanings.get(item.name, "").rstrip("."))
-            for item in fields(model)]  # fmt: skip
+    return [
+        _row(
+            item.name,
+            hints[item.name],
+            (),
+            _shown(item.default, item.default is MISSING),
+            meanings.get(item.name, "").rstrip("."),
+        )
+        for item in fields(model)
+    ]
 
 
 def entry_unit(model: type, entry: str) -> str:
@@ -204,8 +213,11 @@ def _least(metadata: tuple[Any, ...]) -> str:
 def _range(metadata: tuple[Any, ...]) -> str:
     """Bounds in signs; a validator that has bounds of its own says them in its docstring."""
     own = [(inspect.getdoc(extra.func) or "").rstrip(".") for extra in metadata if isinstance(extra, AfterValidator)]
-    bounds = [f"{SIGNS[type(extra)][1]} {_number(getattr(extra, SIGNS[type(extra)][0]))}"
-              for extra in metadata if type(extra) in SIGNS]  # fmt: skip
+    bounds = [
+        f"{SIGNS[type(extra)][1]} {_number(getattr(extra, SIGNS[type(extra)][0]))}"
+        for extra in metadata
+        if type(extra) in SIGNS
+    ]
     return ", ".join(own or bounds)
 
 

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 from annotated_types import Unit
 from pydantic import Field, Tag, model_validator
 
-from coilset.model.entries.entry import WORD_OR_NUMBER, Strict
+from coilset.model.base.entry import WORD_OR_NUMBER, Strict
 
 Freedom = Annotated[
     Annotated[Literal["held", "free"], Tag("(word)")] | Annotated[float, Field(gt=0), Tag("(number)")], WORD_OR_NUMBER

@@ -3,9 +3,9 @@
 from pathlib import Path
 from typing import Any
 
-from coilset.meshes.errors import InputError
-from coilset.model.entries.entry import shortened, shown
-from coilset.model.entries.yaml import load_yaml
+from coilset.model.base.entry import shortened, shown
+from coilset.model.base.errors import InputError
+from coilset.model.base.yaml import load_yaml
 
 FILES = ("material", "spring.file")  # entries that are paths, or may be
 

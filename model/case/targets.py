@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from coilset.meshes.ends import touching_pitch
-from coilset.meshes.errors import InputError
-from coilset.meshes.geometry import Spring
+from coilset.meshes.springs.ends import touching_pitch
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.base.errors import InputError
 from coilset.model.case.case import Case
 from coilset.model.case.phases import Phase, Target, TimePhase
-from coilset.model.material.law import Law
+from coilset.model.material.law.law import Law
 
 SLACK = 1e-9  # of the free length: rounding of a height that was computed
 BORNE = 2.0  # times the elastic force at which all coils lie on each other: beyond it a target is no spring's any more
@@ -34,9 +34,11 @@ def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
                 _only_press(phase.to, spring.free_length, place)
             _not_below(phase.to, spring.free_length, lowest, place)
             if phase.to.force is not None and phase.to.force > greatest:
-                raise InputError(f"is {phase.to.force:g} N, but all coils of this spring lie on each other at about "
-                                 f"{greatest / BORNE:.4g} N, or less if it yields; give block, or a smaller force",
-                                 f"{place}.force")  # fmt: skip
+                raise InputError(
+                    f"is {phase.to.force:g} N, but all coils of this spring lie on each other at about "
+                    f"{greatest / BORNE:.4g} N, or less if it yields; give block, or a smaller force",
+                    f"{place}.force",
+                )
 
 
 def lowest_height(case: Case, spring: Spring) -> float:
@@ -54,8 +56,10 @@ def check_steps(case: Case) -> None:
     for number, phase in enumerate(case.loading):
         if case.steps_error is None and phase.steps == "auto":
             problem = "automatic steps follow the error that accuracy: none leaves unknown"
-            raise InputError(f"{problem}; give a number of steps, as in steps: 12, or an accuracy such as 0.2 %",
-                             f"loading.{number}.steps")  # fmt: skip
+            raise InputError(
+                f"{problem}; give a number of steps, as in steps: 12, or an accuracy such as 0.2 %",
+                f"loading.{number}.steps",
+            )
 
 
 def check_times(case: Case, law: Law) -> None:
@@ -71,20 +75,31 @@ def check_times(case: Case, law: Law) -> None:
         check_known(law, case.heat.surroundings, "heat.surroundings")
     for number, phase in enumerate(case.loading):
         if isinstance(phase, Phase) and phase.seconds is not None and not case.heat and law.data.rate is None:
-            raise InputError(f"no heat flows, and '{law.name}' does not depend on the rate; give the entry heat, or "
-                             "leave seconds out", f"loading.{number}.seconds")  # fmt: skip
+            raise InputError(
+                f"no heat flows, and '{law.name}' does not depend on the rate; give the entry heat, or "
+                "leave seconds out",
+                f"loading.{number}.seconds",
+            )
         if not isinstance(phase, TimePhase):
             continue
         word = "heat" if phase.heat else "hold"
         if law.creep is None and case.heat:
-            raise InputError(f"'{law.name}' does not creep; to let heat flow give a target and seconds, as in "
-                             "{to: {force: 0}, seconds: 600}", f"loading.{number}.{word}")  # fmt: skip
+            raise InputError(
+                f"'{law.name}' does not creep; to let heat flow give a target and seconds, as in "
+                "{to: {force: 0}, seconds: 600}",
+                f"loading.{number}.{word}",
+            )
         if law.is_adiabatic and not case.heat:
-            raise InputError(f"plastic work heats '{law.name}', and in time this heat goes somewhere; give the entry "
-                             "heat, or a material without heating", f"loading.{number}.{word}")  # fmt: skip
+            raise InputError(
+                f"plastic work heats '{law.name}', and in time this heat goes somewhere; give the entry "
+                "heat, or a material without heating",
+                f"loading.{number}.{word}",
+            )
         if law.creep is None and (phase.heat or law.data.rate is None):
-            raise InputError(f"'{law.name}' does not creep, so that time changes nothing; give a material with creep",
-                             f"loading.{number}.{word}")  # fmt: skip
+            raise InputError(
+                f"'{law.name}' does not creep, so that time changes nothing; give a material with creep",
+                f"loading.{number}.{word}",
+            )
         if phase.heat:
             check_known(law, phase.heat.to, f"loading.{number}.heat.to")
 
@@ -122,16 +137,23 @@ def _only_press(target: Target, free_length: float, place: str) -> None:
     if target.travel is not None and target.travel < -SLACK * free_length:
         raise InputError(f"is {target.travel:g} mm, but {pull}", f"{place}.travel")
     if target.height is not None and target.height > (1.0 + SLACK) * free_length:
-        raise InputError(f"is {target.height:g} mm, above the free length of {free_length:.6g} mm, but seats cannot "
-                         "pull; give a height up to it, or ends: clamped", f"{place}.height")  # fmt: skip
+        raise InputError(
+            f"is {target.height:g} mm, above the free length of {free_length:.6g} mm, but seats cannot "
+            "pull; give a height up to it, or ends: clamped",
+            f"{place}.height",
+        )
 
 
 def _not_below(target: Target, free_length: float, lowest: float, place: str) -> None:
     travel, slack = free_length - lowest, SLACK * free_length
     if target.travel is not None and target.travel > travel + slack:
         end = "where it is at block; give block, or less" if lowest else "which is its free length; give less"
-        raise InputError(f"is {target.travel:g} mm, but the spring can only be compressed by {travel:.6g} mm, {end}",
-                         f"{place}.travel")  # fmt: skip
+        raise InputError(
+            f"is {target.travel:g} mm, but the spring can only be compressed by {travel:.6g} mm, {end}",
+            f"{place}.travel",
+        )
     if target.height is not None and target.height < lowest - slack:
-        raise InputError(f"is {target.height:g} mm, below the block height of {lowest:.6g} mm; give block, or more",
-                         f"{place}.height")  # fmt: skip
+        raise InputError(
+            f"is {target.height:g} mm, below the block height of {lowest:.6g} mm; give block, or more",
+            f"{place}.height",
+        )

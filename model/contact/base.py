@@ -17,7 +17,7 @@ from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
-from coilset.meshes.ends import ENDS as ENDS
+from coilset.meshes.springs.ends import ENDS as ENDS
 from coilset.model.contact.curve import WirePoints
 from coilset.model.contact.elements import Room, extent_of_contact
 from coilset.model.contact.memory import Memory

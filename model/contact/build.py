@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from coilset.meshes.errors import InputError
-from coilset.meshes.geometry import Spring
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.base.errors import InputError
 from coilset.model.contact.base import ENDS, LEVEL, SEAT_DOFS, Contact
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.curve import CentreLine, WirePoints
@@ -129,7 +129,10 @@ def gaps_one_turn_apart(
     upper -= np.abs(turns[upper - 1] - turns[lower] - 1.0) < np.abs(turns[upper] - turns[lower] - 1.0)  # the nearest
     off = np.abs(turns[upper] - turns[lower] - 1.0) * (lengths / np.diff(turns))[lower]
     if np.any(off > ASIDE_OF_DIAMETER * 2.0 * radius[lower]):
-        raise InputError(f"gaps join nodes one turn apart, but on this mesh the nearest are up to {off.max():.3g} mm "
-                         "beside them; give a number of elements_per_turn whose product with the turns is whole, or "
-                         "coils: closest", "contact.coils")  # fmt: skip
+        raise InputError(
+            f"gaps join nodes one turn apart, but on this mesh the nearest are up to {off.max():.3g} mm "
+            "beside them; give a number of elements_per_turn whose product with the turns is whole, or "
+            "coils: closest",
+            "contact.coils",
+        )
     return Gaps(np.stack([lower, upper], axis=1), radius[lower] + radius[upper], stiffness[lower], onset)

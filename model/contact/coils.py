@@ -7,12 +7,12 @@ onto the other with half of the bedding, so that neither is the master.
 import numpy as np
 from numba import njit
 
+from coilset.model.base.extremes import greatest, relative_motion
 from coilset.model.contact.base import Contribution, TrialPositions
 from coilset.model.contact.curve import WirePoints
 from coilset.model.contact.elements import PAIR, coil_elements
 from coilset.model.contact.memory import Memory
 from coilset.model.contact.search import PLACES, longest_element, near_locations, place, post_stride
-from coilset.model.extremes import greatest, relative_motion
 
 FEW = 1024  # locations on other coils for which there is room at first
 SKIN = 0.5  # in wire radii: how far beyond what touches pairs are sought
@@ -53,8 +53,15 @@ class Coils:
         self.multiplier_offset = self.memory["multiplier_offset"]
         self._amplification, self._skin = points.line.amplification(), SKIN * self._widest
         none = np.empty(0)
-        self._nothing = Contribution(np.empty((0, PAIR), np.int64), np.empty((0, PAIR)),
-                                     np.empty((0, PAIR, PAIR)), none, none, np.empty(0, np.int64), none)  # fmt: skip
+        self._nothing = Contribution(
+            np.empty((0, PAIR), np.int64),
+            np.empty((0, PAIR)),
+            np.empty((0, PAIR, PAIR)),
+            none,
+            none,
+            np.empty(0, np.int64),
+            none,
+        )
         self._clear: tuple[TrialPositions, float] | None = None  # where all gaps were greater than a distance
 
     def places(self, pair: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -71,9 +78,25 @@ class Coils:
         longest = longest_element(self._y) if known is None else known.longest
         while True:
             pair, where = np.empty((self._room, 3), np.int64), np.empty((self._room, 2))
-            found = near_locations(active, points.weights, points.stations, points.radius, points.turns, self._y,
-                                   line.turns, line.first, line.cubic, self.overlap, margin, elements, self._widest,
-                                   longest, p, pair, where)  # fmt: skip
+            found = near_locations(
+                active,
+                points.weights,
+                points.stations,
+                points.radius,
+                points.turns,
+                self._y,
+                line.turns,
+                line.first,
+                line.cubic,
+                self.overlap,
+                margin,
+                elements,
+                self._widest,
+                longest,
+                p,
+                pair,
+                where,
+            )
             if found <= self._room:
                 return pair[:found], where[:found], p
             self._room = 2 * found
@@ -116,8 +139,21 @@ class Coils:
         if not len(pair):
             return self._nothing
         room = Contribution.room(len(pair), PAIR)
-        coil_elements(p, points.weights, self._y, line.first, line.cubic, pair, where, offset, self.stiffness,
-                      self.onset, points.element, line.dofs, room)  # fmt: skip
+        coil_elements(
+            p,
+            points.weights,
+            self._y,
+            line.first,
+            line.cubic,
+            pair,
+            where,
+            offset,
+            self.stiffness,
+            self.onset,
+            points.element,
+            line.dofs,
+            room,
+        )
         return Contribution(*room)
 
     @property

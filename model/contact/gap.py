@@ -36,8 +36,15 @@ class Gaps:
         nn = n[:, :, None] * n[:, None, :]
         k = c[:, None, None] * nn - (pressure / length)[:, None, None] * (np.eye(3) - nn)
         penetration = self.free_length - length
-        return Contribution(self.dofs, np.hstack([-force, force]), np.block([[k, -k], [-k, k]]), pressure, penetration,
-                            np.arange(len(length)), self.stiffness * self.onset)  # fmt: skip
+        return Contribution(
+            self.dofs,
+            np.hstack([-force, force]),
+            np.block([[k, -k], [-k, k]]),
+            pressure,
+            penetration,
+            np.arange(len(length)),
+            self.stiffness * self.onset,
+        )
 
 
 class Stops:
@@ -66,5 +73,12 @@ class Stops:
         n = self.normal
         gap = np.einsum("mk,mk->m", n, trial.x[self.stations]) - self.level
         pressure, c = one_sided(gap, self.stiffness, self.onset)
-        return Contribution(self.dofs, -pressure[:, None] * n, c[:, None, None] * n[:, :, None] * n[:, None, :],
-                            pressure, -gap, np.arange(len(gap)), self.stiffness * self.onset)  # fmt: skip
+        return Contribution(
+            self.dofs,
+            -pressure[:, None] * n,
+            c[:, None, None] * n[:, :, None] * n[:, None, :],
+            pressure,
+            -gap,
+            np.arange(len(gap)),
+            self.stiffness * self.onset,
+        )

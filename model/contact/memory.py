@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from coilset.model.state import State, Where
+from coilset.model.body.state import State, Where
 
 
 class Memory:

@@ -134,10 +134,22 @@ class Seat:
         points, numbers = self.points, trial.points(self.points)
         room = Contribution.room(len(numbers), FLAT)  # for as many as could bear, most of them never touched
         count = flat_seat_elements(
-            numbers, trial.x, points.stations, points.weights, self.dofs, trial.seats[self._level], self.side,
-            self.distance, self.multiplier_offset, self.stiffness, self.onset, self.tip, self.tip_spring, self.slack,
+            numbers,
+            trial.x,
+            points.stations,
+            points.weights,
+            self.dofs,
+            trial.seats[self._level],
+            self.side,
+            self.distance,
+            self.multiplier_offset,
+            self.stiffness,
+            self.onset,
+            self.tip,
+            self.tip_spring,
+            self.slack,
             room,
-        )  # fmt: skip
+        )
         return Contribution(*[part[:count] for part in room])
 
     def _curved(self, trial: TrialPositions) -> Contribution:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.case.case import Case
 from coilset.model.case.targets import SLACK, lowest_height
 from coilset.model.design.conditions import Condition, without_limit
@@ -29,8 +29,11 @@ def refuse_beforehand(evaluator: Evaluator, conditions: Sequence[Condition], bou
     lowest = min(_lowest_heights(cases), default=0.0)
     for one in conditions:
         if one.height is not None and one.height < (1.0 - SLACK) * lowest:
-            raise InputError(f"is {one.height:g} mm, below the block height, which is {lowest:.6g} mm or more between "
-                             "these bounds; give a greater height", f"{without_limit(one.name)}.height")  # fmt: skip
+            raise InputError(
+                f"is {one.height:g} mm, below the block height, which is {lowest:.6g} mm or more between "
+                "these bounds; give a greater height",
+                f"{without_limit(one.name)}.height",
+            )
 
 
 def _cases(evaluator: Evaluator, places: np.ndarray) -> Iterator[Case]:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coilset.meshes.errors import CoilsetError, InputError, SolveError
+from coilset.model.base.errors import CoilsetError, InputError, SolveError
 from coilset.model.design.reach import nearest_seen
 from coilset.model.design.search import Found, Search
 

@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.design.file import Conditions, DesignFile, Limits
-from coilset.model.results.units import quantity, unit_of
+from coilset.model.results.records.units import quantity, unit_of
 
 GROUP = "such_that."  # before the names of conditions
 MEASURING_STEPS = 2  # equal steps to a height at which a force is measured, and back: the path is elastic, or nearly so
@@ -103,8 +103,9 @@ def conditions(spec: DesignFile, base: Mapping[str, Any]) -> tuple[list[Conditio
     needing = [one.name for one in found if "after" in one.name or "set_mm" in one.name or "residual" in one.name]
     if not released and (needing or missing):
         name = needing[0] if needing else f"{GROUP}force_at"
-        raise InputError("needs an unloaded spring at the end; let the load program end with {to: {force: 0}}",
-                         without_limit(name))  # fmt: skip
+        raise InputError(
+            "needs an unloaded spring at the end; let the load program end with {to: {force: 0}}", without_limit(name)
+        )
     for height in missing:
         program.append({"to": {"height": height}, "steps": MEASURING_STEPS})
     if missing:
@@ -125,14 +126,20 @@ def _conditions(
     """One equation, or an inequality for each limit."""
     if not isinstance(wanted, Limits):
         return [Condition(name, wanted, height, phase)]
-    return [Condition(f"{name}.{limit}", value, height, phase, sense)
-            for limit, sense in LIMITS.items() if (value := getattr(wanted, limit)) is not None]  # fmt: skip
+    return [
+        Condition(f"{name}.{limit}", value, height, phase, sense)
+        for limit, sense in LIMITS.items()
+        if (value := getattr(wanted, limit)) is not None
+    ]
 
 
 def _phase(program: Sequence[Mapping[str, Any]], height: float) -> int | None:
     """Number of the last phase that goes to a height, None if there is none."""
-    there = [number for number, phase in enumerate(program)
-             if isinstance(phase.get("to"), dict) and phase["to"].get("height") == height]  # fmt: skip
+    there = [
+        number
+        for number, phase in enumerate(program)
+        if isinstance(phase.get("to"), dict) and phase["to"].get("height") == height
+    ]
     return there[-1] if there else None
 
 

@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 from mpi4py import MPI
 
-from coilset.meshes.errors import CoilsetError, InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import CoilsetError, InputError
 from coilset.model.case.settings import put
 from coilset.model.design.conditions import Condition, without_limit
 from coilset.model.design.file import Design
 from coilset.model.design.surrogate import Guess, guess
 from coilset.model.material import library
-from coilset.model.results.record import Result, Setup
-from coilset.model.results.summary import summarise
+from coilset.model.results.records.record import Result, Setup
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 from coilset.model.sweep.evaluate import plain
 from coilset.model.sweep.keys import Keys
 
@@ -156,8 +156,11 @@ class Evaluator:
 
     def _own_place(self, place: str) -> str:
         """An entry of the case, or the design's own if that holds the same height."""
-        heights = {f"loading.{one.phase}.to.height": f"{without_limit(one.name)}.height"
-                   for one in self.conditions if one.height}  # fmt: skip
+        heights = {
+            f"loading.{one.phase}.to.height": f"{without_limit(one.name)}.height"
+            for one in self.conditions
+            if one.height
+        }
         return heights.get(place, place)
 
     def _read(self, x: np.ndarray, setup: Setup, result: Result, began: float) -> Evaluation:
@@ -185,5 +188,4 @@ def _of_record(record: Mapping[str, Any], x: np.ndarray) -> Evaluation:
     """The Evaluation in a line of the journal, of a case that these unknowns make."""
     values = np.array([np.nan if value is None else value for value in record["values"]])
     plan = tuple(tuple(marks) for marks in record["plan"])
-    return Evaluation(x, values, record["reason"], plan, record["summary"], record["seconds"],
-                      record["wrong"])  # fmt: skip
+    return Evaluation(x, values, record["reason"], plan, record["summary"], record["seconds"], record["wrong"])

@@ -8,12 +8,12 @@ from typing import Annotated, Any, Self
 from annotated_types import Unit
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.entry import Strict, check_entries, shortened
+from coilset.model.base.errors import InputError
+from coilset.model.base.yaml import read_data
 from coilset.model.case.case import Case, check, read_case_data
 from coilset.model.case.settings import located
 from coilset.model.design.unknowns import Choices, Name, Unknown, refuse_twice
-from coilset.model.entries.entry import Strict, check_entries, shortened
-from coilset.model.entries.yaml import read_data
 
 KIND = "a design file holds the entries find: and such_that:, and those of a case or case: with the name of its file"
 
@@ -46,8 +46,10 @@ class Limits(Strict):
         if self.at_least is None and self.at_most is None:
             raise ValueError("is empty; give at_least or at_most, or both, as in {at_least: 24, at_most: 26}")
         if None not in (self.at_least, self.at_most) and self.at_least >= self.at_most:  # type: ignore[operator]
-            raise ValueError(f"at_least {self.at_least:g} leaves nothing below at_most {self.at_most:g}; for one value "
-                             "give the number alone")  # fmt: skip
+            raise ValueError(
+                f"at_least {self.at_least:g} leaves nothing below at_most {self.at_most:g}; for one value "
+                "give the number alone"
+            )
         return self
 
 
@@ -112,9 +114,11 @@ class DesignFile(Strict):
     case: Annotated[str | None, Field(description="file of the case, relative to the folder of this file")] = None
     find: Annotated[
         dict[Name, Unknown],
-        Field(min_length=1, description="the unknowns: entry of the case, or a name with `entries`, → range, factor "
-              "or choices"),
-    ]  # fmt: skip
+        Field(
+            min_length=1,
+            description="the unknowns: entry of the case, or a name with `entries`, → range, factor or choices",
+        ),
+    ]
     such_that: Annotated[Conditions, Field(description="the conditions: results that the run is to have")]
     trade_offs: Annotated[
         dict[Name, Annotated[list[Any], Field(min_length=1)]],
@@ -127,8 +131,10 @@ class DesignFile(Strict):
         conditions = sum(len(value) if isinstance(value, list) else value is not None for _, value in self.such_that)
         ranges = [name for name, one in self.find.items() if not isinstance(one, Choices)]
         if conditions < len(ranges):
-            raise ValueError(f"{len(ranges)} unknowns and {conditions} condition(s): give as many conditions as "
-                             "unknowns, or more, which are met as well as they can be (least squares)")  # fmt: skip
+            raise ValueError(
+                f"{len(ranges)} unknowns and {conditions} condition(s): give as many conditions as "
+                "unknowns, or more, which are met as well as they can be (least squares)"
+            )
         driven = {entry: name for name, one in self.find.items() for entry in one.driven(name)}
         for name in self.trade_offs:
             if name in driven:
@@ -169,8 +175,11 @@ def read_design_file(path: str | Path) -> Design:
     spec, folder = check_entries(own, DesignFile, path), path.parent
     if spec.case is not None:
         if base:
-            raise InputError("is an entry of a case, and case: names one already; give it there, or leave case: out",
-                             shortened(next(iter(base))), path)  # fmt: skip
+            raise InputError(
+                "is an entry of a case, and case: names one already; give it there, or leave case: out",
+                shortened(next(iter(base))),
+                path,
+            )
         base, folder = read_case_data(folder / spec.case), (folder / spec.case).parent
     base = copy.deepcopy({name: located(name, value, folder.absolute()) for name, value in base.items()})
     check(base, path if spec.case is None else folder / Path(spec.case).name)

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from coilset.meshes.errors import reading
+from coilset.model.base.errors import reading
 from coilset.model.design.conditions import GROUP, without_limit
-from coilset.model.results.labelled import add_summary
-from coilset.model.results.units import unit_of
+from coilset.model.results.files.labelled import add_summary
+from coilset.model.results.records.units import unit_of
 from coilset.model.sweep.journal import read_records
 
 FILE = "design.json"
@@ -38,8 +38,12 @@ def open_design(folder: str | Path) -> xr.Dataset:
         data = _searched(design, records)
         _add_trade_offs(data, design)
         add_summary(data, design["summary"])
-        data.attrs |= {"case": json.dumps(design["origin"]["case"]), "versions": design["origin"]["versions"],
-                       "met": int(design["met"]), "method": design["method"]}  # fmt: skip
+        data.attrs |= {
+            "case": json.dumps(design["origin"]["case"]),
+            "versions": design["origin"]["versions"],
+            "met": int(design["met"]),
+            "method": design["method"],
+        }
     return data
 
 
@@ -52,8 +56,10 @@ def read_design(folder: Path) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     with reading(folder / FILE):
         design = json.loads((folder / FILE).read_text(encoding="utf-8"))
         heights = {one["name"]: one["height_mm"] for one in design["conditions"]}
-        subject = [*design["found"], *(without_limit(name) if height is None else height
-                                       for name, height in heights.items())]  # fmt: skip
+        subject = [
+            *design["found"],
+            *(without_limit(name) if height is None else height for name, height in heights.items()),
+        ]
     return design, [one for one in read_records(folder / "evaluations.jsonl") if one.get("of", subject) == subject]
 
 

@@ -14,8 +14,8 @@ from coilset.model.design.design import Solution
 from coilset.model.design.file import Design
 from coilset.model.design.search import TOLERANCE, Found, Search
 from coilset.model.design.trade_offs import TradeOff
-from coilset.model.results.folder import whole, write_table
-from coilset.model.results.provenance import origin
+from coilset.model.results.files.folder import whole, write_table
+from coilset.model.results.records.provenance import origin
 
 FILES = (
     "design.json",
@@ -47,8 +47,10 @@ def report(design: Design, solution: Solution, rows: Sequence[TradeOff], seconds
         "method": method(search),
         "is_one_of_many": found.is_one_of_many,
         "tolerance": TOLERANCE,
-        "slopes": {one.name: dict(zip(search.names, row, strict=True))
-                   for one, row in zip(search.conditions, _slopes(search, found), strict=True)},
+        "slopes": {
+            one.name: dict(zip(search.names, row, strict=True))
+            for one, row in zip(search.conditions, _slopes(search, found), strict=True)
+        },
         "evaluations": search.evaluator.count,
         "seconds": seconds,
         "choices": None if solution.options is None else choices(solution.options),
@@ -57,15 +59,24 @@ def report(design: Design, solution: Solution, rows: Sequence[TradeOff], seconds
         "summary": dict(found.best.summary),
         "file": design.spec.model_dump(mode="json", by_alias=True, exclude_defaults=True),
         "origin": origin(case),
-    }  # fmt: skip
+    }
 
 
 def condition(one: Condition, value: float, off: float) -> dict[str, Any]:
     """A condition and its deviation; `residual` is relative to the target."""
     limit = next((name for name, sense in LIMITS.items() if sense == one.sense), "equals")
-    return {"name": one.name, "words": one.words, "height_mm": one.height, "kind": limit, "target": one.target,
-            "unit": one.unit, "value": value, "residual": off, "met": abs(one.missed(off)) <= TOLERANCE,
-            "active": one.is_active(off)}  # fmt: skip
+    return {
+        "name": one.name,
+        "words": one.words,
+        "height_mm": one.height,
+        "kind": limit,
+        "target": one.target,
+        "unit": one.unit,
+        "value": value,
+        "residual": off,
+        "met": abs(one.missed(off)) <= TOLERANCE,
+        "active": one.is_active(off),
+    }
 
 
 def unknown(design: Design, name: str) -> dict[str, Any]:
@@ -88,12 +99,19 @@ def choices(options: Options) -> dict[str, Any]:
         "total": options.total,
         "tried": [
             {"chosen": dict(one.chosen), "is_best": one is options.best, "reason": one.reason}
-            | ({"found": None, "values": None, "off": None, "met": False} if one.found is None else
-               {"found": dict(zip(one.found.search.evaluator.names, one.found.x.tolist(), strict=True)),
-                "values": one.found.best.values.tolist(), "off": one.off, "met": one.found.met})
+            | (
+                {"found": None, "values": None, "off": None, "met": False}
+                if one.found is None
+                else {
+                    "found": dict(zip(one.found.search.evaluator.names, one.found.x.tolist(), strict=True)),
+                    "values": one.found.best.values.tolist(),
+                    "off": one.off,
+                    "met": one.found.met,
+                }
+            )
             for one in options.tried
         ],
-    }  # fmt: skip
+    }
 
 
 def write(folder: Path, design: Design, solution: Solution, rows: Sequence[TradeOff], seconds: float) -> None:
@@ -105,13 +123,19 @@ def write(folder: Path, design: Design, solution: Solution, rows: Sequence[Trade
     found, search = solution.found, solution.found.search
     words = ", ".join(f"{name} = {value:.9g}" for name, value in zip(search.evaluator.names, found.x, strict=True))
     with whole(folder / "found.yaml") as path:
-        data = yaml.safe_dump(found_data(found), sort_keys=False, allow_unicode=True, default_flow_style=None,
-                              width=120)  # fmt: skip
+        data = yaml.safe_dump(
+            found_data(found), sort_keys=False, allow_unicode=True, default_flow_style=None, width=120
+        )
         path.write_text(HEAD.format(file=design.file.name, found=words) + data, encoding="utf-8")
     names, rest = search.evaluator.names, ("off", "possible", "wire_length_mm", "free_length_before_mm", "torque")
-    write_table(folder / "trade_offs.csv", ["of", "value", *names, *rest],
-                ([row.of, row.value, *(row.unknowns[name] for name in names), *(getattr(row, name) for name in rest)]
-                 for row in rows))  # fmt: skip
+    write_table(
+        folder / "trade_offs.csv",
+        ["of", "value", *names, *rest],
+        (
+            [row.of, row.value, *(row.unknowns[name] for name in names), *(getattr(row, name) for name in rest)]
+            for row in rows
+        ),
+    )
     with whole(folder / "design.json") as path:
         content = report(design, solution, rows, seconds)
         path.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
@@ -120,5 +144,7 @@ def write(folder: Path, design: Design, solution: Solution, rows: Sequence[Trade
 def _slopes(search: Search, found: Found) -> list[list[float]]:
     """Change of each condition's value with each unknown, in their units."""
     scale = [abs(one.target) for one in search.conditions]
-    return [[slope * size / width for slope, width in zip(row, search.width, strict=True)]
-            for row, size in zip(found.slopes.tolist(), scale, strict=True)]  # fmt: skip
+    return [
+        [slope * size / width for slope, width in zip(row, search.width, strict=True)]
+        for row, size in zip(found.slopes.tolist(), scale, strict=True)
+    ]

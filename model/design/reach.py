@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 from scipy.optimize import minimize
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.design.conditions import Condition
 from coilset.model.design.evaluation import Evaluation
 from coilset.model.design.search import Found, Search
@@ -54,14 +54,21 @@ def refuse(search: Search, found: Found) -> None:
             reason = plastic_reason(search, near) if one.target > most and "free_length_after" in one.name else ""
             raise InputError(
                 f"{one.wanted} is out of reach{_at(one)}: between the bounds it goes from about {least:.6g} "
-                f"to {most:.6g} {one.unit}, the {end} with {search.words(near.x)}{reason}", one.name)  # fmt: skip
+                f"to {most:.6g} {one.unit}, the {end} with {search.words(near.x)}{reason}",
+                one.name,
+            )
     worst = int(np.abs(search.missed(found.off)).argmax())
     one = search.conditions[worst]
-    nearest = ", ".join(f"{other.words} {value:.6g} for {other.wanted}"
-                        for other, value in zip(search.conditions, found.best.values, strict=True))  # fmt: skip
-    raise InputError(f"{one.wanted}{_at(one)} cannot be met together with the other conditions between "
-                     f"these bounds{_with_others_met(search, found, worst)}; the nearest found is {nearest}, with "
-                     f"{search.words(found.best.x)}{unfelt(search, found)}", one.name)  # fmt: skip
+    nearest = ", ".join(
+        f"{other.words} {value:.6g} for {other.wanted}"
+        for other, value in zip(search.conditions, found.best.values, strict=True)
+    )
+    raise InputError(
+        f"{one.wanted}{_at(one)} cannot be met together with the other conditions between "
+        f"these bounds{_with_others_met(search, found, worst)}; the nearest found is {nearest}, with "
+        f"{search.words(found.best.x)}{unfelt(search, found)}",
+        one.name,
+    )
 
 
 def unfelt(search: Search, found: Found) -> str:
@@ -69,8 +76,7 @@ def unfelt(search: Search, found: Found) -> str:
     _, sizes, directions = np.linalg.svd(found.slopes)
     if sizes[-1] > DEAD * sizes[0]:
         return ""
-    names = [name for name, part in zip(search.names, directions[len(sizes) - 1], strict=True)
-             if abs(part) > 0.3]  # fmt: skip
+    names = [name for name, part in zip(search.names, directions[len(sizes) - 1], strict=True) if abs(part) > 0.3]
     return f"; no condition depends on {' with '.join(names)} there"
 
 
@@ -93,8 +99,10 @@ def plastic_reason(search: Search, near: Evaluation) -> str:
     slope = (near.summary["free_length_after_mm"] - other.summary["free_length_after_mm"]) / change
     if slope > STIFF:
         return said
-    return (f"{said}, and it is fully plastic at {FULLY_PLASTIC:.3g} times without hardening: beyond that no longer "
-            f"winding makes a longer spring ({slope:.2g} mm for each mm here)")  # fmt: skip
+    return (
+        f"{said}, and it is fully plastic at {FULLY_PLASTIC:.3g} times without hardening: beyond that no longer "
+        f"winding makes a longer spring ({slope:.2g} mm for each mm here)"
+    )
 
 
 def _with_others_met(search: Search, found: Found, worst: int) -> str:
@@ -107,10 +115,13 @@ def _with_others_met(search: Search, found: Found, worst: int) -> str:
     values = []
     for sign in (1.0, -1.0):
         end = minimize(
-            lambda u, sign=sign: sign * answer(u)[worst], found.error.about, method="SLSQP",
-            bounds=[(0.0, 1.0)] * len(search.width), options={"maxiter": 40},
+            lambda u, sign=sign: sign * answer(u)[worst],
+            found.error.about,
+            method="SLSQP",
+            bounds=[(0.0, 1.0)] * len(search.width),
+            options={"maxiter": 40},
             constraints={"type": "eq", "fun": missed},
-        )  # fmt: skip
+        )
         if np.abs(missed(end.x)).max(initial=0.0) > 1e-3:
             return ""
         one = search.conditions[worst]

@@ -28,7 +28,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.optimize import least_squares, minimize
 
-from coilset.meshes.errors import InputError, SolveError
+from coilset.model.base.errors import InputError, SolveError
 from coilset.model.design.conditions import AT_LEAST, AT_MOST, EQUALS, Condition
 from coilset.model.design.evaluation import Evaluation, Evaluator, Plan
 
@@ -246,8 +246,10 @@ class Search:
                 and len(norms) > PATIENCE
             ):
                 return self._found(u, best, off, base, E, False)
-        raise SolveError(f"the search has not ended after {MOST} evaluations; the nearest is "
-                         f"{self.words(self.value(u))}, off by {np.abs(self.missed(off)).max():.2g}")  # fmt: skip
+        raise SolveError(
+            f"the search has not ended after {MOST} evaluations; the nearest is "
+            f"{self.words(self.value(u))}, off by {np.abs(self.missed(off)).max():.2g}"
+        )
 
     def words(self, x: np.ndarray) -> str:
         """Unknowns and their values."""
@@ -314,7 +316,9 @@ class Search:
                     raise InputError(
                         "no condition depends on it: the results do not change from "
                         f"{self.value(u)[column]:.6g} to {self.value(to)[column]:.6g}; leave it out, or give a "
-                        "condition that depends on it", f"find.{self.names[column]}")  # fmt: skip
+                        "condition that depends on it",
+                        f"find.{self.names[column]}",
+                    )
         return E
 
     def _felt_elsewhere(self, column: int) -> bool:
@@ -363,9 +367,16 @@ class Search:
             return nearest
         room = 1e-12
         start = np.clip(u, low + room, np.maximum(high - room, low + room))
-        found = least_squares(lambda v: self.missed(answer(v)), start, bounds=(low, high),
-                              diff_step=SLOPE_STEP, xtol=1e-12, ftol=1e-14,
-                              gtol=1e-14, max_nfev=60)  # fmt: skip
+        found = least_squares(
+            lambda v: self.missed(answer(v)),
+            start,
+            bounds=(low, high),
+            diff_step=SLOPE_STEP,
+            xtol=1e-12,
+            ftol=1e-14,
+            gtol=1e-14,
+            max_nfev=60,
+        )
         x = found.x
         x = np.where(x - low < 1e-9, low, x)  # the solver stays strictly inside: the bound itself is meant
         return np.where(high - x < 1e-9, high, x)
@@ -379,14 +390,22 @@ class Search:
         for kind, sense, sign in (("eq", EQUALS, 1.0), ("ineq", AT_MOST, -1.0), ("ineq", AT_LEAST, 1.0)):
             rows = np.flatnonzero(self._sense == sense)
             if len(rows):
-                parts.append({
-                    "type": kind,
-                    "fun": lambda v, rows=rows, sign=sign: sign * answer(v)[rows],
-                    "jac": lambda v, rows=rows, sign=sign: sign * self.slopes(answer, v)[rows],
-                })  # fmt: skip
-        found = minimize(lambda v: 0.5 * float((v - own) @ (v - own)), np.clip(u, low, high), jac=lambda v: v - own,
-                         method="SLSQP", bounds=list(zip(low, high, strict=True)), constraints=parts,
-                         options={"ftol": 1e-15, "maxiter": 100})  # fmt: skip
+                parts.append(
+                    {
+                        "type": kind,
+                        "fun": lambda v, rows=rows, sign=sign: sign * answer(v)[rows],
+                        "jac": lambda v, rows=rows, sign=sign: sign * self.slopes(answer, v)[rows],
+                    }
+                )
+        found = minimize(
+            lambda v: 0.5 * float((v - own) @ (v - own)),
+            np.clip(u, low, high),
+            jac=lambda v: v - own,
+            method="SLSQP",
+            bounds=list(zip(low, high, strict=True)),
+            constraints=parts,
+            options={"ftol": 1e-15, "maxiter": 100},
+        )
         x = np.clip(found.x, low, high)
         return x if np.abs(self.missed(answer(x))).max() <= POSSIBLE else None
 

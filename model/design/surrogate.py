@@ -10,17 +10,17 @@ from math import isfinite, pi, sqrt
 
 import numpy as np
 
-from coilset.meshes.errors import SolveError
-from coilset.meshes.geometry import Spring
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.base.errors import SolveError
 from coilset.model.case.case import Case
 from coilset.model.case.phases import Phase
 from coilset.model.case.targets import check_targets
 from coilset.model.design.conditions import Condition
 from coilset.model.material import library
-from coilset.model.material.law import Law
+from coilset.model.material.law.law import Law
 from coilset.model.section.rules import polar, upper_half
 from coilset.model.standards.wires.law import case_law
-from coilset.model.uniform import UniformState, press
+from coilset.model.uniform.rod import UniformState, press
 
 STEPS = 6  # of a phase
 PROBE = 1e-3  # of the free length, for the initial rate
@@ -74,8 +74,7 @@ def guess(case: Case, conditions: Sequence[Condition], load: Callable[[str], Law
         found, torque = _press(case, spring, law)
     except SolveError:
         return Guess(unknown, 0.0)
-    values = [found.get(one.short_name if one.phase is None else f"force {one.phase}", np.nan)
-              for one in conditions]  # fmt: skip
+    values = [found.get(one.short_name if one.phase is None else f"force {one.phase}", np.nan) for one in conditions]
     return Guess(np.array(values), torque)
 
 

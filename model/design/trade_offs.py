@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.design.search import FAR, Found, Search
 
 CHANGE = 0.02  # of each condition, for the rows about other targets

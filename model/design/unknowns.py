@@ -6,10 +6,10 @@ from typing import Annotated, Any, Self
 from annotated_types import Unit
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.entry import Strict
+from coilset.model.base.errors import InputError
 from coilset.model.case.names import EntryName, entry_name
 from coilset.model.case.settings import put
-from coilset.model.entries.entry import Strict
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_.]*$")]
 ONE, NONE = 1.0, 0.0  # factor and offset of an entry that takes the unknown itself
@@ -128,8 +128,9 @@ class Scale(Strict):
     def _order(self) -> Self:
         low, high = self.scale
         if not 0.0 < low < high:
-            raise ValueError(f"scale from {low:g} to {high:g} is not a range of positive factors; give the smaller "
-                             "one first")  # fmt: skip
+            raise ValueError(
+                f"scale from {low:g} to {high:g} is not a range of positive factors; give the smaller one first"
+            )
         return self
 
     @property

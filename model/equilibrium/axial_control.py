@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from coilset.model.agreement import sum_of_ranks
+from coilset.model.base.agreement import sum_of_ranks
 from coilset.model.contact.base import ENDS, LEVEL, SEAT_DOFS
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.load import Load

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.model.agreement import sum_of_ranks
+from coilset.model.base.agreement import sum_of_ranks
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.load import Drag, Load
 from coilset.model.equilibrium.newton import Start
@@ -144,8 +144,14 @@ class Snap:
         descent.moved, descent.failed = moved, 0
         descent.weakest = weakest = self.stability.weakest(load)
         self.system.commit()
-        log.info("snap: %.3g mm, drag %.2g, %d negative, least eigenvalue %.3g N/mm, %d iterations",
-                 moved, descent.drag, weakest.negative, weakest.value, outcome.iterations)  # fmt: skip
+        log.info(
+            "snap: %.3g mm, drag %.2g, %d negative, least eigenvalue %.3g N/mm, %d iterations",
+            moved,
+            descent.drag,
+            weakest.negative,
+            weakest.value,
+            outcome.iterations,
+        )
         return outcome
 
     def _rest(self, load: Callable[[], Load], descent: Descent) -> Outcome | None:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from mpi4py import MPI
 
-from coilset.model.agreement import max_of_ranks
+from coilset.model.base.agreement import max_of_ranks
 from coilset.model.contact.base import Augmented, Contact, Contribution, HasMemory, LimitsStep
 from coilset.model.contact.memory import Memory
 from coilset.model.equilibrium.layout import LineLayout
@@ -33,8 +33,11 @@ class ContactParts:
         self._limiting = [contact for contact in contacts if isinstance(contact, LimitsStep)]
         self._limiting_numbers = [number for number, contact in enumerate(contacts) if contact in self._limiting]
         self._augmented = [contact for contact in contacts if isinstance(contact, Augmented)]
-        self._kept = [contact.memory for contact in contacts
-                      if isinstance(contact, HasMemory) and not isinstance(contact, Augmented)]  # fmt: skip
+        self._kept = [
+            contact.memory
+            for contact in contacts
+            if isinstance(contact, HasMemory) and not isinstance(contact, Augmented)
+        ]
 
     def evaluate(
         self, x: np.ndarray, seats: np.ndarray, rotations: np.ndarray | None

@@ -13,7 +13,7 @@ from typing import TypeVar
 
 from petsc4py import PETSc
 
-from coilset.meshes.errors import SolveError
+from coilset.model.base.errors import SolveError
 from coilset.model.equilibrium.branch_switching import Snap
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.guess import Guess

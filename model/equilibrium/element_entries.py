@@ -4,7 +4,7 @@ import numpy as np
 from numba import njit
 from petsc4py import PETSc
 
-from coilset.model.body import OfElements
+from coilset.model.body.body import OfElements
 from coilset.model.equilibrium.aij import AijEntries
 from coilset.model.equilibrium.layout import Layout
 

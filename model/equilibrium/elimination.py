@@ -76,8 +76,21 @@ def plan_elimination(indptr: np.ndarray, indices: np.ndarray, keep: np.ndarray) 
     into, entry_start, entry, position = place_entries(
         indptr, indices, mirror, order, first, rest_start, rest, child_start, child
     )
-    return Plan(order, int(keep.sum()), first, rest_start, rest, into, child_start, child, entry_start, entry, position,
-                stack, multiplications)  # fmt: skip
+    return Plan(
+        order,
+        int(keep.sum()),
+        first,
+        rest_start,
+        rest,
+        into,
+        child_start,
+        child,
+        entry_start,
+        entry,
+        position,
+        stack,
+        multiplications,
+    )
 
 
 @njit(cache=True)

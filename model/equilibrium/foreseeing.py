@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.model.body import Foresees
+from coilset.model.body.body import Foresees
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import TangentMatrix
 from coilset.model.equilibrium.system import System

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.meshes.compat import NOT_A_NUMBER
+from coilset.model.base.compat import NOT_A_NUMBER
 from coilset.model.equilibrium.chain_lu import ChainPC
 from coilset.model.equilibrium.contact_limit import ContactLimit
 from coilset.model.equilibrium.convergence import EquilibriumTest, Reason, imbalance

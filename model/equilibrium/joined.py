@@ -96,8 +96,11 @@ def _join(
     out, found, seen = np.zeros_like(indptr), np.empty(most, indices.dtype), np.full(size, -1)
     for row in range(n):
         own, of_row = indices[indptr[row] : indptr[row + 1]], holders[begin[row] : begin[row + 1]]
-        if (row > 0 and _same(of_row, holders[begin[row - 1] : begin[row]])
-                and _same(own, indices[indptr[row - 1] : indptr[row]])):  # fmt: skip
+        if (
+            row > 0
+            and _same(of_row, holders[begin[row - 1] : begin[row]])
+            and _same(own, indices[indptr[row - 1] : indptr[row]])
+        ):
             before = found[out[row - 1] : count]
             found[count : count + len(before)] = before
             count += len(before)

@@ -6,8 +6,8 @@ import numpy as np
 from dolfinx import fem
 from petsc4py import PETSc
 
+from coilset.model.body.state import Field, Where
 from coilset.model.contact.base import SEAT_DOFS
-from coilset.model.state import Field, Where
 
 if TYPE_CHECKING:
     from coilset.model.rod.rod import Rod

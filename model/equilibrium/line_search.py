@@ -89,8 +89,9 @@ class WorkSearch:
                 only_spurious = self._is_right(start, *self._without_second_order(limit, length))
                 if not only_spurious:
                     crosses_zero = start_work > 0.0 > work
-                    length = (self._zero(start_work, length, work) if crosses_zero else
-                              self._back(start_norm, length, norm))  # fmt: skip
+                    length = (
+                        self._zero(start_work, length, work) if crosses_zero else self._back(start_norm, length, norm)
+                    )
         return StepLength(limit, length, pending and limit * length < 1.0, only_spurious)
 
     def _is_right(self, start: tuple[float, float], work: float, norm: float) -> bool:

@@ -7,10 +7,10 @@ from functools import cached_property
 import numpy as np
 from numba import njit
 
-from coilset.model.agreement import max_of_ranks, sum_of_ranks
+from coilset.model.base.agreement import max_of_ranks, sum_of_ranks
+from coilset.model.base.extremes import largest
+from coilset.model.body.state import Field
 from coilset.model.equilibrium.layout import Layout
-from coilset.model.extremes import largest
-from coilset.model.state import Field
 
 
 @dataclass(frozen=True)
@@ -80,8 +80,18 @@ class Load:
             reactions: the internal forces, those of the last equilibrium among them.
             increments, weight: as in `miss`.
         """
-        _out_of_balance(reactions.trial, reactions.equilibrium, self.loaded, self.forces, self.held, self.increments,
-                        load_factor, increments, weight, F)  # fmt: skip
+        _out_of_balance(
+            reactions.trial,
+            reactions.equilibrium,
+            self.loaded,
+            self.forces,
+            self.held,
+            self.increments,
+            load_factor,
+            increments,
+            weight,
+            F,
+        )
 
     def miss(self, load_factor: float, increments: np.ndarray, weight: float, F: np.ndarray) -> None:
         """Write into the held places of F by how much the increments miss a fraction of the step, times `weight`.

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.model.body import Body, FillsMatrix, OfElements
+from coilset.model.body.body import Body, FillsMatrix, OfElements
 from coilset.model.contact.base import Contribution
 from coilset.model.equilibrium.aij import AijEntries
 from coilset.model.equilibrium.element_entries import ElementEntries, set_rows

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from difflib import get_close_matches
 from typing import Any
 
-from coilset.meshes.compat import LONGEST_STEP
-from coilset.meshes.errors import InputError
+from coilset.model.base.compat import LONGEST_STEP
+from coilset.model.base.errors import InputError
 
 DIRECT = {"ksp_type": "preonly", "pc_type": "lu"}
 ON_RANKS = "coilset.model.equilibrium.chain_lu.ChainPC"
@@ -22,8 +22,12 @@ RENEWAL = 10
 UNLIMITED = {LONGEST_STEP: 1e8}
 # one Newton step: PETSc's Broyden and Anderson methods use no matrix, but such a step as a preconditioner
 ONE_STEP = {
-    "snes_type": "newtonls", "snes_max_it": 1, "snes_convergence_test": "skip", "snes_norm_schedule": "none", **DIRECT,
-}  # fmt: skip
+    "snes_type": "newtonls",
+    "snes_max_it": 1,
+    "snes_convergence_test": "skip",
+    "snes_norm_schedule": "none",
+    **DIRECT,
+}
 KEPT = {"snes_linesearch_type": "cp", **UNLIMITED, "snes_lag_jacobian": RENEWAL, "snes_lag_jacobian_persists": True}
 PRECONDITIONED = {f"npc_{key}": value for key, value in (ONE_STEP | KEPT).items()}
 
@@ -35,26 +39,49 @@ METHODS: dict[str, dict[str, Any]] = {  # each MethodName
     "newton": {"snes_type": "newtonls", "snes_linesearch_type": "basic", **UNLIMITED, "snes_max_it": 30, **DIRECT},
     # (4.4.5), with a line search for the zero of the out-of-balance work along the direction
     "modified-newton": {
-        "snes_type": "newtonls", "snes_linesearch_type": "cp", **UNLIMITED, "snes_lag_jacobian": RENEWAL,
-        "snes_max_it": 100, **DIRECT,
+        "snes_type": "newtonls",
+        "snes_linesearch_type": "cp",
+        **UNLIMITED,
+        "snes_lag_jacobian": RENEWAL,
+        "snes_max_it": 100,
+        **DIRECT,
     },
     # the same, accelerated by mixing the last states; with one of them it is Aitken's method for vectors
     "modified-newton-anderson": {
-        "snes_type": "anderson", "snes_anderson_m": 10, **UNLIMITED, "snes_max_it": 100, **PRECONDITIONED,
+        "snes_type": "anderson",
+        "snes_anderson_m": 10,
+        **UNLIMITED,
+        "snes_max_it": 100,
+        **PRECONDITIONED,
     },
     # Matthies and Strang (4.4.6-4.4.13), with the line search on the out-of-balance work
     "bfgs": {
-        "snes_type": "qn", "snes_qn_type": "lbfgs", "snes_qn_scale_type": "jacobian", "snes_qn_m": RENEWAL,
-        "snes_qn_restart_type": "periodic", "snes_linesearch_type": "cp", **UNLIMITED, "snes_max_it": 100, **DIRECT,
+        "snes_type": "qn",
+        "snes_qn_type": "lbfgs",
+        "snes_qn_scale_type": "jacobian",
+        "snes_qn_m": RENEWAL,
+        "snes_qn_restart_type": "periodic",
+        "snes_linesearch_type": "cp",
+        **UNLIMITED,
+        "snes_max_it": 100,
+        **DIRECT,
     },
     "broyden": {
-        "snes_type": "qn", "snes_qn_type": "broyden", "snes_qn_m": 5, "snes_qn_restart_type": "periodic",
-        "snes_linesearch_type": "cp", **UNLIMITED, "snes_max_it": 100, "snes_npc_side": "left",
-        "snes_function_type": "unpreconditioned", **PRECONDITIONED, "npc_snes_lag_jacobian": 5,
+        "snes_type": "qn",
+        "snes_qn_type": "broyden",
+        "snes_qn_m": 5,
+        "snes_qn_restart_type": "periodic",
+        "snes_linesearch_type": "cp",
+        **UNLIMITED,
+        "snes_max_it": 100,
+        "snes_npc_side": "left",
+        "snes_function_type": "unpreconditioned",
+        **PRECONDITIONED,
+        "npc_snes_lag_jacobian": 5,
     },
     # the load factor as one more unknown: passes limit points within a step; the arc is measured in displacements
     "arc-length": {"snes_type": "newtonal", "snes_newtonal_psisq": 0.0, "snes_max_it": 30, **DIRECT},
-}  # fmt: skip
+}
 
 
 ARC_LENGTH = "newtonal"  # SNES type
@@ -194,6 +221,9 @@ def solid_method(
     if name not in SOLID_METHODS:
         raise InputError(f"'{name}' is not a solver of the solid; give auto or {', '.join(SOLID_METHODS)}", "solver")
     if name.startswith(MULTIGRID) and not free_vertices:
-        raise InputError(f"'{name}' needs two layers of elements or more, since the heads hold all vertices of one; "
-                         "give direct or auto, or more layers", "solver")  # fmt: skip
+        raise InputError(
+            f"'{name}' needs two layers of elements or more, since the heads hold all vertices of one; "
+            "give direct or auto, or more layers",
+            "solver",
+        )
     return Method(name, SOLID_METHODS[name] | dict(extra or {}), frozenset(extra or ()))

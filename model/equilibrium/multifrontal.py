@@ -47,9 +47,21 @@ class PartialLU:
         """
         p = self.plan
         self.negative_pivots = eliminate(
-            p.first, p.rest_start, p.into, p.child_start, p.child, p.entry_start, p.entry, p.position, values,
-            behind, self._work, self._stack, self._factors, self.schur,
-        )  # fmt: skip
+            p.first,
+            p.rest_start,
+            p.into,
+            p.child_start,
+            p.child,
+            p.entry_start,
+            p.entry,
+            p.position,
+            values,
+            behind,
+            self._work,
+            self._stack,
+            self._factors,
+            self.schur,
+        )
         return self.negative_pivots >= 0
 
     def forward(self, right: np.ndarray) -> np.ndarray:

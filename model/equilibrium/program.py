@@ -8,8 +8,8 @@ from typing import Literal
 
 import numpy as np
 
-from coilset.meshes.errors import SolveError
-from coilset.model.body import Moment, PassesTime
+from coilset.model.base.errors import SolveError
+from coilset.model.body.body import Moment, PassesTime
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.convergence import Outcome
@@ -133,9 +133,17 @@ class LoadProgram:
             before = path.progress(continuation.steps.position.done)
             outcome, cuts = continuation.advance(path)
             error = outcome.estimate.force if outcome.estimate is not None else math.nan
-            log.info("step %d: %.6g mm, %.6g N, %d iterations, out of balance %.1e, error about %.2g N; next %.4g of a "
-                     "regular step", continuation.number, self.control.height, self.control.force, outcome.iterations,
-                     outcome.ratio, error, continuation.steps.position.size)  # fmt: skip
+            log.info(
+                "step %d: %.6g mm, %.6g N, %d iterations, out of balance %.1e, error about %.2g N; next %.4g of a "
+                "regular step",
+                continuation.number,
+                self.control.height,
+                self.control.force,
+                outcome.iterations,
+                outcome.ratio,
+                error,
+                continuation.steps.position.size,
+            )
             progress = path.progress(continuation.steps.position.done)
             yield StepTaken(continuation.number, progress, progress - before, cuts, outcome)
 
@@ -177,10 +185,15 @@ class LoadProgram:
             value = end if done >= regular else begin + part(done) * (end - begin)
             return self.control.to_force(value) if stage.kind == "force" else self.control.to_height(value)
 
-        return Path(load, regular, stage.label, stage.steps == "auto",
-                    lambda: f"{self.control.height:.6g} mm and {self.control.force:.6g} N",
-                    None if marks is None else lambda done: regular * part(done),
-                    self._moments(stage, part) if stage.hours else None)  # fmt: skip
+        return Path(
+            load,
+            regular,
+            stage.label,
+            stage.steps == "auto",
+            lambda: f"{self.control.height:.6g} mm and {self.control.force:.6g} N",
+            None if marks is None else lambda done: regular * part(done),
+            self._moments(stage, part) if stage.hours else None,
+        )
 
     def _moments(self, stage: Stage, part: Callable[[float], float]) -> Callable[[float], Moment]:
         """Time and temperature along a stage, by places on its path.

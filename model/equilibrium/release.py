@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from coilset.meshes.errors import SolveError
+from coilset.model.base.errors import SolveError
 
 MAX_SECANTS = 20
 PROBE = 0.01  # part of the travel by which the rate of release is measured

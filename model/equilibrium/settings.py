@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar, Literal
 from annotated_types import Unit
 from pydantic import ConfigDict, Field
 
-from coilset.meshes.entry import Whole
+from coilset.model.base.schema import Whole
 
 Positive = Annotated[float, Unit("1"), Field(gt=0, strict=True)]
 Fraction = Annotated[float, Unit("1"), Field(gt=0, lt=1, strict=True)]

@@ -8,7 +8,7 @@ from typing import Any
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 
 numbers = itertools.count()
 

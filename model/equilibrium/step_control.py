@@ -6,8 +6,8 @@ Equal steps end on their marks, also after a cut. Automatic ones take the size t
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from coilset.meshes.errors import SolveError
-from coilset.model.body import Moment
+from coilset.model.base.errors import SolveError
+from coilset.model.body.body import Moment
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.settings import StepControl

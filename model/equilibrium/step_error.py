@@ -20,10 +20,10 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from coilset.model.body import EstimatesErrors
+from coilset.model.body.body import EstimatesErrors
+from coilset.model.body.state import Where
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.settings import StepControl
-from coilset.model.state import Where
 
 ORDER = 3
 # what is remembered: maximum force, N, travel of the first step of all, mm, and how many contact elements are closed

@@ -8,14 +8,14 @@ import numpy as np
 from dolfinx import la
 from petsc4py import PETSc
 
-from coilset.model.body import Body, HasRotations, Moment, PassesTime
+from coilset.model.body.body import Body, HasRotations, Moment, PassesTime
+from coilset.model.body.state import Where
 from coilset.model.contact.base import BearsOnWire, Contact, Contribution, HasMemory
 from coilset.model.equilibrium.contact_parts import ContactParts
 from coilset.model.equilibrium.joined import add_vectors
 from coilset.model.equilibrium.layout import Layout, LineLayout
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import TangentMatrix
-from coilset.model.state import Where
 
 EXPIRED = b""  # in the place of the increments of an evaluation
 

@@ -12,10 +12,13 @@ import numpy as np
 from numba import njit, types
 from numba.extending import overload
 
-from coilset.model.material import creep, creep_rod, rod, solid
-from coilset.model.material.back_stresses import BackStresses, back_stress_map
-from coilset.model.material.kernel import KERNEL
-from coilset.model.material.rod_points import return_map_points
+from coilset.model.base.kernel import KERNEL
+from coilset.model.material.creep import creep
+from coilset.model.material.creep import rod as creep_rod
+from coilset.model.material.law.terms import BackStresses
+from coilset.model.material.point import rod, solid
+from coilset.model.material.point.back_stresses import back_stress_map
+from coilset.model.material.point.rod_points import return_map_points
 
 
 def rod_points(

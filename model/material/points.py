@@ -7,15 +7,16 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from coilset.meshes.errors import InputError, SolveError
-from coilset.model.material.back_stresses import BackStresses, back_stress_map
-from coilset.model.material.functions import CHANGE, TOLERANCE
-from coilset.model.material.heun import rod_heun, solid_heun
-from coilset.model.material.kernel import KERNEL
-from coilset.model.material.law import Law
-from coilset.model.material.local import FAILED, TOO_HOT
-from coilset.model.material.rod_points import return_map_points
-from coilset.model.material.solid import return_map as solid_return_map
+from coilset.model.base.errors import InputError, SolveError
+from coilset.model.base.kernel import KERNEL
+from coilset.model.material.law.functions import CHANGE, TOLERANCE
+from coilset.model.material.law.law import Law
+from coilset.model.material.law.terms import BackStresses
+from coilset.model.material.point.back_stresses import back_stress_map
+from coilset.model.material.point.heun import rod_heun, solid_heun
+from coilset.model.material.point.local import FAILED, TOO_HOT
+from coilset.model.material.point.rod_points import return_map_points
+from coilset.model.material.point.solid import return_map as solid_return_map
 
 INTEGRATORS = ("return_mapping", "heun")
 SMALLEST_SUBSTEP = 1e-9

@@ -14,10 +14,10 @@ import numpy as np
 from annotated_types import Unit
 from pydantic import Field
 
-from coilset.meshes.errors import InputError, SolveError
-from coilset.model.entries.entry import Strict, Whole, check_entries, shortened
-from coilset.model.entries.yaml import read_data
-from coilset.model.material.law import Law
+from coilset.model.base.entry import Strict, Whole, check_entries, shortened
+from coilset.model.base.errors import InputError, SolveError
+from coilset.model.base.yaml import read_data
+from coilset.model.material.law.law import Law
 from coilset.model.material.points import initial_state, update
 
 STRAINS = {

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coilset.meshes.geometry import Spring
+from coilset.meshes.springs.geometry import Spring
 
 
 def outside(spring: Spring, turns: np.ndarray, x: np.ndarray) -> float:

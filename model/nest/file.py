@@ -7,10 +7,10 @@ from typing import Annotated, Literal
 from annotated_types import Unit
 from pydantic import Discriminator, Field, Tag
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.entry import Strict, Whole, check_entries
+from coilset.model.base.errors import InputError
+from coilset.model.base.yaml import read_data
 from coilset.model.case import Case, read_case
-from coilset.model.entries.entry import Strict, Whole, check_entries
-from coilset.model.entries.yaml import read_data
 
 KIND = "a nest holds the entries outer:, inner: and loading:"
 NAMES = ("outer", "inner")
@@ -46,9 +46,13 @@ class NestFile(Strict):
     inner: Annotated[Member, Field(description="the spring inside it")]
     loading: Annotated[
         list[Press],
-        Field(min_length=1, strict=False, description="where the seats go, one after the other; from the height at "
-              "which they touch the longer spring"),
-    ]  # fmt: skip
+        Field(
+            min_length=1,
+            strict=False,
+            description="where the seats go, one after the other; from the height at "
+            "which they touch the longer spring",
+        ),
+    ]
 
 
 @dataclass(frozen=True)
@@ -82,11 +86,19 @@ def read_nest(path: str | Path) -> Nest:
         if case.ends != "seats":
             raise InputError("a nest stands between seats; give ends: seats", "ends", file)
         if case.seats.bottom.moves or case.seats.top.moves:
-            raise InputError("seats that tilt or move aside are shared by both springs of a nest, which is not known; "
-                             "give rigid ones", "seats", file)  # fmt: skip
+            raise InputError(
+                "seats that tilt or move aside are shared by both springs of a nest, which is not known; "
+                "give rigid ones",
+                "seats",
+                file,
+            )
         if "conical" in (case.seats.bottom.shape, case.seats.top.shape):
-            raise InputError("a cone touches each spring of a nest at a height of its own, so that they have none in "
-                             "common; give other seats", "seats", file)  # fmt: skip
+            raise InputError(
+                "a cone touches each spring of a nest at a height of its own, so that they have none in "
+                "common; give other seats",
+                "seats",
+                file,
+            )
         if case.heat is not None:
             raise InputError("takes time to flow, and the seats of a nest take none; leave it out", "heat", file)
         cases.append(case)

@@ -13,16 +13,16 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError, SolveError, naming
-from coilset.meshes.geometry import Spring
-from coilset.model.analysis import Analysis
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.base.errors import InputError, SolveError, naming
+from coilset.model.base.warning import Warning
 from coilset.model.case import Case
 from coilset.model.case.phases import Phase, Target
 from coilset.model.nest.clearance import inside, outside
 from coilset.model.nest.file import NAMES, Nest
 from coilset.model.nest.plan import Plan, plan
-from coilset.model.results.record import Result, Setup, Step
-from coilset.model.warning import Warning
+from coilset.model.results.records.record import Result, Setup, Step
+from coilset.model.run.analysis import Analysis
 
 NEAR = 1e-6  # mm, between a step's height and the plan's
 
@@ -92,8 +92,11 @@ def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: N
     wires = [one.centre_line(t) for one, t in zip(springs, turns, strict=True)]
     room, reach = inside(springs[0], turns[0], wires[0]), outside(springs[1], turns[1], wires[1])
     if not room > reach:
-        raise InputError(f"reaches {reach:.4g} mm from the axis, but the outer spring leaves {room:.4g} mm: it has no "
-                         "room inside", "inner", nest.path)  # fmt: skip
+        raise InputError(
+            f"reaches {reach:.4g} mm from the axis, but the outer spring leaves {room:.4g} mm: it has no room inside",
+            "inner",
+            nest.path,
+        )
     with naming(nest.path):
         heights = plan(nest.loading, springs)
     programs = [heights.program(one.free_length) for one in springs]
@@ -154,14 +157,23 @@ def _refuse_touching(heights: Plan, clearance: np.ndarray) -> None:
     touching = np.flatnonzero(clearance <= 0.0)
     if touching.size:
         at = int(touching[0])
-        raise SolveError(f"at the height of {heights.heights[at]:.6g} mm the springs touch each other: they overlap by "
-                         f"{-clearance[at]:.3g} mm; their contact is not known, and forces do not add up from "
-                         "there")  # fmt: skip
+        raise SolveError(
+            f"at the height of {heights.heights[at]:.6g} mm the springs touch each other: they overlap by "
+            f"{-clearance[at]:.3g} mm; their contact is not known, and forces do not add up from "
+            "there"
+        )
 
 
 def _hands(springs: Sequence[Spring]) -> list[Warning]:
     if springs[0].hand != springs[1].hand:
         return []
-    return [Warning("hands", "inner.spring.hand", "both springs are wound in the same direction: coils of one can slip "
-                    "between those of the other; nested springs are wound in opposite ones (a maker's rule)",
-                    float(springs[1].hand), float(-springs[0].hand))]  # fmt: skip
+    return [
+        Warning(
+            "hands",
+            "inner.spring.hand",
+            "both springs are wound in the same direction: coils of one can slip "
+            "between those of the other; nested springs are wound in opposite ones (a maker's rule)",
+            float(springs[1].hand),
+            float(-springs[0].hand),
+        )
+    ]

@@ -7,13 +7,13 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
+from coilset.model.base.style import STYLE
+from coilset.model.figures.figures import save
 from coilset.model.nest.nest import Pressed
-from coilset.model.results.figures import save
-from coilset.model.results.folder import write_table
-from coilset.model.results.labels import plain
-from coilset.model.results.provenance import origin
-from coilset.model.results.summary import summarise
-from coilset.model.style import STYLE
+from coilset.model.results.files.folder import write_table
+from coilset.model.results.records.labels import plain
+from coilset.model.results.records.provenance import origin
+from coilset.model.results.records.summary import summarise
 
 STEPS = "nest.csv"
 COLUMNS = ("step", "seat_height_mm", "force_N", "outer_force_N", "inner_force_N", "clearance_mm")

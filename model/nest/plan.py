@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coilset.meshes.errors import InputError
-from coilset.meshes.geometry import Spring
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.base.errors import InputError
 from coilset.model.case.phases import Phase, Target
 from coilset.model.nest.file import Press
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from coilset.model.figures.wire import inside, section_turns, shear_around
 from coilset.model.report.panel import Panel, axis, curve, said
-from coilset.model.results.opened import Run
-from coilset.model.results.wire import inside, section_turns, shear_around
+from coilset.model.results.files.opened import Run
 
 SIDES = (("inside of the coil", 0.0, "solid"), ("outside", np.pi, "dash"))
 SHOWN = {"Mt": "torque Mt", "M2": "bending moment M2", "M3": "bending moment M3"}

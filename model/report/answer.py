@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from coilset.model.report.panel import said
-from coilset.model.results.opened import Run
+from coilset.model.results.files.opened import Run
 
 
 @dataclass(frozen=True)

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
+from coilset.model.base.style import round_end
 from coilset.model.report.panel import Panel, Trace, axis, curve
-from coilset.model.results.opened import Run
-from coilset.model.style import round_end
+from coilset.model.results.files.opened import Run
 
 FAINT = 0.02  # of the maximum force: a smaller one passes anywhere
 REACH = 1.3  # of the figure, in coil radii
@@ -88,9 +88,17 @@ def _pressures(run: Run, values: np.ndarray, greatest: float, choice: int) -> Tr
     """A square where a kind of contact bears: `values`, shape (steps, points), N/mm, as colours up to `greatest`."""
     turns, steps, heights = (run.data[name].values for name in ("wire_turn", "step", "seat_height_mm"))
     row, place = np.nonzero(values > 0.0)
-    marker = {"symbol": "square", "size": 9, "color": values[row, place], "colorscale": "Viridis", "cmin": 0.0,
-              "line": {"width": 0.7, "color": "#808080"}, "cmax": round_end(greatest), "showscale": True,
-              "colorbar": {"title": {"text": "N/mm"}, "thickness": 14}}  # fmt: skip
+    marker = {
+        "symbol": "square",
+        "size": 9,
+        "color": values[row, place],
+        "colorscale": "Viridis",
+        "cmin": 0.0,
+        "line": {"width": 0.7, "color": "#808080"},
+        "cmax": round_end(greatest),
+        "showscale": True,
+        "colorbar": {"title": {"text": "N/mm"}, "thickness": 14},
+    }
     return {
         "type": "scatter",
         "mode": "markers",

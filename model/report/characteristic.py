@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from coilset.model.report.panel import Panel, axis, curve
-from coilset.model.results.labels import in_legend
-from coilset.model.results.opened import Run
+from coilset.model.results.files.opened import Run
+from coilset.model.results.records.labels import in_legend
 
 GREY = {"width": 1, "color": "#808080"}
 HEIGHT = 440  # pixels, the same for both, which stand side by side
@@ -29,8 +29,10 @@ def phases(run: Run) -> list[tuple[str, np.ndarray, np.ndarray]]:
         last = float(travel[-1]), float(force[-1])
     names = [name for name, _, _ in found]
     again = {name for name in names if names.count(name) > 1}
-    return [(f"{name}, {_times(names[: k + 1].count(name))}" if name in again else name, travel, force)
-            for k, (name, travel, force) in enumerate(found)]  # fmt: skip
+    return [
+        (f"{name}, {_times(names[: k + 1].count(name))}" if name in again else name, travel, force)
+        for k, (name, travel, force) in enumerate(found)
+    ]
 
 
 def _times(number: int) -> str:
@@ -74,8 +76,21 @@ def _block_and_set(block: float, set_mm: float | None) -> dict[str, Any]:
     }
     notes = [{"x": block, "y": 1, "yref": "paper", "yanchor": "bottom", "text": "block", "showarrow": False}]
     if set_mm:
-        notes.append({"x": set_mm, "ax": 0, "y": 0, "ay": 0, "axref": "x", "ayref": "y", "text": "", "arrowhead": 2,
-                      "arrowside": "end+start", "showarrow": True, "arrowwidth": 1.2})  # fmt: skip
+        notes.append(
+            {
+                "x": set_mm,
+                "ax": 0,
+                "y": 0,
+                "ay": 0,
+                "axref": "x",
+                "ayref": "y",
+                "text": "",
+                "arrowhead": 2,
+                "arrowside": "end+start",
+                "showarrow": True,
+                "arrowwidth": 1.2,
+            }
+        )
         notes.append(
             {"x": 0.5 * set_mm, "y": 0, "yanchor": "bottom", "text": f"set {set_mm:.3f} mm", "showarrow": False}
         )

@@ -3,7 +3,7 @@
 import numpy as np
 
 from coilset.model.report.panel import COLOURS, Panel, axis, curve
-from coilset.model.results.opened import Run
+from coilset.model.results.files.opened import Run
 
 
 def cost(run: Run) -> Panel:

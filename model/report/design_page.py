@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from coilset.meshes.errors import InputError, reading
+from coilset.model.base.errors import InputError, reading
 from coilset.model.case.names import EntryName, entry_name
 from coilset.model.design.conditions import GROUP, SENSES
 from coilset.model.design.opened import FILE, read_design
@@ -17,8 +17,8 @@ from coilset.model.report.page import made_with
 from coilset.model.report.panel import Panel, axis, curve
 from coilset.model.report.render import write_page
 from coilset.model.report.spring_view import spring_view
-from coilset.model.results.labels import plain
-from coilset.model.results.opened import Run, open_run
+from coilset.model.results.files.opened import Run, open_run
+from coilset.model.results.records.labels import plain
 
 LEAST_OFF = 1e-12  # relative, to which the figure goes down
 FOUND = "found"  # the folder of the results of found.yaml, beside it
@@ -42,10 +42,14 @@ def write_design_report(folder: str | Path) -> Path:
         design["summary"]["set_mm"], design["origin"]["case"], design["trade_offs"], design["choices"]
         design["is_one_of_many"]
         names = [EntryName(one["words"], one["unit"]) for one in design["unknowns"].values()]
-        sought = [EntryName(design["unknowns"][name]["words"], design["unknowns"][name]["unit"])
-                  for name in next(iter(design["slopes"].values()))]  # fmt: skip
-    found = [Number(name.words, f"{plain(value, 6)} {name.unit}".strip())
-             for name, value in zip(names, design["found"].values(), strict=True)]  # fmt: skip
+        sought = [
+            EntryName(design["unknowns"][name]["words"], design["unknowns"][name]["unit"])
+            for name in next(iter(design["slopes"].values()))
+        ]
+    found = [
+        Number(name.words, f"{plain(value, 6)} {name.unit}".strip())
+        for name, value in zip(names, design["found"].values(), strict=True)
+    ]
     run = found_run(folder, design)
     drawn = [] if run is None else [("The spring that was found", [characteristic(run), spring_view(run)])]
     return write_page(
@@ -67,7 +71,7 @@ def write_design_report(folder: str | Path) -> Path:
         trade_offs=[_trade_off(row, design) for row in design["trade_offs"]],
         case=case,
         made_with=made_with(design["origin"]),
-    )  # fmt: skip
+    )
 
 
 def found_run(folder: Path, design: Mapping[str, Any]) -> Run | None:
@@ -93,9 +97,11 @@ def search(design: Mapping[str, Any], records: Sequence[Mapping[str, Any]]) -> P
         finding,
         f"{finding}. Relative deviation of each condition from its target, over the evaluations.",
         traces,
-        {"xaxis": axis("evaluation", dtick=1 if len(records) < 16 else None),
-         "yaxis": axis("deviation, relative", type="log", exponentformat="power")},
-    )  # fmt: skip
+        {
+            "xaxis": axis("evaluation", dtick=1 if len(records) < 16 else None),
+            "yaxis": axis("deviation, relative", type="log", exponentformat="power"),
+        },
+    )
 
 
 def _sense(condition: Mapping[str, Any]) -> int:
@@ -153,9 +159,12 @@ def _choices(design: Mapping[str, Any]) -> dict[str, Any] | None:
     tried, units = choices["tried"], [one["unit"] for one in design["conditions"]]
     unknowns = design["unknowns"]
     others = [name for name in unknowns if name not in tried[0]["chosen"]]
-    among = (f"All {len(tried)} combinations" if len(tried) == choices["total"] else
-             f"The {len(tried)} of {choices['total']} combinations next to the solution with any value: the best of "
-             "these need not be the best of all")  # fmt: skip
+    among = (
+        f"All {len(tried)} combinations"
+        if len(tried) == choices["total"]
+        else f"The {len(tried)} of {choices['total']} combinations next to the solution with any value: the best of "
+        "these need not be the best of all"
+    )
     rows = []
     for one in tried:
         numbers = [*one["chosen"].values(), *((one["found"] or {}).get(name) for name in others)]
@@ -164,8 +173,11 @@ def _choices(design: Mapping[str, Any]) -> dict[str, Any] | None:
         cells = ["–" if value is None else plain(value, 6) for value in (*numbers, *values)]
         rows.append({"cells": cells, "met": off, "is_best": one["is_best"]})
     heads = [EntryName(unknowns[name]["words"], unknowns[name]["unit"]).head for name in (*tried[0]["chosen"], *others)]
-    return {"about": among, "rows": rows,
-            "heads": [*heads, *(f"{_named(one)}, {one['unit']}" for one in design["conditions"])]}  # fmt: skip
+    return {
+        "about": among,
+        "rows": rows,
+        "heads": [*heads, *(f"{_named(one)}, {one['unit']}" for one in design["conditions"])],
+    }
 
 
 def _trade_off(row: Mapping[str, Any], design: Mapping[str, Any]) -> dict[str, Any]:

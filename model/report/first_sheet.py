@@ -9,15 +9,15 @@ import matplotlib as mpl
 import numpy as np
 
 from coilset.meshes.drawing import drawing
-from coilset.meshes.errors import InputError
-from coilset.meshes.geometry import Spring
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.base.errors import InputError
+from coilset.model.base.style import STYLE
 from coilset.model.case import Case, check
 from coilset.model.report.panel import said
 from coilset.model.report.verdict import Check, checks, verdict
-from coilset.model.results.labels import plain
-from coilset.model.results.opened import Run
+from coilset.model.results.files.opened import Run
+from coilset.model.results.records.labels import plain
 from coilset.model.standards.cylinder import Cylinder
-from coilset.model.style import STYLE
 
 DPI = 110  # of the drawing
 
@@ -98,8 +98,10 @@ def _releases(summary: dict[str, Any]) -> list[tuple[str, str]]:
     """The free length after each release, where the summary lists them; else after the last one."""
     lengths = summary.get("free_lengths_after_mm") or [summary["free_length_after_mm"]]
     names = [f"free length after release {number}" for number in range(1, len(lengths) + 1)]
-    return [(name if len(lengths) > 1 else "free length after release", _text(length, "mm", 2))
-            for name, length in zip(names, lengths, strict=True)]  # fmt: skip
+    return [
+        (name if len(lengths) > 1 else "free length after release", _text(length, "mm", 2))
+        for name, length in zip(names, lengths, strict=True)
+    ]
 
 
 def _text(value: float | None, unit: str, digits: int) -> str:

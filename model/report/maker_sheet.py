@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.case import Case, check
-from coilset.model.results.labels import plain
-from coilset.model.results.opened import Run
+from coilset.model.results.files.opened import Run
+from coilset.model.results.records.labels import plain
 from coilset.model.standards import found
 from coilset.model.standards.case_sheet import case_sheet
 from coilset.model.standards.rows import Row, sections
@@ -22,9 +22,14 @@ def maker_sheet(run: Run) -> list[tuple[str, list[dict[str, Any]]]]:
 
 
 def _texts(row: Row) -> dict[str, Any]:
-    return {"label": row.label.strip(), "value": _number(row.value, row.unit), "found": _number(row.found, row.unit),
-            "formula": row.formula, "sure": row.sure,
-            "why": row.why if row.found is not None or row.value is None else ""}  # fmt: skip
+    return {
+        "label": row.label.strip(),
+        "value": _number(row.value, row.unit),
+        "found": _number(row.found, row.unit),
+        "formula": row.formula,
+        "sure": row.sure,
+        "why": row.why if row.found is not None or row.value is None else "",
+    }
 
 
 def _number(value: float | None, unit: str) -> str:

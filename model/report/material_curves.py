@@ -3,12 +3,12 @@
 import json
 from math import isfinite
 
-from coilset.meshes.errors import InputError
-from coilset.model.material.file import MaterialFile
-from coilset.model.material.law import Law
+from coilset.model.base.errors import InputError
+from coilset.model.material.law.file import MaterialFile
+from coilset.model.material.law.law import Law
 from coilset.model.material.programs import History, Program, Step, run
 from coilset.model.report.panel import Panel, axis, curve
-from coilset.model.results.opened import Run
+from coilset.model.results.files.opened import Run
 
 FAR = 12.0  # yield strains of torsion to which the point is twisted
 INCREMENTS = 60

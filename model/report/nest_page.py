@@ -8,17 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from coilset.meshes.errors import InputError, reading
+from coilset.model.base.errors import InputError, reading
+from coilset.model.base.style import round_end
+from coilset.model.figures.wire import closed, moments, tubes
 from coilset.model.nest.file import NAMES
 from coilset.model.nest.output import STEPS
 from coilset.model.report.answer import Number
 from coilset.model.report.page import made_with, write_report
 from coilset.model.report.panel import DIVERGING, Panel, Trace, axis, curve, said
 from coilset.model.report.render import NAME, write_page
-from coilset.model.results.labels import plain
-from coilset.model.results.opened import Run, open_run
-from coilset.model.results.wire import closed, moments, tubes
-from coilset.model.style import round_end
+from coilset.model.results.files.opened import Run, open_run
+from coilset.model.results.records.labels import plain
 
 FILE = STEPS  # by which the folder of a nest is known
 TOTAL = "#808080"  # colour of both springs together, on light and dark backgrounds
@@ -56,25 +56,36 @@ def write_nest_report(folder: str | Path) -> Path:
     return write_page(
         folder,
         "nest",
-        [("Force and travel", [characteristic(columns, summary), clearance(columns, summary)]),
-         ("The springs", [view(runs)])],
+        [
+            ("Force and travel", [characteristic(columns, summary), clearance(columns, summary)]),
+            ("The springs", [view(runs)]),
+        ],
         {},
         title=f"{folder.resolve().name}: set {_length(summary['set_mm'], 3)}",
         subtitle=f"two springs between the same seats, pressed to {columns['seat_height_mm'].min():.4g} mm, released",
         answer=[
             Number("set", _length(summary["set_mm"], 3), "of the height at which the seats touch the first spring"),
-            Number("free length", _length(summary["free_length_after_mm"], 3),
-                   f"after; {summary['free_length_before_mm']:.3f} mm before"),
-            Number("maximum force", f"{plain(summary['force_max_N'], 5)} N",
-                   ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in shares.items())),
+            Number(
+                "free length",
+                _length(summary["free_length_after_mm"], 3),
+                f"after; {summary['free_length_before_mm']:.3f} mm before",
+            ),
+            Number(
+                "maximum force",
+                f"{plain(summary['force_max_N'], 5)} N",
+                ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in shares.items()),
+            ),
             Number("block height", _length(summary["block_height_mm"], 2), "of the spring that is solid first"),
-            Number("minimum clearance", _length(summary["clearance_min_mm"], 3),
-                   f"between the springs, at a height of {summary['clearance_min_height_mm']:.4g} mm"),
+            Number(
+                "minimum clearance",
+                _length(summary["clearance_min_mm"], 3),
+                f"between the springs, at a height of {summary['clearance_min_height_mm']:.4g} mm",
+            ),
         ],
         springs=[_spring(name, one, shares[name], columns[f"{name}_force_N"][top]) for name, one in springs.items()],
         warnings=warnings,
         made_with=made_with(next(iter(runs.values())).summary["origin"]),
-    )  # fmt: skip
+    )
 
 
 def _length(value: float | None, digits: int) -> str:
@@ -90,36 +101,53 @@ def _spring(name: str, summary: Mapping[str, Any] | None, share: float, force: f
         "name": name,
         "link": f"{name}/{NAME}",
         "cells": [
-            summary["material"], f"{plain(force, 5)} N", f"{100.0 * share:.1f} %",
-            f"{summary['free_length_before_mm']:.3f} mm", _length(summary["set_mm"], 3),
-            said(summary["shear_inside_max_MPa"], "MPa"), "–" if inside is None else said(inside, "MPa", 1),
+            summary["material"],
+            f"{plain(force, 5)} N",
+            f"{100.0 * share:.1f} %",
+            f"{summary['free_length_before_mm']:.3f} mm",
+            _length(summary["set_mm"], 3),
+            said(summary["shear_inside_max_MPa"], "MPa"),
+            "–" if inside is None else said(inside, "MPa", 1),
         ],
-    }  # fmt: skip
+    }
 
 
 def characteristic(columns: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> Panel:
     """Force over the travel of the common seats, of each spring and of both."""
     travel = columns["seat_height_mm"][0] - columns["seat_height_mm"]
-    traces = [curve(travel, columns[f"{name}_force_N"], number, marker=5, name=name)
-              for number, name in enumerate(NAMES)]  # fmt: skip
+    traces = [
+        curve(travel, columns[f"{name}_force_N"], number, marker=5, name=name) for number, name in enumerate(NAMES)
+    ]
     both = curve(travel, columns["force_N"], 0, marker=5, name="both")
     both["line"] = {"width": 3, "color": TOTAL}
     block = summary["free_length_before_mm"] - summary["block_height_mm"]
     finding = f"Both springs carry up to {plain(summary['force_max_N'], 4)} N"
-    line = {"type": "line", "x0": block, "x1": block, "yref": "paper", "y0": 0, "y1": 1,
-            "line": {"dash": "dash", "width": 1, "color": TOTAL}}  # fmt: skip
+    line = {
+        "type": "line",
+        "x0": block,
+        "x1": block,
+        "yref": "paper",
+        "y0": 0,
+        "y1": 1,
+        "line": {"dash": "dash", "width": 1, "color": TOTAL},
+    }
     return Panel(
         "characteristic",
         finding,
         f"{finding}. Axial force of the outer spring, of the inner spring and of both over the travel of the seats. "
         f"Block is at {block:.4g} mm of travel.",
         [both, *traces],
-        {"xaxis": axis("travel of the seats, mm"), "yaxis": axis("axial force, N"), "shapes": [line],
-         "annotations": [{"x": block, "y": 1, "yref": "paper", "yanchor": "bottom", "text": "block",
-                          "showarrow": False}]},
+        {
+            "xaxis": axis("travel of the seats, mm"),
+            "yaxis": axis("axial force, N"),
+            "shapes": [line],
+            "annotations": [
+                {"x": block, "y": 1, "yref": "paper", "yanchor": "bottom", "text": "block", "showarrow": False}
+            ],
+        },
         height=440,
         note="Both springs are then released, each on its own; their pages show it.",
-    )  # fmt: skip
+    )
 
 
 def clearance(columns: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> Panel:
@@ -144,14 +172,21 @@ def view(runs: Mapping[str, Run]) -> Panel:
     traces: list[Trace] = []
     for places, stress in shapes:
         for number in range(len(STATES)):
-            traces.append({
-                "type": "surface", "cmin": -end, "cmax": end, "colorscale": DIVERGING, "showscale": not traces,
-                "colorbar": {"title": {"text": "MPa"}, "thickness": 14, "len": 0.8},
-                "lighting": {"ambient": 0.75, "diffuse": 0.5, "specular": 0.1},
-                "hovertemplate": "%{surfacecolor:.0f} MPa<br>height %{z:.1f} mm<extra></extra>",
-                "meta": {"choice": number}, "surfacecolor": stress[number],
-                **dict(zip("xyz", np.moveaxis(places[number], -1, 0), strict=True)),
-            })  # fmt: skip
+            traces.append(
+                {
+                    "type": "surface",
+                    "cmin": -end,
+                    "cmax": end,
+                    "colorscale": DIVERGING,
+                    "showscale": not traces,
+                    "colorbar": {"title": {"text": "MPa"}, "thickness": 14, "len": 0.8},
+                    "lighting": {"ambient": 0.75, "diffuse": 0.5, "specular": 0.1},
+                    "hovertemplate": "%{surfacecolor:.0f} MPa<br>height %{z:.1f} mm<extra></extra>",
+                    "meta": {"choice": number},
+                    "surfacecolor": stress[number],
+                    **dict(zip("xyz", np.moveaxis(places[number], -1, 0), strict=True)),
+                }
+            )
     for number in range(len(STATES)):  # one scale for each state, of the outer spring, or of the only one
         traces[number]["showscale"] = True
     corners = np.concatenate([places.reshape(-1, 3) for places, _ in shapes])

@@ -18,7 +18,7 @@ from coilset.model.report.panel import Panel
 from coilset.model.report.render import write_page
 from coilset.model.report.section_map import normal_map, shear_map
 from coilset.model.report.spring_view import spring_view
-from coilset.model.results.opened import Run
+from coilset.model.results.files.opened import Run
 
 CHAPTERS: tuple[tuple[str, tuple[Callable[[Run], Panel | None], ...]], ...] = (
     ("Force and travel", (characteristic, rate_curve)),

@@ -10,11 +10,11 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.report.glossary import GLOSSARY
 from coilset.model.report.packed import packed
 from coilset.model.report.panel import Panel
-from coilset.model.results.folder import whole
+from coilset.model.results.files.folder import whole
 
 NAME = "report.html"
 SCRIPTS = {"sweep": "sweep.js", "nest": "nest.js"}  # of kinds of pages; run.js of the others

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 from matplotlib.tri import LinearTriInterpolator, Triangulation
 
+from coilset.model.base.style import round_end
+from coilset.model.figures.rings import FilledSection
+from coilset.model.figures.wire import inside
 from coilset.model.report.panel import DIVERGING, Panel, Trace, axis, said
-from coilset.model.results.opened import Run
-from coilset.model.results.rings import FilledSection
-from coilset.model.results.wire import inside
-from coilset.model.style import round_end
+from coilset.model.results.files.opened import Run
 
 PIXELS = 121  # of a map, across the wire
 BEYOND = 1.04  # wire radii up to which colours go: the rim is drawn over them

@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from coilset.model.base.style import round_end
+from coilset.model.figures.wire import closed, moments, tubes
 from coilset.model.report.panel import DIVERGING, Panel, axis, said
-from coilset.model.results.opened import Run
-from coilset.model.results.wire import closed, moments, tubes
-from coilset.model.style import round_end
+from coilset.model.results.files.opened import Run
 
 RINGS = 6000  # of all moments of a page together
 MOST = 60  # moments

@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from coilset.meshes.errors import reading
+from coilset.model.base.errors import reading
 from coilset.model.report.answer import Number
 from coilset.model.report.panel import COLOURS, Panel, axis
 from coilset.model.report.render import write_page
 from coilset.model.report.warning_words import in_words
-from coilset.model.results.labelled import labelled
+from coilset.model.results.files.labelled import labelled
 from coilset.model.sweep import findings
 from coilset.model.sweep.sensitivity import rank_correlation
 
@@ -48,12 +48,14 @@ def write_sweep_report(folder: str | Path) -> Path:
         {"columns": columns, "curves": _curves(data), "files": _files(data)},
         title=f"{folder.resolve().name}: {data.sizes['case']} cases",
         subtitle=f"{data.sizes['case']} cases; {', '.join(names)} varied ({data.attrs['design'].replace('_', ' ')})",
-        answer=[Number("cases", f"{counts['done']} done", f"{counts['failed']} failed, {counts['missing']} missing"),
-                *(_range(data, name) for name in ANSWERS if name in data)],
+        answer=[
+            Number("cases", f"{counts['done']} done", f"{counts['failed']} failed, {counts['missing']} missing"),
+            *(_range(data, name) for name in ANSWERS if name in data),
+        ],
         warnings=_warnings(data),
         finding=findings.extent(data, of),
         made_with="; ".join(filter(None, (data.attrs["title"], data.attrs.get("versions", "")))),
-    )  # fmt: skip
+    )
 
 
 # ---- what the scripts take -------------------------------------------------------------------------------------------
@@ -69,16 +71,32 @@ def _columns(data: xr.Dataset, of: str) -> list[dict[str, Any]]:
     for name in (*inputs, *(name for name in SHOWN if name in data), *rest):
         attrs = data[name].attrs
         role = next((role for role, one in roles.items() if one == name), "")
-        found.append(_column(str(name), attrs.get("long_name", str(name)), attrs.get("units", ""), data[name].values,
-                             name in inputs or name in SHOWN, role))  # fmt: skip
+        found.append(
+            _column(
+                str(name),
+                attrs.get("long_name", str(name)),
+                attrs.get("units", ""),
+                data[name].values,
+                name in inputs or name in SHOWN,
+                role,
+            )
+        )
     return found
 
 
 def _column(name: str, words: str, unit: str, values: np.ndarray, shown: bool, role: str) -> dict[str, Any]:
     numeric = values.dtype.kind in "fiu"
     listed = [None if value != value else value for value in values.tolist()] if numeric else list(map(str, values))
-    return {"name": name, "words": words, "unit": unit, "numeric": numeric, "digits": DIGITS, "values": listed,
-            "shown": shown, "role": role}  # fmt: skip
+    return {
+        "name": name,
+        "words": words,
+        "unit": unit,
+        "numeric": numeric,
+        "digits": DIGITS,
+        "values": listed,
+        "shown": shown,
+        "role": role,
+    }
 
 
 def _curves(data: xr.Dataset) -> dict[str, np.ndarray] | None:
@@ -119,8 +137,10 @@ def _warnings(data: xr.Dataset) -> list[str]:
         for name in filter(None, str(text).split(", ")):
             names[name] = names.get(name, 0) + 1
     cases = data.sizes["case"]
-    return [f"{in_words(name)} (in {f'all {cases}' if count == cases else f'{count} of {cases}'} cases)"
-            for name, count in names.items()]  # fmt: skip
+    return [
+        f"{in_words(name)} (in {f'all {cases}' if count == cases else f'{count} of {cases}'} cases)"
+        for name, count in names.items()
+    ]
 
 
 def _ranked(data: xr.Dataset, of: str) -> list[tuple[str, float, np.ndarray]]:
@@ -147,14 +167,33 @@ def _deciding(data: xr.Dataset, of: str) -> Panel | None:
     names = [data[name].attrs["long_name"] for name, _, _ in ranked]
     correlation, interval = np.array([one for _, one, _ in ranked]), np.stack([one for _, _, one in ranked])
     finding = findings.strongest(findings.words(data, of), names, correlation, interval)
-    trace = {"type": "bar", "orientation": "h", "x": correlation, "y": names, "marker": {"color": COLOURS[0]},
-             "error_x": {"type": "data", "symmetric": False, "color": "#808080", "array": interval[:, 1] - correlation,
-                         "arrayminus": correlation - interval[:, 0]}, "showlegend": False}  # fmt: skip
+    trace = {
+        "type": "bar",
+        "orientation": "h",
+        "x": correlation,
+        "y": names,
+        "marker": {"color": COLOURS[0]},
+        "error_x": {
+            "type": "data",
+            "symmetric": False,
+            "color": "#808080",
+            "array": interval[:, 1] - correlation,
+            "arrayminus": correlation - interval[:, 0],
+        },
+        "showlegend": False,
+    }
     told = ", ".join(f"{name} {value:.2f}" for name, value in zip(names, correlation, strict=True))
-    return Panel("deciding", finding, f"{finding}. Rank correlations: {told}.", [trace],
-                 {"xaxis": axis("rank correlation", range=[-1.05, 1.05]),
-                  "yaxis": {"automargin": True, "autorange": "reversed"}},
-                 note="Spearman's and its 95 % interval; 1 if the response always grows with the input.")  # fmt: skip
+    return Panel(
+        "deciding",
+        finding,
+        f"{finding}. Rank correlations: {told}.",
+        [trace],
+        {
+            "xaxis": axis("rank correlation", range=[-1.05, 1.05]),
+            "yaxis": {"automargin": True, "autorange": "reversed"},
+        },
+        note="Spearman's and its 95 % interval; 1 if the response always grows with the input.",
+    )
 
 
 def _spread(data: xr.Dataset, of: str) -> Panel | None:
@@ -164,5 +203,10 @@ def _spread(data: xr.Dataset, of: str) -> Panel | None:
         return None
     words, unit, finding = findings.words(data, of), data[of].attrs["units"], findings.middle(data, of)
     trace = {"type": "histogram", "x": values, "marker": {"color": COLOURS[0]}, "showlegend": False}
-    return Panel("spread", finding, f"{finding}. Number of cases over the {words}.", [trace],
-                 {"xaxis": axis(f"{words}, {unit}"), "yaxis": axis("cases"), "bargap": 0.04})  # fmt: skip
+    return Panel(
+        "spread",
+        finding,
+        f"{finding}. Number of cases over the {words}.",
+        [trace],
+        {"xaxis": axis(f"{words}, {unit}"), "yaxis": axis("cases"), "bargap": 0.04},
+    )

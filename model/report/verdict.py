@@ -49,8 +49,21 @@ def checks(summary: Mapping[str, Any], has_formulas: bool, is_standard_wire: boo
         _check("material data", ("plastic work",), messages),
         _check("accuracy", ("step error", "unknown error", "penetration", "wall"), messages),
     ]
-    named = {"gap", "wall", "solid coils", "stress", "strength", "endurance", "buckled", "buckling", "snapped",
-             "plastic work", "step error", "unknown error", "penetration"}  # fmt: skip
+    named = {
+        "gap",
+        "wall",
+        "solid coils",
+        "stress",
+        "strength",
+        "endurance",
+        "buckled",
+        "buckling",
+        "snapped",
+        "plastic work",
+        "step error",
+        "unknown error",
+        "penetration",
+    }
     others = [one for name, one in messages.items() if name not in named]
     return [*found, Check("other warnings", not others, "; ".join(others))]
 

@@ -18,6 +18,7 @@ KINDS = {
     "initial rate": "the initial rate could not be computed",
     "lift-off": "an end lifts off its seat",
     "peened layer": "the integration points are too coarse for the peened layer",
+    "measured axis": "the measured axis is away from the z axis of its file",
     "penetration": "contacts penetrate more than allowed",
     "plastic work": "the plastic work exceeds the range of the material's data",
     "presetting": "presetting causes little set",

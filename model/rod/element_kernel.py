@@ -25,7 +25,7 @@ import numpy as np
 from dolfinx.jit import mpi_jit_decorator
 from llvmlite import binding
 
-from coilset.meshes.errors import CoilsetError
+from coilset.model.base.errors import CoilsetError
 from coilset.model.rod.blocks import blocks
 
 # As many as fill a register of 512 bits, or one of 256: with two registers for each value of FFCx's function, most of
@@ -169,7 +169,8 @@ def _compile(path: Path, text: str) -> None:
     """Compile beside `path` and put the result there; others may do the same at the same time."""
     builder = cffi.FFI()
     builder.cdef(DECLARATION + ";")
-    builder.set_source(path.name.split(".")[0], text, extra_compile_args=OPTIONS,
-                       include_dirs=[ffcx.codegeneration.get_include_path()])  # fmt: skip
+    builder.set_source(
+        path.name.split(".")[0], text, extra_compile_args=OPTIONS, include_dirs=[ffcx.codegeneration.get_include_path()]
+    )
     with tempfile.TemporaryDirectory(dir=path.parent) as folder:
         os.replace(builder.compile(tmpdir=folder), path)

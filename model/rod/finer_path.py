@@ -17,9 +17,9 @@ from collections.abc import Iterable, Iterator, Mapping
 import numpy as np
 from numba import njit
 
+from coilset.model.body.state import State, Where
 from coilset.model.rod.blocks import blocks
 from coilset.model.section.kinds import Sections
-from coilset.model.state import State, Where
 
 BLOCK = 256  # cells that are followed together: only for these the state on the way is kept
 CLOCKS = "clock", "halfway_clock"  # of the whole rod, at the end of a step, and half way along its path
@@ -45,8 +45,10 @@ class FinerPath:
         self._increment = state.add("strain_increment", np.zeros(shape), Where.ELEMENT)
         self._first = state.add("first_strain_increment", np.zeros(shape), Where.ELEMENT)
         self._error = state.add("section_force_error", np.zeros(shape), Where.ELEMENT)
-        self._fields = {name: state.add(f"finer_{name}", state[name].equilibrium.copy(), Where.ELEMENT, in_place=True)
-                        for name in names}  # fmt: skip
+        self._fields = {
+            name: state.add(f"finer_{name}", state[name].equilibrium.copy(), Where.ELEMENT, in_place=True)
+            for name in names
+        }
         # the path's end takes the place of its start, which is not needed any more then
         self._end = {name: field.equilibrium for name, field in self._fields.items()}
         self._on_the_way = {name: values[:BLOCK].copy() for name, values in self._end.items()}

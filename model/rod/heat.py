@@ -11,16 +11,16 @@ equilibrium is found again after the heat of each step.
 
 import numpy as np
 
-from coilset.model.agreement import max_of_ranks
-from coilset.model.material.creep_law import HOURS, TEMPERATURE
-from coilset.model.material.law import Law
+from coilset.model.base.agreement import max_of_ranks
+from coilset.model.body.state import Where
+from coilset.model.material.creep.law import HOURS, TEMPERATURE
+from coilset.model.material.law.law import Law
 from coilset.model.rod.finer_path import CLOCKS
 from coilset.model.rod.heat_equation import HeatConstants, HeatEquation
 from coilset.model.rod.kinematics import GAUSS
 from coilset.model.rod.rod import Rod
 from coilset.model.section.fibres import FibreSections
 from coilset.model.section.ground import section_points
-from coilset.model.state import Where
 
 SLOWEST = 1.8411837813406593**2
 COLUMN = 7  # of the points' temperature

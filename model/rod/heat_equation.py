@@ -15,9 +15,9 @@ from dolfinx import fem
 from dolfinx.fem.petsc import assemble_matrix, assemble_vector
 from petsc4py import PETSc
 
-from coilset.meshes.compat import geometry_dofs
 from coilset.meshes.line import LineMesh
-from coilset.model.agreement import sum_of_ranks
+from coilset.model.base.agreement import sum_of_ranks
+from coilset.model.base.compat import geometry_dofs
 from coilset.model.rod import forms
 
 

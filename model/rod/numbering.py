@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from dolfinx import fem
 
-from coilset.meshes.compat import geometry_dofs
+from coilset.model.base.compat import geometry_dofs
 
 
 @dataclass(frozen=True)

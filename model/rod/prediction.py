@@ -108,9 +108,18 @@ class Prediction:
         self.forces, self.strain, self.tangent = (np.zeros_like(each) for each in self._on_trial)
         self.change = np.zeros_like(c.s)
         self._arguments = (
-            cells, chords, c.E, c.T, c.P, c.W, c.timoshenko_factor, c.e,
-            numbering.u, numbering.rotations, numbering.shear,
-        )  # fmt: skip
+            cells,
+            chords,
+            c.E,
+            c.T,
+            c.P,
+            c.W,
+            c.timoshenko_factor,
+            c.e,
+            numbering.u,
+            numbering.rotations,
+            numbering.shear,
+        )
 
     def begin(self, correction: np.ndarray) -> None:
         """Take the state on trial, from which a correction of the local unknowns begins, mm and rad."""

@@ -8,14 +8,15 @@ import numpy as np
 from dolfinx import fem
 from petsc4py import PETSc
 
-from coilset.meshes.compat import geometry_dofs
 from coilset.meshes.line import LineMesh
-from coilset.meshes.placement import Placement, straight
-from coilset.model.agreement import max_of_ranks, sum_of_ranks
-from coilset.model.body import Moment
-from coilset.model.extremes import largest
-from coilset.model.material.creep_law import CreepLaw
-from coilset.model.material.law import Law
+from coilset.meshes.springs.placement import Placement, straight
+from coilset.model.base.agreement import max_of_ranks, sum_of_ranks
+from coilset.model.base.compat import geometry_dofs
+from coilset.model.base.extremes import largest
+from coilset.model.body.body import Moment
+from coilset.model.body.state import Field, State, Where
+from coilset.model.material.creep.law import CreepLaw
+from coilset.model.material.law.law import Law
 from coilset.model.rod import forms
 from coilset.model.rod.assembly import add_element_vectors
 from coilset.model.rod.coefficients import Coefficients, timoshenko_factor
@@ -25,11 +26,10 @@ from coilset.model.rod.kinematics import GAUSS, chord_triads, displace_nodes, se
 from coilset.model.rod.numbering import Numbering
 from coilset.model.rod.prediction import Prediction
 from coilset.model.rod.section_states import KEPT, POINTS, SURFACE, SectionStates
+from coilset.model.runtime.threads import Threads
 from coilset.model.section import surface
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule
-from coilset.model.state import Field, State, Where
-from coilset.model.threads import Threads
 
 EPSILON = float(np.finfo(float).eps)
 
@@ -128,14 +128,36 @@ class Rod:
             self._forces = [state.add(name, values, Where.ELEMENT) for name, values in known.items()]
         self.state, self.chart = state, np.tile(np.eye(3), (len(x), 1, 1))
         self._of_nodes = (
-            self._increment, numbering.u, numbering.rotations, numbering.shear, self.cells,
-            self._x.equilibrium, self._chord.equilibrium, self._R.equilibrium, self._shear.equilibrium,
-            self._x.trial, self._chord.trial, self._R.trial, self._shear.trial, self.chart, c.T,
-        )  # fmt: skip
+            self._increment,
+            numbering.u,
+            numbering.rotations,
+            numbering.shear,
+            self.cells,
+            self._x.equilibrium,
+            self._chord.equilibrium,
+            self._R.equilibrium,
+            self._shear.equilibrium,
+            self._x.trial,
+            self._chord.trial,
+            self._R.trial,
+            self._shear.trial,
+            self.chart,
+            c.T,
+        )
         self._of_cells = (
-            self.cells, self._chord.trial, self._R.trial, self.E0, self.l0, self._shear.trial,
-            c.timoshenko_factor, GAUSS, c.E, c.P, c.W, c.e,
-        )  # fmt: skip
+            self.cells,
+            self._chord.trial,
+            self._R.trial,
+            self.E0,
+            self.l0,
+            self._shear.trial,
+            c.timoshenko_factor,
+            GAUSS,
+            c.E,
+            c.P,
+            c.W,
+            c.e,
+        )
         self.rest()
 
     def rest(self) -> None:

@@ -7,11 +7,11 @@ it. So an evaluation keeps one element's at a time, and a step's end finds them 
 
 import numpy as np
 
-from coilset.model.material.creep_law import CreepLaw
-from coilset.model.material.rate_law import RateLaw
+from coilset.model.body.state import Field, State, Where
+from coilset.model.material.creep.law import CreepLaw
+from coilset.model.material.creep.rate import RateLaw
 from coilset.model.rod.finer_path import CLOCKS, in_blocks, of_cells
 from coilset.model.section.kinds import Sections
-from coilset.model.state import Field, State, Where
 
 POINTS, SURFACE = "point_state", "surface_state"
 KEPT = 4096  # elements up to which all points' states on trial are kept: as many as a processor's caches may hold
@@ -34,8 +34,10 @@ class SectionStates:
         self._sections, self._strain, cells = sections, strain, len(sections.radius)
         passing = sections.passing if cells > KEPT else ()
         self._in_place = (*passing, SURFACE)
-        self._fields = {name: state.add(name, rows, Where.ELEMENT, in_place=name in self._in_place)
-                        for name, rows in sections.initial_state().items()}  # fmt: skip
+        self._fields = {
+            name: state.add(name, rows, Where.ELEMENT, in_place=name in self._in_place)
+            for name, rows in sections.initial_state().items()
+        }
         self._start = {name: field.equilibrium for name, field in self._fields.items()}
         self._trial = {name: field.trial for name, field in self._fields.items()}
         self._start["strain"] = strain.equilibrium
@@ -44,8 +46,9 @@ class SectionStates:
                 clock = state.add(name, in_time.clock(0.0, temperature), Where.SHARED)
                 self._start[name], self._trial[name] = clock.equilibrium, clock.trial
         # of what passes, each thread keeps an element's
-        self._on_the_way = self._trial | {name: np.empty((sections.threads.number, *self._trial[name].shape[1:]))
-                                          for name in passing}  # fmt: skip
+        self._on_the_way = self._trial | {
+            name: np.empty((sections.threads.number, *self._trial[name].shape[1:])) for name in passing
+        }
         self._blocks = list(in_blocks(sections))
 
     @property

@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from coilset.model.material.kernel import KERNEL
+from coilset.model.base.kernel import KERNEL
 
 
 @njit(**KERNEL)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
-from coilset.model.material.kernel import KERNEL
+from coilset.model.base.kernel import KERNEL
 from coilset.model.material.point_law import solid_point
 
 # A change of the warping, a strain, that ends the iteration. Its effect on the resultants is added to them, so that

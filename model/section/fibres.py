@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from numba import njit, prange
 
-from coilset.meshes.placement import Placement
-from coilset.model.material.kernel import KERNEL, PARALLEL
-from coilset.model.material.law import Law
+from coilset.meshes.springs.placement import Placement
+from coilset.model.base.kernel import KERNEL, PARALLEL
+from coilset.model.material.law.law import Law
+from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.ground import ground_sections, rim_rule
 from coilset.model.section.integration import FIBRES, section, update_points
@@ -18,7 +19,6 @@ from coilset.model.section.law_over_time import LawOverTime
 from coilset.model.section.rules import DiskRule, rim
 from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
 from coilset.model.section.wire import BEND
-from coilset.model.threads import Threads
 
 
 class FibreSections:
@@ -129,12 +129,30 @@ class FibreSections:
             False if the law found no solution at some point or the strains are not finite.
         """
         place, law = self.placement, self.law_over_time.over(start, trial)
-        return bool(self.threads.run(
-            update_sections, update_in_parts, len(self.radius), 2 * len(self.y),
-            law, tuple(self.ground), self.y, self.z, self.weights, self.radius, place.curvature, self.curved,
-            self._increment(strain, start, trial), place.matrices, place.stretch, start["point_state"],
-            trial["point_state"], s, D, with_tangent,
-        ))  # fmt: skip
+        return bool(
+            self.threads.run(
+                update_sections,
+                update_in_parts,
+                len(self.radius),
+                2 * len(self.y),
+                law,
+                tuple(self.ground),
+                self.y,
+                self.z,
+                self.weights,
+                self.radius,
+                place.curvature,
+                self.curved,
+                self._increment(strain, start, trial),
+                place.matrices,
+                place.stretch,
+                start["point_state"],
+                trial["point_state"],
+                s,
+                D,
+                with_tangent,
+            )
+        )
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
         """Advance the points on the wire's surface to the end of the increment; they have no weight in the section.
@@ -143,10 +161,22 @@ class FibreSections:
         """
         place, law = self.placement, self.law_over_time.over(start, trial)
         self.threads.run(
-            update_surface, update_surface_in_parts, len(self.radius), 2 * len(self.rim_y),
-            law, tuple(self.ground_rim), self.rim_y, self.rim_z, self.radius, place.curvature, self.curved,
-            self._increment(strain, start, trial), place.matrices, start["surface_state"], trial["surface_state"],
-        )  # fmt: skip
+            update_surface,
+            update_surface_in_parts,
+            len(self.radius),
+            2 * len(self.rim_y),
+            law,
+            tuple(self.ground_rim),
+            self.rim_y,
+            self.rim_z,
+            self.radius,
+            place.curvature,
+            self.curved,
+            self._increment(strain, start, trial),
+            place.matrices,
+            start["surface_state"],
+            trial["surface_state"],
+        )
 
 
 @njit(**PARALLEL)
@@ -222,8 +252,9 @@ def update_sections(
             elif curved and curvature[c, g] * R != last_bend:
                 last_bend = curvature[c, g] * R
                 curved_shape(y, z, last_bend, disk_shape)
-            if not section(p, fibres, shape, d, old[c, g], new[at, g], strain, C, with_tangent, count, resultant,
-                           tangent):  # fmt: skip
+            if not section(
+                p, fibres, shape, d, old[c, g], new[at, g], strain, C, with_tangent, count, resultant, tangent
+            ):
                 return False
             to_chord(placement[c, g], stretch[c, g], resultant, tangent, work, s[c, g], D[c, g], with_tangent)
     return True

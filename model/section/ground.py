@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from coilset.meshes.placement import Placement
+from coilset.meshes.springs.placement import Placement
 from coilset.model.section.integration import FIBRES
 from coilset.model.section.rules import DiskRule
 from coilset.model.section.segment import WHOLE, Segment

@@ -16,7 +16,7 @@ import math
 import numpy as np
 from numba import njit
 
-from coilset.model.material.kernel import KERNEL
+from coilset.model.base.kernel import KERNEL
 from coilset.model.material.point_law import rod_points
 
 FIBRES = 5  # rows of `fibres`: y, z, u, v and area

@@ -10,13 +10,13 @@ from typing import Any, Protocol, Self
 
 import numpy as np
 
-from coilset.meshes.placement import Placement
-from coilset.model.material.law import Law
+from coilset.meshes.springs.placement import Placement
+from coilset.model.material.law.law import Law
+from coilset.model.runtime.threads import Threads
 from coilset.model.section.fibres import FibreSections
 from coilset.model.section.law_over_time import LawOverTime
 from coilset.model.section.rules import DiskRule
 from coilset.model.section.warping import WarpingSections
-from coilset.model.threads import Threads
 
 KINDS = ("plane", "curved", "warping")
 

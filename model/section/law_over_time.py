@@ -4,12 +4,12 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from coilset.model.material.back_stresses import BackStresses
-from coilset.model.material.creep import Creeping
-from coilset.model.material.creep_law import CREEP_COLUMNS, TEMPERATURE, CreepLaw
-from coilset.model.material.law import Law
+from coilset.model.material.creep.creep import Creeping
+from coilset.model.material.creep.law import CREEP_COLUMNS, TEMPERATURE, CreepLaw
+from coilset.model.material.creep.rate import RateLaw, law_in_time
+from coilset.model.material.law.law import Law
+from coilset.model.material.law.terms import BackStresses
 from coilset.model.material.points import initial_state
-from coilset.model.material.rate_law import RateLaw, law_in_time
 
 
 class LawOverTime:

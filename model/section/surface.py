@@ -84,8 +84,9 @@ class Inside:
 
         around, columns = np.empty(state.shape[:-1]), (components.index("t12"), components.index("t13"))
         rows = state.reshape(-1, *state.shape[-2:])
-        shear_around(rows, columns, *directions(state.shape[-2]), self.sign * math.cos(self.angle),
-                     around.reshape(len(rows), -1))  # fmt: skip
+        shear_around(
+            rows, columns, *directions(state.shape[-2]), self.sign * math.cos(self.angle), around.reshape(len(rows), -1)
+        )
         return around
 
     def shear(self, state: np.ndarray, components: tuple[str, ...]) -> np.ndarray:

@@ -23,17 +23,17 @@ from typing import Any
 import numpy as np
 from numba import njit, prange
 
-from coilset.meshes.placement import Placement
-from coilset.model.material.kernel import PARALLEL
-from coilset.model.material.law import Law
+from coilset.meshes.springs.placement import Placement
+from coilset.model.base.kernel import PARALLEL
+from coilset.model.material.law.law import Law
 from coilset.model.material.point_law import solid_point
+from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.condensation import condense, find_warping, strain_operator
 from coilset.model.section.ground import segments
 from coilset.model.section.law_over_time import LawOverTime
 from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import DiskRule, rim
-from coilset.model.threads import Threads
 
 
 class WarpingSections:
@@ -50,8 +50,20 @@ class WarpingSections:
 
     passing: tuple[str, ...] = ()
     components: tuple[str, ...] = (
-        "s11", "s22", "s33", "t12", "t13", "t23", "B11", "B22", "B33", "B12", "B13", "B23", "b",
-    )  # fmt: skip
+        "s11",
+        "s22",
+        "s33",
+        "t12",
+        "t13",
+        "t23",
+        "B11",
+        "B22",
+        "B33",
+        "B12",
+        "B13",
+        "B23",
+        "b",
+    )
 
     def __init__(
         self,
@@ -109,22 +121,54 @@ class WarpingSections:
     ) -> bool:
         """Bring all sections to the end of the increment; as `FibreSections.update`, but always with the tangent."""
         place, law = self.placement, self.law_over_time.over(start, trial)
-        return bool(self.threads.run(
-            update_sections, update_in_parts, len(self.radius), 2 * self.weights.shape[1],
-            law, self.which, *self.points, self.weights, self.radius, place.curvature, place.torsion,
-            strain - start["strain"], place.matrices, place.stretch, start["point_state"], start["warping"],
-            start["warping_slope"], trial["point_state"], trial["warping"], trial["warping_slope"], s, D,
-            self.iterations,
-        ))  # fmt: skip
+        return bool(
+            self.threads.run(
+                update_sections,
+                update_in_parts,
+                len(self.radius),
+                2 * self.weights.shape[1],
+                law,
+                self.which,
+                *self.points,
+                self.weights,
+                self.radius,
+                place.curvature,
+                place.torsion,
+                strain - start["strain"],
+                place.matrices,
+                place.stretch,
+                start["point_state"],
+                start["warping"],
+                start["warping_slope"],
+                trial["point_state"],
+                trial["warping"],
+                trial["warping_slope"],
+                s,
+                D,
+                self.iterations,
+            )
+        )
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
         """Bring the points on the wire's surface to the end of the increment; as `FibreSections.update_surface`."""
         place, law = self.placement, self.law_over_time.over(start, trial)
         self.threads.run(
-            update_surface, update_surface_in_parts, len(self.radius), 2 * self.rim[0].shape[1],
-            law, self.which, *self.rim, self.radius, place.curvature, place.torsion, strain - start["strain"],
-            place.matrices, start["surface_state"], trial["warping"] - start["warping"], trial["surface_state"],
-        )  # fmt: skip
+            update_surface,
+            update_surface_in_parts,
+            len(self.radius),
+            2 * self.rim[0].shape[1],
+            law,
+            self.which,
+            *self.rim,
+            self.radius,
+            place.curvature,
+            place.torsion,
+            strain - start["strain"],
+            place.matrices,
+            start["surface_state"],
+            trial["warping"] - start["warping"],
+            trial["surface_state"],
+        )
 
 
 def _with_polynomials(points: Sequence[np.ndarray], bases: Sequence[Basis]) -> tuple[np.ndarray, ...]:
@@ -207,8 +251,9 @@ def update_sections(
                     a[c, g, m] = old_a[c, g, m]
                     for j in range(6):
                         a[c, g, m] += follow * old_slope[c, g, m, j] * step[j]
-                good = find_warping(p, B, dA, old[c, g], old_a[c, g], a[c, g], new[c, g], step, C, CB, K, r, X,
-                                    count[part])  # fmt: skip
+                good = find_warping(
+                    p, B, dA, old[c, g], old_a[c, g], a[c, g], new[c, g], step, C, CB, K, r, X, count[part]
+                )
                 if good:
                     break
             if not good:

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 
-from coilset.meshes.errors import SolveError
-from coilset.model.material.back_stresses import BackStresses
-from coilset.model.material.creep import Creeping
+from coilset.model.base.errors import SolveError
+from coilset.model.material.creep.creep import Creeping
+from coilset.model.material.law.terms import BackStresses
 from coilset.model.material.point_law import advance_points
 from coilset.model.section.integration import section
 from coilset.model.section.rules import DiskRule, rim

@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from coilset.meshes.errors import InputError, SolveError
-from coilset.meshes.geometry import Spring
 from coilset.meshes.section import SectionMesh, section_mesh
 from coilset.meshes.section_shapes import Outline, round_wire
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.base.errors import InputError, SolveError
 from coilset.model.case import Case
 from coilset.model.case.phases import Phase
 from coilset.model.slice.contact import SelfContact
@@ -130,8 +130,9 @@ class SliceAnalysis:
                 raise InputError(timeless, f"loading.{index}.seconds")
             kind, value = phase.goal(self.spring.free_length, block)
             if kind == "height" and value < block * (1.0 - SAME):
-                raise InputError(f"a height of {value:.6g} mm is below block, {block:.6g} mm; give to: block",
-                                 f"loading.{index}.to")  # fmt: skip
+                raise InputError(
+                    f"a height of {value:.6g} mm is below block, {block:.6g} mm; give to: block", f"loading.{index}.to"
+                )
 
     @property
     def travel(self) -> float:
@@ -180,10 +181,19 @@ class SliceAnalysis:
                 effort = self.problem.go_to_rise(self._rise(value))
             problem, pressure = self.problem, self.problem.pressure
             step = SliceStep(
-                len(self.result.steps) + 1, index, float(mark), self.height, self.travel, float(problem.force),
-                effort.iterations, effort.cuts, pressure.bearing, max(0.0, -pressure.gap),
-                2.0 * np.pi * self.body.rise, float(problem.torque),
-            )  # fmt: skip
+                len(self.result.steps) + 1,
+                index,
+                float(mark),
+                self.height,
+                self.travel,
+                float(problem.force),
+                effort.iterations,
+                effort.cuts,
+                pressure.bearing,
+                max(0.0, -pressure.gap),
+                2.0 * np.pi * self.body.rise,
+                float(problem.torque),
+            )
             self.result.steps.append(step)
             report(step)
 
@@ -219,35 +229,53 @@ class SliceAnalysis:
     def snapshot(self, name: str) -> SliceSnapshot:
         """The current state of the section."""
         positions = self.lattice.positions(self.body.x)
-        return SliceSnapshot(name, self.height, float(self.problem.force), positions, self.points.section_stress(),
-                             self.points.state[:, 12].copy(), self.line.section_stress())  # fmt: skip
+        return SliceSnapshot(
+            name,
+            self.height,
+            float(self.problem.force),
+            positions,
+            self.points.section_stress(),
+            self.points.state[:, 12].copy(),
+            self.line.section_stress(),
+        )
 
 
 def _same_in_all_turns(spring: Spring, name: str) -> float:
-    function = {"wire_diameter": spring.wire_diameter, "mean_diameter": lambda t: 2.0 * spring.mean_radius(t),
-                "pitch": spring.pitch}[name]  # fmt: skip
+    function = {
+        "wire_diameter": spring.wire_diameter,
+        "mean_diameter": lambda t: 2.0 * spring.mean_radius(t),
+        "pitch": spring.pitch,
+    }[name]
     values = function(0.5 * (spring.breaks[1:] + spring.breaks[:-1]))
     if np.ptp(values) > SAME * np.abs(values).max():
         closed = name == "pitch" and not spring.bottom.form == spring.top.form == "open"
         hint = "; leave end_coils out" if closed else ""
-        raise InputError(f"{values.min():.6g} to {values.max():.6g} mm; the slice needs the same value in all turns, a "
-                         f"cylindrical spring{hint}", f"spring.{name}")  # fmt: skip
+        raise InputError(
+            f"{values.min():.6g} to {values.max():.6g} mm; the slice needs the same value in all turns, a "
+            f"cylindrical spring{hint}",
+            f"spring.{name}",
+        )
     return float(values.mean())
 
 
 def _fits(extent: tuple[float, float, float, float], diameter: float) -> None:
     height = extent[3] - extent[2]
     if abs(height - diameter) > 1e-3 * diameter:
-        raise InputError(f"{diameter:g} mm, but the section is {height:.5g} mm high along the spring; give its height",
-                         "spring.wire_diameter")  # fmt: skip
+        raise InputError(
+            f"{diameter:g} mm, but the section is {height:.5g} mm high along the spring; give its height",
+            "spring.wire_diameter",
+        )
 
 
 def _across(section: SectionMesh) -> tuple[float, float]:
     """ξ of the section's surface at η = 0, at the inside and at the outside of the coil, mm."""
     if section.middle is None:
         low, high = section.extent[2:]
-        raise InputError(f"the section lies at η = {low:.5g} to {high:.5g} mm; give η from the wire's centre line, "
-                         "which it must reach", "section.points")  # fmt: skip
+        raise InputError(
+            f"the section lies at η = {low:.5g} to {high:.5g} mm; give η from the wire's centre line, "
+            "which it must reach",
+            "section.points",
+        )
     return section.middle
 
 

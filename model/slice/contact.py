@@ -112,8 +112,20 @@ class SelfContact:
         for above, t in zip(self._corners, (1.0, 0.0), strict=True):
             if len(above):
                 gap = np.empty((len(above), 1))
-                gaps(self.body.x, κ, edges.blocks, edges.polynomials, above, self._below, np.array([t]), -np.inf,
-                     gap, self._where, self._gradient, self._hessian)  # fmt: skip
+                gaps(
+                    self.body.x,
+                    κ,
+                    edges.blocks,
+                    edges.polynomials,
+                    above,
+                    self._below,
+                    np.array([t]),
+                    -np.inf,
+                    gap,
+                    self._where,
+                    self._gradient,
+                    self._hessian,
+                )
                 smallest = min(smallest, float(gap.min()))
         return smallest
 
@@ -121,8 +133,20 @@ class SelfContact:
         """Forces and stiffness at the body's increment."""
         body, edges = self.body, self._edges
         h, λ, x = body.rise, body.turn, body.x
-        count = gaps(x, h / λ, edges.blocks, edges.polynomials, self._above, self._below, self._gauss, 0.0,
-                     self._gap, self._where, self._gradient, self._hessian)  # fmt: skip
+        count = gaps(
+            x,
+            h / λ,
+            edges.blocks,
+            edges.polynomials,
+            self._above,
+            self._below,
+            self._gauss,
+            0.0,
+            self._gap,
+            self._where,
+            self._gradient,
+            self._hessian,
+        )
         a, k, b = self._where[:count].T
         gradient, hessian = self._gradient[:count], self._hessian[:count]
         pressure, slope = one_sided(self._gap[a, k], self.stiffness * self._areas[a, k], self.onset)
@@ -141,6 +165,14 @@ class SelfContact:
         forces = np.bincount(dofs.ravel(), (load @ onto).ravel(), x.size + 2)
         i, j = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
         free = float(self._gap.min())
-        return Pressure(min(free, self._corner_gap(h / λ)), free, int(np.count_nonzero(pressure > 0)),
-                        2 * np.pi * float(pressure.sum()), forces[:-2].reshape(-1, 3), forces[-2:],
-                        i.ravel(), j.ravel(), K.ravel())  # fmt: skip
+        return Pressure(
+            min(free, self._corner_gap(h / λ)),
+            free,
+            int(np.count_nonzero(pressure > 0)),
+            2 * np.pi * float(pressure.sum()),
+            forces[:-2].reshape(-1, 3),
+            forces[-2:],
+            i.ravel(),
+            j.ravel(),
+            K.ravel(),
+        )

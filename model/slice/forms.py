@@ -121,8 +121,9 @@ class SliceForms:
             ("resultant", TURN): lambda: work(variation[TURN]),
         } | {
             ("corner", i, j): lambda i=i, j=j: change(variation[i], variation[j])
-            for i in (RISE, TURN) for j in (RISE, TURN)
-        }  # fmt: skip
+            for i in (RISE, TURN)
+            for j in (RISE, TURN)
+        }
         self._compiled: dict[str | tuple, fem.Form] = {}
         self._motion(F, inverse)
         self.cells = np.arange(mesh.topology.index_map(2).size_local, dtype=np.int32)

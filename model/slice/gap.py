@@ -173,8 +173,15 @@ def gaps(
     """
     n = edges.shape[1]
     size, count = 6 * n + 1, 0
-    room = (np.empty((3, n)), np.empty((3, 3)), np.empty(2), np.empty((2, 3)), np.empty((2, 3, 3)), np.empty(4),
-            np.empty((3, 2)))  # fmt: skip
+    room = (
+        np.empty((3, n)),
+        np.empty((3, 3)),
+        np.empty(2),
+        np.empty((2, 3)),
+        np.empty((2, 3, 3)),
+        np.empty(4),
+        np.empty((3, 2)),
+    )
     N, X, m, D, H, turned, C = room
     start = np.empty((len(below), SAMPLES + 1, 2))
     for e in range(len(below)):
@@ -230,8 +237,10 @@ def gaps(
                             other = n0 * H[0, i, j] + n1 * H[1, i, j]
                             hessian[count, 3 * b + i, 3 * c + j] += own * M[0, b] * M[0, c]
                             hessian[count, 3 * (n + b) + i, 3 * (n + c) + j] -= other * N[0, b] * N[0, c]
-                    for at, value in ((3 * b + i, -n1 * turned_p[1 + i] * M[0, b]),
-                                      (3 * (n + b) + i, n1 * turned[1 + i] * N[0, b])):  # fmt: skip
+                    for at, value in (
+                        (3 * b + i, -n1 * turned_p[1 + i] * M[0, b]),
+                        (3 * (n + b) + i, n1 * turned[1 + i] * N[0, b]),
+                    ):
                         hessian[count, at, size - 1] += value
                         hessian[count, size - 1, at] += value
             where[count, 0], where[count, 1], where[count, 2] = a, k, number

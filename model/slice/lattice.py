@@ -3,7 +3,7 @@
 import basix
 import numpy as np
 
-from coilset.meshes.compat import geometry_dofs
+from coilset.model.base.compat import geometry_dofs
 from coilset.model.slice.slice import Slice
 
 DIVISIONS = 4  # per side of a triangle of the mesh

@@ -8,13 +8,13 @@ import pyvista
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from coilset.model.results.figures import save
-from coilset.model.results.folder import make
-from coilset.model.results.grid_file import write_grid
-from coilset.model.results.labels import plain
+from coilset.model.base.style import DIVERGING, STYLE, levels
+from coilset.model.figures.figures import save
+from coilset.model.results.files.folder import make
+from coilset.model.results.files.grid_file import write_grid
+from coilset.model.results.records.labels import plain
 from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot
 from coilset.model.slice.watch import equivalent, shear
-from coilset.model.style import DIVERGING, STYLE, levels
 
 
 def write_fields(folder: Path, analysis: SliceAnalysis) -> None:
@@ -56,8 +56,10 @@ def figure(path: Path, analysis: SliceAnalysis) -> None:
             _row(sheet, row, analysis, shot)
         law, coil = analysis.law.name, analysis.coil
         least, most = (plain(float(f(equivalent(shots[-1].stress))), 2) for f in (np.min, np.max))
-        sheet.suptitle(f"At {shots[-1].name} the von Mises stress runs from {least} to {most} MPa ({law}, "
-                       f"D = {2 * coil.radius:g} mm; the coil's axis is on the left)")  # fmt: skip
+        sheet.suptitle(
+            f"At {shots[-1].name} the von Mises stress runs from {least} to {most} MPa ({law}, "
+            f"D = {2 * coil.radius:g} mm; the coil's axis is on the left)"
+        )
         save(sheet, path)
 
 

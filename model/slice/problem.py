@@ -9,8 +9,8 @@ import numpy as np
 from dolfinx import fem
 from petsc4py import PETSc
 
-from coilset.meshes.compat import NOT_A_NUMBER
-from coilset.meshes.errors import SolveError
+from coilset.model.base.compat import NOT_A_NUMBER
+from coilset.model.base.errors import SolveError
 from coilset.model.equilibrium.snes import solve
 from coilset.model.slice.bordered import BorderedMatrix
 from coilset.model.slice.contact import NoContact, SelfContact, SliceContact
@@ -21,9 +21,13 @@ from coilset.model.slice.watch import Watch
 # PETSc's own factorisation: below a few thousand unknowns MUMPS costs several times as much. Minimum degree
 # ordering eliminates the dense border last.
 OPTIONS = {
-    "snes_type": "newtonls", "snes_linesearch_type": "bt", "snes_max_it": 20, "ksp_type": "preonly", "pc_type": "lu",
+    "snes_type": "newtonls",
+    "snes_linesearch_type": "bt",
+    "snes_max_it": 20,
+    "ksp_type": "preonly",
+    "pc_type": "lu",
     "pc_factor_mat_ordering_type": "qmd",
-}  # fmt: skip
+}
 MAX_CUTS = 8
 _numbers = itertools.count()
 
@@ -215,8 +219,10 @@ class SliceProblem:
             part, cuts = 0.5 * part, cuts + 1
             if cuts > MAX_CUTS:
                 kind = f"{target:g} N" if by_force else f"a pitch of {2 * np.pi * target:g} mm"
-                raise SolveError(f"no equilibrium of the slice beyond {self.force:.6g} N and a pitch of "
-                                 f"{2 * np.pi * self.body.rise:.6g} mm on the way to {kind}")  # fmt: skip
+                raise SolveError(
+                    f"no equilibrium of the slice beyond {self.force:.6g} N and a pitch of "
+                    f"{2 * np.pi * self.body.rise:.6g} mm on the way to {kind}"
+                )
         return Effort(iterations, cuts)
 
     def _sinks_in(self) -> bool:

@@ -6,10 +6,10 @@ from typing import Protocol
 import numpy as np
 from dolfinx import fem
 
-from coilset.meshes.compat import geometry_dofs
-from coilset.meshes.errors import InputError
 from coilset.meshes.section import SectionMesh
-from coilset.model.material.law import Law
+from coilset.model.base.compat import geometry_dofs
+from coilset.model.base.errors import InputError
+from coilset.model.material.law.law import Law
 from coilset.model.material.points import initial_state
 from coilset.model.slice.forms import RISE, TURN, SliceForms, assemble
 from coilset.model.solid.kinematics import push_forward, stretches
@@ -57,7 +57,7 @@ class Slice:
     Args:
         section: SectionMesh.
         coil: Coil.
-        law: `coilset.model.material.law.Law`.
+        law: `coilset.model.material.law.law.Law`.
         temperature: K; default is the law's reference temperature.
 
     Attributes:
@@ -76,8 +76,11 @@ class Slice:
 
     def __init__(self, section: SectionMesh, coil: Coil, law: Law, temperature: float | None = None):
         if not coil.radius + section.extent[0] > 0:
-            raise InputError(f"the coil's axis is {coil.radius:g} mm away, but the section reaches "
-                             f"{-section.extent[0]:g} mm inwards", "spring.mean_diameter")  # fmt: skip
+            raise InputError(
+                f"the coil's axis is {coil.radius:g} mm away, but the section reaches "
+                f"{-section.extent[0]:g} mm inwards",
+                "spring.mean_diameter",
+            )
         self.section, self.coil, self.law = section, coil, law
         self.forms = SliceForms(section)
         self.u = self.forms.u.x.array.reshape(-1, 3)

@@ -9,7 +9,7 @@ condition is violated there.
 import numpy as np
 from scipy.spatial import cKDTree
 
-from coilset.meshes.errors import SolveError
+from coilset.model.base.errors import SolveError
 from coilset.model.material.points import initial_state
 from coilset.model.slice.slice import Slice
 from coilset.model.solid.kinematics import push_forward, stretches

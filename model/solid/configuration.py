@@ -6,7 +6,7 @@ import scipy.sparse
 from dolfinx import fem
 from dolfinx import mesh as dmesh
 
-from coilset.meshes.compat import geometry_dofs
+from coilset.model.base.compat import geometry_dofs
 
 # The elements: 20-node hexahedra with 2 x 2 x 2 points, which neither lock in plastic flow nor have zero-energy modes
 # in any patch of 2 x 2 x 2 elements or more; 10-node tetrahedra with 4 points.

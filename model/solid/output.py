@@ -8,16 +8,23 @@ import dolfinx.plot
 import numpy as np
 import pyvista
 
-from coilset.meshes.compat import geometry_dofs
-from coilset.model.results.folder import whole
-from coilset.model.results.grid_file import write_grid
+from coilset.model.base.compat import geometry_dofs
+from coilset.model.base.style import QUARTERED, round_end
+from coilset.model.results.files.folder import whole
+from coilset.model.results.files.grid_file import write_grid
 from coilset.model.solid.solid import Solid
-from coilset.model.style import QUARTERED, round_end
 
 BAR = {
-    "color": "black", "n_labels": 5, "fmt": "%.5g", "title_font_size": 22, "label_font_size": 18,
-    "position_x": 0.2, "width": 0.6, "position_y": 0.02, "height": 0.16,
-}  # fmt: skip
+    "color": "black",
+    "n_labels": 5,
+    "fmt": "%.5g",
+    "title_font_size": 22,
+    "label_font_size": 18,
+    "position_x": 0.2,
+    "width": 0.6,
+    "position_y": 0.02,
+    "height": 0.16,
+}
 
 
 def mises(stress: np.ndarray) -> np.ndarray:
@@ -65,7 +72,7 @@ def grid(solid: Solid) -> pyvista.UnstructuredGrid | None:
         "stress": at_nodes(solid, solid.point_state[..., :6]),
         "von Mises stress": at_nodes(solid, mises(solid.point_state[..., :6])),
         "plastic work": at_nodes(solid, solid.point_state[..., 12]),
-    }  # fmt: skip
+    }
     parts = solid.comm.gather((cells, kinds, x.copy(), data))
     if parts is None:
         return None
@@ -88,7 +95,7 @@ def write_fields(path: str | Path, solid: Solid) -> None:
 def picture(path: str | Path, bodies: Mapping[str, pyvista.DataSet], field: str, unit: str) -> None:
     """Draw the far halves (y > 0) of bodies side by side, coloured by a field; the cut shows their sections.
 
-    Needs a display, see `coilset.model.results.display`.
+    Needs a display, see `coilset.model.figures.display`.
 
     Args:
         path: PNG file.

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from coilset.model.material.law import Law
+from coilset.model.material.law.law import Law
 from coilset.model.material.point_law import solid_point
 from coilset.model.material.points import initial_state
 
@@ -33,7 +33,7 @@ class MaterialPoints:
     """A law of the material library at the points of a solid.
 
     Args:
-        law: `coilset.model.material.law.Law`.
+        law: `coilset.model.material.law.law.Law`.
         temperature: K; default is the law's reference temperature.
     """
 

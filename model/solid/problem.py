@@ -89,8 +89,11 @@ class SolidProblem:
         """
         targets = (self.bottom.motion if bottom is None else bottom, top)
         origin, continuation = (self.bottom.motion, self.top.motion), self.continuation
-        path = Path(lambda done: self.load(*self._between(origin, targets, done)), target=str(top),
-                    place=lambda: f"{self.top.motion}")  # fmt: skip
+        path = Path(
+            lambda done: self.load(*self._between(origin, targets, done)),
+            target=str(top),
+            place=lambda: f"{self.top.motion}",
+        )
         continuation.begin()
         total, cuts = None, 0
         while continuation.steps.position.done < 1.0:

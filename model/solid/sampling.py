@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
-from coilset.meshes.compat import geometry_dofs
 from coilset.meshes.solid import SolidMesh
+from coilset.model.base.compat import geometry_dofs
 from coilset.model.solid.solid import Solid
 
 Patches = tuple[np.ndarray, np.ndarray]  # points of each patch and their weights

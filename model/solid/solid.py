@@ -9,10 +9,10 @@ from dolfinx.fem.petsc import assemble_matrix, create_matrix
 from petsc4py import PETSc
 
 from coilset.meshes.solid import SolidMesh
+from coilset.model.body.state import State, Where
 from coilset.model.solid.configuration import Configuration
 from coilset.model.solid.forms import SolidForms
 from coilset.model.solid.kinematics import push_forward, stretches
-from coilset.model.state import State, Where
 
 # Cells whose points are processed at a time; bounds the memory for what is not kept between iterations.
 CHUNK = 2048

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from coilset.meshes.errors import InputError
-from coilset.meshes.spring import Spring
+from coilset.meshes.springs.spring import Spring
+from coilset.model.base.errors import InputError
 from coilset.model.case import Case
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.en15800 import Grade
@@ -46,10 +46,22 @@ def case_sheet(
         if not cylinder.solid < length < cylinder.length:
             raise InputError(
                 f"{length:g} mm is no working length; must be between the block length {cylinder.solid:.4g} and the "
-                f"free length {cylinder.length:.4g} mm", "--length",
-            )  # fmt: skip
-    made = Sheet(cylinder, elastic, spring.wire_length, known, tuple(lengths), grade, surface, dynamic, run,
-                 not case.ends_turn, law.first_yield(case.temperature))  # fmt: skip
+                f"free length {cylinder.length:.4g} mm",
+                "--length",
+            )
+    made = Sheet(
+        cylinder,
+        elastic,
+        spring.wire_length,
+        known,
+        tuple(lengths),
+        grade,
+        surface,
+        dynamic,
+        run,
+        not case.ends_turn,
+        law.first_yield(case.temperature),
+    )
     if lengths:
         return made
     planned = working_lengths(case.targets, cylinder.length, made.rate, cylinder.solid)

@@ -2,10 +2,11 @@
 
 from collections.abc import Iterator
 
-from coilset.meshes.errors import InputError
-from coilset.meshes.geometry import Spring
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.base.errors import InputError
+from coilset.model.base.warning import Warning
 from coilset.model.case import Case
-from coilset.model.material.law import Law
+from coilset.model.material.law.law import Law
 from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.sheet import Sheet, working_lengths
@@ -14,7 +15,6 @@ from coilset.model.standards.warnings import spring_warnings
 from coilset.model.standards.wires import wire
 from coilset.model.standards.wires.law import case_elastic
 from coilset.model.standards.working import endurance_warnings, gap_warnings, stress_warnings
-from coilset.model.warning import Warning
 
 
 def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
@@ -38,8 +38,12 @@ def _renamed(case: Case) -> Iterator[Warning]:
 def _estimated(case: Case) -> Iterator[Warning]:
     if not isinstance(case.material, str):
         name = case.material.wire
-        yield Warning("estimate", "material.wire", f"the hardening of {name} is an estimate from its minimum tensile "
-                      "strength; a test of the wire gives its own (coilset material fit)")  # fmt: skip
+        yield Warning(
+            "estimate",
+            "material.wire",
+            f"the hardening of {name} is an estimate from its minimum tensile "
+            "strength; a test of the wire gives its own (coilset material fit)",
+        )
 
 
 def _working(case: Case, spring: Spring, elastic: Elastic) -> list[Warning]:

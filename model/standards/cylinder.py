@@ -6,8 +6,8 @@ from typing import Literal
 
 import numpy as np
 
-from coilset.meshes.errors import InputError
-from coilset.meshes.geometry import Spring
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.base.errors import InputError
 
 CylinderEnds = Literal["open", "closed", "closed and ground", "mixed"]
 SAME = 1e-9  # maximum relative change of coil and wire diameter along a cylinder
@@ -49,13 +49,23 @@ class Cylinder:
         for values, name, place in ((D, "mean diameter", "mean_diameter"), (d, "wire diameter", "wire_diameter")):
             low, high = float(values.min()), float(values.max())
             if high - low > SAME * high:
-                raise InputError(f"EN 13906-1 is for cylinders of one wire; the {name} goes from {low:.4g} to "
-                                 f"{high:.4g} mm", f"spring.{place}")  # fmt: skip
+                raise InputError(
+                    f"EN 13906-1 is for cylinders of one wire; the {name} goes from {low:.4g} to {high:.4g} mm",
+                    f"spring.{place}",
+                )
         start, end = spring.bottom.end_turns, spring.turns - spring.top.end_turns
         pitch = float(spring.height(end) - spring.height(start)) / spring.active_turns
         ends: CylinderEnds = spring.bottom.form if spring.bottom.form == spring.top.form else "mixed"
-        return cls(float(np.mean(d)), float(np.mean(D)), spring.turns, spring.active_turns, spring.free_length, pitch,
-                   ends, spring.block_height)  # fmt: skip
+        return cls(
+            float(np.mean(d)),
+            float(np.mean(D)),
+            spring.turns,
+            spring.active_turns,
+            spring.free_length,
+            pitch,
+            ends,
+            spring.block_height,
+        )
 
     @property
     def index(self) -> float:

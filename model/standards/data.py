@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from coilset.meshes.geometry import Spring
+from coilset.meshes.springs.axis import Axis
+from coilset.meshes.springs.geometry import Spring
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.rate import torsion_rate
 from coilset.model.standards.steel import STEEL, Elastic
@@ -30,6 +31,7 @@ class SpringData:
     slenderness: float
     buckling_travel: float
     rate: float
+    axis: Axis | None = None
 
     @property
     def is_cylinder(self) -> bool:
@@ -63,6 +65,15 @@ class SpringData:
             ("slenderness L0/D", f"{self.slenderness:.3g}", ""),
             ("travel to buckling, parallel seats", buckling, "mm" if np.isfinite(self.buckling_travel) else ""),
             (rate, f"{self.rate:.5g}", "N/mm"),
+            *self._axis_rows(),
+        ]
+
+    def _axis_rows(self) -> list[tuple[str, str, str]]:
+        if self.axis is None:
+            return []
+        return [
+            ("offset of the measured axis from z", f"{self.axis.offset:.3f}", "mm"),
+            ("tilt of the measured axis", f"{self.axis.tilt:.3f}", "degrees"),
         ]
 
 
@@ -99,4 +110,5 @@ def spring_data(spring: Spring, material: Elastic = STEEL) -> SpringData:
         slenderness=spring.free_length / float(D.min()),
         buckling_travel=buckling_travel(spring, material.shear_modulus / material.young_modulus),
         rate=torsion_rate(spring, material.shear_modulus),
+        axis=spring.measured_axis,
     )

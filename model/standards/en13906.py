@@ -12,9 +12,18 @@ from coilset.model.standards.buckling import critical_travel
 Ends = Literal["closed and ground", "closed"]
 
 __all__ = [
-    "block_length", "critical_travel", "energy", "gap_sum", "mass", "natural_frequency",
-    "outer_diameter_growth", "rate", "stress", "stress_correction", "wire_length",
-]  # fmt: skip
+    "block_length",
+    "critical_travel",
+    "energy",
+    "gap_sum",
+    "mass",
+    "natural_frequency",
+    "outer_diameter_growth",
+    "rate",
+    "stress",
+    "stress_correction",
+    "wire_length",
+]
 
 DYNAMIC_GAPS = 1.5  # EN 13906-1: Sa of cold coiled springs under alternating load over that under static load
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 import numpy as np
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 
 if TYPE_CHECKING:
     from xarray import Dataset

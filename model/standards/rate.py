@@ -4,8 +4,8 @@ from typing import Literal
 
 import numpy as np
 
-from coilset.meshes import functions
-from coilset.meshes.geometry import Spring
+from coilset.meshes.springs import functions
+from coilset.meshes.springs.geometry import Spring
 
 
 def torsion_rate(spring: Spring, shear_modulus: float) -> float:

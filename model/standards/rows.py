@@ -65,16 +65,30 @@ def _dimensions(sheet: Sheet) -> Iterator[Row]:
     yield Row("mass m", 1e3 * en13906.mass(ρ, s.d, nominal), "g", "ρ π d² l/4", DERIVED, mass, "as the wire length")
     growth = en13906.outer_diameter_growth(s.d, s.D, s.pitch)
     grown = sheet.found.growth if sheet.found and sheet.was_at_block else None
-    yield Row("growth of D to block", growth, "mm", "(m² − 0.8 m d − 0.2 d²)/(π² D)", DERIVED, grown,
-              f"mean of the body; the formula is for ends that turn{', these are held' * sheet.held}")  # fmt: skip
+    yield Row(
+        "growth of D to block",
+        growth,
+        "mm",
+        "(m² − 0.8 m d − 0.2 d²)/(π² D)",
+        DERIVED,
+        grown,
+        f"mean of the body; the formula is for ends that turn{', these are held' * sheet.held}",
+    )
 
 
 def _spring(sheet: Sheet) -> Iterator[Row]:
     s, e = sheet.spring, sheet.elastic
     rate, solid = sheet.rate, s.solid
     softer = pitch_compliance(s.pitch_angle, poisson_ratio(e), "held" if sheet.held else "turning")
-    yield Row("rate R", rate, "N/mm", "G d⁴/(8 D³ n)", DERIVED, sheet.at_run("rate_N_per_mm"),
-              "at first touch, where end turns bear, too; with curvature and direct shear")  # fmt: skip
+    yield Row(
+        "rate R",
+        rate,
+        "N/mm",
+        "G d⁴/(8 D³ n)",
+        DERIVED,
+        sheet.at_run("rate_N_per_mm"),
+        "at first touch, where end turns bear, too; with curvature and direct shear",
+    )
     held = "(½ − ν)" if sheet.held else "(1 − ν)/(2 (1 + ν))"
     formula = f"R/(1 + tan²α {held} + …), α = {degrees(s.pitch_angle):.1f}°"
     yield Row("R of a rising wire", rate / softer, "N/mm", formula, DERIVED)
@@ -84,14 +98,28 @@ def _spring(sheet: Sheet) -> Iterator[Row]:
         why = f"EN 13906-1 has none for {s.ends} ends"
     yield Row("block length Lc", sheet.block, "mm", formula, TWO, sheet.at_run("block_height_mm"), why)
     force = sheet.at_run("force_max_N") if sheet.was_at_block else None
-    yield Row("force at block Fc", rate * (s.length - solid), "N", f"R (L0 − {solid:.4g} mm)", DERIVED, force,
-              _why_block(sheet))  # fmt: skip
+    yield Row(
+        "force at block Fc",
+        rate * (s.length - solid),
+        "N",
+        f"R (L0 − {solid:.4g} mm)",
+        DERIVED,
+        force,
+        _why_block(sheet),
+    )
     travel = critical_travel(s.length, s.D, e.shear_modulus / e.young_modulus)
     formula = f"Haringx, ν = 0.5; to block {s.length - solid:.4g} mm"
     never = "never buckles by the formula"
     why = "with its pitch, end turns and coils that touch, which the formula neglects" if isfinite(travel) else never
-    yield Row("travel to buckling", travel if isfinite(travel) else None, "mm", formula, DERIVED,
-              sheet.at_run("buckling_travel_mm"), why)  # fmt: skip
+    yield Row(
+        "travel to buckling",
+        travel if isfinite(travel) else None,
+        "mm",
+        formula,
+        DERIVED,
+        sheet.at_run("buckling_travel_mm"),
+        why,
+    )
 
 
 def _why_block(sheet: Sheet) -> str:
@@ -107,8 +135,15 @@ def _stresses(sheet: Sheet) -> Iterator[Row]:
     s, wire = sheet.spring, sheet.wire
     k, τ = en13906.stress_correction(s.index), sheet.stress(s.solid)
     found = sheet.at_run("shear_max_MPa") if sheet.was_at_block else None
-    yield Row("stress τc", τ, "MPa", "8 D Fc/(π d³)", DERIVED, found,
-              "maximum true shear stress on the surface of the middle turns")  # fmt: skip
+    yield Row(
+        "stress τc",
+        τ,
+        "MPa",
+        "8 D Fc/(π d³)",
+        DERIVED,
+        found,
+        "maximum true shear stress on the surface of the middle turns",
+    )
     yield Row("stress correction k", k, "", "(w + 0.5)/(w − 0.75)", TWO)
     yield Row("corrected stress τkc", k * τ, "MPa", "k τc", TWO)
     if wire is None:
@@ -116,8 +151,9 @@ def _stresses(sheet: Sheet) -> Iterator[Row]:
         return
     strength, share = wire.entry.strength, wire.entry.block_stress
     yield Row("minimum tensile strength Rm", wire.strength(s.d), "MPa", wire.name, SHORT[strength.sure])
-    yield Row("allowed at block", wire.block_stress(s.d), "MPa", f"{share.at(s.d):g} Rm, of the {share.of}",
-              SHORT[share.sure])  # fmt: skip
+    yield Row(
+        "allowed at block", wire.block_stress(s.d), "MPa", f"{share.at(s.d):g} Rm, of the {share.of}", SHORT[share.sure]
+    )
 
 
 def _working(sheet: Sheet) -> Iterator[Row]:
@@ -129,8 +165,15 @@ def _working(sheet: Sheet) -> Iterator[Row]:
     for length in sorted(sheet.lengths, reverse=True):
         τ, force = sheet.stress(length), sheet.found.force_at(length) if sheet.found else None
         real = None if force is None else en13906.stress(force, s.d, s.D)
-        yield Row(f"force at {length:.5g} mm", sheet.force(length), "N", "R (L0 − L)", DERIVED, force,
-                  _why_force(sheet, length))  # fmt: skip
+        yield Row(
+            f"force at {length:.5g} mm",
+            sheet.force(length),
+            "N",
+            "R (L0 − L)",
+            DERIVED,
+            force,
+            _why_force(sheet, length),
+        )
         yield Row("  stress τ", τ, "MPa", "8 D F/(π d³)", DERIVED, real, "nominal, of the force found")
         yield Row("  corrected stress τk", k * τ, "MPa", "k τ", TWO, None if real is None else k * real, "the same")
         yield Row("  sum of gaps", length - s.solid, "mm", f"L − {s.solid:.4g} mm", DERIVED)
@@ -148,11 +191,25 @@ def _why_force(sheet: Sheet, length: float) -> str:
 def _dynamics(sheet: Sheet) -> Iterator[Row]:
     s, e = sheet.spring, sheet.elastic
     f = en13906.natural_frequency(e.shear_modulus, e.density, s.d, s.D, s.n)
-    yield Row("natural frequency", f, "Hz", "d/(2π n D²) √(G/(2ρ)), ends held", DERIVED, _frequency(sheet),
-              "½ √(R/m) with the rate found and the helix's mass")  # fmt: skip
+    yield Row(
+        "natural frequency",
+        f,
+        "Hz",
+        "d/(2π n D²) √(G/(2ρ)), ends held",
+        DERIVED,
+        _frequency(sheet),
+        "½ √(R/m) with the rate found and the helix's mass",
+    )
     work = sheet.found.work_to(s.solid + AT_BLOCK * s.d) if sheet.found and sheet.was_at_block else None
-    yield Row("work to block", 1e-3 * en13906.energy(sheet.rate, s.length - s.solid), "J", "R s²/2", DERIVED,
-              None if work is None else 1e-3 * work, "∫ F ds of the first compression, plastic work in it")  # fmt: skip
+    yield Row(
+        "work to block",
+        1e-3 * en13906.energy(sheet.rate, s.length - s.solid),
+        "J",
+        "R s²/2",
+        DERIVED,
+        None if work is None else 1e-3 * work,
+        "∫ F ds of the first compression, plastic work in it",
+    )
 
 
 def _frequency(sheet: Sheet) -> float | None:
@@ -174,9 +231,11 @@ def _endurance(sheet: Sheet) -> Iterator[Row]:
         return
     residual = sheet.found.residual if sheet.found else None
     shifted = None if residual is None else endured.stress_range(cycle.shifted(residual).lower)
-    why = "" if residual is None else (
-        f"with the residual {residual:.1f} MPa; the lines hold for set springs, so it may count twice"
-    )  # fmt: skip
+    why = (
+        ""
+        if residual is None
+        else (f"with the residual {residual:.1f} MPa; the lines hold for set springs, so it may count twice")
+    )
     formula = f"Goodman, {endured.times} times, {endured.surface}"
     yield Row("range that is endured", endured.stress_range(cycle.lower), "MPa", formula, ONE, shifted, why)
 

@@ -4,17 +4,17 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from coilset.meshes.checks import TOUCH
-from coilset.meshes.ends import touching_pitch
-from coilset.meshes.geometry import Spring
+from coilset.meshes.springs.checks import TOUCH, coil_distances
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.base.warning import Warning
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.steel import STEEL, Elastic
-from coilset.model.warning import Warning
 
 INDEX_USUAL = (4.0, 20.0)  # EN 15800, table 1: cold coiled springs
 WIRE_USUAL = (0.07, 20.0)  # mm; EN 15800, table 1 and, from 16 mm on, annex A
 ACTIVE_LEAST = 2.0  # EN 13906-1: number of active coils
 TIP_LEAST = 0.25  # of the wire diameter
+OFFSET_USUAL, TILT_USUAL = 0.1, 0.5  # of the wire diameter, and degrees: beyond, a scan was not set up on its axis
 
 
 def spring_warnings(spring: Spring, elastic: Elastic = STEEL) -> list[Warning]:
@@ -24,7 +24,7 @@ def spring_warnings(spring: Spring, elastic: Elastic = STEEL) -> list[Warning]:
         spring: `Spring`.
         elastic: its material's constants, on whose G/E the travel to buckling depends.
     """
-    checks = (_wire, _index, _solid_coils, _active, _ground)
+    checks = (_wire, _index, _solid_coils, _active, _ground, _axis)
     return [*(warning for check in checks for warning in check(spring)), *_buckling(spring, elastic)]
 
 
@@ -62,19 +62,17 @@ def _index(spring: Spring) -> Iterator[Warning]:
 
 
 def _solid_coils(spring: Spring) -> Iterator[Warning]:
-    t = spring.breaks
-    body = (t >= spring.bottom.end_turns + spring.bottom.transition_turns) & (
-        t <= spring.turns - spring.top.end_turns - spring.top.transition_turns
-    )
-    play = spring.pitch(t) - touching_pitch(spring.wire_diameter(t), spring.slope(t))
-    solid = t[body & (play < TOUCH * spring.wire_diameter(t))]
-    if spring.turns >= 1 and len(solid) > 1:
+    t, distance, wire = coil_distances(spring)
+    first = spring.bottom.end_turns + spring.bottom.transition_turns
+    last = spring.turns - spring.top.end_turns - spring.top.transition_turns
+    solid = t[(t >= first) & (t + 1.0 <= last) & (distance < (1.0 + TOUCH) * wire)]
+    if len(solid) > 1:
         pitch = float(spring.pitch(solid).min())
         yield Warning(
             "solid coils",
             "spring.pitch",
             "coils of the body touch before any load, between turns "
-            f"{solid[0]:.3g} and {solid[-1]:.3g}; their pitch is {pitch:.4g} mm",
+            f"{solid[0]:.3g} and {solid[-1] + 1.0:.3g}; their pitch is {pitch:.4g} mm",
             pitch,
             unit="mm",
         )
@@ -116,6 +114,20 @@ def _ground(spring: Spring) -> Iterator[Warning]:
                 end.end_turns,
                 "turns",
             )
+
+
+def _axis(spring: Spring) -> Iterator[Warning]:
+    """A scan that was moved far: its seats are perpendicular to the fitted axis, not to the file's."""
+    axis, d = spring.measured_axis, float(spring.wire_diameter(0.5 * spring.turns))
+    if axis is None:
+        return
+    moved = "the spring was moved onto the axis fitted to its points, to which the seats are perpendicular"
+    if axis.offset > OFFSET_USUAL * d:
+        text = f"the measured axis is {axis.offset:.3g} mm off the file's z axis at half height; {moved}"
+        yield Warning("measured axis", "spring.file", text, axis.offset, OFFSET_USUAL * d, "mm")
+    if axis.tilt > TILT_USUAL:
+        text = f"the measured axis is tilted by {axis.tilt:.3g}° from the file's z axis; {moved}"
+        yield Warning("measured axis", "spring.file", text, axis.tilt, TILT_USUAL, "degrees")
 
 
 def _buckling(spring: Spring, elastic: Elastic) -> Iterator[Warning]:

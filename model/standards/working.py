@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 
+from coilset.model.base.warning import Warning
 from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.goodman import Cycle, Line
 from coilset.model.standards.wires.wire import Wire
-from coilset.model.warning import Warning
 
 ROUNDING = 1e-6  # of the travel to block: what a spring sets by less is none
 PRESETTING_LEAST = 0.1  # of the travel to block; a rule of thumb without a source
@@ -16,11 +16,18 @@ def gap_warnings(spring: Cylinder, lengths: Sequence[float], dynamic: bool = Fal
     """Working lengths, mm, at which the gaps between the coils add up to less than Sa of EN 13906-1."""
     needed = en13906.gap_sum(spring.d, spring.D, spring.n, dynamic)
     return [
-        Warning("gap", "loading", f"at {length:.4g} mm the gaps between the coils add up to "
-                f"{length - spring.solid:.3g} mm, less than the {needed:.3g} mm of EN 13906-1",
-                length - spring.solid, needed, "mm")
-        for length in lengths if length - spring.solid < needed
-    ]  # fmt: skip
+        Warning(
+            "gap",
+            "loading",
+            f"at {length:.4g} mm the gaps between the coils add up to "
+            f"{length - spring.solid:.3g} mm, less than the {needed:.3g} mm of EN 13906-1",
+            length - spring.solid,
+            needed,
+            "mm",
+        )
+        for length in lengths
+        if length - spring.solid < needed
+    ]
 
 
 def stress_warnings(spring: Cylinder, shear_modulus: float, lengths: Sequence[float], wire: Wire) -> list[Warning]:
@@ -36,9 +43,16 @@ def stress_warnings(spring: Cylinder, shear_modulus: float, lengths: Sequence[fl
         stress = factor * en13906.stress(rate * (spring.length - length), spring.d, spring.D)
         if stress > allowed:
             found.append(
-                Warning("stress", "loading", f"at {length:.4g} mm the nominal {of} is {stress:.4g} N/mm², above the "
-                        f"{allowed:.4g} N/mm² allowed for {wire.name}", stress, allowed, "MPa")
-            )  # fmt: skip
+                Warning(
+                    "stress",
+                    "loading",
+                    f"at {length:.4g} mm the nominal {of} is {stress:.4g} N/mm², above the "
+                    f"{allowed:.4g} N/mm² allowed for {wire.name}",
+                    stress,
+                    allowed,
+                    "MPa",
+                )
+            )
     return found
 
 
@@ -47,9 +61,17 @@ def endurance_warnings(cycle: Cycle, endured: Line) -> list[Warning]:
     spread, allowed = cycle.upper - cycle.lower, endured.stress_range(cycle.lower)
     if spread <= allowed:
         return []
-    return [Warning("endurance", "loading", f"the corrected stress varies by {spread:.4g} N/mm² over {cycle.lower:.4g} "
-                    f"N/mm²; the limit is {allowed:.4g} N/mm² for {endured.times} cycles, {endured.surface}",
-                    spread, allowed, "MPa")]  # fmt: skip
+    return [
+        Warning(
+            "endurance",
+            "loading",
+            f"the corrected stress varies by {spread:.4g} N/mm² over {cycle.lower:.4g} "
+            f"N/mm²; the limit is {allowed:.4g} N/mm² for {endured.times} cycles, {endured.surface}",
+            spread,
+            allowed,
+            "MPa",
+        )
+    ]
 
 
 def presetting_warning(set_mm: float, travel: float) -> Warning | None:

@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from coilset.model.base.version import versions
 from coilset.model.case.names import entry_name
 from coilset.model.case.settings import located
-from coilset.model.results.folder import whole
-from coilset.model.results.netcdf import reserve
-from coilset.model.results.units import quantity
+from coilset.model.results.files.folder import whole
+from coilset.model.results.files.netcdf import reserve
+from coilset.model.results.records.units import quantity
 from coilset.model.sweep.journal import read_records
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.spec import are_numbers
-from coilset.model.version import versions
 
 CURVE = {"travel_mm": "mm", "seat_height_mm": "mm", "force_N": "N", "phase": "1"}
 
@@ -57,8 +57,10 @@ def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
                     column = responses.setdefault(name, np.full(n, np.nan))
                     column[at] = np.nan if value is None else value
     data: dict[str, Any] = {name: ("case", column, _attributes(*quantity(name))) for name, column in responses.items()}
-    data |= {f"curve_{name}": (("case", "step"), curve, _attributes(*quantity(name)) | {"units": CURVE[name]})
-             for name, curve in curves.items()}  # fmt: skip
+    data |= {
+        f"curve_{name}": (("case", "step"), curve, _attributes(*quantity(name)) | {"units": CURVE[name]})
+        for name, curve in curves.items()
+    }
     data |= {
         "status": ("case", status),
         "reason": ("case", reason),
@@ -66,8 +68,12 @@ def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
         "seconds": ("case", seconds, {"units": "s"}),
     }
     coordinates: dict[str, Any] = {name: ("case", *_input(plan, k)) for k, name in enumerate(plan.names)}
-    attributes: dict[str, Any] = {"title": f"sweep {plan.path.stem}", "versions": versions(),
-                                  "design": plan.spec.design, "inputs": plan.names}  # fmt: skip
+    attributes: dict[str, Any] = {
+        "title": f"sweep {plan.path.stem}",
+        "versions": versions(),
+        "design": plan.spec.design,
+        "inputs": plan.names,
+    }
     attributes |= _recipe(plan)
     if plan.spec.samples is not None:
         attributes |= {"samples": plan.spec.samples, "seed": plan.spec.seed}
@@ -79,8 +85,11 @@ def _recipe(plan: Plan) -> dict[str, str]:
     by their words where they are no numbers."""
     folder = plan.case_path.parent.absolute()
     base = {name: located(name, value, folder) for name, value in plan.base.items()}
-    choices = {name: {str(row[k]): row[k] for row in plan.rows}
-               for k, name in enumerate(plan.names) if not are_numbers([row[k] for row in plan.rows])}  # fmt: skip
+    choices = {
+        name: {str(row[k]): row[k] for row in plan.rows}
+        for k, name in enumerate(plan.names)
+        if not are_numbers([row[k] for row in plan.rows])
+    }
     entries = {name: plan.entries(name) for name in plan.names}
     return {name: json.dumps(value) for name, value in (("base", base), ("entries", entries), ("choices", choices))}
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import qmc
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.sweep.spec import SweepSpec
 
 Row = tuple[Any, ...]  # the inputs of a case

@@ -11,11 +11,11 @@ from typing import Any
 
 from mpi4py import MPI
 
-from coilset.meshes.errors import CoilsetError, InputError, SolveError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import CoilsetError, InputError, SolveError
 from coilset.model.case import Case, check
-from coilset.model.results.record import Step
-from coilset.model.results.summary import summarise
+from coilset.model.results.records.record import Step
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 from coilset.model.sweep.keys import Keys
 
 
@@ -54,8 +54,9 @@ def evaluate(
     record: dict[str, Any] = {"status": "failed" if reason else "done", "reason": reason, "summary": {}, "steps": {}}
     if analysis is not None and result is not None and result.snapshots and comm.rank == 0:
         record["summary"] = {key: plain(value) for key, value in summarise(analysis.setup, result).items()}
-        record["steps"] = {column.name: [plain(getattr(step, column.name)) for step in result.steps]
-                           for column in fields(Step)}  # fmt: skip
+        record["steps"] = {
+            column.name: [plain(getattr(step, column.name)) for step in result.steps] for column in fields(Step)
+        }
     del analysis, result
     gc.collect()  # solver and system refer to each other
     return {**record, "seconds": time.perf_counter() - began}

@@ -11,9 +11,9 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
-from coilset.meshes.errors import InputError
-from coilset.model.results.figures import add_title, save
-from coilset.model.style import STYLE
+from coilset.model.base.errors import InputError
+from coilset.model.base.style import STYLE
+from coilset.model.figures.figures import add_title, save
 from coilset.model.sweep import findings
 from coilset.model.sweep import spec as sp
 from coilset.model.sweep.plan import Plan
@@ -295,7 +295,13 @@ def convergence(figure: Figure, plan: Plan, data: xr.Dataset, place: Any) -> Any
     return drawn
 
 
-DRAW = {"lines": lines, "map": contours, "characteristics": characteristics, "scatter": scatter,
-        "sensitivity": sensitivity, "convergence": convergence}  # fmt: skip
+DRAW = {
+    "lines": lines,
+    "map": contours,
+    "characteristics": characteristics,
+    "scatter": scatter,
+    "sensitivity": sensitivity,
+    "convergence": convergence,
+}
 FILES = tuple(f"[0-9][0-9]_{kind}.png" for kind in DRAW)
 """Patterns of their names."""

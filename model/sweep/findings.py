@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 import xarray as xr
 
-from coilset.model.results.labels import plain
+from coilset.model.results.records.labels import plain
 
 FLAT = 1e-6  # of a response's range: a smaller change is none
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from coilset.meshes.errors import CoilsetError, InputError
+from coilset.model.base.errors import CoilsetError, InputError
 
 SYNC_SECONDS = 1.0
 
@@ -98,6 +98,9 @@ def read_records(path: str | Path) -> Iterator[dict[str, Any]]:
                 record = json.loads(line)
                 record["key"], record["status"]
             except (ValueError, KeyError, TypeError):
-                raise InputError("is not a record of a case; remove this line, and --resume runs its case again",
-                                 f"line {number}", path) from None  # fmt: skip
+                raise InputError(
+                    "is not a record of a case; remove this line, and --resume runs its case again",
+                    f"line {number}",
+                    path,
+                ) from None
             yield record

@@ -5,10 +5,10 @@ import json
 from functools import cache
 from pathlib import Path
 
+from coilset.model.base.version import __version__
 from coilset.model.case.case import Case, NamedWire
 from coilset.model.material import library
 from coilset.model.standards.wires import wire
-from coilset.model.version import __version__
 
 KEY_BYTES = 12
 

@@ -8,7 +8,7 @@ from typing import Any
 from mpi4py import MPI
 from mpi4py.futures import MPICommExecutor
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.sweep.evaluate import evaluate_in_worker
 from coilset.model.sweep.pools import Pool
 

@@ -5,11 +5,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from coilset.meshes.errors import InputError, naming
+from coilset.model.base.entry import shown
+from coilset.model.base.errors import InputError, naming
+from coilset.model.base.yaml import read_data
 from coilset.model.case import Case, check, read_case_data
 from coilset.model.case.settings import located, put
-from coilset.model.entries.entry import shown
-from coilset.model.entries.yaml import read_data
 from coilset.model.sweep.design import Row, rows
 from coilset.model.sweep.keys import Keys
 from coilset.model.sweep.rehearsal import Rehearsal

@@ -29,8 +29,15 @@ class Process:
         self.process: subprocess.Popen[str] | None = self._started()
 
     def _started(self) -> "subprocess.Popen[str]":
-        return subprocess.Popen(WORKER, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=self.environment, text=True,
-                                encoding="utf-8", start_new_session=True)  # fmt: skip
+        return subprocess.Popen(
+            WORKER,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env=self.environment,
+            text=True,
+            encoding="utf-8",
+            start_new_session=True,
+        )
 
     def run(self, task: dict[str, Any], log: str) -> dict[str, Any]:
         """The record of a task; the case fails if the process dies.
@@ -58,8 +65,13 @@ class Process:
         status = process.wait()
         self.close()
         how = f"signal {-status}" if status < 0 else f"exit code {status}"
-        return {"status": "failed", "reason": f"the process of this case ended with {how}", "summary": {}, "steps": {},
-                "seconds": None}  # fmt: skip
+        return {
+            "status": "failed",
+            "reason": f"the process of this case ended with {how}",
+            "summary": {},
+            "steps": {},
+            "seconds": None,
+        }
 
     def close(self) -> None:
         """Kill the process."""

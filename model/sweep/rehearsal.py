@@ -6,10 +6,10 @@ case can be built is a mistake in the sweep file, and so is a sweep in which no 
 
 from typing import Any
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.entry import shown
+from coilset.model.base.errors import InputError
 from coilset.model.case import Case
 from coilset.model.case.targets import check_steps, check_targets
-from coilset.model.entries.entry import shown
 from coilset.model.standards.wires.law import case_law
 from coilset.model.sweep.spec import SweepSpec, Values
 

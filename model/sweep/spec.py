@@ -9,24 +9,60 @@ from annotated_types import Unit
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
 from scipy import stats
 
-from coilset.model.entries.entry import Strict, Whole, shortened
+from coilset.model.base.entry import Strict, Whole, shortened
 
 LISTED = 8  # maximum number of names in a message
 # numbers of a case's summary, and its duration
 RESPONSES = (
-    "free_length_before_mm", "free_length_after_mm", "set_mm", "rate_N_per_mm", "rate_30_70_N_per_mm",
-    "rate_30_70_after_N_per_mm", "force_max_N", "block_height_mm", "plastic_work_max_N_per_mm2",
-    "plastic_work_max_turn", "plastic_work_max_angle_deg", "plastic_work_known_to_N_per_mm2", "lift_off_max_mm",
-    "residual_shear_max_MPa", "shear_max_MPa", "shear_inside_max_MPa", "residual_shear_inside_MPa",
-    "residual_shear_ends_max_MPa", "residual_shear_ends_max_turn", "residual_shear_ends_max_angle_deg",
-    "shear_surface_max_MPa", "shear_surface_max_turn", "shear_surface_max_angle_deg", "equivalent_surface_max_MPa",
-    "equivalent_surface_max_turn", "equivalent_surface_max_angle_deg", "residual_shear_surface_max_MPa",
-    "residual_shear_surface_max_turn", "residual_shear_surface_max_angle_deg", "residual_equivalent_surface_max_MPa",
-    "residual_equivalent_surface_max_turn", "residual_equivalent_surface_max_angle_deg",
-    "estimated_force_error_N", "estimated_set_error_mm", "load_loss_percent", "coiling_diameter_mm", "steps",
-    "iterations", "evaluations", "failed_solves", "unstable_steps",
-    "buckling_travel_mm", "buckling_force_N", "buckling_travel_EN_13906_1_mm", "elements", "seconds",
-)  # fmt: skip
+    "free_length_before_mm",
+    "free_length_after_mm",
+    "set_mm",
+    "rate_N_per_mm",
+    "rate_30_70_N_per_mm",
+    "rate_30_70_after_N_per_mm",
+    "force_max_N",
+    "block_height_mm",
+    "plastic_work_max_N_per_mm2",
+    "plastic_work_max_turn",
+    "plastic_work_max_angle_deg",
+    "plastic_work_known_to_N_per_mm2",
+    "lift_off_max_mm",
+    "residual_shear_max_MPa",
+    "shear_max_MPa",
+    "shear_inside_max_MPa",
+    "residual_shear_inside_MPa",
+    "residual_shear_ends_max_MPa",
+    "residual_shear_ends_max_turn",
+    "residual_shear_ends_max_angle_deg",
+    "shear_surface_max_MPa",
+    "shear_surface_max_turn",
+    "shear_surface_max_angle_deg",
+    "equivalent_surface_max_MPa",
+    "equivalent_surface_max_turn",
+    "equivalent_surface_max_angle_deg",
+    "residual_shear_surface_max_MPa",
+    "residual_shear_surface_max_turn",
+    "residual_shear_surface_max_angle_deg",
+    "residual_equivalent_surface_max_MPa",
+    "residual_equivalent_surface_max_turn",
+    "residual_equivalent_surface_max_angle_deg",
+    "estimated_force_error_N",
+    "estimated_set_error_mm",
+    "load_loss_percent",
+    "coiling_diameter_mm",
+    "measured_axis_offset_mm",
+    "measured_axis_tilt_deg",
+    "steps",
+    "iterations",
+    "evaluations",
+    "failed_solves",
+    "unstable_steps",
+    "buckling_travel_mm",
+    "buckling_force_N",
+    "buckling_travel_EN_13906_1_mm",
+    "elements",
+    "seconds",
+)
 
 
 def are_numbers(values: Sequence[Any]) -> bool:
@@ -265,8 +301,10 @@ class SweepSpec(Strict):
                         hint = f"is {near[0]} meant?" if near else there
                         raise ValueError(f"figures.{number}.{role}: '{shortened(name)}' is {what}; {hint}")
                     if figure.kind == "map" and role in ("x", "y") and not self.vary[name].is_numeric:
-                        raise ValueError(f"figures.{number}.{role}: '{shortened(name)}' has values that are no "
-                                         "numbers, and a map needs numbers; give kind: lines")  # fmt: skip
+                        raise ValueError(
+                            f"figures.{number}.{role}: '{shortened(name)}' has values that are no "
+                            "numbers, and a map needs numbers; give kind: lines"
+                        )
         return self
 
 

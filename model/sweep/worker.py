@@ -9,8 +9,8 @@ import os
 import signal
 import sys
 
-from coilset.model.caches import load_without_compiler
-from coilset.model.processes import end_with_parent
+from coilset.model.runtime.caches import load_without_compiler
+from coilset.model.runtime.processes import end_with_parent
 
 
 def main() -> None:

@@ -10,9 +10,9 @@ from types import SimpleNamespace
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.errors import CoilsetError, InputError
-from coilset.model import build
-from coilset.scripts import bench as command
+from coilset.model.base.errors import CoilsetError, InputError
+from coilset.model.run import build
+from coilset.scripts.commands import bench as command
 from coilset.verification.benchmarks import everyday, measure, run, same_spring, stopwatch, walk
 from coilset.verification.benchmarks.ranks import compare
 from coilset.verification.benchmarks.stopwatch import Stopwatch
@@ -68,11 +68,12 @@ def test_a_stage_ends_where_it_is_left_by_an_error(clock):
 
 FOUND = {"force_N": 345.0, "set_mm": 1.57, "iterations": 170, "threads": 2}
 COMPARED = {
-    "elements": 40, "axis": "chords",
+    "elements": 40,
+    "axis": "chords",
     "coilset": FOUND | {"seconds": 0.25, "elapsed": 0.16},
     "unestimated": FOUND | {"seconds": 0.2, "elapsed": 0.125},
     "opensees": {"force_N": 345.2, "set_mm": 1.56, "iterations": 204, "threads": 1, "seconds": 1.0, "elapsed": 1.1},
-}  # fmt: skip
+}
 
 
 def compared_ranks(runs):
@@ -114,9 +115,19 @@ def record():
         unestimated = measure.press(20, 1, 0, 0) | {"elements": 100_000, "memory_GiB": 1.875}
     commands = [{"name": "solve", "first_line": [0.25, 0.75], "end": [1.5, 3.5]}]
     walked = [{"name": name, "threads": 1, "seconds": [0.25, None]} for name in walk.WALKS]
-    record = {"machine": run.machine(), "commands": commands, "walks": walked, "example": example, "elements": runs,
-              "unestimated": [unestimated], "ranks": [runs[0], runs[0]], "one_and_two_ranks": compared_ranks(runs),
-              "cases": measure.cases(1), "opensees": [COMPARED], "load_after": 0.0}  # fmt: skip
+    record = {
+        "machine": run.machine(),
+        "commands": commands,
+        "walks": walked,
+        "example": example,
+        "elements": runs,
+        "unestimated": [unestimated],
+        "ranks": [runs[0], runs[0]],
+        "one_and_two_ranks": compared_ranks(runs),
+        "cases": measure.cases(1),
+        "opensees": [COMPARED],
+        "load_after": 0.0,
+    }
     return record | {"targets": targets(record)}
 
 
@@ -153,10 +164,24 @@ def test_command_prints_and_writes(record, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(command, "measure_all", lambda full, cold, environment, report, against: record)
     command.bench(tmp_path / "out", False, False)
     said = capsys.readouterr().out
-    for words in ("factorise", "µs", "ranks", "an hour and core", "aimed at", "first line, the other",
-                  "as shipped", "0.250", "times as fast",
-                  "with contact", "9.9e-03",
-                  "345.200", "4.0", "6.9", "8.8", "1.88 GiB"):  # fmt: skip
+    for words in (
+        "factorise",
+        "µs",
+        "ranks",
+        "an hour and core",
+        "aimed at",
+        "first line, the other",
+        "as shipped",
+        "0.250",
+        "times as fast",
+        "with contact",
+        "9.9e-03",
+        "345.200",
+        "4.0",
+        "6.9",
+        "8.8",
+        "1.88 GiB",
+    ):
         assert words in said
     assert "OpenSees is not here" not in said
     assert json.loads((tmp_path / "out" / "bench.json").read_text()) == record

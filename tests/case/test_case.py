@@ -2,10 +2,10 @@
 
 import pytest
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.entry import LONGEST, shown
+from coilset.model.base.errors import InputError
 from coilset.model.case import Case, check, read_case
 from coilset.model.case.settings import assign
-from coilset.model.entries.entry import LONGEST, shown
 
 SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0}
 TEXT = "spring: {wire_diameter: 5.0, mean_diameter: 40.0, turns: 2.5, pitch: 12.0}\nloading: [{to: block}]\n"

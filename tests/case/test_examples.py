@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 import yaml
 
+from coilset.model.base.yaml import load_yaml
 from coilset.model.case import read_case
-from coilset.model.entries.yaml import load_yaml
 from coilset.model.material import library
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"

@@ -6,7 +6,7 @@ import sys
 
 import numba
 
-from coilset.model import caches
+from coilset.model.runtime import caches
 
 
 def version(monkeypatch, sources, root="kept"):
@@ -44,7 +44,7 @@ def add(x):
 """
 LOAD = """
 import sys
-from coilset.model.caches import load_without_compiler
+from coilset.model.runtime.caches import load_without_compiler
 load_without_compiler()
 import numpy as np
 from adding import add
@@ -60,7 +60,7 @@ def twice(x):
 """
 CALL = """
 import sys
-from coilset.model.caches import load_without_compiler
+from coilset.model.runtime.caches import load_without_compiler
 load_without_compiler()
 import numpy as np
 from doubling import add, twice

@@ -12,11 +12,11 @@ import numba
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
-from coilset.model.processes import mpi_environment, mpirun
+from coilset.model.base.errors import InputError
+from coilset.model.runtime.processes import mpi_environment, mpirun
 from coilset.scripts import compiling, warm
+from coilset.scripts.commands.solve import solve
 from coilset.scripts.compiling import NOTICE, NOTICE_OF_PART, announce_compiling, compile_first, compiled
-from coilset.scripts.solve import solve
 
 SMALL = ["--set", "loading=[{to: {travel: 2}, steps: 1}]", "--set", "mesh.elements_per_turn=8", "--no-pictures"]
 
@@ -118,7 +118,7 @@ USED = """
 import gc, runpy, sys
 from mpi4py import MPI
 from numba.core.dispatcher import Dispatcher
-from coilset.model.analysis import Analysis
+from coilset.model.run.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.design.surrogate import guess
 from coilset.scripts.warm import warm
@@ -151,7 +151,7 @@ def test_shipped_examples_need_no_kernel_that_is_not_compiled_before(example):
 
 
 KERNELS_OF_PAGE = """
-from coilset.scripts.report import report
+from coilset.scripts.commands.report import report
 warm()
 compiled = used()
 report(sys.argv[1])

@@ -10,10 +10,10 @@ import time
 
 import pytest
 
-from coilset.meshes.errors import CoilsetError
-from coilset.scripts import drawing
+from coilset.model.base.errors import CoilsetError
 from coilset.scripts.beginning import announce_begin
-from coilset.scripts.drawing import Drawings
+from coilset.scripts.terminal import drawing
+from coilset.scripts.terminal.drawing import Drawings
 
 # A stand-in for the process that draws: takes its task, and then does what its part is called.
 STAND_IN = """
@@ -120,7 +120,9 @@ def test_they_are_started_early_only_on_cores_that_no_rank_has(stand_in, monkeyp
 
 
 def test_the_process_ends_with_nothing_where_no_task_comes():
-    done = subprocess.run([sys.executable, "-m", "coilset.scripts.drawing", "figures"], input=b"", capture_output=True)
+    done = subprocess.run(
+        [sys.executable, "-m", "coilset.scripts.terminal.drawing", "figures"], input=b"", capture_output=True
+    )
     assert (done.returncode, done.stdout, done.stderr) == (0, b"", b"")
 
 

@@ -3,14 +3,18 @@
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
-from coilset.model.results.checkpoint import Checkpoint
-from coilset.scripts.interactive import HELP, Prompt, parse_phase
+from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.run.analysis import Analysis
+from coilset.scripts.terminal.interactive import HELP, Prompt, parse_phase
 
-SETTINGS = ["ends=clamped", "mesh.elements_per_turn=8", "mesh.section={radial: 2, angular: 6}",
-            "loading=[{to: {travel: 4}, steps: 4}, {to: {force: 0}, steps: 2}]"]  # fmt: skip
+SETTINGS = [
+    "ends=clamped",
+    "mesh.elements_per_turn=8",
+    "mesh.section={radial: 2, angular: 6}",
+    "loading=[{to: {travel: 4}, steps: 4}, {to: {force: 0}, steps: 2}]",
+]
 
 
 @pytest.fixture
@@ -144,13 +148,21 @@ def test_stop_keeps_what_was_found(typed, undisturbed):
 @pytest.mark.parametrize(
     ("line", "words"),
     [
-        ("size 0", "above 0"), ("size -1", "above 0"), ("size nan", "above 0"), ("size much", "much"),
-        ("to {travel: fast}", "travel"), ("to {travel: 1, force: 2}", "exactly one"), ("to blok", "block"),
-        ("to {height: 20", "a target is block"), ("to {height: 2}", "below the block height"),
-        ("to block, steps: 0", "steps"), ("method magic", "magic"),
-        ("?", HELP), ("help", HELP),
+        ("size 0", "above 0"),
+        ("size -1", "above 0"),
+        ("size nan", "above 0"),
+        ("size much", "much"),
+        ("to {travel: fast}", "travel"),
+        ("to {travel: 1, force: 2}", "exactly one"),
+        ("to blok", "block"),
+        ("to {height: 20", "a target is block"),
+        ("to {height: 2}", "below the block height"),
+        ("to block, steps: 0", "steps"),
+        ("method magic", "magic"),
+        ("?", HELP),
+        ("help", HELP),
     ],
-)  # fmt: skip
+)
 def test_what_is_wrong_is_said_and_changes_nothing(typed, undisturbed, line, words):
     analysis, said, read = typed(line, "run")
     assert read == 2  # it asks again at once

@@ -16,8 +16,10 @@ NEARLY = [
 @pytest.mark.parametrize(("value", "message"), [("x", "'x' is not a valid integer"), ("0", "0 is not in the range")])
 def test_a_wrong_value_of_the_environment_is_called_by_its_variable(monkeypatch, value, message):
     monkeypatch.setenv("COILSET_THREADS", value)
-    for words, place in ((["solve", "case.yaml"], " of COILSET_THREADS"),
-                         (["solve", "case.yaml", "--threads", value], " for '--threads'")):  # fmt: skip
+    for words, place in (
+        (["solve", "case.yaml"], " of COILSET_THREADS"),
+        (["solve", "case.yaml", "--threads", value], " for '--threads'"),
+    ):
         with pytest.raises(Exception) as caught:
             app(words, prog_name="coilset", standalone_mode=False)
         assert command_line_message(caught.value).startswith(f"Invalid value{place}: {message}")

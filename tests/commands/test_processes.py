@@ -27,10 +27,11 @@ RELEASE = os.environ.get("COILSET_RELEASE") or "trixie"  # another has kernels o
 PRIVATE = {"COILSET_RELEASE": RELEASE}
 
 in_private_root = pytest.mark.skipif(
-    not (CACHE / f"debian-{RELEASE.replace('trixie', '13')}" / "usr").is_dir() or os.geteuid() != 0 or not any(
-        os.access(Path(folder) / "bwrap", os.X_OK) for folder in os.environ["PATH"].split(":")),
+    not (CACHE / f"debian-{RELEASE.replace('trixie', '13')}" / "usr").is_dir()
+    or os.geteuid() != 0
+    or not any(os.access(Path(folder) / "bwrap", os.X_OK) for folder in os.environ["PATH"].split(":")),
     reason="no private Debian here",
-)  # fmt: skip
+)
 
 
 def hear_interrupts():
@@ -47,9 +48,15 @@ class Running:
         self.said, self.complaints = folder / "stdout", folder / "stderr"
         with open(self.said, "wb") as out, open(self.complaints, "wb") as err:
             self.process = subprocess.Popen(
-                command, cwd=folder, stdout=out, stderr=err, stdin=stdin, start_new_session=True,
-                env=os.environ | {"COILSET_RELEASE": "", name: value} | environment, preexec_fn=hear_interrupts,
-            )  # fmt: skip
+                command,
+                cwd=folder,
+                stdout=out,
+                stderr=err,
+                stdin=stdin,
+                start_new_session=True,
+                env=os.environ | {"COILSET_RELEASE": "", name: value} | environment,
+                preexec_fn=hear_interrupts,
+            )
 
     def wait_for(self, words):
         """Until it has said these words."""
@@ -139,8 +146,10 @@ def judge_gentle_end(running):
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
 def test_tests_end_with_the_command_that_runs_them(start, tmp_path, number):
     slow = tmp_path / "test_slow.py"
-    slow.write_text(f"import pathlib, time\ndef test():\n    pathlib.Path({str(tmp_path / 'begun')!r}).touch()\n"
-                    "    time.sleep(1000)\n")  # fmt: skip
+    slow.write_text(
+        f"import pathlib, time\ndef test():\n    pathlib.Path({str(tmp_path / 'begun')!r}).touch()\n"
+        "    time.sleep(1000)\n"
+    )
     running = start(coilset("test", slow))
     running.until((tmp_path / "begun").exists)
     os.kill(running.process.pid, number)
@@ -199,10 +208,13 @@ def test_no_interrupt_is_held_when_the_shell_becomes_python(start, tmp_path):
     assert "DEBUG" in (tmp_path / "traps").read_text()  # the watch was there
 
 
-@pytest.mark.parametrize("swallow", [
-    "class Lost:\n    def __del__(self): wait()\nLost()",
-    "import ctypes\nctypes.CFUNCTYPE(None)(wait)()",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "swallow",
+    [
+        "class Lost:\n    def __del__(self): wait()\nLost()",
+        "import ctypes\nctypes.CFUNCTYPE(None)(wait)()",
+    ],
+)
 def test_an_interrupt_that_python_cannot_pass_on_is_raised_again(swallow):
     """In a destructor and in a callback from C."""
     program = (
@@ -210,15 +222,19 @@ def test_an_interrupt_that_python_cannot_pass_on_is_raised_again(swallow):
         "def wait():\n    os.kill(os.getpid(), signal.SIGINT)\n    time.sleep(0.01)\n"
         f"try:\n    exec({swallow!r})\n    time.sleep(100)\nexcept KeyboardInterrupt:\n    print('heard')\n"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=PATIENCE,
-                          preexec_fn=hear_interrupts)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=PATIENCE, preexec_fn=hear_interrupts
+    )
     assert (done.stdout, done.stderr) == ("heard\n", "")
 
 
 def test_ctrl_c_while_the_environment_is_looked_for(start, example, tmp_path):
     """An empty cache folder: the shell waits for Python there, and hears of the signal afterwards."""
-    running = start(coilset("solve", example, "--out", "out", *LONG), COILSET_CACHE=str(tmp_path / "cache"),
-                    COILSET_PYTHON=sys.executable)  # fmt: skip
+    running = start(
+        coilset("solve", example, "--out", "out", *LONG),
+        COILSET_CACHE=str(tmp_path / "cache"),
+        COILSET_PYTHON=sys.executable,
+    )
     running.until((tmp_path / "cache" / "checkouts").exists)
     os.kill(running.process.pid, signal.SIGINT)
     assert running.process.wait(PATIENCE) == 130
@@ -229,8 +245,9 @@ def test_ctrl_c_while_the_environment_is_looked_for(start, example, tmp_path):
 def test_ctrl_c_while_the_cache_folder_is_made(start, example, tmp_path, number):
     """Only the shell hears of it, which waits for mkdir there, and forgot it most of the time."""
     cache = tmp_path / "cache"
-    running = start(coilset("solve", example, "--out", "out", *LONG), COILSET_CACHE=str(cache),
-                    COILSET_PYTHON=sys.executable)  # fmt: skip
+    running = start(
+        coilset("solve", example, "--out", "out", *LONG), COILSET_CACHE=str(cache), COILSET_PYTHON=sys.executable
+    )
     while not (cache / "checkouts").exists():
         pass
     time.sleep(3e-4 * number)

@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 from mpi4py import MPI
 
-from coilset.scripts.solve import solve
+from coilset.scripts.commands.solve import solve
 
 pytestmark = pytest.mark.mpi
 COMM = MPI.COMM_WORLD
@@ -63,8 +63,10 @@ def alone(example, folder):
     return numbers(folder / "alone")
 
 
-@pytest.mark.parametrize(("begun", "ended"), [(COMM.size, other) for other in range(1, COMM.size + 1)]
-                         + [(other, COMM.size) for other in range(1, COMM.size)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("begun", "ended"),
+    [(COMM.size, other) for other in range(1, COMM.size + 1)] + [(other, COMM.size) for other in range(1, COMM.size)],
+)
 def test_begun_and_ended_on_any_ranks(example, folder, alone, begun, ended):
     """All files agree to 1e-10 of the largest magnitude of each quantity; what is counted agrees exactly."""
     out = folder / f"{begun} {ended}"

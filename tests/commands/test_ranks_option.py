@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from coilset.meshes.errors import InputError
-from coilset.model.processes import mpi_environment, mpirun
+from coilset.model.base.errors import InputError
+from coilset.model.runtime.processes import mpi_environment, mpirun
 from coilset.scripts.ranks import RULER, MpirunMessages, check
 
 
@@ -47,8 +47,9 @@ def test_mpirun_s_own_words_are_kept_apart():
 def test_more_ranks_than_cores_start_without_a_word():
     """The setting that allows them is known to this mpirun, and is not an earlier name of which it would warn."""
     ranks = len(os.sched_getaffinity(0)) + 1
-    done = subprocess.run([*mpirun(ranks), "echo", "here"], env=mpi_environment(), capture_output=True, text=True,
-                          check=False)  # fmt: skip
+    done = subprocess.run(
+        [*mpirun(ranks), "echo", "here"], env=mpi_environment(), capture_output=True, text=True, check=False
+    )
     assert (done.returncode, done.stdout, done.stderr) == (0, "here\n" * ranks, "")
 
 
@@ -56,14 +57,16 @@ def test_each_mpirun_has_a_folder_of_its_own(tmp_path):
     """By itself it takes one named by its process number, and fails if a killed one has left that."""
     (tmp_path / "where.py").write_text(
         "import os\n"
-        "from coilset.model.processes import first_rank\n"
+        "from coilset.model.runtime.processes import first_rank\n"
         "if first_rank(): print(os.environ.get('PMIX_SERVER_TMPDIR', ''))\n"
     )
     (tmp_path / "own").mkdir()
     command = [sys.executable, "-m", "coilset.scripts", "-n", "2", "python", str(tmp_path / "where.py")]
     environment = os.environ | {"TMPDIR": str(tmp_path / "own")}
-    found = [subprocess.run(command, capture_output=True, text=True, check=True, env=environment).stdout.strip()
-             for _ in range(2)]  # fmt: skip
+    found = [
+        subprocess.run(command, capture_output=True, text=True, check=True, env=environment).stdout.strip()
+        for _ in range(2)
+    ]
     if not all(found):
         pytest.skip("another kind of MPI")
     folders = [Path(where).relative_to(tmp_path / "own").parts[0] for where in found]

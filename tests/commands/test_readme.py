@@ -11,7 +11,7 @@ import pytest
 
 from coilset.model.case import read_case
 from coilset.model.sweep.rehearsal import build_input
-from coilset.scripts import test as suite
+from coilset.scripts.commands import test as suite
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 README = (REPOSITORY / "README.md").read_text(encoding="utf-8")

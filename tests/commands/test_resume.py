@@ -13,16 +13,19 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
 from coilset.model.case.heat import HeatSpec
-from coilset.model.results import state_file
-from coilset.model.results.checkpoint import Checkpoint
+from coilset.model.results.files import state_file
+from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.run.analysis import Analysis
 
 SETTINGS = ["mesh.section.rule=abramowitz9", "loading.0.steps=20", "loading.1.steps=20"]
-CLAMPED = ["mesh.elements_per_turn=8", "ends=clamped",
-           "loading=[{to: {travel: 12}, steps: 6}, {to: {force: 0}, steps: 3}]"]  # fmt: skip
+CLAMPED = [
+    "mesh.elements_per_turn=8",
+    "ends=clamped",
+    "loading=[{to: {travel: 12}, steps: 6}, {to: {force: 0}, steps: 3}]",
+]
 CUT = [*CLAMPED, "solver.options.snes_max_it=3"]
 KILLS = 4  # twenty were made once, see docs/restart.md; each costs a start of Python
 
@@ -52,8 +55,9 @@ def test_killed_runs_resume_to_the_same_bits(example, tmp_path):
     for _ in range(KILLS):
         before = written(state)
         more = ["--resume"] if before else []
-        process = subprocess.Popen(command(example, *more), cwd=tmp_path / "killed",
-                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)  # fmt: skip
+        process = subprocess.Popen(
+            command(example, *more), cwd=tmp_path / "killed", stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
         while process.poll() is None and written(state) == before:
             time.sleep(0.001)
         time.sleep(rng.uniform(0.0, 0.05))

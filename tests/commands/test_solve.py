@@ -10,7 +10,7 @@ import sys
 import pytest
 import yaml
 
-from coilset.meshes.errors import CoilsetError, InputError
+from coilset.model.base.errors import CoilsetError, InputError
 from coilset.model.case import read_case
 
 SHORT = ["--set", "loading=[{to: {travel: 6}, steps: 3}, {to: {force: 0}, steps: 2}]", "--no-pictures"]
@@ -22,8 +22,13 @@ def coilset(*arguments, cwd):
 
 
 def test_a_name_in_another_encoding_gets_one_line(tmp_path):
-    done = subprocess.run([sys.executable, "-m", "coilset.scripts", "solve", b"Feder\xe4.yaml"], cwd=tmp_path,
-                          capture_output=True, text=True, check=False)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-m", "coilset.scripts", "solve", b"Feder\xe4.yaml"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 2
     assert done.stderr == "coilset: Feder\\udce4.yaml: is not written in UTF-8; rename it\n"
 
@@ -57,9 +62,14 @@ def test_ctrl_c_while_the_check_of_an_entry_is_built_is_heard_after_it():
 
 
 def test_letters_that_the_output_lacks_are_replaced(example, tmp_path):
-    done = subprocess.run([sys.executable, "-m", "coilset.scripts", "sheet", example, "--no-pictures"], cwd=tmp_path,
-                          capture_output=True, text=True, check=False,
-                          env=os.environ | {"PYTHONIOENCODING": "ascii"})  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-m", "coilset.scripts", "sheet", example, "--no-pictures"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"PYTHONIOENCODING": "ascii"},
+    )
     assert (done.returncode, done.stderr) == (0, "")
     assert "wire length l" in done.stdout
     assert "? D n_t" in done.stdout  # for π
@@ -78,9 +88,13 @@ def test_solve_writes_what_the_readme_says(example, tmp_path):
     assert summary["block_height_mm"] == pytest.approx(17.5, rel=1e-12)  # (2.5 + 1) wires of 5 mm
     assert summary["complete"]
     printed = dict(re.findall(r"^ *(.*?)  +(\S+)(?: \S+)? *$", done.stdout, re.MULTILINE))
-    for words, entry in (("set", "set_mm"), ("free length before", "free_length_before_mm"),
-                         ("free length after", "free_length_after_mm"), ("initial rate", "rate_N_per_mm"),
-                         ("block height", "block_height_mm")):  # fmt: skip
+    for words, entry in (
+        ("set", "set_mm"),
+        ("free length before", "free_length_before_mm"),
+        ("free length after", "free_length_after_mm"),
+        ("initial rate", "rate_N_per_mm"),
+        ("block height", "block_height_mm"),
+    ):
         assert printed[words] == f"{summary[entry]:.4f}"
     assert printed["maximum force"] == f"{summary['force_max_N']:.2f}"
     assert printed["maximum residual shear stress"] == f"{summary['residual_shear_max_MPa']:.2f}"
@@ -130,7 +144,7 @@ def test_wrong_settings_get_one_line(example, setting, words):
 def read_and_build(example, setting):
     from mpi4py import MPI
 
-    from coilset.model.analysis import Analysis
+    from coilset.model.run.analysis import Analysis
 
     return Analysis(read_case(example, [setting]), MPI.COMM_SELF)
 

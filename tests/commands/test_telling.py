@@ -7,8 +7,8 @@ import re
 import pytest
 from mpi4py import MPI
 
-from coilset.scripts.solve import solve
-from coilset.scripts.telling import Lines, duration
+from coilset.scripts.commands.solve import solve
+from coilset.scripts.terminal.telling import Lines, duration
 
 SEATS = ["both seats"]
 CASE = """

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.analysis import Analysis
 from coilset.model.case import check
 from coilset.model.contact.coils import Coils
-from coilset.model.results.checkpoint import Checkpoint
-from coilset.model.results.summary import summarise
+from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 
 SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0}
 TO_BLOCK_AND_BACK = [{"to": "block", "steps": 12}, {"to": {"force": 0.0}, "steps": 3}]
@@ -68,8 +68,9 @@ def test_stiffness_is_the_derivative_of_the_forces_of_offset_points(points, heli
     direction, h = np.random.default_rng(2).normal(size=x.shape), 1e-6
     one, other = (dense(coils, x + s * h * direction, np.zeros(12))[0] for s in (1, -1))
     n = x.size
-    np.testing.assert_allclose(K[:, :n] @ direction.ravel(), (one - other) / (2 * h), rtol=0,
-                               atol=1e-6 * np.abs(K).max())  # fmt: skip
+    np.testing.assert_allclose(
+        K[:, :n] @ direction.ravel(), (one - other) / (2 * h), rtol=0, atol=1e-6 * np.abs(K).max()
+    )
 
 
 def test_offsets_are_part_of_the_state(tmp_path):

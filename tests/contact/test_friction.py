@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError
 from coilset.model.case import check
 from coilset.model.contact.base import SEAT_DOFS, TrialPositions
 from coilset.model.contact.coils import Coils
@@ -13,16 +12,20 @@ from coilset.model.contact.curve import CentreLine
 from coilset.model.contact.friction import CoilFriction, SeatFriction
 from coilset.model.contact.seat import Seat
 from coilset.model.material import library
-from coilset.model.results.checkpoint import Checkpoint
+from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.run.analysis import Analysis
 from coilset.model.section.rules import polar
 from coilset.verification.frame import Frame
 from coilset.verification.wires import wire_points
 
 BEDDING, ONSET, MU = 1e3, 0.5, 0.3  # a long onset: no point comes to its end by the differences
 SPRING = {
-    "wire_diameter": 4.0, "mean_diameter": 32.0, "turns": 5.0, "free_length": 45.0,
+    "wire_diameter": 4.0,
+    "mean_diameter": 32.0,
+    "turns": 5.0,
+    "free_length": 45.0,
     "end_coils": {"form": "closed and ground", "turns": 1.0, "transition": 0.5, "tip": 0.25},
-}  # fmt: skip
+}
 
 
 def dense(friction, x, seats, rotations):
@@ -56,8 +59,12 @@ def rubbing(points, helix):
         friction.memory.committed("traction")[...] = traction
         # slips of 0.01 mm between coils and less than 0.001 mm on a seat: some points stick, others slide
         slip = 0.01 if kind == "coils" else 0.0005
-        return (friction, place + slip * rng.normal(size=place.shape), seats + 0.1 * slip * rng.normal(size=12),
-                slip * rng.normal(size=place.shape))  # fmt: skip
+        return (
+            friction,
+            place + slip * rng.normal(size=place.shape),
+            seats + 0.1 * slip * rng.normal(size=12),
+            slip * rng.normal(size=place.shape),
+        )
 
     return make
 
@@ -166,8 +173,15 @@ def block(held, mu=MU):
     points = wire_points(nodes, RADIUS)
     seat = Seat("bottom", points, points.radius, nodes, np.zeros(12), 1e3, 1e-3)
     friction = SeatFriction(seat, mu, nodes, np.zeros(12))
-    frame = Frame(nodes, [(k, k + 1) for k in range(NODES - 1)], RADIUS, library.load("elastic"), polar(2, 6),
-                  [(node, held) for node in range(NODES)], contacts=[seat, friction])  # fmt: skip
+    frame = Frame(
+        nodes,
+        [(k, k + 1) for k in range(NODES - 1)],
+        RADIUS,
+        library.load("elastic"),
+        polar(2, 6),
+        [(node, held) for node in range(NODES)],
+        contacts=[seat, friction],
+    )
     frame.press = {frame.dof(node, 2): -LOAD for node in range(NODES)}
     drawn = [frame.dof(node, component) for node in range(NODES) for component in (0, 1, 3)]
     assert frame.step(moves=dict.fromkeys(drawn, 0.0), forces=frame.press).converged
@@ -225,8 +239,13 @@ STEPS = 8  # of a phase; the error of the increments falls with their square
 def analyse(friction, comm=MPI.COMM_SELF):
     """A closed and ground elastic spring, pressed by 8 mm and released, with end coils in a groove."""
     loading = [{"to": {"travel": travel}, "steps": STEPS} for travel in (8.0, 0.0)]
-    data = {"spring": SPRING, "material": "elastic", "contact": {"friction": friction}, "loading": loading,
-            "seats": {"hold": "groove"}}  # fmt: skip
+    data = {
+        "spring": SPRING,
+        "material": "elastic",
+        "contact": {"friction": friction},
+        "loading": loading,
+        "seats": {"hold": "groove"},
+    }
     return Analysis(check(data), comm)
 
 
@@ -280,8 +299,9 @@ def test_ranks_rub_the_same():
     friction = {"seats": 0.2, "coils": 0.2}
     alone, together = (analyse(friction, comm).run().steps for comm in (MPI.COMM_SELF, MPI.COMM_WORLD))
     greatest = max(step.force_N for step in alone)
-    np.testing.assert_allclose([step.force_N for step in together], [step.force_N for step in alone], rtol=0,
-                               atol=1e-10 * greatest)  # fmt: skip
+    np.testing.assert_allclose(
+        [step.force_N for step in together], [step.force_N for step in alone], rtol=0, atol=1e-10 * greatest
+    )
 
 
 @pytest.mark.parametrize(

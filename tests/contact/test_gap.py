@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.contact.base import TrialPositions, one_sided
 from coilset.model.contact.build import gaps_one_turn_apart
 from coilset.model.contact.elements import one_sided_at

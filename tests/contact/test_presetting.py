@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from coilset.model import equilibrium
-from coilset.verification.cases.contact_meshes import FAILED, IN_PARTS, SOLVED, press
+from coilset.verification.cases.contact.contact_meshes import FAILED, IN_PARTS, SOLVED, press
 from coilset.verification.springs.torsion import CoilByCoil
 
 

@@ -6,16 +6,21 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.analysis import Analysis
 from coilset.model.case import check, read_case
 from coilset.model.contact.resultants import Wrench
-from coilset.model.results.dataset import pressure_along_wire
-from coilset.model.results.folder import write_seats
-from coilset.model.results.record import SeatReactions
+from coilset.model.results.files.dataset import pressure_along_wire
+from coilset.model.results.files.folder import write_seats
+from coilset.model.results.records.record import SeatReactions
+from coilset.model.run.analysis import Analysis
 
 COARSE = ["mesh.section.rule=abramowitz9", "loading.0.steps=6", "loading.1.steps=4"]
-CLOSED = {"wire_diameter": 4.0, "mean_diameter": 32.0, "turns": 7.5, "free_length": 75.0,
-          "end_coils": {"form": "closed and ground"}}  # fmt: skip
+CLOSED = {
+    "wire_diameter": 4.0,
+    "mean_diameter": 32.0,
+    "turns": 7.5,
+    "free_length": 75.0,
+    "end_coils": {"form": "closed and ground"},
+}
 
 
 @pytest.fixture(scope="module")
@@ -105,8 +110,11 @@ def test_active_turns_make_the_rate():
     """A long slender spring between clamped heads: R = G d⁴/(64 r³ n) within 1 %; a flat spring's torque is F r."""
     spring = {"wire_diameter": 3.0, "mean_diameter": 36.0, "turns": 12.0, "pitch": 4.5}
     analysis = Analysis(
-        check({"spring": spring, "material": "elastic", "ends": "clamped",
-               "loading": [{"to": {"travel": 2}, "steps": 1}]}), MPI.COMM_SELF)  # fmt: skip
+        check(
+            {"spring": spring, "material": "elastic", "ends": "clamped", "loading": [{"to": {"travel": 2}, "steps": 1}]}
+        ),
+        MPI.COMM_SELF,
+    )
     result = analysis.run()
     n = result.seats[0].active_turns
     assert result.rate == pytest.approx(analysis.law.G * 3.0**4 / (64 * 18.0**3 * n), rel=0.01)

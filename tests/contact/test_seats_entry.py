@@ -4,13 +4,18 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError
 from coilset.model.case import check
 from coilset.model.contact.build import FREE_TILT_OF_BEDDING, MODULUS_OF_BEDDING
+from coilset.model.run.analysis import Analysis
 
-SPRING = {"wire_diameter": 4.0, "mean_diameter": 32.0, "turns": 7.5, "free_length": 75.0,
-          "end_coils": {"form": "closed and ground"}}  # fmt: skip
+SPRING = {
+    "wire_diameter": 4.0,
+    "mean_diameter": 32.0,
+    "turns": 7.5,
+    "free_length": 75.0,
+    "end_coils": {"form": "closed and ground"},
+}
 LIGHT = [{"to": {"force": 30}, "steps": 2}]
 
 
@@ -18,18 +23,21 @@ def case(seats, loading=LIGHT, spring=SPRING, **more):
     return check({"spring": spring, "material": "elastic", "seats": seats, "loading": loading, **more})
 
 
-@pytest.mark.parametrize(("seats", "words"), [
-    ({"hold": "glue"}, "seats.hold: 'glue'"),
-    ({"bottom": {"shape": "conical"}}, "seats.bottom: a conical seat needs its angle"),
-    ({"top": {"shape": "stepped"}}, "seats.top: a stepped seat needs its turns"),
-    ({"top": {"angle": 10}}, "seats.top: angle is for conical seats, not for flat ones"),
-    ({"top": {"shape": "conical", "angle": 70}}, "seats.top.angle: 70"),
-    ({"top": {"tilt": "free"}}, "the top seat moves, but tips are held in space; give hold: groove"),
-    ({"top": {"tilt": -3.0}}, "seats.top.tilt"),
-    ({"hold": "groove", "bottom": {"turn": "free"}, "top": {"turn": "free"}}, "turn: both seats are free"),
-    ({"groove": 0.5}, "give hold: groove with it"),
-    ({"hold": "groove", "groove": 0}, "seats.groove: 0"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("seats", "words"),
+    [
+        ({"hold": "glue"}, "seats.hold: 'glue'"),
+        ({"bottom": {"shape": "conical"}}, "seats.bottom: a conical seat needs its angle"),
+        ({"top": {"shape": "stepped"}}, "seats.top: a stepped seat needs its turns"),
+        ({"top": {"angle": 10}}, "seats.top: angle is for conical seats, not for flat ones"),
+        ({"top": {"shape": "conical", "angle": 70}}, "seats.top.angle: 70"),
+        ({"top": {"tilt": "free"}}, "the top seat moves, but tips are held in space; give hold: groove"),
+        ({"top": {"tilt": -3.0}}, "seats.top.tilt"),
+        ({"hold": "groove", "bottom": {"turn": "free"}, "top": {"turn": "free"}}, "turn: both seats are free"),
+        ({"groove": 0.5}, "give hold: groove with it"),
+        ({"hold": "groove", "groove": 0}, "seats.groove: 0"),
+    ],
+)
 def test_wrong_seats_get_one_line(seats, words):
     with pytest.raises(InputError) as caught:
         case(seats)

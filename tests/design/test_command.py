@@ -9,11 +9,11 @@ import pytest
 import yaml
 
 import coilset.open
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.report.design_page import write_design_report
 from coilset.model.sweep.journal import read_records
-from coilset.scripts.design import design
-from coilset.scripts.report import report
+from coilset.scripts.commands.design import design
+from coilset.scripts.commands.report import report
 
 FIND, SUCH = {"loading.0.to.height": [18, 34]}, {"free_length_after_mm": 25.0}
 
@@ -88,12 +88,20 @@ def test_nothing_is_left_of_a_design_that_is_refused(design_file, tmp_path):
 def test_a_journal_of_another_design_is_kept_and_not_read_as_of_this_one(design_file, tmp_path):
     """The same springs, asked for the same two numbers in the other order, and then for what cannot be had."""
     out, heights = tmp_path / "out", [{"height": 24.0, "N": 100.0}, {"height": 20.0, "N": 160.0}]
-    loading = [{"to": {"height": 24.0}, "steps": 1}, {"to": {"height": 20.0}, "steps": 1},
-               {"to": {"force": 0}, "steps": 1}]  # fmt: skip
+    loading = [
+        {"to": {"height": 24.0}, "steps": 1},
+        {"to": {"height": 20.0}, "steps": 1},
+        {"to": {"force": 0}, "steps": 1},
+    ]
 
     def found(force_at, resume):
-        path = design_file({"spring.wire_diameter": [4.9, 5.0]}, {"force_at": force_at}, loading=loading,
-                           material="elastic", accuracy="none")  # fmt: skip
+        path = design_file(
+            {"spring.wire_diameter": [4.9, 5.0]},
+            {"force_at": force_at},
+            loading=loading,
+            material="elastic",
+            accuracy="none",
+        )
         design(str(path), str(out), False, resume)
         (out / "design.json").rename(out / "was.json")
         return {one["height_mm"]: one["value"] for one in json.loads((out / "was.json").read_text())["conditions"]}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import yaml
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.design.conditions import conditions
 from coilset.model.design.design import make_search
 from coilset.model.design.file import read_design_file

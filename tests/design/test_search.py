@@ -5,13 +5,13 @@ import pytest
 import yaml
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
 from coilset.model.design.design import find, make_search
 from coilset.model.design.file import read_design_file
 from coilset.model.design.output import found_data
-from coilset.model.results.summary import summarise
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 
 CLOSE = 1e-6  # of the target
 

@@ -7,13 +7,13 @@ import pytest
 import yaml
 
 import coilset.open
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.design.choices import choose
 from coilset.model.design.design import make_search, solve
 from coilset.model.design.file import read_design_file
 from coilset.model.design.output import found_data
 from coilset.model.report.design_page import write_design_report
-from coilset.scripts.design import design
+from coilset.scripts.commands.design import design
 
 TABLE = {"turns": [0, 1.25, 2.5], "values": [11.0, 13.0, 11.0], "interpolation": "linear"}
 SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": TABLE}
@@ -32,16 +32,21 @@ def test_a_table_is_scaled_as_a_whole(search):
     cone = {**SPRING, "pitch": 12.0, "mean_diameter": {"shape": "funnel", "bottom": 50, "neck": 30, "cone_turns": 1.5}}
     one = search({"spring.mean_diameter": {"scale": [0.5, 1.2]}}, {"rate_N_per_mm": 30.0}, spring=cone)
     assert one.evaluator.data(np.array([0.5]))["spring"]["mean_diameter"] == {
-        "shape": "funnel", "bottom": 25.0, "neck": 15.0, "cone_turns": 1.5
-    }  # fmt: skip
+        "shape": "funnel",
+        "bottom": 25.0,
+        "neck": 15.0,
+        "cone_turns": 1.5,
+    }
 
 
 def test_entries_are_tied_to_one_unknown(search):
     """The ends' pitch is the unknown, the middle's half of it and 7.5 mm more."""
-    tied = ["spring.pitch.values.0", "spring.pitch.values.2",
-            {"entry": "spring.pitch.values.1", "factor": 0.5, "offset": 7.5}]  # fmt: skip
-    one = search({"end_pitch": {"from": 9, "to": 15, "entries": tied}},
-                 {"free_length_before_mm": 35.0}, spring=SPRING)  # fmt: skip
+    tied = [
+        "spring.pitch.values.0",
+        "spring.pitch.values.2",
+        {"entry": "spring.pitch.values.1", "factor": 0.5, "offset": 7.5},
+    ]
+    one = search({"end_pitch": {"from": 9, "to": 15, "entries": tied}}, {"free_length_before_mm": 35.0}, spring=SPRING)
     found = solve(one).found
     values = found_data(found)["spring"]["pitch"]["values"]
     # height over two linear pieces of 1.25 turns: 1.25 (p₀ + p₁), p₁ = p₀/2 + 7.5
@@ -123,8 +128,10 @@ def test_choices_alone_come_as_near_as_one_of_them(search):
 
 def test_of_many_combinations_those_next_to_the_solution_are_evaluated(search):
     """60 combinations: four runs at the corners about the solution in which both lists are ranges."""
-    lists = {"loading.0.to.height": [18.0 + 0.5 * k for k in range(12)],
-             "spring.wire_diameter": [4.5, 4.75, 5.0, 5.25, 5.5]}  # fmt: skip
+    lists = {
+        "loading.0.to.height": [18.0 + 0.5 * k for k in range(12)],
+        "spring.wire_diameter": [4.5, 4.75, 5.0, 5.25, 5.5],
+    }
     find = {name: {"choices": values} for name, values in lists.items()}
     one = search(find, LENGTH | {"force_at": {"height": 21.0, "N": 160.0}})
     options = choose(one, lists)
@@ -146,8 +153,11 @@ def test_of_many_combinations_those_next_to_the_solution_are_evaluated(search):
         ({"p": {"from": 9, "to": 15, "entries": []}}, LENGTH, "find.p.entries"),
         ({"p": {"from": 9, "to": 15, "entries": [{"entry": "spring.pitch", "factor": 0.0}]}}, LENGTH, "factor 0"),
         ({"p": {"from": 9, "to": 15, "entry": "spring.pitch"}}, LENGTH, "p.entry: unknown entry; is entries meant"),
-        ({"spring.pitch": [9, 15], "p": {"from": 9, "to": 15, "entries": ["spring.pitch"]}},
-         LENGTH | {"set_mm": 3.0}, "find.spring.pitch: spring.pitch is driven by p already"),
+        (
+            {"spring.pitch": [9, 15], "p": {"from": 9, "to": 15, "entries": ["spring.pitch"]}},
+            LENGTH | {"set_mm": 3.0},
+            "find.spring.pitch: spring.pitch is driven by p already",
+        ),
         (HEIGHT, {"set_mm": {}}, "such_that.set_mm: is empty; give at_least or at_most"),
         (HEIGHT, {"set_mm": {"at_most": 0}}, "such_that.set_mm.at_most: must not be 0"),
         (HEIGHT, {"set_mm": {"at_least": 5, "at_most": 4}}, "such_that.set_mm: at_least 5 leaves nothing below"),
@@ -155,7 +165,7 @@ def test_of_many_combinations_those_next_to_the_solution_are_evaluated(search):
         (HEIGHT, {"set_mm": "4"}, "such_that.set_mm: '4': must be a number"),
         (HEIGHT, {"force_at": {"height": 21.0, "N": {"at_least": "x"}}}, "force_at.0.N.at_least: 'x': must be"),
     ],
-)  # fmt: skip
+)
 def test_wrong_unknowns_and_limits_get_one_line(design_file, find, such_that, problem):
     with pytest.raises(InputError) as caught:
         make_search(read_design_file(design_file(find, such_that)))

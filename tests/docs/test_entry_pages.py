@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from coilset import meshes, model
-from coilset.meshes.entry import Strict
+from coilset.model.base.schema import Strict
 from coilset.model.case import reference
 from coilset.model.equilibrium.settings import NewtonControl, StepControl
 
@@ -49,8 +49,10 @@ def on_the_page(folder, name):
 
 @pytest.mark.parametrize("name", MODELS)
 def test_every_entry_has_its_row(tmp_path, name):
-    wanted = {("" if group == MODELS[name].__name__ else group.lower()): names
-              for group, names in by_schema(MODELS[name]).items()}  # fmt: skip
+    wanted = {
+        ("" if group == MODELS[name].__name__ else group.lower()): names
+        for group, names in by_schema(MODELS[name]).items()
+    }
     assert on_the_page(tmp_path, name) == wanted
 
 

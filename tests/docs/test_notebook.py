@@ -19,7 +19,7 @@ def test_every_cell_runs_and_every_figure_is_drawn(tmp_path, monkeypatch):
     pytest.importorskip("ipykernel")
     from mpi4py import MPI
 
-    from coilset.scripts.solve import solve
+    from coilset.scripts.commands.solve import solve
 
     (tmp_path / "spring.yaml").write_text(CASE)
     solve(tmp_path / "spring.yaml", tmp_path / "run", False, [], pictures=False, comm=MPI.COMM_SELF)

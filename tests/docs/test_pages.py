@@ -8,9 +8,11 @@ from pathlib import Path
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-PAGES = {path.relative_to(REPOSITORY).as_posix(): path.read_text(encoding="utf-8")
-         for path in [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").rglob("*.md"))]
-         if "generated" not in path.parts}  # fmt: skip
+PAGES = {
+    path.relative_to(REPOSITORY).as_posix(): path.read_text(encoding="utf-8")
+    for path in [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").rglob("*.md"))]
+    if "generated" not in path.parts
+}
 ROOMS = ("model", "meshes", "scripts", "verification", "tests", "examples", "docs")
 WRITES = {"solve": "", "slice": "-slice", "sweep": "", "design": ""}  # into a folder without results: suffix
 STEP_BY_STEP = [name for name in PAGES if name.startswith(("docs/how-to/", "docs/tutorial/"))]

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from coilset import model
-from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.results.dataset import point_state
-from coilset.model.results.record import SeatReaction, SeatReactions, Step
-from coilset.model.results.summary import summarise
+from coilset.model.results.files.dataset import point_state
+from coilset.model.results.records.record import SeatReaction, SeatReactions, Step
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs/reference/results.md").read_text(encoding="utf-8")
 MODEL = Path(model.__file__).parent

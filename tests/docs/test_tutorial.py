@@ -8,18 +8,26 @@ import numpy as np
 import pytest
 import yaml
 
-from coilset.model.analysis import Analysis
 from coilset.model.case import check, read_case
 from coilset.model.material import library, programs
-from coilset.model.results.summary import summarise
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 from coilset.model.sweep.plan import Plan
 
-PAGES = {path.stem: path.read_text(encoding="utf-8")
-         for path in (Path(__file__).resolve().parents[2] / "docs/tutorial").glob("*.md")}  # fmt: skip
-LINES = {"free length before": "free_length_before_mm", "free length after": "free_length_after_mm", "set": "set_mm",
-         "initial rate": "rate_N_per_mm", "maximum force": "force_max_N", "block height": "block_height_mm",
-         "maximum residual shear stress": "residual_shear_max_MPa",
-         "residual shear stress, inside of coil": "residual_shear_inside_MPa"}  # fmt: skip
+PAGES = {
+    path.stem: path.read_text(encoding="utf-8")
+    for path in (Path(__file__).resolve().parents[2] / "docs/tutorial").glob("*.md")
+}
+LINES = {
+    "free length before": "free_length_before_mm",
+    "free length after": "free_length_after_mm",
+    "set": "set_mm",
+    "initial rate": "rate_N_per_mm",
+    "maximum force": "force_max_N",
+    "block height": "block_height_mm",
+    "maximum residual shear stress": "residual_shear_max_MPa",
+    "residual shear stress, inside of coil": "residual_shear_inside_MPa",
+}
 
 
 @pytest.fixture(scope="module")

@@ -4,20 +4,39 @@ import time
 
 import pytest
 
-from coilset.meshes.errors import InputError
-from coilset.model.entries.yaml import load_yaml, read_data
+from coilset.model.base.errors import InputError
+from coilset.model.base.yaml import load_yaml, read_data
 
 
 @pytest.mark.parametrize(
     ("text", "value"),
     [
-        ("1e6", 1e6), ("1.0E-6", 1e-6), ("-.5", -0.5), ("+12", 12), ("010", 10), ("0x1F", 31), ("0o17", 15),
-        ("3.", 3.0), ("0b11", "0b11"), ("-.inf", float("-inf")), ("1e5x", "1e5x"),
+        ("1e6", 1e6),
+        ("1.0E-6", 1e-6),
+        ("-.5", -0.5),
+        ("+12", 12),
+        ("010", 10),
+        ("0x1F", 31),
+        ("0o17", 15),
+        ("3.", 3.0),
+        ("0b11", "0b11"),
+        ("-.inf", float("-inf")),
+        ("1e5x", "1e5x"),
         ("{null: 1, 5: 2}", {"null": 1, "5": 2}),
-        ("true", True), ("FALSE", False), ("yes", "yes"), ("on", "on"), ("12:30:00", "12:30:00"), ("1_000", "1_000"),
-        ("2001-12-14", "2001-12-14"), ("~", None), ("", None), ("'5'", "5"), ("!!str 5", "5"), ("!!float 5", 5.0),
+        ("true", True),
+        ("FALSE", False),
+        ("yes", "yes"),
+        ("on", "on"),
+        ("12:30:00", "12:30:00"),
+        ("1_000", "1_000"),
+        ("2001-12-14", "2001-12-14"),
+        ("~", None),
+        ("", None),
+        ("'5'", "5"),
+        ("!!str 5", "5"),
+        ("!!float 5", 5.0),
     ],
-)  # fmt: skip
+)
 def test_words_and_numbers_are_those_of_yaml_1_2(text, value):
     found = load_yaml(text)
     assert found == value

@@ -6,14 +6,14 @@ from mpi4py import MPI
 from scipy.integrate import quad
 from scipy.optimize import brentq
 
-from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.equilibrium.branch_switching import Snap
 from coilset.model.equilibrium.load import Drag, Load
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.stability import Stability
-from coilset.model.examples import EXAMPLES
 from coilset.model.material import library
+from coilset.model.run.analysis import Analysis
+from coilset.model.run.examples import EXAMPLES
 from coilset.model.section.rules import abramowitz9
 from coilset.verification.frame import Frame
 

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.errors import SolveError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import SolveError
 from coilset.model.case import read_case
 from coilset.model.equilibrium.convergence import Outcome
 from coilset.model.equilibrium.newton import Start
-from coilset.model.results.summary import summarise
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 
 COARSE = ["mesh.elements_per_turn=10", "mesh.section.rule=abramowitz9"]
 

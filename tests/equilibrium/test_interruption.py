@@ -2,8 +2,8 @@
 
 import pytest
 
-from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
+from coilset.model.run.analysis import Analysis
 from coilset.model.slice.analysis import SliceAnalysis
 from coilset.model.slice.problem import SliceProblem
 

@@ -10,8 +10,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.optimize import brentq
 
-from coilset.meshes.errors import InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
 from coilset.model.equilibrium import matrix
 from coilset.model.equilibrium.methods import METHODS, rod_method
@@ -19,6 +18,7 @@ from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.settings import MethodName
 from coilset.model.equilibrium.snes import SnesFactory
 from coilset.model.material import library
+from coilset.model.run.analysis import Analysis
 from coilset.model.section.rules import abramowitz9
 from coilset.verification.frame import Frame
 
@@ -71,7 +71,7 @@ def test_what_contacts_join_in_long_springs_is_factorised_by_the_multifrontal_me
 
 ALL_METHODS = f"""
 from mpi4py import MPI
-from coilset.model.analysis import Analysis
+from coilset.model.run.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.equilibrium.methods import METHODS
 

@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.analysis import Analysis
 from coilset.model.case import Case
 from coilset.model.equilibrium.branch_switching import Snap
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.equilibrium.stability import negative_pivots
-from coilset.model.results.buckling import axis_offset, buckling, critical_travel, vanishing
-from coilset.model.results.record import Step
-from coilset.model.results.summary import summarise
-from coilset.scripts.telling import Lines
+from coilset.model.results.records.buckling import axis_offset, buckling, critical_travel, vanishing
+from coilset.model.results.records.record import Step
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
+from coilset.scripts.terminal.telling import Lines
 
 LONG = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 40, "pitch": 12.0}
 HARINGX = 39.16  # mm, of this spring between clamped heads; coilset.verification.references.stability
@@ -25,9 +25,14 @@ HARINGX = 39.16  # mm, of this spring between clamped heads; coilset.verificatio
 
 def pressed(travel, steps, comm=MPI.COMM_SELF, mesh=8, **more):
     """The long elastic spring between clamped heads."""
-    data = {"spring": LONG, "material": "elastic", "ends": "clamped",
-            "mesh": {"elements_per_turn": mesh, "section": {"kind": "plane"}},
-            "loading": [{"to": {"travel": travel}, "steps": steps}], **more}  # fmt: skip
+    data = {
+        "spring": LONG,
+        "material": "elastic",
+        "ends": "clamped",
+        "mesh": {"elements_per_turn": mesh, "section": {"kind": "plane"}},
+        "loading": [{"to": {"travel": travel}, "steps": steps}],
+        **more,
+    }
     return Analysis(Case.model_validate(data), comm)
 
 
@@ -109,8 +114,9 @@ def test_an_axis_pushed_off_long_before_has_not_buckled():
     """Eigenvalues that vanish at 10 mm: 3 mm off at 6 mm is a push of the ends, at 9.8 mm it is buckling."""
     step = Step(1, 0, 1.0, 90.0, 0.0, 0.0, 3, 4, 0, 0, 2, 0.0)
     travels = (2.0, 4.0, 6.0, 8.0)
-    steps = [replace(step, travel_mm=s, force_N=10.0 * s, least_eigenvalue=10.0 - s, axis_offset_mm=0.5 * s)
-             for s in travels]  # fmt: skip
+    steps = [
+        replace(step, travel_mm=s, force_N=10.0 * s, least_eigenvalue=10.0 - s, axis_offset_mm=0.5 * s) for s in travels
+    ]
     assert critical_travel(steps) == pytest.approx(10.0, rel=1e-9)
     assert buckling(steps, 40.0) is None
     late = replace(step, travel_mm=9.8, force_N=98.0, least_eigenvalue=1.0, axis_offset_mm=5.0)  # it turns away from 0

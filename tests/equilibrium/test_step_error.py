@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError
 from coilset.model.case import check, read_case
 from coilset.model.case.case import read_case_data
 from coilset.model.equilibrium.step_error import Estimate
 from coilset.model.material import library
-from coilset.model.results.summary import summarise
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 
 COARSE = ["mesh.elements_per_turn=10", "mesh.section.radial=3", "mesh.section.angular=8"]
 BACK = "{to: {force: 0}, steps: 8}"
@@ -78,8 +78,9 @@ def test_equal_steps_tell_their_error_within_a_factor_of_three(example, ends, to
     set_error = fine.steps[-1].travel_mm - coarse.steps[-1].travel_mm
     assert 1 / 3 < told["estimated_set_error_mm"] / set_error < 3
     names = [warning["name"] for warning in told["warnings"]]
-    worst = max(abs(told["estimated_force_error_N"]) / told["force_max_N"],
-                abs(told["estimated_set_error_mm"]) / told["set_mm"])  # fmt: skip
+    worst = max(
+        abs(told["estimated_force_error_N"]) / told["force_max_N"], abs(told["estimated_set_error_mm"]) / told["set_mm"]
+    )
     assert ("step error" in names) == (worst > 0.002)
 
 
@@ -106,8 +107,13 @@ def test_a_hold_in_coarse_steps_tells_its_error_or_that_it_is_not_known(tmp_path
 
 def test_holds_in_which_hardly_anything_creeps_keep_the_error_of_those_before(example):
     """Of a later hold each step is 100 times as long as all before it; a free spring loses forces of rounding."""
-    phases = ("{to: {force: 650}, steps: 8}", "{hold: {hours: 1000}, steps: 6}", "{hold: {hours: 100}, steps: 3}",
-              BACK, "{hold: {hours: 10}, steps: 4}")  # fmt: skip
+    phases = (
+        "{to: {force: 650}, steps: 8}",
+        "{hold: {hours: 1000}, steps: 6}",
+        "{hold: {hours: 100}, steps: 3}",
+        BACK,
+        "{hold: {hours: 10}, steps: 4}",
+    )
     entries = ["material=creeping", "temperature=373.15", "spring.pitch=18", "ends=clamped"]
     steps = run(example, *COARSE, *entries, f"loading=[{', '.join(phases)}]")[0].steps
     first, *later = (step.estimated_force_error_N for step in steps if step.phase in (1, 2, 4))

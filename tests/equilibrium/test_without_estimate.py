@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError
 from coilset.model.case import check, read_case
 from coilset.model.case.case import read_case_data
 from coilset.model.report.answer import answer
-from coilset.model.results.checkpoint import Checkpoint
-from coilset.model.results.summary import summarise
+from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 from coilset.model.sweep.rehearsal import build_input
-from coilset.scripts.interactive import Prompt
-from coilset.scripts.solve import solve
+from coilset.scripts.commands.solve import solve
+from coilset.scripts.terminal.interactive import Prompt
 
 SMALL = ["mesh.elements_per_turn=10", "mesh.section.rule=abramowitz9"]
 PROGRAM = "[{to: block, steps: 5}, {to: {force: 0}, steps: 4}]"
@@ -48,8 +48,9 @@ def test_equal_steps_find_the_same_to_the_last_bit(example):
     assert next(one.remark for one in answer(summary) if one.term == "maximum force").endswith("not estimated")
 
 
-@pytest.mark.parametrize("settings", [[f"loading={{accuracy: none, program: {PROGRAM}}}"],
-                                      [NONE, "loading=[{to: block, steps: [0.5, 1]}]"]])  # fmt: skip
+@pytest.mark.parametrize(
+    "settings", [[f"loading={{accuracy: none, program: {PROGRAM}}}"], [NONE, "loading=[{to: block, steps: [0.5, 1]}]"]]
+)
 def test_all_phases_give_their_steps(example, settings):
     case = read_case(example, settings)
     assert case.accuracy == "none"

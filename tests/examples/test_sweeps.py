@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
-from coilset.model.analysis import Analysis
 from coilset.model.case import check
-from coilset.model.results.summary import summarise
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 from coilset.model.sweep.plan import Plan
 
 SWEEPS = Path(__file__).resolve().parents[2] / "examples" / "sweeps"

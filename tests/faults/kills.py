@@ -68,9 +68,14 @@ class Running:
         name, value = self.mark.split("=")
         with open(folder / "said.txt", "ab") as said:
             self.process = subprocess.Popen(
-                [sys.executable, "-m", "coilset.scripts", *words], cwd=folder, stdout=said, stderr=said,
-                stdin=subprocess.DEVNULL, env=os.environ | {name: value}, start_new_session=True,
-            )  # fmt: skip
+                [sys.executable, "-m", "coilset.scripts", *words],
+                cwd=folder,
+                stdout=said,
+                stderr=said,
+                stdin=subprocess.DEVNULL,
+                env=os.environ | {name: value},
+                start_new_session=True,
+            )
 
     def left(self) -> list[int]:
         """Processes with the mark, those that have ended and wait to be noticed not counted."""
@@ -193,8 +198,11 @@ def main() -> int:
                 unlike |= differing(wanted, now, to_the_bit)
             bad = bad or bool(unlike or left)
             kind = "to the bit" if to_the_bit else f"to {AGREEMENT:g}, as undisturbed runs differ"
-            print(f"{name}: {count} kills, {ends} times to the end; compared {kind}; differing: "
-                  f"{sorted(unlike) or 'nothing'}; processes left: {len(left)}", flush=True)  # fmt: skip
+            print(
+                f"{name}: {count} kills, {ends} times to the end; compared {kind}; differing: "
+                f"{sorted(unlike) or 'nothing'}; processes left: {len(left)}",
+                flush=True,
+            )
     return int(bad)
 
 

@@ -11,14 +11,17 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.errors import CoilsetError, InputError, SolveError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import CoilsetError, InputError, SolveError
 from coilset.model.case import read_case
-from coilset.model.results import folder as folders
-from coilset.model.results import provenance, state_file
-from coilset.model.results.checkpoint import Checkpoint
-from coilset.scripts.log import run_log
-from coilset.scripts.solve import solve
+from coilset.model.material import library
+from coilset.model.results.files import folder as folders
+from coilset.model.results.files import state_file
+from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.results.files.opened import open_run
+from coilset.model.results.records import provenance
+from coilset.model.run.analysis import Analysis
+from coilset.scripts.commands.solve import solve
+from coilset.scripts.terminal.log import run_log
 
 COMM = MPI.COMM_SELF
 SMALL = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "loading=[{to: {travel: 2}, steps: 2}]"]
@@ -54,6 +57,21 @@ def resume(example, folder, *more):
 def test_an_undamaged_one_goes_on(example, folder):
     resume(example, folder)
     assert json.loads((folder / "summary.json").read_text())["steps"] == 2
+
+
+@pytest.mark.parametrize("force", [False, True])
+def test_pictures_of_mesh_go_only_where_results_are_replaced(example, tmp_path, force):
+    (tmp_path / "drawing.png").write_text("of this spring, or of another")
+    solve(example, tmp_path, force, SMALL, False, comm=COMM)
+    assert (tmp_path / "drawing.png").exists() != force
+
+
+@pytest.mark.parametrize("name", ["history.csv", "seats.csv"])
+def test_an_empty_table_is_one_line(example, tmp_path, name):
+    solve(example, tmp_path, False, SMALL, False, comm=COMM)
+    (tmp_path / name).write_text("")
+    with pytest.raises(InputError, match=rf"{name}: is not readable: it is empty"):
+        open_run(tmp_path)
 
 
 def test_a_continued_run_leaves_nothing_that_shows_the_earlier_numbers(example, folder):
@@ -168,9 +186,11 @@ def members(folder):
 
 def changes_of(name):
     """Without an array, with another shape of it, and with a number that is none."""
-    return [lambda arrays: arrays.pop(name),
-            lambda arrays: arrays.update({name: arrays[name][1:]}),
-            lambda arrays: arrays[name].flat.__setitem__(0, np.nan)]  # fmt: skip
+    return [
+        lambda arrays: arrays.pop(name),
+        lambda arrays: arrays.update({name: arrays[name][1:]}),
+        lambda arrays: arrays[name].flat.__setitem__(0, np.nan),
+    ]
 
 
 def spoilt_at(path, name, place, size):
@@ -201,8 +221,11 @@ def test_damage_at_every_array_gets_one_line(example, folder):
     analysis = Analysis(case, COMM)
     before, state = analysis.system.state["x"].trial.copy(), folder / "checkpoint" / STATE
     spoilt = [(member[0], content) for member in members(folder) for content in spoilt_at(*member)]
-    spoilt += [(state, rewritten(state, rewrite_fields, change))
-               for name, _ in analysis.system.state.items() for change in changes_of(name)]  # fmt: skip
+    spoilt += [
+        (state, rewritten(state, rewrite_fields, change))
+        for name, _ in analysis.system.state.items()
+        for change in changes_of(name)
+    ]
     assert len(spoilt) > 75
     for path, content in spoilt:
         whole = path.read_bytes()
@@ -283,7 +306,7 @@ def test_one_run_at_a_time_works_in_a_folder(example, folder):
 
 
 def test_changed_constants_of_a_material_file_are_seen(example, tmp_path):
-    source = (Path(provenance.__file__).parents[1] / "material" / "library" / "ck15.yaml").read_text(encoding="utf-8")
+    source = (library.FOLDER / "ck15.yaml").read_text(encoding="utf-8")
     material = tmp_path / "mine.yaml"
     material.write_text(source, encoding="utf-8")
     case = read_case(example, [*SMALL, f"material={material}"])

@@ -17,15 +17,16 @@ import pyvista
 import xarray as xr
 from mpi4py import MPI
 
-from coilset.meshes.errors import CoilsetError
-from coilset.model import examples
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import CoilsetError
 from coilset.model.case import read_case
-from coilset.model.results import dataset, fields, figures, folder, scene, seat_figures
-from coilset.model.results.checkpoint import Checkpoint
-from coilset.model.results.display import ensure
-from coilset.model.results.grid_file import write_grid
-from coilset.model.results.summary import summarise
+from coilset.model.figures import figures, scene, seat_figures
+from coilset.model.figures.display import ensure
+from coilset.model.results.files import dataset, fields, folder
+from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.results.files.grid_file import write_grid
+from coilset.model.results.records.summary import summarise
+from coilset.model.run import examples
+from coilset.model.run.analysis import Analysis
 from coilset.model.sweep import dataset as sweep_data
 from coilset.model.sweep.journal import Journal, read_records
 from coilset.scripts.main import app

@@ -5,9 +5,14 @@ import pytest
 from kills import differing
 
 FOUND = {
-    "state_x": np.array([1.0, 100.0]), "set_mm": 13.28, "iterations": 400, "complete": True, "block_height_mm": None,
-    "history.csv iterations": np.array([9.0, 11.0]), "history.csv force_N": np.array([10.0, np.nan]),
-}  # fmt: skip
+    "state_x": np.array([1.0, 100.0]),
+    "set_mm": 13.28,
+    "iterations": 400,
+    "complete": True,
+    "block_height_mm": None,
+    "history.csv iterations": np.array([9.0, 11.0]),
+    "history.csv force_N": np.array([10.0, np.nan]),
+}
 
 
 @pytest.mark.parametrize(

@@ -5,12 +5,12 @@ import sys
 
 import pytest
 
-from coilset.model.processes import mpi_environment, mpirun
+from coilset.model.runtime.processes import mpi_environment, mpirun
 
 PROGRAM = """
 import sys
 from mpi4py import MPI
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.scripts import main, running
 
 running.TOGETHER = 1.0
@@ -28,8 +28,9 @@ running.run()
 
 def fail(where, folder, program=PROGRAM):
     command = [*mpirun(2), sys.executable, "-c", program, str(where)]
-    return subprocess.run(command, cwd=folder, env=mpi_environment(), capture_output=True, text=True, timeout=100,
-                          check=False)  # fmt: skip
+    return subprocess.run(
+        command, cwd=folder, env=mpi_environment(), capture_output=True, text=True, timeout=100, check=False
+    )
 
 
 @pytest.mark.parametrize("where", [-1, 0, 1])

@@ -11,13 +11,13 @@ import sys
 
 import pytest
 
-from coilset.scripts.solve import solve
+from coilset.scripts.commands.solve import solve
 
 PR_CAPBSET_DROP, CAP_DAC_OVERRIDE = 24, 1  # of Linux's prctl
 SMALL = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "loading=[{to: {travel: 2}, steps: 1}]"]
 RUN = """
 import json, sys
-from coilset.meshes.errors import CoilsetError
+from coilset.model.base.errors import CoilsetError
 from coilset.scripts.main import app
 
 for words in json.load(sys.stdin):
@@ -40,8 +40,15 @@ def run(lines, folder):
         if os.geteuid() == 0 and libc.prctl(PR_CAPBSET_DROP, CAP_DAC_OVERRIDE):
             os._exit(77)
 
-    done = subprocess.run([sys.executable, "-c", RUN], cwd=folder, input=json.dumps(lines), preexec_fn=give_up,
-                          capture_output=True, text=True, check=False)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-c", RUN],
+        cwd=folder,
+        input=json.dumps(lines),
+        preexec_fn=give_up,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     if done.returncode == 77:
         pytest.skip("this process may not give up a right")
     assert done.returncode == 0, done.stderr
@@ -58,13 +65,30 @@ def test_no_command_works_for_a_folder_that_cannot_be_written_to(example, tmp_pa
     closed.mkdir()
     for folder in (closed, results):
         folder.chmod(0o555)
-    commands = ["solve CASE", "slice CASE", "mesh CASE", "sheet CASE", "sweep SWEEP", "verify", "bench",
-                "material show ck15", "material test ck15 PROGRAM", "examples ck15_presetting",
-                "design DESIGN"]  # fmt: skip
-    files = {"CASE": case, "SWEEP": str(example.parent / "sweeps" / "tolerances.yaml"), "DESIGN": "design.yaml",
-             "PROGRAM": str(example.parent / "material" / "tension.yaml")}  # fmt: skip
-    lines = [[*(files.get(word, word) for word in command.split()), "--out", out]
-             for command in commands for out in ("closed", "closed/below")]  # fmt: skip
+    commands = [
+        "solve CASE",
+        "slice CASE",
+        "mesh CASE",
+        "sheet CASE",
+        "sweep SWEEP",
+        "verify",
+        "bench",
+        "material show ck15",
+        "material test ck15 PROGRAM",
+        "examples ck15_presetting",
+        "design DESIGN",
+    ]
+    files = {
+        "CASE": case,
+        "SWEEP": str(example.parent / "sweeps" / "tolerances.yaml"),
+        "DESIGN": "design.yaml",
+        "PROGRAM": str(example.parent / "material" / "tension.yaml"),
+    }
+    lines = [
+        [*(files.get(word, word) for word in command.split()), "--out", out]
+        for command in commands
+        for out in ("closed", "closed/below")
+    ]
     lines += [["mesh", case, "--no-pictures", "--write", "closed/wire.vtu"], ["report", "results"]]
     before = sorted(results.rglob("*"))
     for words, (code, said) in zip(lines, run(lines, tmp_path), strict=True):

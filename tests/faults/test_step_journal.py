@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from coilset.model.results.frame import Frame
-from coilset.model.results.record import SeatReaction, SeatReactions, Step
-from coilset.model.results.step_journal import StepJournal
+from coilset.model.results.files.step_journal import StepJournal
+from coilset.model.results.records.frame import Frame
+from coilset.model.results.records.record import SeatReaction, SeatReactions, Step
 
 NONE = SeatReaction(*[float("nan")] * 14)
 

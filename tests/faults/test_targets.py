@@ -2,11 +2,11 @@
 
 import pytest
 
-from coilset.meshes.errors import InputError
-from coilset.meshes.spring import SpringSpec
+from coilset.meshes.springs.spring import SpringSpec
+from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
 from coilset.model.case.targets import check_targets, closing_force
-from coilset.scripts.solve import solve
+from coilset.scripts.commands.solve import solve
 
 G = 84000.0
 PULLS = [("force", -1000, "-1000 N"), ("travel", -2, "-2 mm"), ("height", 40, "40 mm, above the free length of 35 mm")]

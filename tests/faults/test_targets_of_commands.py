@@ -2,12 +2,22 @@
 
 import pytest
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.scripts.main import app
-from coilset.scripts.target import file_targets, folder_target
+from coilset.scripts.terminal.target import file_targets, folder_target
 
-COMMANDS = ["solve CASE", "slice CASE", "mesh CASE", "sheet CASE", "sweep CASE", "verify", "bench",
-            "material show ck15", "examples ck15_presetting", "design DESIGN"]  # fmt: skip
+COMMANDS = [
+    "solve CASE",
+    "slice CASE",
+    "mesh CASE",
+    "sheet CASE",
+    "sweep CASE",
+    "verify",
+    "bench",
+    "material show ck15",
+    "examples ck15_presetting",
+    "design DESIGN",
+]
 
 
 @pytest.mark.parametrize("command", COMMANDS)

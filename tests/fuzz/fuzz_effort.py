@@ -13,5 +13,11 @@ SEARCHED = "COILSET_FUZZ" in os.environ
 
 def looks(share: float) -> settings:
     """Settings of a test that looks at a share of the files."""
-    return settings(max_examples=max(int(share * FILES), 1), deadline=None, database=None, derandomize=not SEARCHED,
-                    print_blob=SEARCHED, suppress_health_check=list(HealthCheck))  # fmt: skip
+    return settings(
+        max_examples=max(int(share * FILES), 1),
+        deadline=None,
+        database=None,
+        derandomize=not SEARCHED,
+        print_blob=SEARCHED,
+        suppress_health_check=list(HealthCheck),
+    )

@@ -8,14 +8,14 @@ from typing import Any
 
 from fuzz_schema import breaches
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
+from coilset.model.base.yaml import load_yaml, read_data
 from coilset.model.case import Case, check
 from coilset.model.case.targets import check_targets
-from coilset.model.effort import Effort
-from coilset.model.entries.yaml import load_yaml, read_data
 from coilset.model.material import library, programs
-from coilset.model.material.file import MaterialFile
+from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.programs import Program
+from coilset.model.run.effort import Effort
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.standards.wires.law import case_law
 from coilset.model.sweep.plan import Plan

@@ -55,8 +55,11 @@ BOUNDS = {"minimum": ge, "maximum": le, "exclusiveMinimum": gt, "exclusiveMaximu
 
 
 def _number(data: float, schema: dict, place: str) -> list[str]:
-    return [f"{place}: {data!r} breaks {name} {schema[name]}" for name, keeps in BOUNDS.items()
-            if name in schema and not keeps(data, schema[name])]  # fmt: skip
+    return [
+        f"{place}: {data!r} breaks {name} {schema[name]}"
+        for name, keeps in BOUNDS.items()
+        if name in schema and not keeps(data, schema[name])
+    ]
 
 
 def _group(data: dict, schema: dict, defs: dict, place: str) -> list[str]:

@@ -15,8 +15,8 @@ from fuzz_judge import SLOWEST, check_line
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coilset.meshes.errors import CoilsetError
 from coilset.model import build
+from coilset.model.base.errors import CoilsetError
 from coilset.model.slice import analysis as slices
 from coilset.scripts import design, main, material, mesh, ranks, report, running, solve, sweep, verify, warm
 from coilset.scripts import slice as slice_command
@@ -27,8 +27,21 @@ COMMANDS = {  # a right line each, and the options that it takes besides
     "solve case.yaml": ["--force", "--resume", "--no-pictures", "--interactive", "--method", "bfgs", "--out", "there"],
     "slice case.yaml": ["--force", "--section", "oval:4:5", "--across", "3", "--no-pictures", "--out", "there"],
     "mesh case.yaml --no-pictures": ["--force", "--write", "wire.vtu", "--out", "there"],
-    "sheet case.yaml --no-pictures": ["--wire", "EN 10270-1 SH", "--length", "30", "--grade", "2", "--dynamic",
-                                      "--surface", "shot peened", "--wires", "--results", "there", "--force"],
+    "sheet case.yaml --no-pictures": [
+        "--wire",
+        "EN 10270-1 SH",
+        "--length",
+        "30",
+        "--grade",
+        "2",
+        "--dynamic",
+        "--surface",
+        "shot peened",
+        "--wires",
+        "--results",
+        "there",
+        "--force",
+    ],
     "sweep sweep.yaml": ["--force", "--resume", "--retry", "--jobs", "1", "--ranks-per-case", "2", "--no-pictures"],
     "material show ck15": ["--out", "there", "--force"],
     "material test ck15 program.yaml": ["--integrator", "heun", "--no-spin", "--out", "there", "--force"],
@@ -40,14 +53,52 @@ COMMANDS = {  # a right line each, and the options that it takes besides
     "verify bend-45": ["--fast", "--list", "--page", "page.md", "--out", "there"],
     "examples ck15_presetting": ["--force", "--out", "there"],
     "-n 2 solve case.yaml": ["--force"],
-}  # fmt: skip
+}
 DESIGN = "case: case.yaml\nfind: {spring.pitch: [11.0, 13.0]}\nsuch_that: {set_mm: 13}\n"
-SETTINGS = ["spring.wire_diameter=4", "spring.pitch=5", "loading.0.steps=x", "loading.9.steps=1", "mesh=1", "=1", "a=b",
-            "material=nowhere.yaml", "ends=clamped", "contact.friction.seats=0.1", "loading=[{to: {force: 1e9}}]",
-            "seats.top.tilt=free", "spring.turns=[", "mesh.elements_per_turn=1e6", "rates_at=[1]"]  # fmt: skip
-WORDS = ["", "-", "--", "-x", "--help", "-h", "--version", "-n", "0", "-1", "1e9", "nan", "nowhere.yaml", "taken",
-         "taken/x", "x" * 300, "../..", "/dev/null", "/proc/x", "ä", "case.yaml", "solve", "--out", "--set",
-         "--write"]  # fmt: skip
+SETTINGS = [
+    "spring.wire_diameter=4",
+    "spring.pitch=5",
+    "loading.0.steps=x",
+    "loading.9.steps=1",
+    "mesh=1",
+    "=1",
+    "a=b",
+    "material=nowhere.yaml",
+    "ends=clamped",
+    "contact.friction.seats=0.1",
+    "loading=[{to: {force: 1e9}}]",
+    "seats.top.tilt=free",
+    "spring.turns=[",
+    "mesh.elements_per_turn=1e6",
+    "rates_at=[1]",
+]
+WORDS = [
+    "",
+    "-",
+    "--",
+    "-x",
+    "--help",
+    "-h",
+    "--version",
+    "-n",
+    "0",
+    "-1",
+    "1e9",
+    "nan",
+    "nowhere.yaml",
+    "taken",
+    "taken/x",
+    "x" * 300,
+    "../..",
+    "/dev/null",
+    "/proc/x",
+    "ä",
+    "case.yaml",
+    "solve",
+    "--out",
+    "--set",
+    "--write",
+]
 
 
 class Reached(Exception):
@@ -77,18 +128,33 @@ def lines(draw):
 @pytest.fixture
 def place(tmp_path, monkeypatch):
     """A folder to stand in, where no command begins to work."""
-    for name, source in (("case.yaml", "ck15_presetting.yaml"), ("program.yaml", "material/tension.yaml"),
-                         ("test.csv", "material/fit/tension.csv")):  # fmt: skip
+    for name, source in (
+        ("case.yaml", "ck15_presetting.yaml"),
+        ("program.yaml", "material/tension.yaml"),
+        ("test.csv", "material/fit/tension.csv"),
+    ):
         (tmp_path / name).write_bytes((EXAMPLES / source).read_bytes())
     (tmp_path / "sweep.yaml").write_text("case: case.yaml\nvary: {spring.pitch: [11.0, 12.0]}\n")
     (tmp_path / "design.yaml").write_text(DESIGN)
     (tmp_path / "taken").write_text("mine")
     (tmp_path / "run").mkdir()
     monkeypatch.chdir(tmp_path)
-    for module, name in ((solve, "prepare"), (slice_command, "prepare"), (sweep, "_pool"), (ranks, "launch"),
-                         (verify, "_run"), (mesh, "make"), (build, "line_mesh"), (slices.SliceAnalysis, "run"),
-                         (design, "find"), (everyday, "timed"), (warm, "warm"), (report, "open_run"),
-                         (material, "_save"), (material, "_write_csv")):  # fmt: skip
+    for module, name in (
+        (solve, "prepare"),
+        (slice_command, "prepare"),
+        (sweep, "_pool"),
+        (ranks, "launch"),
+        (verify, "_run"),
+        (mesh, "make"),
+        (build, "line_mesh"),
+        (slices.SliceAnalysis, "run"),
+        (design, "find"),
+        (everyday, "timed"),
+        (warm, "warm"),
+        (report, "open_run"),
+        (material, "_save"),
+        (material, "_write_csv"),
+    ):
         monkeypatch.setattr(module, name, reach)
     monkeypatch.setattr("coilset.model.material.identification.fit.fit", reach)
     monkeypatch.setattr("coilset.model.material.programs.run", reach)

@@ -38,12 +38,28 @@ def test_spoilt_files(folder, kind):
 
 def test_the_reader_of_schemas_sees_breaches():
     """Else the fuzzer would take all for right."""
-    schema = {"type": "object", "required": ["a"], "additionalProperties": False, "properties": {
-        "a": {"anyOf": [{"type": "integer", "exclusiveMinimum": 0}, {"const": "auto"}]},
-        "b": {"$ref": "#/$defs/b"}, "c": {"type": "number", "exclusiveMaximum": 0.5}}}  # fmt: skip
+    schema = {
+        "type": "object",
+        "required": ["a"],
+        "additionalProperties": False,
+        "properties": {
+            "a": {"anyOf": [{"type": "integer", "exclusiveMinimum": 0}, {"const": "auto"}]},
+            "b": {"$ref": "#/$defs/b"},
+            "c": {"type": "number", "exclusiveMaximum": 0.5},
+        },
+    }
     defs = {"b": {"type": "array", "items": {"type": "number", "maximum": 2}, "minItems": 1}}
     for right in ({"a": 1}, {"a": "auto"}, {"a": 3.0, "b": [2, 1.5]}, {"a": 1, "c": 0}):
         assert breaches(right, schema, defs) == []
-    for wrong in ({}, {"a": 0}, {"a": True}, {"a": "x"}, {"a": 1, "c": 1}, {"a": 1, "d": 1}, {"a": 1, "b": []},
-                  {"a": 1, "b": [3]}, {"a": 1, "b": [float("nan")]}):  # fmt: skip
+    for wrong in (
+        {},
+        {"a": 0},
+        {"a": True},
+        {"a": "x"},
+        {"a": 1, "c": 1},
+        {"a": 1, "d": 1},
+        {"a": 1, "b": []},
+        {"a": 1, "b": [3]},
+        {"a": 1, "b": [float("nan")]},
+    ):
         assert breaches(wrong, schema, defs) != []

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from coilset.model.version import __version__, _first
+from coilset.model.base.version import __version__, _first
 
 LAUNCHER = Path(__file__).resolve().parents[2] / "scripts" / "coilset"
 
@@ -111,7 +111,7 @@ def test_version_names_what_the_numbers_rest_on():
 
 
 def test_a_package_without_metadata_tells_its_version_itself():
-    assert _first(("coilset.model.version",)) == __version__
+    assert _first(("coilset.model.base.version",)) == __version__
     assert _first(("no-package", "of-this-name")) == ""
 
 
@@ -121,8 +121,13 @@ def test_each_environment_has_a_log_of_its_own(tmp_path):
         (tmp_path / name).write_text(f"#!/bin/sh\n{script}\n")
         (tmp_path / name).chmod(0o755)
     cache = tmp_path / "cache"
-    done = launch("examples", COILSET_RELEASE="nowhere", COILSET_CACHE=str(cache), COILSET_PYTHON="",
-                  PATH=f"{tmp_path}{os.pathsep}{os.environ['PATH']}")  # fmt: skip
+    done = launch(
+        "examples",
+        COILSET_RELEASE="nowhere",
+        COILSET_CACHE=str(cache),
+        COILSET_PYTHON="",
+        PATH=f"{tmp_path}{os.pathsep}{os.environ['PATH']}",
+    )
     assert done.returncode == 2
     if not done.stderr.startswith("coilset needs DOLFINx"):  # no Debian or Ubuntu
         log = cache / "debian-nowhere.log"
@@ -135,8 +140,10 @@ def test_what_a_killed_making_of_the_environment_left_mounted_is_no_obstacle(tmp
     if subprocess.run([*apart, "true"], capture_output=True, check=False).returncode:
         pytest.skip("mounting is not permitted here")
     left, beside = tmp_path / "a folder" / "debian.partial", tmp_path / "a folder" / "debian"
-    mounts = [f"mkdir -p '{place}' && mount -t tmpfs none '{place}'"
-              for place in (beside, left / "proc", left / "dev", left / "dev" / "shm")]  # fmt: skip
+    mounts = [
+        f"mkdir -p '{place}' && mount -t tmpfs none '{place}'"
+        for place in (beside, left / "proc", left / "dev", left / "dev" / "shm")
+    ]
     script = f"""set -eu; {"; ".join(mounts)}
         COILSET_CACHE=unused; source {LAUNCHER.parent / "private_root.sh"}; discard '{left}'
         grep -c debian /proc/mounts"""

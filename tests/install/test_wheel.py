@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from coilset.model.version import __version__
+from coilset.model.base.version import __version__
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 ROOMS = ("model", "meshes", "verification", "scripts", "examples")
@@ -93,7 +93,13 @@ def test_materials_and_data_of_examples_are_there(installed, tmp_path):
 
 def test_tests_are_said_to_be_elsewhere(installed, tmp_path):
     command = [sys.executable, "-m", "coilset.scripts", "test"]
-    done = subprocess.run(command, cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(installed)}, capture_output=True,
-                          text=True, check=False)  # fmt: skip
+    done = subprocess.run(
+        command,
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(installed)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     assert done.returncode == 2
     assert done.stderr == "coilset: test: the tests are in coilset's repository; there, run scripts/coilset test\n"

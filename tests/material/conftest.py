@@ -61,9 +61,12 @@ def table(temperatures, materials, heating=0.0):
         G = (1 - w) * low.G + w * high.G
         E = (1 - w) * 2 * low.G * (1 + low.nu) + w * 2 * high.G * (1 + high.nu)
         return SimpleNamespace(
-            **{name: between(name) for name in ("k2", "slope", "zeta", "kappa")}, G=G, nu=E / (2 * G) - 1,
-            alpha=(1 - w) * low.alpha + w * high.alpha, softening=lambda b: (high.k2(b) - low.k2(b)) / step,
-        )  # fmt: skip
+            **{name: between(name) for name in ("k2", "slope", "zeta", "kappa")},
+            G=G,
+            nu=E / (2 * G) - 1,
+            alpha=(1 - w) * low.alpha + w * high.alpha,
+            softening=lambda b: (high.k2(b) - low.k2(b)) / step,
+        )
 
     return SimpleNamespace(at=at, heating=heating, start=temperatures[0])
 

@@ -8,7 +8,7 @@ import yaml
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.material import library, points, programs
 
 LAW = library.load("chaboche")

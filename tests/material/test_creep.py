@@ -9,28 +9,47 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from coilset.meshes.errors import InputError
-from coilset.model.material import creep, creep_rod, library, points
-from coilset.model.material.creep_law import GAS_CONSTANT, CreepLaw
-from coilset.model.material.file import MaterialFile
-from coilset.model.material.law import Law
+from coilset.model.base.errors import InputError
+from coilset.model.material import library, points
+from coilset.model.material.creep import creep
+from coilset.model.material.creep import rod as creep_rod
+from coilset.model.material.creep.law import GAS_CONSTANT, CreepLaw
+from coilset.model.material.law.file import MaterialFile
+from coilset.model.material.law.law import Law
 
 COLD, WARM, ALPHA = 293.15, 473.15, 1.2e-5
 MODULI = {COLD: (80000.0, 0.29), WARM: (74000.0, 0.31)}
-CREEP = {"form": "norton_bailey", "strain": 2e-4, "stress": 500.0, "exponent": 6.0, "time_exponent": 0.3,
-         "activation_energy": 90000.0, "temperature": 323.15}  # fmt: skip
+CREEP = {
+    "form": "norton_bailey",
+    "strain": 2e-4,
+    "stress": 500.0,
+    "exponent": 6.0,
+    "time_exponent": 0.3,
+    "activation_energy": 90000.0,
+    "temperature": 323.15,
+}
 GAROFALO = CREEP | {"form": "garofalo", "stress": 150.0, "strain": 1e-8, "exponent": 4.0, "time_exponent": 1.0}
 
 
 def law_of(entries, isotropic="none", kinematic="none"):
     """A law of constants at two temperatures, elastic or yielding, with the given creep."""
     temperatures = [
-        {"temperature": t, "elasticity": {"G": G, "nu": nu, "alpha": ALPHA}, "isotropic": isotropic,
-         "kinematic": kinematic, "non_normality": "none"}
+        {
+            "temperature": t,
+            "elasticity": {"G": G, "nu": nu, "alpha": ALPHA},
+            "isotropic": isotropic,
+            "kinematic": kinematic,
+            "non_normality": "none",
+        }
         for t, (G, nu) in MODULI.items()
-    ]  # fmt: skip
-    about = {"name": "synthetic", "description": "a law", "source": "none", "units": "N, mm, K",
-             "validity": {"plastic_work": 100, "remark": "none"}}  # fmt: skip
+    ]
+    about = {
+        "name": "synthetic",
+        "description": "a law",
+        "source": "none",
+        "units": "N, mm, K",
+        "validity": {"plastic_work": 100, "remark": "none"},
+    }
     return Law(MaterialFile.model_validate(about | {"temperatures": temperatures, "creep": entries}))
 
 
@@ -117,8 +136,10 @@ def path(seed, components):
     times = np.concatenate([[0.0], np.cumsum(10.0 ** rng.uniform(0, 2.5, 4))])
     temperatures = [COLD, *rng.uniform(COLD + 20, WARM - 10, 4)]
     sizes = [0.5, 0.3, 0.0, 0.3]
-    return [(times[k], times[k + 1], sizes[k] * 4e-3 * _unit(rng, components), temperatures[k], temperatures[k + 1])
-            for k in range(4)], 5e-3 * _unit(rng, components)  # fmt: skip
+    return [
+        (times[k], times[k + 1], sizes[k] * 4e-3 * _unit(rng, components), temperatures[k], temperatures[k + 1])
+        for k in range(4)
+    ], 5e-3 * _unit(rng, components)
 
 
 def _unit(rng, n):
@@ -211,8 +232,12 @@ def test_creep_of_a_bar_that_yields():
     end, hours = 2e-3, 30.0
     exact = solve_ivp(
         lambda t, s: (end / hours - k.strain * np.sinh(s / k.stress) ** k.exponent) / (1 / E + 1 / 5000.0),
-        (0, hours), [300.0], "Radau", rtol=1e-10, atol=1e-9,
-    ).y[0, -1]  # fmt: skip
+        (0, hours),
+        [300.0],
+        "Radau",
+        rtol=1e-10,
+        atol=1e-9,
+    ).y[0, -1]
     assert exact > 303.0
     creeping, errors = CreepLaw(law.creep, law.parameters()), []
     for n in (10, 20):

@@ -8,18 +8,25 @@ import yaml
 from scipy.special import hyp2f1
 from typer.testing import CliRunner
 
-from coilset.meshes.errors import InputError
-from coilset.model.material import creep_rod, library
-from coilset.model.material.creep_law import GAS_CONSTANT, CreepLaw
-from coilset.model.material.file import Creep
+from coilset.model.base.errors import InputError
+from coilset.model.material import library
+from coilset.model.material.creep import rod as creep_rod
+from coilset.model.material.creep.law import GAS_CONSTANT, CreepLaw
 from coilset.model.material.identification import creep_fit
 from coilset.model.material.identification.relaxation_tests import Readings, read_relaxation
 from coilset.model.material.identification.relaxing import loss
-from coilset.scripts.material import app
-from coilset.verification.cases import creep_fit as studies
+from coilset.model.material.law.file import Creep
+from coilset.scripts.commands.material import app
+from coilset.verification.cases.time import creep_fit as studies
 
-TRUE = {"strain": 2e-4, "stress": 800.0, "exponent": 6.0, "time_exponent": 0.2, "activation_energy": 150000.0,
-        "temperature": 373.15}  # fmt: skip
+TRUE = {
+    "strain": 2e-4,
+    "stress": 800.0,
+    "exponent": 6.0,
+    "time_exponent": 0.2,
+    "activation_energy": 150000.0,
+    "temperature": 373.15,
+}
 SINH = TRUE | {"strain": 1e-6, "stress": 250.0, "exponent": 4.0}
 HOURS = [1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0]
 NOISE = 0.4  # per cent of the load
@@ -39,8 +46,14 @@ def exact(law, tests, constants=TRUE, form="norton_bailey"):
 def test_loss_of_a_bar_in_torsion(hours):
     """Time hardening in closed form, as `verification/cases/relaxation`: γ = A τ^N t^p, A 1e-20, τR 700 N/mm²."""
     N, G, A, p, rim = 6.0, 80000.0, 1e-20, 0.3, 700.0
-    constants = {"strain": A * 500.0**N / 3.0 ** (0.5 * (N + 1.0)), "stress": 500.0, "exponent": N,
-                 "time_exponent": p, "activation_energy": 0.0, "temperature": 293.15}  # fmt: skip
+    constants = {
+        "strain": A * 500.0**N / 3.0 ** (0.5 * (N + 1.0)),
+        "stress": 500.0,
+        "exponent": N,
+        "time_exponent": p,
+        "activation_energy": 0.0,
+        "temperature": 293.15,
+    }
     tests = Readings("torsion", np.array([rim]), np.array([293.15]), np.array([hours]), np.zeros(1))
     found = loss("norton_bailey", "time", constants, tests, np.array([3.0 * G]))
     z = (N - 1.0) * G * A * hours**p * rim ** (N - 1.0)
@@ -105,8 +118,10 @@ def test_constants_come_back_from_other_integrals(study):
 def test_garofalo_and_two_kinds_of_tests():
     """Tension and torsion together give sinh's five constants back; without noise exactly."""
     law = library.load("creeping")
-    tests = tuple(exact(law, readings(kind, stresses=(300.0, 600.0, 900.0), temperatures=(353.15, 413.15)), SINH,
-                        "garofalo") for kind in ("tension", "torsion"))  # fmt: skip
+    tests = tuple(
+        exact(law, readings(kind, stresses=(300.0, 600.0, 900.0), temperatures=(353.15, 413.15)), SINH, "garofalo")
+        for kind in ("tension", "torsion")
+    )
     found = creep_fit.fit_creep(law, tests, "garofalo")
     assert found.scatter < 1e-3
     for name in ("stress", "exponent", "time_exponent", "activation_energy"):

@@ -3,33 +3,53 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.errors import InputError
-from coilset.model.entries.entry import check_entries
+from coilset.model.base.entry import check_entries
+from coilset.model.base.errors import InputError
 from coilset.model.material import programs
-from coilset.model.material.creep_law import without_yield
-from coilset.model.material.file import MaterialFile
-from coilset.model.material.functions import functions
-from coilset.model.material.law import Law
+from coilset.model.material.creep.law import without_yield
+from coilset.model.material.law.file import MaterialFile
+from coilset.model.material.law.functions import functions
+from coilset.model.material.law.law import Law
 
 G, NU = 80000.0, 0.3
 E = 2 * G * (1 + NU)
 STRAINS = [0.001, 0.01, 0.08]  # plastic
 LAWS = {
     "swift": ({"law": "swift", "C": 1400.0, "strain_0": 0.002, "n": 0.15}, lambda e: 1400.0 * (0.002 + e) ** 0.15),
-    "voce": ({"law": "voce", "yield_stress": 900.0, "rise": 400.0, "rate": 40.0},
-             lambda e: 900.0 + 400.0 * (1 - np.exp(-40.0 * e))),
-    "ramberg-osgood": ({"law": "ramberg-osgood", "proof_stress": 1000.0, "n": 12.0, "elastic_limit": 800.0},
-                       lambda e: 1000.0 * ((e + 0.002 * 0.8**12) / 0.002) ** (1 / 12)),
-}  # fmt: skip
+    "voce": (
+        {"law": "voce", "yield_stress": 900.0, "rise": 400.0, "rate": 40.0},
+        lambda e: 900.0 + 400.0 * (1 - np.exp(-40.0 * e)),
+    ),
+    "ramberg-osgood": (
+        {"law": "ramberg-osgood", "proof_stress": 1000.0, "n": 12.0, "elastic_limit": 800.0},
+        lambda e: 1000.0 * ((e + 0.002 * 0.8**12) / 0.002) ** (1 / 12),
+    ),
+}
 
 
 def law(isotropic, file=""):
-    return Law(check_entries({
-        "name": "a steel", "description": "of a test", "source": "none", "units": "N, mm, K",
-        "validity": {"plastic_work": 100.0, "remark": "of a test"},
-        "temperatures": [{"temperature": 293.15, "elasticity": {"G": G, "nu": NU}, "isotropic": isotropic,
-                          "kinematic": "none", "non_normality": "none"}],
-    }, MaterialFile, file))  # fmt: skip
+    return Law(
+        check_entries(
+            {
+                "name": "a steel",
+                "description": "of a test",
+                "source": "none",
+                "units": "N, mm, K",
+                "validity": {"plastic_work": 100.0, "remark": "of a test"},
+                "temperatures": [
+                    {
+                        "temperature": 293.15,
+                        "elasticity": {"G": G, "nu": NU},
+                        "isotropic": isotropic,
+                        "kinematic": "none",
+                        "non_normality": "none",
+                    }
+                ],
+            },
+            MaterialFile,
+            file,
+        )
+    )
 
 
 def driven(material, **to):

@@ -5,24 +5,33 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.material import library, points, programs
 from coilset.model.material.identification import cyclic
 from coilset.model.material.identification.experiments import Test
-from coilset.scripts.material import app
+from coilset.scripts.commands.material import app
 
 G, NU = 80000.0, 0.3
 TRUE = {"yield_stress": 500.0, "C_1": 150000.0, "gamma_1": 600.0, "C_2": 10000.0, "gamma_2": 50.0}
 FILE = {
-    "name": "two", "description": "two back stresses", "source": "made up", "units": "N, mm, K",
+    "name": "two",
+    "description": "two back stresses",
+    "source": "made up",
+    "units": "N, mm, K",
     "validity": {"plastic_work": 300, "remark": "a test"},
-    "temperatures": [{
-        "temperature": 293.15, "elasticity": {"G": G, "nu": NU},
-        "isotropic": {"k0_squared": 2 / 3 * TRUE["yield_stress"] ** 2},
-        "kinematic": {"law": "chaboche", "terms": [{"C": TRUE[f"C_{i}"], "gamma": TRUE[f"gamma_{i}"]} for i in (1, 2)]},
-        "non_normality": "none",
-    }],
-}  # fmt: skip
+    "temperatures": [
+        {
+            "temperature": 293.15,
+            "elasticity": {"G": G, "nu": NU},
+            "isotropic": {"k0_squared": 2 / 3 * TRUE["yield_stress"] ** 2},
+            "kinematic": {
+                "law": "chaboche",
+                "terms": [{"C": TRUE[f"C_{i}"], "gamma": TRUE[f"gamma_{i}"]} for i in (1, 2)],
+            },
+            "non_normality": "none",
+        }
+    ],
+}
 
 
 @pytest.fixture(scope="module")
@@ -118,8 +127,20 @@ def test_the_command(tension, found, tmp_path, monkeypatch):
     rows = np.hstack([tension.strain[:, :1], tension.stress[:, :1]])
     lines = [f"{strain:.9g},{stress:.9g}" for strain, stress in rows]
     (tmp_path / "cycles.csv").write_text("\n".join(["strain,stress", *lines]) + "\n", encoding="utf-8")
-    arguments = ["fit", str(tmp_path / "cycles.csv"), "--G", str(G), "--nu", str(NU), "--back-stresses", "2",
-                 "--name", "mine", "--out", str(tmp_path)]  # fmt: skip
+    arguments = [
+        "fit",
+        str(tmp_path / "cycles.csv"),
+        "--G",
+        str(G),
+        "--nu",
+        str(NU),
+        "--back-stresses",
+        "2",
+        "--name",
+        "mine",
+        "--out",
+        str(tmp_path),
+    ]
     done = CliRunner().invoke(app, arguments)
     assert done.exit_code == 0, done.output
     assert "gamma_2" in done.output

@@ -2,7 +2,7 @@
 
 import pytest
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.material import library, programs
 
 CK15 = (library.FOLDER / "ck15.yaml").read_text(encoding="utf-8")
@@ -20,6 +20,7 @@ PROGRAM = "name: pull\nsteps:\n  - {to: {eps11: 0.01}, increments: 3}\n"
         ("kinematic: {a5: 7.3,", "kinematic: [{a5: 7.3}]  #", "0.kinematic: [{'a5': 7.3}]: must be a group"),
         ("non_normality: {a: 0.0005}", "non_normality: no", "'no': must be 'none', or a group of constants"),
         ("units: N, mm, K", "units: " + "m" * 5000, "units: 'mmm"),
+        ("{a5: 7.3,", "{a5: 1e308,", "temperatures.0: its functions overflow at 293.15 K; are the units N and mm?"),
     ],
 )
 def test_material_files(old, new, message, tmp_path):

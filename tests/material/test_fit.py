@@ -8,11 +8,11 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.material import library, points
 from coilset.model.material.identification import experiments, fit
-from coilset.scripts.material import app
-from coilset.verification.cases import material_fit
+from coilset.scripts.commands.material import app
+from coilset.verification.cases.law import material_fit
 
 DATA = Path(__file__).resolve().parents[2] / "examples" / "material" / "fit"
 LIMITS = {"k0_squared": 0.04, "a1": 0.06, "a3": 0.08, "k_inf_squared": 0.12, "a5": 0.12, "a7": 0.4, "a": 0.02}

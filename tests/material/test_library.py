@@ -8,7 +8,7 @@ import pytest
 import yaml
 from scipy.integrate import quad
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.material import library, points
 
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from coilset.model.material import library
-from coilset.model.material.functions import functions
-from coilset.model.material.local import Group, Start, rough_turn, solve, turn
-from coilset.model.material.local_estimate import estimate
+from coilset.model.material.law.functions import functions
+from coilset.model.material.point.local import Group, Start, rough_turn, solve, turn
+from coilset.model.material.point.local_estimate import estimate
 
 COUNT = 30
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
-from coilset.meshes.errors import InputError, SolveError
+from coilset.model.base.errors import InputError, SolveError
 from coilset.model.material import library, points, programs
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "material"

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from coilset.meshes.errors import InputError
-from coilset.model.material import rod, solid
-from coilset.model.material.file import MaterialFile
-from coilset.model.material.law import Law
-from coilset.model.material.rate_law import RateLaw
+from coilset.model.base.errors import InputError
+from coilset.model.material.creep.rate import RateLaw
+from coilset.model.material.law.file import MaterialFile
+from coilset.model.material.law.law import Law
+from coilset.model.material.point import rod, solid
 
 YIELD, G, NU = 400.0, 80000.0, 0.3
 SLOW, FAST = 1e12, 1e-12  # seconds that an increment takes
@@ -17,13 +17,21 @@ SLOW, FAST = 1e12, 1e-12  # seconds that an increment takes
 def law_of(exponent=5.0, reference_rate=100.0, slope=0.0, zeta=0.0, **more):
     """Linear hardening, σ = YIELD + slope εᵖ in tension."""
     constants = {
-        "temperature": 293.15, "elasticity": {"G": G, "nu": NU}, "non_normality": "none",
+        "temperature": 293.15,
+        "elasticity": {"G": G, "nu": NU},
+        "non_normality": "none",
         "isotropic": {"k0_squared": 2 / 3 * YIELD**2, "a1": 1.0, "a2": 4 / 3 * slope},
         "kinematic": {"a5": zeta, "a6": 1e-3, "a7": 0.0} if zeta else "none",
-    }  # fmt: skip
-    about = {"name": "synthetic", "description": "a law", "source": "none", "units": "N, mm, K",
-             "validity": {"plastic_work": 100, "remark": "none"}, "temperatures": [constants],
-             "rate": {"reference_rate": reference_rate, "exponent": exponent}}  # fmt: skip
+    }
+    about = {
+        "name": "synthetic",
+        "description": "a law",
+        "source": "none",
+        "units": "N, mm, K",
+        "validity": {"plastic_work": 100, "remark": "none"},
+        "temperatures": [constants],
+        "rate": {"reference_rate": reference_rate, "exponent": exponent},
+    }
     return Law(MaterialFile.model_validate(about | more))
 
 
@@ -142,7 +150,7 @@ def test_tangent(components, exponent):
         ({"creep": {"form": "norton_bailey", "strain": 1e-4, "stress": 500.0, "exponent": 5.0}}, "not with creep"),
         ({"rate": {"reference_rate": 0.0, "exponent": 5.0}}, "greater than 0"),
     ],
-)  # fmt: skip
+)
 def test_what_the_rate_goes_not_with(more, message):
     with pytest.raises((InputError, ValueError), match=message):
         law_of(**more)

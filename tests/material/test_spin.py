@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from coilset.model.material import library, points
-from coilset.model.material.spin import WHOLE, Crossing, spun
+from coilset.model.material.point.spin import WHOLE, Crossing, spun
 
 STATE, BACK = np.array([300.0, 150.0, -80.0]), np.array([20.0, -30.0, 10.0])
 INCREMENT, NONE = np.array([1.1e-3, 2.3e-3, -0.7e-3]), (0.0, 0.0, 0.0)
@@ -83,8 +83,10 @@ def test_derivatives(law, increment, beta):
     slope, h = np.array([2.0, -3.0, 1.5]) if beta == 0.3 else np.zeros(3), 1e-6
     end = spun(tuple(STATE), tuple(BACK), law.E, law.G, *increment, Crossing(beta, tuple(slope)))
     for k, modulus in enumerate((law.E, law.G, law.G)):
-        up, down = (after(law, increment + sign * h * np.eye(3)[k], crossing=Crossing(beta + sign * h * slope[k], NONE))
-                    for sign in (1, -1))  # fmt: skip
+        up, down = (
+            after(law, increment + sign * h * np.eye(3)[k], crossing=Crossing(beta + sign * h * slope[k], NONE))
+            for sign in (1, -1)
+        )
         stress = (up[0] - down[0]) / (2 * h) - modulus * np.eye(3)[k]
         np.testing.assert_allclose(end.d_stress[k], stress, rtol=0, atol=1e-3)
         np.testing.assert_allclose(end.d_back[k], (up[1] - down[1]) / (2 * h), rtol=0, atol=1e-6)

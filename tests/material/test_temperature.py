@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import yaml
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.material import library, points, programs
 from coilset.model.solid.points import MaterialPoints
 

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.ends import OPEN
-from coilset.meshes.errors import InputError
-from coilset.meshes.placement import section_placement
-from coilset.meshes.spring import SpringSpec
-from coilset.model.analysis import Analysis
+from coilset.meshes.springs.ends import OPEN
+from coilset.meshes.springs.placement import section_placement
+from coilset.meshes.springs.spring import SpringSpec
+from coilset.model.base.errors import InputError
 from coilset.model.case import check
 from coilset.model.rod.kinematics import chord_triads as triads
+from coilset.model.run.analysis import Analysis
 
 ABSCISSAE = np.array([0.2, 0.8])
 CONE = {"shape": "cone", "bottom": 60.0, "top": 30.0}

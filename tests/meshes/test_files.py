@@ -5,10 +5,10 @@ import meshio
 import numpy as np
 import pytest
 
-from coilset.meshes.errors import InputError
 from coilset.meshes.export import write_mesh
-from coilset.meshes.measured import MeasuredSpec
-from coilset.meshes.spring import SpringSpec
+from coilset.meshes.springs.measured import MeasuredSpec
+from coilset.meshes.springs.spring import SpringSpec
+from coilset.model.base.errors import InputError
 from coilset.model.case import check
 
 ENDS = {"form": "closed and ground"}

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from coilset.meshes.drawing import drawing
-from coilset.meshes.errors import InputError
-from coilset.meshes.spring import SpringSpec
-from coilset.scripts.mesh import mesh
+from coilset.meshes.springs.spring import SpringSpec
+from coilset.model.base.errors import CoilsetError, InputError
+from coilset.scripts.commands.mesh import mesh
 
 SPRINGS = Path(__file__).parents[2] / "examples" / "springs"
 
@@ -55,6 +55,12 @@ def test_gmsh_writes_small_letters_only(tmp_path):
     with pytest.raises(InputError, match=r"--write: gmsh knows its format by small letters; give \.msh"):
         mesh(SPRINGS / "cone.yaml", pictures=False, write=[str(file)])
     assert not file.exists()
+
+
+@pytest.mark.parametrize("suffix", [".msh", ".vtu"])
+def test_a_mesh_in_a_place_that_cannot_be_written_is_one_line(suffix):
+    with pytest.raises(CoilsetError, match=rf"^/proc/self/mesh\{suffix}: cannot be written: "):
+        mesh(SPRINGS / "cylinder.yaml", pictures=False, write=[f"/proc/self/mesh{suffix}"])
 
 
 def test_wrong_case_names_file_and_entry(capsys):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import PPoly
 
-from coilset.meshes.piecewise import PiecewisePolynomial
+from coilset.meshes.springs.piecewise import PiecewisePolynomial
 
 
 @pytest.fixture(params=[(1, 1), (2, 4), (4, 1), (4, 7)], ids=lambda shape: f"{shape[0] - 1}. degree, {shape[1]} pieces")

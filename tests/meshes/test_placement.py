@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from coilset.meshes.placement import gauss_points, polygon_nodes
-from coilset.meshes.spring import SpringSpec
+from coilset.meshes.springs.placement import gauss_points, polygon_nodes
+from coilset.meshes.springs.spring import SpringSpec
 
 ν = 0.3
 ξ, W = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3), np.array([0.5, 0.5])

@@ -6,9 +6,9 @@ import pytest
 import ufl
 from dolfinx import fem
 
-from coilset.meshes.errors import InputError
 from coilset.meshes.section import section_mesh
 from coilset.meshes.section_shapes import Curve, Oval, Trapezoid, parse, rectangle, round_wire
+from coilset.model.base.errors import InputError
 
 
 def area(section):
@@ -65,11 +65,15 @@ def test_words_and_files(tmp_path):
 @pytest.mark.parametrize(
     ("text", "problem"),
     [
-        ("oval:4", "not a section"), ("oval:4:x", "not a section"), ("star:3", "not a section"),
-        ("round:-5", "positive"), ("rectangle:4:5:3", "more than the sides allow"),
-        ("rectangle:4:5:-1", "radius from 0"), ("none.csv", "cannot be read"),
+        ("oval:4", "not a section"),
+        ("oval:4:x", "not a section"),
+        ("star:3", "not a section"),
+        ("round:-5", "positive"),
+        ("rectangle:4:5:3", "more than the sides allow"),
+        ("rectangle:4:5:-1", "radius from 0"),
+        ("none.csv", "cannot be read"),
     ],
-)  # fmt: skip
+)
 def test_wrong_words(text, problem):
     with pytest.raises(InputError, match=problem) as caught:
         section_mesh(parse(text))
@@ -120,12 +124,14 @@ def test_a_spline_that_crosses_itself_between_its_points():
 @pytest.mark.parametrize(
     ("shape", "middle"),
     [
-        (round_wire(5.0), (-2.5, 2.5)), (Oval(4.0, 5.0), (-2.0, 2.0)), (rectangle(4.0, 6.0, 0.5), (-2.0, 2.0)),
+        (round_wire(5.0), (-2.5, 2.5)),
+        (Oval(4.0, 5.0), (-2.0, 2.0)),
+        (rectangle(4.0, 6.0, 0.5), (-2.0, 2.0)),
         (Curve(np.array([(-2.5, -2.5), (2.5, -2.5), (0, 2.5)])), (-1.25, 1.25)),
         (Curve(np.array([(-2.5, 0), (2.5, 0), (0, 2.5)])), (-2.5, 2.5)),
         (Curve(np.array([(-2.5, 1), (2.5, 1), (0, 2.5)])), None),
     ],
-)  # fmt: skip
+)
 def test_middle(shape, middle):
     found = section_mesh(shape, 3.0).middle
     assert found is None if middle is None else found == pytest.approx(middle, abs=1e-12)

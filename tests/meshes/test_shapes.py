@@ -7,7 +7,7 @@ import pytest
 import yaml
 from scipy.integrate import quad
 
-from coilset.meshes.spring import SpringSpec
+from coilset.meshes.springs.spring import SpringSpec
 
 EXAMPLES = Path(__file__).parents[2] / "examples" / "springs"
 EXACT = 1e-9
@@ -50,10 +50,38 @@ def parabolic_length(r_ends, r_middle, turns, pitch):
     return quad(speed, -1, 1, epsabs=1e-11)[0] * turns / 2
 
 
+def touching_rise(change, turns, d):
+    """Rise of the wire where every coil lies on the next: mean over the meridians of n − 1 turns, half at both ends.
+
+    `change` is r(t + 1) − r(t) as a function of t; adaptive quadrature with the corner at the middle of the spring.
+    """
+
+    def rise(t):
+        return np.sqrt(max(d**2 - change(t) ** 2, 0.0))
+
+    halves = ((0.0, 0.5 * (turns - 1)), (0.5 * (turns - 1), turns - 1.0))
+    within = sum(quad(rise, *half, epsabs=1e-11, limit=200)[0] for half in halves)
+    return within + 0.5 * (rise(0.0) + rise(turns - 1.0))
+
+
 def parabolic_rise(r_ends, r_middle, turns, d):
-    """∫ √(d² − r′²) dt with r′ falling linearly from m to −m, m = 4 (r_middle − r_ends)/turns: a piece of a circle."""
+    """r(t + 1) − r(t) of a parabola falls linearly, from m (1 − 1/turns) at t = 0; m = 4 (r_middle − r_ends)/turns."""
     m = 4 * abs(r_middle - r_ends) / turns
-    return turns / m * 0.5 * (m * np.sqrt(d**2 - m**2) + d**2 * np.arcsin(m / d))
+    return touching_rise(lambda t: m * (1 - (2 * t + 1) / turns), turns, d)
+
+
+def folded(slope, turns):
+    """r(t + 1) − r(t) of a double cone with a given slope up to half of its turns."""
+
+    def radius(t):
+        return slope * min(t, turns - t)
+
+    return lambda t: radius(t + 1) - radius(t)
+
+
+def flattened(slope, turns):
+    """r(t + 1) − r(t) of a funnel, a cone up to half of its turns and a cylinder from there on."""
+    return lambda t: slope * (min(t + 1, turns / 2) - min(t, turns / 2))
 
 
 # pitch of the barrel: 89 mm = 6 pitch + 5 mm
@@ -61,10 +89,18 @@ SHAPES = {
     # name: (d, r at the bottom, r at the top, turns, rise, wire length, rise at block)
     "cylinder": (5, 20, 20, 2.5, 30, cylindrical_length(20, 2.5, 12), 2.5 * 5),
     "cone": (5, 30, 15, 5, 70, conical_length(30, 15, 5, 14), conical_rise(30, 15, 5, 5)),
-    "double_cone": (4, 14, 14, 6, 66, 2 * conical_length(14, 20, 3, 11), 2 * conical_rise(14, 20, 3, 4)),
+    "double_cone": (4, 14, 14, 6, 66, 2 * conical_length(14, 20, 3, 11), touching_rise(folded(2, 6), 6, 4)),
     "barrel": (5, 15, 15, 6, 84, parabolic_length(15, 25, 6, 14), None),
     "hourglass": (4, 22, 22, 6, 66, parabolic_length(22, 14, 6, 11), None),
-    "funnel": (4, 26, 14, 6, 66, conical_length(26, 14, 3, 11) + cylindrical_length(14, 3, 11), 3 * 0 + 3 * 4),
+    "funnel": (
+        4,
+        26,
+        14,
+        6,
+        66,
+        conical_length(26, 14, 3, 11) + cylindrical_length(14, 3, 11),
+        touching_rise(flattened(-4, 6), 6, 4),
+    ),
 }
 
 
@@ -76,7 +112,8 @@ def test_shape_meets_its_closed_formulas(name):
     assert spring.wire_length == pytest.approx(length, rel=EXACT)
     assert spring.free_length == pytest.approx(rise + d, rel=EXACT)
     if at_block is not None:
-        assert spring.block_height == pytest.approx(at_block + d, rel=EXACT)
+        # 1e-9 but for the funnel, whose coils begin to lie on each other with a vertical tangent of the rise: 2.5e-7
+        assert spring.block_height == pytest.approx(at_block + d, rel=1e-6 if name == "funnel" else EXACT)
     end = 2 * np.pi * turns
     np.testing.assert_allclose(
         spring.centre_line(np.array([0.0, turns])),

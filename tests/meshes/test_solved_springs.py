@@ -5,10 +5,10 @@ import pytest
 from mpi4py import MPI
 
 from coilset.meshes.export import write_mesh
-from coilset.meshes.spring import MeasuredSpec, SpringSpec
-from coilset.model.analysis import Analysis
+from coilset.meshes.springs.spring import MeasuredSpec, SpringSpec
 from coilset.model.case import check
 from coilset.model.material import library
+from coilset.model.run.analysis import Analysis
 from coilset.verification.springs import progressive, representation
 from coilset.verification.springs.curved_rod import clamped_rate
 

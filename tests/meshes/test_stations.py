@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.errors import InputError
-from coilset.meshes.shapes import Table
-from coilset.meshes.spring import SpringSpec
+from coilset.meshes.springs.shapes import Table
+from coilset.meshes.springs.spring import SpringSpec
+from coilset.model.base.errors import InputError
 
 
 def cylinder(turns=2.5):

@@ -2,8 +2,8 @@
 
 import pytest
 
-from coilset.meshes.errors import InputError
-from coilset.meshes.spring import SpringSpec
+from coilset.meshes.springs.spring import SpringSpec
+from coilset.model.base.errors import InputError
 from coilset.model.case import check
 
 RIGHT = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 6.0, "pitch": 12.0}

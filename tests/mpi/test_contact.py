@@ -4,14 +4,19 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.contact.base import TrialPositions
+from coilset.model.run.analysis import Analysis
 
 pytestmark = pytest.mark.mpi
 COMM = MPI.COMM_WORLD
-SHAPE = ["spring.turns=30", "spring.pitch=6", "mesh.section.radial=2", "mesh.section.angular=6",
-         "loading=[{to: {travel: 1}}]"]  # fmt: skip
+SHAPE = [
+    "spring.turns=30",
+    "spring.pitch=6",
+    "mesh.section.radial=2",
+    "mesh.section.angular=6",
+    "loading=[{to: {travel: 1}}]",
+]
 KINDS = {
     "flat": ["seats.bottom.shape=stepped", "seats.bottom.turns=0.8", "contact.friction={seats: 0.1, coils: 0.1}"],
     "moving": ["seats={hold: groove, top: {tilt: free}, bottom: {shape: conical, angle: 5}}"],

@@ -4,14 +4,20 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.equilibrium.load import Load
+from coilset.model.run.analysis import Analysis
 
 pytestmark = pytest.mark.mpi
 COMM = MPI.COMM_WORLD
-SPRING = ["spring.turns=5", "spring.pitch=6", "mesh.section.radial=2", "mesh.section.angular=6",
-          "mesh.elements_per_turn=12", "loading=[{to: {travel: 1}}]"]  # fmt: skip
+SPRING = [
+    "spring.turns=5",
+    "spring.pitch=6",
+    "mesh.section.radial=2",
+    "mesh.section.angular=6",
+    "mesh.elements_per_turn=12",
+    "loading=[{to: {travel: 1}}]",
+]
 
 
 def products(case, comm, height):

@@ -9,19 +9,22 @@ import numpy as np
 import pytest
 import yaml
 
-from coilset.meshes.errors import InputError, SolveError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError, SolveError
 from coilset.model.case.case import check
 from coilset.model.nest.file import Press, read_nest
 from coilset.model.nest.nest import press
 from coilset.model.nest.output import COLUMNS
 from coilset.model.nest.plan import plan
-from coilset.scripts.nest import nest as nest_command
+from coilset.model.run.analysis import Analysis
+from coilset.scripts.commands.nest import nest as nest_command
 
 OUTER = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 14.0}
 INNER = {"wire_diameter": 3.0, "mean_diameter": 24.0, "turns": 3.5, "pitch": 8.0, "hand": "left"}
-COMMON = {"material": "elastic", "mesh": {"elements_per_turn": 12, "section": {"radial": 2, "angular": 8}},
-          "loading": [{"to": "block"}]}  # fmt: skip
+COMMON = {
+    "material": "elastic",
+    "mesh": {"elements_per_turn": 12, "section": {"radial": 2, "angular": 8}},
+    "loading": [{"to": "block"}],
+}
 LOADING = [{"to": {"height": 30.0}, "steps": 4}, {"to": {"height": 33.0}, "steps": 1}]
 REPOSITORY = Path(__file__).resolve().parents[2]
 

@@ -45,8 +45,10 @@ def difference(before: Column, after: Column) -> np.ndarray:
 
 def compare_runs(before: dict[str, Column], after: dict[str, Column], limit: float) -> Found:
     """Compare two runs' columns."""
-    found = Found(alone=[f"only before: {name}" for name in before.keys() - after.keys()]
-                  + [f"only after: {name}" for name in after.keys() - before.keys()])  # fmt: skip
+    found = Found(
+        alone=[f"only before: {name}" for name in before.keys() - after.keys()]
+        + [f"only after: {name}" for name in after.keys() - before.keys()]
+    )
     for name in sorted(before.keys() & after.keys()):
         a, b = before[name], after[name]
         if a.values.shape != b.values.shape:
@@ -64,8 +66,10 @@ def compare_runs(before: dict[str, Column], after: dict[str, Column], limit: flo
             if off[place] > found.greatest:
                 found.greatest, found.where = float(off[place]), name
             if off[place] > limit:
-                found.beyond.append(f"{name}: {off[place]:.1e} at {tuple(map(int, place))}, "
-                                    f"{a.values[place]:.15g} → {b.values[place]:.15g}")  # fmt: skip
+                found.beyond.append(
+                    f"{name}: {off[place]:.1e} at {tuple(map(int, place))}, "
+                    f"{a.values[place]:.15g} → {b.values[place]:.15g}"
+                )
     return found
 
 
@@ -105,8 +109,9 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--counts-may-differ", action="store_true", help="list counts that differ, no more")
     options = parser.parse_args(arguments)
     before, after = runs(options.before), runs(options.after)
-    both = [name for name in sorted(before.keys() & after.keys())
-            if any(fnmatch.fnmatch(name, one) for one in options.only)]  # fmt: skip
+    both = [
+        name for name in sorted(before.keys() & after.keys()) if any(fnmatch.fnmatch(name, one) for one in options.only)
+    ]
     if not both:
         parser.error("there is no run that both have")
     off = []

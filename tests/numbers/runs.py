@@ -27,8 +27,14 @@ SPRING, CONE = "examples/ck15_presetting.yaml", "examples/springs/cone.yaml"
 VARIANTS = {
     "clamped": (SPRING, ["ends=clamped", PRESSED]),
     "groove": (SPRING, ["seats={hold: groove}"]),
-    "seats-that-move": (SPRING, ["seats={hold: groove, bottom: {shape: stepped, turns: 0.75}, "
-                                 "top: {shape: conical, angle: 5, tilt: free, sideways: 200.0}}", PRESSED]),
+    "seats-that-move": (
+        SPRING,
+        [
+            "seats={hold: groove, bottom: {shape: stepped, turns: 0.75}, "
+            "top: {shape: conical, angle: 5, tilt: free, sideways: 200.0}}",
+            PRESSED,
+        ],
+    ),
     "gaps": (SPRING, ["contact.coils=gaps"]),
     "augmented": (SPRING, ["contact.penetration=0.001"]),
     "friction": (CONE, ["contact.friction={seats: 0.1, coils: 0.1}"]),
@@ -37,21 +43,24 @@ VARIANTS = {
     "bfgs": (SPRING, ["solver.method=bfgs", "ends=clamped", PRESSED]),
     "modified-newton": (SPRING, ["solver.method=modified-newton", "ends=clamped", PRESSED]),
     "arc-length": (SPRING, ["solver.method=arc-length", "ends=clamped", PRESSED]),
-}  # fmt: skip
+}
 
 
 def all_runs() -> dict[str, Callable]:
     """Name → function (folder, ranks) of every run, quick ones first."""
     files = [TREE / "examples/ck15_presetting.yaml", *sorted((TREE / "examples/springs").glob("*.yaml"))]
     found = {f"spring/{file.stem}": functools.partial(solve, file, []) for file in files}
-    found |= {f"variant/{name}": functools.partial(solve, TREE / file, settings)
-              for name, (file, settings) in VARIANTS.items()}  # fmt: skip
+    found |= {
+        f"variant/{name}": functools.partial(solve, TREE / file, settings)
+        for name, (file, settings) in VARIANTS.items()
+    }
     found["solid/pressed"] = solid
     listed = command([*COILSET, "verify", "--list"]).splitlines()[1:]
     cases = [words for line in listed if (words := line.split())]
     for slow in (False, True):
-        found |= {f"verify/{words[0]}": functools.partial(verify, words[0])
-                  for words in cases if (words[1] == "slow") == slow}  # fmt: skip
+        found |= {
+            f"verify/{words[0]}": functools.partial(verify, words[0]) for words in cases if (words[1] == "slow") == slow
+        }
     return found
 
 

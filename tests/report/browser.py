@@ -20,10 +20,21 @@ class Browser:
     """A session of a driver that listens at an address."""
 
     def __init__(self, address: str) -> None:
-        arguments = ["--headless=new", "--no-sandbox", "--disable-gpu", "--force-device-scale-factor=1",
-                     "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"]  # fmt: skip
-        wish = {"alwaysMatch": {"browserName": "chrome", "goog:chromeOptions": {"args": arguments},
-                                "timeouts": {"script": 1000 * PATIENCE}}}  # fmt: skip
+        arguments = [
+            "--headless=new",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--force-device-scale-factor=1",
+            "--enable-unsafe-swiftshader",
+            "--disable-dev-shm-usage",
+        ]
+        wish = {
+            "alwaysMatch": {
+                "browserName": "chrome",
+                "goog:chromeOptions": {"args": arguments},
+                "timeouts": {"script": 1000 * PATIENCE},
+            }
+        }
         self.address = f"{address}/session"
         self.address += "/" + self._ask("POST", "", {"capabilities": wish})["sessionId"]
 
@@ -42,8 +53,9 @@ class Browser:
 
     def look(self, width, height=900, dark=False):
         """A window of a size, in a theme."""
-        self.command("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1,
-                     mobile=width < 600)  # fmt: skip
+        self.command(
+            "Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=width < 600
+        )
         theme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         self.command("Emulation.setEmulatedMedia", features=[theme])
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from mpi4py import MPI
 
-from coilset.scripts.solve import solve
+from coilset.scripts.commands.solve import solve
 
 sys.path.insert(0, str(Path(__file__).parent))
 

@@ -17,19 +17,21 @@ from browser import ENTER, TAB, chromium, missing
 from coilset.model.report.design_page import write_design_report
 from coilset.model.report.page import write_report
 from coilset.model.report.sweep_page import write_sweep_report
-from coilset.model.results.opened import open_run
+from coilset.model.results.files.opened import open_run
 from coilset.model.sweep import dataset
 from coilset.model.sweep.journal import Journal
 from coilset.model.sweep.plan import Plan
-from coilset.scripts.design import design
+from coilset.scripts.commands.design import design
 
 DRIVER, AXE = os.environ.get("COILSET_WEBDRIVER", ""), os.environ.get("COILSET_AXE", "")
 pytestmark = pytest.mark.skipif(not DRIVER and bool(missing()), reason=missing())
 CASES = 1000
 FILTERS = "[...document.querySelectorAll('#cases input')]"
 COUNT = "return document.getElementById('count').textContent"
-CASE = {"spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 1.5, "pitch": 12.0},
-        "loading": [{"to": {"travel": 6}}]}  # fmt: skip
+CASE = {
+    "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 1.5, "pitch": 12.0},
+    "loading": [{"to": {"travel": 6}}],
+}
 
 
 @pytest.fixture(scope="module")
@@ -55,10 +57,16 @@ def sweep_page(tmp_path_factory):
         for number, key in enumerate(plan.keys, 1):
             failed = number % 10 == 0
             steps = {"travel_mm": [2.0, 6.0], "force_N": [80.0, 0.2 * number]}
-            journal.append({"key": key, "status": "failed" if failed else "done",
-                            "reason": "too long" if failed else "",
-                            "summary": {} if failed else {"set_mm": float(number), "force_max_N": 0.2 * number},
-                            "steps": steps, "seconds": 1.0})  # fmt: skip
+            journal.append(
+                {
+                    "key": key,
+                    "status": "failed" if failed else "done",
+                    "reason": "too long" if failed else "",
+                    "summary": {} if failed else {"set_mm": float(number), "force_max_N": 0.2 * number},
+                    "steps": steps,
+                    "seconds": 1.0,
+                }
+            )
     dataset.write(out / "sweep.nc", dataset.collect(plan, out / "journal.jsonl"))
     return write_sweep_report(out)
 
@@ -68,9 +76,15 @@ def design_page(tmp_path_factory):
     """The height to which a spring must be pressed for its length, and what else could be had."""
     folder = tmp_path_factory.mktemp("design")
     loading = [{"to": {"height": 16.0}, "steps": 3}, {"to": {"force": 0}, "steps": 2}]
-    entries = {**CASE, "ends": "clamped", "mesh": {"elements_per_turn": 6, "section": {"radial": 2, "angular": 4}},
-            "loading": loading, "find": {"loading.0.to.height": [14.0, 19.0]},
-            "such_that": {"free_length_after_mm": 18.0}, "trade_offs": {"spring.pitch": [11.0, 13.0]}}  # fmt: skip
+    entries = {
+        **CASE,
+        "ends": "clamped",
+        "mesh": {"elements_per_turn": 6, "section": {"radial": 2, "angular": 4}},
+        "loading": loading,
+        "find": {"loading.0.to.height": [14.0, 19.0]},
+        "such_that": {"free_length_after_mm": 18.0},
+        "trade_offs": {"spring.pitch": [11.0, 13.0]},
+    }
     (folder / "design.yaml").write_text(yaml.safe_dump(entries))
     design(folder / "design.yaml", str(folder / "out"), False, False)
     return write_design_report(folder / "out")
@@ -87,8 +101,11 @@ def until(browser, script):
 def drawn(browser):
     """Draw each figure, as printing does, and go back to the screen's widths."""
     browser.run("window.dispatchEvent(new Event('beforeprint'))")
-    until(browser, "return [...document.querySelectorAll('.plot')].filter((one) => one.offsetParent)"
-                   ".every((one) => one.querySelector('svg'))")  # fmt: skip
+    until(
+        browser,
+        "return [...document.querySelectorAll('.plot')].filter((one) => one.offsetParent)"
+        ".every((one) => one.querySelector('svg'))",
+    )
     browser.run("window.dispatchEvent(new Event('afterprint'))")
 
 
@@ -104,8 +121,9 @@ def test_no_serious_finding_of_axe(request, browser, page, width, dark):
     browser.run(Path(AXE).read_text(encoding="utf-8"))
     found = browser.wait("axe.run()")
     assert len(found["passes"]) > 20
-    assert [(one["id"], one["nodes"][0]["html"]) for one in found["violations"]
-            if one["impact"] in ("serious", "critical")] == []  # fmt: skip
+    assert [
+        (one["id"], one["nodes"][0]["html"]) for one in found["violations"] if one["impact"] in ("serious", "critical")
+    ] == []
 
 
 def test_a_run_by_keyboard(browser, run_page):
@@ -118,8 +136,12 @@ def test_a_run_by_keyboard(browser, run_page):
     seen = []
     for _ in range(wanted + 5):
         browser.press(TAB)
-        seen.append(browser.run("const e = document.activeElement; return (e.className || e.tagName) + (e.id || '') + "
-                                "[...document.querySelectorAll(e.tagName)].indexOf(e)"))  # fmt: skip
+        seen.append(
+            browser.run(
+                "const e = document.activeElement; return (e.className || e.tagName) + (e.id || '') + "
+                "[...document.querySelectorAll(e.tagName)].indexOf(e)"
+            )
+        )
         if seen[-1].startswith("term") and not any(one.startswith("term") for one in seen[:-1]):
             about = "getComputedStyle(document.activeElement.querySelector('.about'))"
             assert browser.run(f"return {about}.display") == "block"
@@ -155,8 +177,10 @@ def test_one_of_a_thousand_is_found_and_opened_by_keyboard(browser, sweep_page):
 def test_a_failed_case_says_why(browser, sweep_page):
     browser.look(390)
     browser.open(sweep_page)
-    browser.run(f"const f = {FILTERS}.find((one) => one.ariaLabel === 'filter status');"
-                "f.value = 'fail'; f.dispatchEvent(new Event('input'))")  # fmt: skip
+    browser.run(
+        f"const f = {FILTERS}.find((one) => one.ariaLabel === 'filter status');"
+        "f.value = 'fail'; f.dispatchEvent(new Event('input'))"
+    )
     assert browser.run(COUNT) == "100 of 1000 cases"
     browser.run("document.querySelector('#cases .open').click()")
     assert browser.run("return document.getElementById('reason').textContent") == "too long"
@@ -185,10 +209,14 @@ def test_the_first_printed_sheet_has_the_makers_data(browser, run_page):
 def test_the_cases_that_pass_the_filters_are_saved_as_csv(browser, sweep_page):
     browser.look(1280)
     browser.open(sweep_page)
-    browser.run(f"const f = {FILTERS}.find((one) => one.ariaLabel === 'filter set, mm');"
-                "f.value = '731..733'; f.dispatchEvent(new Event('input'))")  # fmt: skip
-    browser.run("document.getElementById('table').addEventListener('click', (event) => event.preventDefault());"
-                "document.getElementById('table').click()")  # fmt: skip
+    browser.run(
+        f"const f = {FILTERS}.find((one) => one.ariaLabel === 'filter set, mm');"
+        "f.value = '731..733'; f.dispatchEvent(new Event('input'))"
+    )
+    browser.run(
+        "document.getElementById('table').addEventListener('click', (event) => event.preventDefault());"
+        "document.getElementById('table').click()"
+    )
     text = browser.wait("fetch(document.getElementById('table').href).then((answer) => answer.text())")
     head, *rows = csv.reader(text.splitlines())
     assert [float(row[head.index("set_mm")]) for row in rows] == [731.0, 732.0, 733.0]

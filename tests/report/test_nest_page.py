@@ -11,13 +11,16 @@ import yaml
 
 from coilset.model.nest.output import headline
 from coilset.model.report.panel import said
-from coilset.scripts.nest import nest
-from coilset.scripts.report import report
+from coilset.scripts.commands.nest import nest
+from coilset.scripts.commands.report import report
 
 OUTER = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 14.0}
 INNER = {"wire_diameter": 3.0, "mean_diameter": 24.0, "turns": 3.5, "pitch": 8.0, "hand": "left"}
-COMMON = {"material": "ck15", "mesh": {"elements_per_turn": 8, "section": {"radial": 2, "angular": 8}},
-          "loading": [{"to": "block"}]}  # fmt: skip
+COMMON = {
+    "material": "ck15",
+    "mesh": {"elements_per_turn": 8, "section": {"radial": 2, "angular": 8}},
+    "loading": [{"to": "block"}],
+}
 
 
 @pytest.fixture(scope="module")

@@ -12,17 +12,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
+from coilset.model.figures.wire import closed, inside, moments, shear_around, tubes
 from coilset.model.material import library
 from coilset.model.report.bearing import force_centre
 from coilset.model.report.characteristic import characteristic, phases
 from coilset.model.report.glossary import GLOSSARY
 from coilset.model.report.material_curves import material_curve
 from coilset.model.report.page import CHAPTERS, write_report
-from coilset.model.results.opened import open_run
-from coilset.model.results.wire import closed, inside, moments, shear_around, tubes
-from coilset.scripts.report import report
-from coilset.scripts.sheet import sheet
+from coilset.model.results.files.opened import open_run
+from coilset.scripts.commands.report import report
+from coilset.scripts.commands.sheet import sheet
 
 MOST = 15e6  # bytes of a page
 
@@ -59,16 +59,32 @@ def test_numbers_are_those_of_the_summary(folder, page):
     """Other numbers in the summary, and the same fields beside it, give a page with these numbers and no older one."""
     path = folder / "summary.json"
     before = path.read_text()
-    other = {"set_mm": 1.234567, "free_length_after_mm": 23.4567, "free_length_before_mm": 24.6913,
-             "force_max_N": 345.67, "residual_shear_inside_MPa": -45.678, "shear_inside_max_MPa": 321.4,
-             "rate_N_per_mm": 5.6789, "block_height_mm": 6.789,
-             "rate_30_70_after_N_per_mm": 7.8912, "estimated_force_error_N": 0.089123,
-             "steps": 91, "evaluations": 912}  # fmt: skip
+    other = {
+        "set_mm": 1.234567,
+        "free_length_after_mm": 23.4567,
+        "free_length_before_mm": 24.6913,
+        "force_max_N": 345.67,
+        "residual_shear_inside_MPa": -45.678,
+        "shear_inside_max_MPa": 321.4,
+        "rate_N_per_mm": 5.6789,
+        "block_height_mm": 6.789,
+        "rate_30_70_after_N_per_mm": 7.8912,
+        "estimated_force_error_N": 0.089123,
+        "steps": 91,
+        "evaluations": 912,
+    }
     shown = ["1.235 mm", "23.457 mm", "−45.7 MPa", "345.7 N", "321 MPa", "5.679 N/mm", "6.79 mm"]
-    told = ["5.0 % of the free length", "after; 24.691 mm before", "7.891 N/mm on release", "0.089 N estimated error",
-            "Compressed with up to 345.7 N, the spring sets 1.235 mm", "The rate begins at 5.679 N/mm",
-            "−46 MPa of shear remain", "91 steps took 912 evaluations",
-            "about 0.089 N in the maximum force"]  # fmt: skip
+    told = [
+        "5.0 % of the free length",
+        "after; 24.691 mm before",
+        "7.891 N/mm on release",
+        "0.089 N estimated error",
+        "Compressed with up to 345.7 N, the spring sets 1.235 mm",
+        "The rate begins at 5.679 N/mm",
+        "−46 MPa of shear remain",
+        "91 steps took 912 evaluations",
+        "about 0.089 N in the maximum force",
+    ]
     assert not any(text in page for text in (*shown, *told))
     try:
         path.write_text(json.dumps({**json.loads(before), **other}))
@@ -178,8 +194,12 @@ def test_each_step_can_be_slid_to(folder, page):
         assert np.array_equal(shown.x[moment], run.data["position"].values[snapshot])
         assert shown.shear[moment] == pytest.approx(around[snapshot], rel=1e-6, abs=1e-4)  # single precision
     few = moments(run, 4)
-    assert [label.split(":")[0] for label in few.labels] == ["start", "step 1, to block", "step 4, to block",
-                                                             "step 6, to force 0 N"]  # fmt: skip
+    assert [label.split(":")[0] for label in few.labels] == [
+        "start",
+        "step 1, to block",
+        "step 4, to block",
+        "step 6, to force 0 N",
+    ]
 
 
 def test_first_and_second_loading_are_told_apart(folder):

@@ -6,11 +6,11 @@ import pyvista as pv
 from PIL import Image
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 
-from coilset.meshes.errors import InputError
-from coilset.model.results.animation import animate
-from coilset.model.results.display import ensure
-from coilset.model.results.opened import open_run
-from coilset.model.results.series import write_series
+from coilset.model.base.errors import InputError
+from coilset.model.figures.animation import animate
+from coilset.model.figures.display import ensure
+from coilset.model.figures.series import write_series
+from coilset.model.results.files.opened import open_run
 
 ANGLES = 24
 
@@ -25,11 +25,14 @@ def read(run):
     return [pv.PVDReader(path) for path in write_series(run)]
 
 
-@pytest.mark.parametrize(("there", "said"), [
-    ((), "there is no summary.json"),
-    (("summary.json",), "there is no points.nc"),
-    (("summary.json", "inner/points.nc", "outer/points.nc"), "there is no points.nc; is {}/inner meant?"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("there", "said"),
+    [
+        ((), "there is no summary.json"),
+        (("summary.json",), "there is no points.nc"),
+        (("summary.json", "inner/points.nc", "outer/points.nc"), "there is no points.nc; is {}/inner meant?"),
+    ],
+)
 def test_a_folder_without_a_run_is_told(tmp_path, there, said):
     """Such as that of a slice, or of a nest, which has a run in each of two folders."""
     for name in there:

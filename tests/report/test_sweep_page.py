@@ -47,9 +47,17 @@ def folder(plan):
     out.mkdir()
     with closing(Journal(out / "journal.jsonl")) as journal:
         for number, (row, key) in enumerate(zip(plan.rows[:5], plan.keys, strict=False)):
-            record = evaluate(**plan.task(row), comm=MPI.COMM_SELF) if number < 3 else {
-                "status": "failed", "reason": "stopped at the time limit", "summary": {}, "steps": {}, "seconds": 9.0
-            }  # fmt: skip
+            record = (
+                evaluate(**plan.task(row), comm=MPI.COMM_SELF)
+                if number < 3
+                else {
+                    "status": "failed",
+                    "reason": "stopped at the time limit",
+                    "summary": {},
+                    "steps": {},
+                    "seconds": 9.0,
+                }
+            )
             journal.append({"key": key, **record})
     dataset.write(out / "sweep.nc", dataset.collect(plan, out / "journal.jsonl"))
     return out

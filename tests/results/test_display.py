@@ -10,7 +10,7 @@ import pytest
 # Python hands on the default action of a signal that it handles itself, as in a command.
 PRESSED = """
 import os, signal, time
-from coilset.model.results.display import ensure
+from coilset.model.figures.display import ensure
 signal.signal(signal.SIGINT, lambda *_: None)
 assert ensure()
 os.killpg(0, signal.SIGINT)
@@ -26,7 +26,13 @@ plotter.close()
 @pytest.mark.skipif(shutil.which("Xvfb") is None, reason="no Xvfb")
 def test_it_goes_on_after_ctrl_c():
     environment = {name: value for name, value in os.environ.items() if name != "DISPLAY"}
-    done = subprocess.run([sys.executable, "-c", PRESSED], capture_output=True, text=True, check=False, env=environment,
-                          start_new_session=True)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-c", PRESSED],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=environment,
+        start_new_session=True,
+    )
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout == "(30, 40, 3)\n"

@@ -6,8 +6,8 @@ import pytest
 from mpi4py import MPI
 
 import coilset.open
-from coilset.meshes.errors import InputError
-from coilset.scripts.solve import solve
+from coilset.model.base.errors import InputError
+from coilset.scripts.commands.solve import solve
 
 CASE = """
 spring: {wire_diameter: 5, mean_diameter: 40, turns: 1.5, pitch: 12}

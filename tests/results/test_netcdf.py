@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from coilset.model.results.netcdf import LabelledData, Variable, write_netcdf
+from coilset.model.results.files.netcdf import LabelledData, Variable, write_netcdf
 
 
 def made():

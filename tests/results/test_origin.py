@@ -7,13 +7,13 @@ import pytest
 import xarray as xr
 from mpi4py import MPI
 
-from coilset.model.analysis import Analysis
+from coilset.model.base.version import __version__
 from coilset.model.case import check, read_case
-from coilset.model.material.file import MaterialFile
-from coilset.model.results.provenance import origin
-from coilset.model.results.summary import summarise
-from coilset.model.version import __version__
-from coilset.scripts.solve import solve
+from coilset.model.material.law.file import MaterialFile
+from coilset.model.results.records.provenance import origin
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
+from coilset.scripts.commands.solve import solve
 
 COARSE = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "loading=[{to: {travel: 3}, steps: 2}]"]
 

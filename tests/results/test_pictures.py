@@ -12,19 +12,19 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.image import imread
 from mpi4py import MPI
 
-from coilset.model.analysis import Analysis
+from coilset.model.base.style import QUARTERED, round_end
 from coilset.model.case import read_case
-from coilset.model.results import figures, goodman_figure, seat_figures
-from coilset.model.results.buckling_figure import axis, buckling_mode, column, plane
-from coilset.model.results.checkpoint import Checkpoint
-from coilset.model.results.display import ensure
-from coilset.model.results.labels import plain
-from coilset.model.results.record import BucklingMode, Step
-from coilset.model.results.rings import ROUND
-from coilset.model.results.scene import ABOVE, BAR, COLUMN, LABELS, MOST_HEIGHT, WIDTH, Arrangement, caption, springs
-from coilset.model.results.summary import summarise
+from coilset.model.figures import figures, goodman_figure, seat_figures
+from coilset.model.figures.buckling_figure import axis, buckling_mode, column, plane
+from coilset.model.figures.display import ensure
+from coilset.model.figures.rings import ROUND
+from coilset.model.figures.scene import ABOVE, BAR, COLUMN, LABELS, MOST_HEIGHT, WIDTH, Arrangement, caption, springs
+from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.results.records.labels import plain
+from coilset.model.results.records.record import BucklingMode, Step
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 from coilset.model.standards import goodman
-from coilset.model.style import QUARTERED, round_end
 
 
 @pytest.mark.parametrize("springs", [1, 2, 4])
@@ -49,9 +49,19 @@ def test_scales_end_on_few_digits(greatest, end):
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(0.0, "0"), (-0.0, "0"), (258.28, "258.3"), (120165.57, "120,166"), (1.10254, "1.103"), (0.00421, "0.00421"),
-     (35.0, "35"), (-1.5e-9, "0"), (1e7, "10,000,000"), (99.996, "100")],
-)  # fmt: skip
+    [
+        (0.0, "0"),
+        (-0.0, "0"),
+        (258.28, "258.3"),
+        (120165.57, "120,166"),
+        (1.10254, "1.103"),
+        (0.00421, "0.00421"),
+        (35.0, "35"),
+        (-1.5e-9, "0"),
+        (1e7, "10,000,000"),
+        (99.996, "100"),
+    ],
+)
 def test_numbers_of_any_size_are_plain(value, text):
     assert plain(value) == text
 
@@ -158,8 +168,9 @@ def test_each_of_a_few_steps_is_named_beside_the_pressure(analysis, monkeypatch)
 def test_active_turns_that_mean_nothing_are_told_and_not_drawn(analysis, monkeypatch, beyond, title):
     """Where the force hardly changes the quotient is any number; lines to it would cover the others."""
     steps = tuple(Step(k, 0, 1.0, 35.0 - k, float(k), 9.0 * k, 1, 1, 0, 0, 0, 0.0) for k in range(1, 9))
-    seats = tuple(replace(analysis.result.seats[0], active_turns=4e3 if step.number == beyond else 2.4)
-                  for step in steps)  # fmt: skip
+    seats = tuple(
+        replace(analysis.result.seats[0], active_turns=4e3 if step.number == beyond else 2.4) for step in steps
+    )
     drawn = []
     monkeypatch.setattr(seat_figures, "save", lambda figure, path: drawn.append(figure.axes[3]))
     seat_figures.seat_pressure("", analysis.setup, replace(analysis.result, steps=steps, seats=seats))
@@ -212,7 +223,7 @@ def test_all_figures_share_one_look():
     """What the file says is what they are drawn with; no figure brings parameters of its own."""
     import matplotlib as mpl
 
-    from coilset.model.style import FILE, STYLE
+    from coilset.model.base.style import FILE, STYLE
 
     with mpl.rc_context():
         mpl.style.use(FILE)
@@ -236,9 +247,11 @@ def test_more_phases_than_colours_are_grey(analysis, monkeypatch):
     steps = tuple(Step(k, k, 1.0, 35.0 - k, k, 9.0, 1, 1, 0, 0, 0, 0.0) for k in range(8))
     phases = ("travel 1 mm", "heat to 400 K in 1 h at constant height", *(f"travel {k} mm" for k in range(2, 8)))
     setup, result = replace(analysis.setup, phases=phases), replace(analysis.result, steps=steps)
-    figure = drawn(monkeypatch, figures,
-                   lambda: figures.characteristic("", setup, result,
-                                                  summarise(setup, result) | {"load_loss_percent": 12.34}))  # fmt: skip
+    figure = drawn(
+        monkeypatch,
+        figures,
+        lambda: figures.characteristic("", setup, result, summarise(setup, result) | {"load_loss_percent": 12.34}),
+    )
     colours = [line.get_color() for line in figure.axes[0].get_lines()[:9]]
     assert len(set(colours[:6])) == 6
     assert set(colours[6:]) == {figures.REST}
@@ -249,12 +262,15 @@ def test_more_phases_than_colours_are_grey(analysis, monkeypatch):
     assert not title.overlaps(legend)
 
 
-@pytest.mark.parametrize(("summary", "said"), [
-    ({"set_mm": 1.25}, "the spring sets 1.25 mm"),
-    ({"set_mm": -1e-13}, "the spring sets 0 mm"),
-    ({"set_mm": -0.177, "force_max_N": -9.0}, "the spring stays 0.177 mm longer"),
-    ({"set_mm": None, "load_loss_percent": 17.05}, "the spring loses 17.05 % of its load"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("summary", "said"),
+    [
+        ({"set_mm": 1.25}, "the spring sets 1.25 mm"),
+        ({"set_mm": -1e-13}, "the spring sets 0 mm"),
+        ({"set_mm": -0.177, "force_max_N": -9.0}, "the spring stays 0.177 mm longer"),
+        ({"set_mm": None, "load_loss_percent": 17.05}, "the spring loses 17.05 % of its load"),
+    ],
+)
 def test_a_characteristic_says_what_becomes_of_the_spring(analysis, monkeypatch, summary, said):
     setup, result = analysis.setup, analysis.result
     found = summarise(setup, result) | summary
@@ -264,8 +280,11 @@ def test_a_characteristic_says_what_becomes_of_the_spring(analysis, monkeypatch,
 
 def test_the_title_of_a_goodman_diagram_is_whole(monkeypatch):
     endured = goodman.Line(470.0, 770.0, 1035.0, 1e7, "shot peened")
-    figure = drawn(monkeypatch, goodman_figure, lambda: goodman_figure.draw(
-        "", "EN 10270-2 VDSiCrV, 12.5 mm", endured, goodman.Cycle(795.0, 1325.0), None))  # fmt: skip
+    figure = drawn(
+        monkeypatch,
+        goodman_figure,
+        lambda: goodman_figure.draw("", "EN 10270-2 VDSiCrV, 12.5 mm", endured, goodman.Cycle(795.0, 1325.0), None),
+    )
     title = figure.axes[0].title.get_window_extent()
     assert figure.bbox.x0 <= title.x0
     assert title.x1 <= figure.bbox.x1
@@ -276,8 +295,10 @@ def test_titles_are_whole_and_clear_of_each_other(analysis, monkeypatch, size):
     """Whatever the size of their numbers."""
     step = replace(analysis.result.steps[0], force_N=1.23456 * size)
     away = 0.0123456 * size
-    seats = tuple(replace(one, bottom=replace(one.bottom, eccentricity_mm=away),
-                          top=replace(one.top, eccentricity_mm=away)) for one in analysis.result.seats)  # fmt: skip
+    seats = tuple(
+        replace(one, bottom=replace(one.bottom, eccentricity_mm=away), top=replace(one.top, eccentricity_mm=away))
+        for one in analysis.result.seats
+    )
     result, boxes = replace(analysis.result, steps=(step,), seats=seats), []
 
     def keep(figure: matplotlib.figure.Figure, path):

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
-from coilset.model.results.rates import first_compression, last_release, makers_rate, rate_at
-from coilset.model.results.record import Step
-from coilset.model.results.summary import summarise
+from coilset.model.results.records.rates import first_compression, last_release, makers_rate, rate_at
+from coilset.model.results.records.record import Step
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 
 TRAVEL = np.linspace(0.0, 10.0, 21)
 

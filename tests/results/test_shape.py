@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.spring import SpringSpec
-from coilset.model.results.shape import LeastRise
+from coilset.meshes.springs.spring import SpringSpec
+from coilset.model.results.records.shape import LeastRise
 
 TURNS = np.linspace(0.0, 4.0, 65)
 

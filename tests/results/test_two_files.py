@@ -2,9 +2,9 @@
 
 import pytest
 
-from coilset.meshes.errors import CoilsetError
-from coilset.model.results import two_files
-from coilset.model.results.two_files import TwoFiles
+from coilset.model.base.errors import CoilsetError
+from coilset.model.results.files import two_files
+from coilset.model.results.files.two_files import TwoFiles
 
 
 class Half(Exception):

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.analysis import Analysis
+from coilset.model.base.warning import Warning
 from coilset.model.case import read_case
-from coilset.model.results.checkpoint import Checkpoint
-from coilset.model.results.record import Result, Step
-from coilset.model.results.summary import summarise
-from coilset.model.results.warnings import accuracy_warning, run_warnings, step_warnings
+from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.results.records.record import Result, Step
+from coilset.model.results.records.summary import summarise
+from coilset.model.results.records.warnings import accuracy_warning, run_warnings, step_warnings
+from coilset.model.run.analysis import Analysis
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.model.standards.wires.law import case_law
-from coilset.model.warning import Warning
-from coilset.scripts.solve import solve
+from coilset.scripts.commands.solve import solve
 
 COARSE = ["mesh.elements_per_turn=10", "mesh.section.rule=abramowitz9"]
 LIFTED = "loading=[{to: {travel: 8}, steps: 4}, {to: {force: 0}, steps: 2}, {to: {travel: 0}, steps: 2}]"
@@ -100,10 +100,16 @@ def test_a_warning_is_logged_after_the_first_step_that_shows_it(lifted, caplog, 
     recorder, rng, steps = copy.copy(lifted.recorder), np.random.default_rng(4), []
     recorder.setup, limits = replace(lifted.setup, buckling_travel=critical), lifted.setup.limits
     recorder.resume(Result())
-    wrong = [{"plastic_work_max_N_per_mm2": 1.5 * limits.plastic_work}, {"penetration_mm": 1.5 * limits.penetration},
-             {"least_rise": 0.5}, {"lift_off_mm": 0.1}, {"negative_pivots": 1}, {"force_N": 1e4, "progress": 1.0},
-             {"left_branch": 1, "released_energy_Nmm": 1.0},
-             {"axis_offset_mm": 0.06 * lifted.setup.mean_diameter}]  # fmt: skip
+    wrong = [
+        {"plastic_work_max_N_per_mm2": 1.5 * limits.plastic_work},
+        {"penetration_mm": 1.5 * limits.penetration},
+        {"least_rise": 0.5},
+        {"lift_off_mm": 0.1},
+        {"negative_pivots": 1},
+        {"force_N": 1e4, "progress": 1.0},
+        {"left_branch": 1, "released_energy_Nmm": 1.0},
+        {"axis_offset_mm": 0.06 * lifted.setup.mean_diameter},
+    ]
     expected = {}
     with caplog.at_level("WARNING", "coilset.steps"):
         for number in range(1, 61):
@@ -124,8 +130,13 @@ def test_a_warning_is_logged_after_the_first_step_that_shows_it(lifted, caplog, 
 def test_a_force_on_a_wall_is_told(lifted):
     """From 100 N at 10 mm to 120 N at 10.1 mm: 200 N/mm are 16.8 % of it for 1 % of the travel, 400 N/mm 29 %."""
     first = Step(1, 0, 0.9, 25.0, 10.0, 100.0, 3, 4, 0, 0, 2, 0.0)
-    for force, phase, progress, found in ((120.0, 0, 1.0, 0), (140.0, 0, 1.0, 1), (140.0, 0, 0.95, 0),
-                                          (140.0, 1, 1.0, 0), (60.0, 0, 1.0, 1)):  # fmt: skip
+    for force, phase, progress, found in (
+        (120.0, 0, 1.0, 0),
+        (140.0, 0, 1.0, 1),
+        (140.0, 0, 0.95, 0),
+        (140.0, 1, 1.0, 0),
+        (60.0, 0, 1.0, 1),
+    ):
         last = replace(first, number=2, travel_mm=10.1, force_N=force, phase=phase, progress=progress)
         walls = [one for one in step_warnings(lifted.setup, Result(steps=(first, last))) if one.name == "wall"]
         assert len(walls) == found
@@ -133,8 +144,10 @@ def test_a_force_on_a_wall_is_told(lifted):
             assert walls[0].value == pytest.approx(abs(force - 100.0) / 0.1 * 10.1 / force, rel=1e-9)
     back = replace(first, number=2, travel_mm=9.9, force_N=60.0, progress=1.0)
     assert "wall" not in names(step_warnings(lifted.setup, Result(steps=(first, back))))
-    hot, cold = (replace(first, phase=1, travel_mm=travel, force_N=force, progress=progress)
-                 for travel, force, progress in ((10.0, -1e-10, 0.5), (10.01, 1e-10, 1.0)))  # fmt: skip
+    hot, cold = (
+        replace(first, phase=1, travel_mm=travel, force_N=force, progress=progress)
+        for travel, force, progress in ((10.0, -1e-10, 0.5), (10.01, 1e-10, 1.0))
+    )
     assert "wall" not in names(step_warnings(lifted.setup, Result(steps=(first, hot, cold))))  # free of load
 
 

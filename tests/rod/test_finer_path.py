@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.placement import straight
-from coilset.model import threads
+from coilset.meshes.springs.placement import straight
+from coilset.model.body.state import State, Where
 from coilset.model.material import library
 from coilset.model.rod import finer_path
 from coilset.model.rod.finer_path import FinerPath
+from coilset.model.runtime import threads
+from coilset.model.runtime.threads import Threads
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import polar
-from coilset.model.state import State, Where
-from coilset.model.threads import Threads
 
 TWIST, BENDING = 3, 4  # of the section strains
 
@@ -30,8 +30,9 @@ class Path:
         law, place = library.load("ck15", spin=False), straight(len(radii))
         for cell in ground:
             place.flat[cell] = (0.2, 1.0, 0.0)
-        self.sections = make_sections(kind, law, law.parameters(), polar(), np.array(radii), place, degree=2,
-                                      threads=Threads(number))  # fmt: skip
+        self.sections = make_sections(
+            kind, law, law.parameters(), polar(), np.array(radii), place, degree=2, threads=Threads(number)
+        )
         self.state = State()
         self.strain = self.state.add("strain", np.zeros((len(radii), 2, 6)), Where.ELEMENT)
         self.points = {

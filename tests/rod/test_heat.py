@@ -7,20 +7,24 @@ import pytest
 import yaml
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError
 from coilset.model.case.case import check
 from coilset.model.case.phases import Phase
-from coilset.verification.cases.heat_along_wire import exact, fin, material
+from coilset.model.run.analysis import Analysis
+from coilset.verification.cases.time.heat_along_wire import exact, fin, material
 from coilset.verification.study import Study
 
 CASE = {
-    "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 1.0, "pitch": 60.0}, "ends": "clamped",
-    "temperature": 293.15, "mesh": {"elements_per_turn": 8, "section": {"radial": 3, "angular": 8}},
+    "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 1.0, "pitch": 60.0},
+    "ends": "clamped",
+    "temperature": 293.15,
+    "mesh": {"elements_per_turn": 8, "section": {"radial": 3, "angular": 8}},
     "heat": {"conductivity": 50.0, "convection": 200.0, "tips": 1.0},
-    "loading": [{"to": {"travel": 45.0}, "steps": 4, "seconds": 2.0},
-                {"to": {"force": 0.0}, "steps": 2, "seconds": 60.0}],
-}  # fmt: skip
+    "loading": [
+        {"to": {"travel": 45.0}, "steps": 4, "seconds": 2.0},
+        {"to": {"force": 0.0}, "steps": 2, "seconds": 60.0},
+    ],
+}
 
 
 @pytest.fixture
@@ -98,7 +102,7 @@ def test_expansion_of_a_free_wire_bears_no_stress(warming, tmp_path):
         ({"heat": {"conductivity": 0.0}}, "heat.conductivity: 0.0: must be greater than 0"),
         ({"heat": {"conductivity": 50.0, "surroundings": 200.0}}, "heat.surroundings: 200 K is outside the table"),
     ],
-)  # fmt: skip
+)
 def test_what_heat_cannot_be(changes, message, warming):
     with pytest.raises(InputError) as caught:
         Analysis(check(CASE | {"material": warming} | changes), MPI.COMM_SELF)

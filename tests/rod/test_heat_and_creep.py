@@ -5,20 +5,21 @@ import pytest
 import yaml
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
-from coilset.meshes.placement import straight
-from coilset.model.analysis import Analysis
+from coilset.meshes.springs.placement import straight
+from coilset.model.base.errors import InputError
 from coilset.model.case.case import check
 from coilset.model.material import library
-from coilset.model.material.creep_law import CreepLaw
+from coilset.model.material.creep.law import CreepLaw
+from coilset.model.run.analysis import Analysis
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import polar
 
 COLD, WARM = 293.15, 373.15
 SPRING = {
-    "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 1.0, "pitch": 60.0}, "ends": "clamped",
+    "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 1.0, "pitch": 60.0},
+    "ends": "clamped",
     "mesh": {"elements_per_turn": 8, "section": {"radial": 3, "angular": 8}},
-}  # fmt: skip
+}
 HEATING = {"dissipated": 0.9, "density": 7.85e-9, "specific_heat": 4.6e8}
 AT_ONCE = {"seconds": 1e-30}
 OVEN = {"conductivity": 50.0, "convection": 1e6}  # the wire is as warm as the air within a millisecond
@@ -50,8 +51,10 @@ def test_where_all_is_equally_warm_heat_changes_nothing(files):
     """An elastic spring relaxes in a warm room as one whose temperature is given."""
     hold = {"hold": {"hours": 1000}, "steps": 6}
     press = {"to": {"travel": 9}, "steps": 1}
-    steps = (analysis_of(files["elastic creeps"], [press, hold], WARM).run().steps,
-             analysis_of(files["elastic both"], [press | AT_ONCE, hold], WARM, heat=OVEN).run().steps)  # fmt: skip
+    steps = (
+        analysis_of(files["elastic creeps"], [press, hold], WARM).run().steps,
+        analysis_of(files["elastic both"], [press | AT_ONCE, hold], WARM, heat=OVEN).run().steps,
+    )
     given, found = ([step.force_N for step in one] for one in steps)
     assert given[-1] < 0.95 * given[0]
     assert found == pytest.approx(given, rel=1e-6)
@@ -63,8 +66,12 @@ def test_an_oven_with_strong_convection_heats_as_a_given_temperature(files):
     """Loaded, heated by 80 K, held and cooled: the difference falls with the number of steps of the ramps."""
 
     def losses(material, steps, at_once, **heat):
-        program = [{"to": {"travel": 9}, "steps": 1, **at_once}, {"heat": {"to": WARM, "minutes": 20}, "steps": steps},
-                   {"hold": {"hours": 100}, "steps": 8}, {"heat": {"to": COLD, "minutes": 20}, "steps": 4}]  # fmt: skip
+        program = [
+            {"to": {"travel": 9}, "steps": 1, **at_once},
+            {"heat": {"to": WARM, "minutes": 20}, "steps": steps},
+            {"hold": {"hours": 100}, "steps": 8},
+            {"heat": {"to": COLD, "minutes": 20}, "steps": 4},
+        ]
         found = analysis_of(files[material], program, **heat).run().steps
         return np.array([step.load_loss_percent for step in found[steps:]])
 
@@ -99,8 +106,10 @@ def test_a_section_that_grows_evenly_bears_no_stress(files, kind):
 
 def test_without_creep_heat_flows_as_before(files):
     """A preset in 2 s of the law that hardly creeps, and of the one that does not: same forces, temperatures, heat."""
-    program = [{"to": {"travel": 45.0}, "steps": 4, "seconds": 2.0},
-               {"to": {"force": 0.0}, "steps": 2, "seconds": 60.0}]  # fmt: skip
+    program = [
+        {"to": {"travel": 45.0}, "steps": 4, "seconds": 2.0},
+        {"to": {"force": 0.0}, "steps": 2, "seconds": 60.0},
+    ]
     heat = {"conductivity": 50.0, "convection": 200.0, "tips": 1.0}
     two = [analysis_of(files[name], program, heat=heat) for name in ("heats", "slow")]
     for one in two:
@@ -117,8 +126,11 @@ def test_without_creep_heat_flows_as_before(files):
 
 def test_it_goes_on_after_a_stop(files, resumed_after):
     """Stopped in the oven: clocks, surroundings and temperatures are where they were, to the bit."""
-    program = [{"to": {"travel": 40.0}, "steps": 3, "seconds": 2.0}, {"heat": {"to": WARM, "minutes": 1}, "steps": 4},
-               {"hold": {"minutes": 5, "keep": "force"}, "steps": 2}]  # fmt: skip
+    program = [
+        {"to": {"travel": 40.0}, "steps": 3, "seconds": 2.0},
+        {"heat": {"to": WARM, "minutes": 1}, "steps": 4},
+        {"hold": {"minutes": 5, "keep": "force"}, "steps": 2},
+    ]
     heat = {"conductivity": 50.0, "convection": 20.0, "tips": 1.0}
     case = check(SPRING | {"material": files["both"], "temperature": COLD, "heat": heat, "loading": program})
     whole = Analysis(case, MPI.COMM_SELF)
@@ -170,8 +182,11 @@ def test_another_target_leaves_the_surroundings_as_warm_as_they_are(files, resum
 
 def test_coiled_wire_is_as_warm_as_the_spring(files):
     """Coiling, relief and peening leave no heat behind, and the relief is that of the law without heating."""
-    past = {"made_by": "coiling", "relieved": {"temperature": 523.15, "minutes": 30},
-            "peening": {"depth": [0, 0.2, 0.6], "stress": [-200, -200, 0]}}  # fmt: skip
+    past = {
+        "made_by": "coiling",
+        "relieved": {"temperature": 523.15, "minutes": 30},
+        "peening": {"depth": [0, 0.2, 0.6], "stress": [-200, -200, 0]},
+    }
     spring = SPRING["spring"] | {"pitch": 20.0} | past
     mesh = {"elements_per_turn": 8, "section": {"radial": 6, "angular": 12}}
     loading = [{"to": {"travel": 1.0}, "steps": 1, "seconds": 1.0}]
@@ -188,7 +203,7 @@ def test_coiled_wire_is_as_warm_as_the_spring(files):
         ("heats", {"loading": [{"hold": {"hours": 1}}], "heat": OVEN}, "loading.0.hold: 'creeping' does not creep; to"),
         ("both", {"loading": [{"to": {"travel": 1}}], "heat": OVEN}, "loading.0 takes no time, but heat flows"),
     ],
-)  # fmt: skip
+)
 def test_what_goes_not_together(files, name, changes, message):
     with pytest.raises(InputError) as caught:
         analysis_of(files[name], **changes)

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.analysis import Analysis
 from coilset.model.case import read_case
 from coilset.model.material import library
 from coilset.model.rod import rod as rods
-from coilset.verification.cases.slender_rods import circles, elastica
+from coilset.model.run.analysis import Analysis
+from coilset.verification.cases.rods.slender_rods import circles, elastica
 
 LENGTH, WANTED = 80.0, 8
 
@@ -86,8 +86,11 @@ def test_a_rod_stands_where_its_last_step_ended_without_asking_the_material(make
 
 def test_a_long_rod_asks_the_law_instead(example, monkeypatch):
     """It keeps no tangents of its last equilibrium: another one for each start of a step, and the same forces."""
-    settings = ["ends=clamped", "mesh={elements_per_turn: 8, section: {rule: abramowitz9}}",
-                "loading=[{to: {travel: 12}, steps: 6}, {to: {force: 0}, steps: 3}]"]  # fmt: skip
+    settings = [
+        "ends=clamped",
+        "mesh={elements_per_turn: 8, section: {rule: abramowitz9}}",
+        "loading=[{to: {travel: 12}, steps: 6}, {to: {force: 0}, steps: 3}]",
+    ]
     runs = []
     for kept in (20, 19):
         monkeypatch.setattr(rods, "KEPT", kept)

@@ -29,9 +29,15 @@ def vector(angle, seed=0):
 def test_stumpff_functions_are_their_closed_forms():
     """Above 1 rad the closed forms lose few digits: rounding of terms up to α⁴/24, over α⁶."""
     α = np.linspace(1.0, 2.0 * np.pi, 50)
-    closed = [np.cos(α), np.sin(α) / α, (1.0 - np.cos(α)) / α**2, (α - np.sin(α)) / α**3,
-              (np.cos(α) - 1.0 + α**2 / 2.0) / α**4, (np.sin(α) - α + α**3 / 6.0) / α**5,
-              (1.0 - α**2 / 2.0 + α**4 / 24.0 - np.cos(α)) / α**6]  # fmt: skip
+    closed = [
+        np.cos(α),
+        np.sin(α) / α,
+        (1.0 - np.cos(α)) / α**2,
+        (α - np.sin(α)) / α**3,
+        (np.cos(α) - 1.0 + α**2 / 2.0) / α**4,
+        (np.sin(α) - α + α**3 / 6.0) / α**5,
+        (1.0 - α**2 / 2.0 + α**4 / 24.0 - np.cos(α)) / α**6,
+    ]
     for k, (ours, theirs) in enumerate(zip(stumpff(α**2), closed, strict=True)):
         np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-14 if k < 3 else 1e-15, err_msg=f"c{k}")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from coilset.meshes.placement import straight
+from coilset.meshes.springs.placement import straight
 from coilset.model.material import library
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import polar

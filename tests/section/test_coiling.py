@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from coilset.meshes.errors import SolveError
+from coilset.model.base.errors import SolveError
+from coilset.model.manufacture.coiling import _coiled, coil
 from coilset.model.material import library
-from coilset.model.material.creep_law import CreepLaw
+from coilset.model.material.creep.law import CreepLaw
 from coilset.model.material.points import initial_state
-from coilset.model.section.coiling import _coiled, coil
 from coilset.model.section.rules import polar
 from coilset.model.section.wire import Wire
 from coilset.verification.references.springback import Bar

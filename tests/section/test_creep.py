@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from scipy.special import hyp2f1
 
-from coilset.meshes.placement import straight
-from coilset.model.material.creep_law import CreepLaw
-from coilset.model.material.file import MaterialFile
-from coilset.model.material.law import Law
+from coilset.meshes.springs.placement import straight
+from coilset.model.material.creep.law import CreepLaw
+from coilset.model.material.law.file import MaterialFile
+from coilset.model.material.law.law import Law
 from coilset.model.section.kinds import KINDS, make_sections
 from coilset.model.section.rules import polar
 
@@ -18,12 +18,30 @@ R = 2.5
 def creeping(hardening="time", exponent=N, power=P, yielding=False):
     """A law with γ = A τ^N t^p in shear: c₀/σ₀^N = A/√3^(N+1)."""
     hard = {"k0_squared": 2 / 3 * 250.0**2, "a1": 1.0, "a2": 4000.0}
-    constants = {"temperature": 293.15, "elasticity": {"G": G, "nu": 0.3}, "isotropic": hard if yielding else "none",
-                 "kinematic": "none", "non_normality": "none"}  # fmt: skip
-    creep = {"form": "norton_bailey", "strain": A * 500.0**exponent / 3 ** (0.5 * (exponent + 1)), "stress": 500.0,
-             "exponent": exponent, "time_exponent": power, "hardening": hardening}  # fmt: skip
-    about = {"name": "synthetic", "description": "a law", "source": "none", "units": "N, mm, K", "creep": creep,
-             "validity": {"plastic_work": 100, "remark": "none"}, "temperatures": [constants]}  # fmt: skip
+    constants = {
+        "temperature": 293.15,
+        "elasticity": {"G": G, "nu": 0.3},
+        "isotropic": hard if yielding else "none",
+        "kinematic": "none",
+        "non_normality": "none",
+    }
+    creep = {
+        "form": "norton_bailey",
+        "strain": A * 500.0**exponent / 3 ** (0.5 * (exponent + 1)),
+        "stress": 500.0,
+        "exponent": exponent,
+        "time_exponent": power,
+        "hardening": hardening,
+    }
+    about = {
+        "name": "synthetic",
+        "description": "a law",
+        "source": "none",
+        "units": "N, mm, K",
+        "creep": creep,
+        "validity": {"plastic_work": 100, "remark": "none"},
+        "temperatures": [constants],
+    }
     return Law(MaterialFile.model_validate(about))
 
 
@@ -31,8 +49,14 @@ class Section:
     """One element of a rod under section strains and time."""
 
     def __init__(self, law, kind="plane", radial=12, angular=12, placement=None):
-        self.sections = make_sections(kind, law, law.parameters(), polar(radial, angular), np.array([R]),
-                                      straight(1) if placement is None else placement)  # fmt: skip
+        self.sections = make_sections(
+            kind,
+            law,
+            law.parameters(),
+            polar(radial, angular),
+            np.array([R]),
+            straight(1) if placement is None else placement,
+        )
         self.creep = CreepLaw(law.creep, law.parameters())
         self.state = self.sections.initial_state() | {
             "strain": np.zeros((1, 2, 6)),

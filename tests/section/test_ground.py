@@ -3,21 +3,26 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.spring import SpringSpec
-from coilset.model.analysis import Analysis
+from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.case.case import check
 from coilset.model.material import library
+from coilset.model.run.analysis import Analysis
 from coilset.model.section.ground import section_points
 from coilset.model.section.rules import polar, rim
 from coilset.model.section.segment import Segment
 from coilset.model.section.shape import curved_shape
-from coilset.verification.cases.ground_sections import CutCoil, slice_rate
+from coilset.verification.cases.sections.ground_sections import CutCoil, slice_rate
 from coilset.verification.slice.references import ring_sector
 
 UP = (0.0, 1.0)
 SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 5.5, "pitch": 12.0, "end_coils": "closed and ground"}
-CASE = {"spring": SPRING, "material": "ck15", "mesh": {"elements_per_turn": 12}, "ends": "seats",
-        "loading": [{"to": {"travel": 5.0}, "steps": 1}]}  # fmt: skip
+CASE = {
+    "spring": SPRING,
+    "material": "ck15",
+    "mesh": {"elements_per_turn": 12},
+    "ends": "seats",
+    "loading": [{"to": {"travel": 5.0}, "steps": 1}],
+}
 
 
 @pytest.mark.parametrize("level", [0.9, 0.3, 0.0, -0.5, -0.95])
@@ -32,8 +37,12 @@ def test_area_centroid_and_moments_are_those_of_a_segment(level):
         assert len(rule) == number
         y, z = rule.points.T
         found = np.pi * np.array([rule.weights.sum(), rule.weights @ z, rule.weights @ y**2, rule.weights @ z**2])
-        np.testing.assert_allclose(found, [area, first, across, over], rtol=1e-10 if number == 160 else 3e-2,
-                                   atol=0.0 if number == 160 else 6e-3)  # fmt: skip
+        np.testing.assert_allclose(
+            found,
+            [area, first, across, over],
+            rtol=1e-10 if number == 160 else 3e-2,
+            atol=0.0 if number == 160 else 6e-3,
+        )
         assert rule.weights @ y == pytest.approx(0.0, abs=1e-12)
 
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from coilset.model.manufacture.peening import Layer, peen, peening_warnings
 from coilset.model.material import library
 from coilset.model.material.points import initial_state
-from coilset.model.section.peening import Layer, peen, peening_warnings
 from coilset.model.section.rules import polar, rim
 
 RADIUS = 2.5

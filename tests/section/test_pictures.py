@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coilset.model.results.rings import ROUND, rings
+from coilset.model.figures.rings import ROUND, rings
 from coilset.model.section.rules import abramowitz9, polar
 
 

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
-from coilset.model.results.checkpoint import Checkpoint
-from coilset.model.results.summary import summarise
+from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 
 PROGRAM = "loading=[{to: {travel: 8}, steps: 3}, {to: {force: 0}, steps: 2}]"
 COARSE = ["mesh.elements_per_turn=8", "ends=clamped", PROGRAM]
@@ -31,8 +31,9 @@ def test_left_and_right_handed_coils_bear_the_same(example, kind):
 
 def test_kinds_differ_as_the_curvature_makes_them(example):
     """Of D/d = 8: residual shear inside is a third greater with the curvature than without, and warping changes 1 %."""
-    plane, curved, warping = (press(example, kind)[1]["residual_shear_inside_MPa"]
-                              for kind in ("plane", "curved", "warping"))  # fmt: skip
+    plane, curved, warping = (
+        press(example, kind)[1]["residual_shear_inside_MPa"] for kind in ("plane", "curved", "warping")
+    )
     assert 1.2 < curved / plane < 1.5
     assert warping == pytest.approx(curved, rel=0.02)
 

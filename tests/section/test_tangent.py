@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.placement import Placement, round_wire
+from coilset.meshes.springs.placement import Placement, round_wire
 from coilset.model.section.kinds import KINDS, make_sections
 from coilset.model.section.rules import polar
 from coilset.verification.springs.curved_rod import section_stiffness
@@ -14,8 +14,13 @@ PLASTIC = np.array([2e-3, 3e-4, -2e-4, 3e-3, -1.5e-3, 1e-3])  # surface strains 
 
 
 def straight():
-    return Placement(np.eye(6)[None, None].repeat(2, axis=1), np.ones((1, 2)), np.zeros((1, 2)), np.zeros((1, 2)),
-                     round_wire(np.zeros((1, 2))))  # fmt: skip
+    return Placement(
+        np.eye(6)[None, None].repeat(2, axis=1),
+        np.ones((1, 2)),
+        np.zeros((1, 2)),
+        np.zeros((1, 2)),
+        round_wire(np.zeros((1, 2))),
+    )
 
 
 def tilted():
@@ -130,8 +135,9 @@ def test_elastic_curved_section_is_winklers_ring(ck15):
     assert D[0, 0] == pytest.approx(ck15.E * c * ring, rel=1e-12)
     assert D[0, 5] == pytest.approx(-ck15.E * c * (c * ring - area), rel=1e-11)
     assert D[5, 5] == pytest.approx(ck15.E * c * c * (c * ring - area), rel=1e-11)
-    np.testing.assert_allclose(D, section_stiffness(RADIUS, np.array([CURVATURE]), ck15.E, ck15.G)[0], rtol=1e-11,
-                               atol=1e-6)  # fmt: skip
+    np.testing.assert_allclose(
+        D, section_stiffness(RADIUS, np.array([CURVATURE]), ck15.E, ck15.G)[0], rtol=1e-11, atol=1e-6
+    )
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.placement import straight
+from coilset.meshes.springs.placement import straight
 from coilset.model.material import library
 from coilset.model.section.condensation import TOLERANCE, strain_operator
 from coilset.model.section.kinds import make_sections

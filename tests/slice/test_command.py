@@ -7,15 +7,15 @@ import math
 import numpy as np
 import pytest
 
-from coilset.meshes.errors import InputError
 from coilset.meshes.section_shapes import Curve
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
-from coilset.model.results import summary as of_spring
+from coilset.model.results.records import summary as of_spring
+from coilset.model.run.analysis import Analysis
 from coilset.model.slice import output
 from coilset.model.slice.analysis import TOUCHING, SliceAnalysis
 from coilset.model.slice.summary import UNSEEN, summarise
-from coilset.scripts.slice import slice_case
+from coilset.scripts.commands.slice import slice_case
 
 SHORT = ["loading=[{to: {travel: 6}, steps: 3}, {to: {force: 0}, steps: 2}]", "ends=clamped"]
 
@@ -50,8 +50,12 @@ def test_an_interrupted_picture_leaves_all_numbers(example, tmp_path, monkeypatc
 
 
 def test_summary_has_the_entries_of_a_springs_run(example):
-    settings = ["loading=[{to: {travel: 1}, steps: 1}, {to: {force: 0}, steps: 1}]", "ends=clamped",
-                "mesh.elements_per_turn=8", "material=elastic"]  # fmt: skip
+    settings = [
+        "loading=[{to: {travel: 1}, steps: 1}, {to: {force: 0}, steps: 1}]",
+        "ends=clamped",
+        "mesh.elements_per_turn=8",
+        "material=elastic",
+    ]
     case = read_case(example, settings)
     spring, coil = Analysis(case), SliceAnalysis(case, across=3.0)
     spring.run()

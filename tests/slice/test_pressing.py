@@ -5,8 +5,8 @@ import itertools
 import numpy as np
 import pytest
 
-from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.section_shapes import Trapezoid
+from coilset.model.base.errors import InputError, SolveError
 from coilset.model.slice.contact import SelfContact
 from coilset.model.slice.problem import SliceProblem
 from coilset.model.slice.watch import Watch, equivalent
@@ -135,11 +135,13 @@ def test_surface_is_free_of_traction_and_keeps_the_yield_condition(make_slice):
     problem = SliceProblem(body)
     press(problem, 6.3, 12)
     stress = watch.section_stress()
-    traction = np.stack([
-        stress[:, 3] * normal[:, 0] + stress[:, 4] * normal[:, 1],
-        stress[:, 1] * normal[:, 0] + stress[:, 5] * normal[:, 1],
-        stress[:, 5] * normal[:, 0] + stress[:, 2] * normal[:, 1],
-    ])  # fmt: skip
+    traction = np.stack(
+        [
+            stress[:, 3] * normal[:, 0] + stress[:, 4] * normal[:, 1],
+            stress[:, 1] * normal[:, 0] + stress[:, 5] * normal[:, 1],
+            stress[:, 5] * normal[:, 0] + stress[:, 2] * normal[:, 1],
+        ]
+    )
     assert np.abs(traction).max() < 0.4
     active = watch.state[:, :6] - watch.state[:, 6:12]
     yield_stress = np.sqrt(1.5 * body.law.k_squared(watch.state[:, 12]))

@@ -13,8 +13,8 @@ from scipy.linalg import logm, polar
 from solid_calls import commit, internal_forces, tangent
 from solid_laws import Elastic, IdealPlastic
 
-from coilset.meshes.compat import interpolation_points
 from coilset.meshes.solid import SectionGrid, coil_section, straight_wire
+from coilset.model.base.compat import interpolation_points
 from coilset.model.solid.solid import Solid
 
 DOUBLE = np.array([1.0, 1, 1, 2, 2, 2])
@@ -103,9 +103,13 @@ def test_manufactured_solution_converges_at_the_elements_rate(cell):
     for n in (2, 4):
         solid = Solid(straight_wire(2.0, 1.5, n, MPI.COMM_SELF, SectionGrid(n, n // 2), cell), Elastic(1.0, 0.3))
         x = ufl.SpatialCoordinate(solid.wire.mesh)
-        exact = ufl.as_vector([
-            ufl.sin(x[0] + 0.5 * x[2]) * ufl.cos(x[1]), ufl.exp(0.5 * x[0]) * ufl.sin(x[2]), ufl.cos(x[0] - x[1] + x[2])
-        ])  # fmt: skip
+        exact = ufl.as_vector(
+            [
+                ufl.sin(x[0] + 0.5 * x[2]) * ufl.cos(x[1]),
+                ufl.exp(0.5 * x[0]) * ufl.sin(x[2]),
+                ufl.cos(x[0] - x[1] + x[2]),
+            ]
+        )
         λ = 0.6 / 0.4
         σ = 2 * ufl.sym(ufl.grad(exact)) + λ * ufl.div(exact) * ufl.Identity(3)
         v = ufl.TestFunction(solid.V)

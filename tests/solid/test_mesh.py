@@ -4,8 +4,8 @@ import ufl
 from dolfinx import fem
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
 from coilset.meshes.solid import Helix, SectionGrid, coil_section, straight_wire
+from coilset.model.base.errors import InputError
 from coilset.model.solid.configuration import Configuration
 
 
@@ -60,18 +60,21 @@ def test_moving_the_mesh_is_exact_for_rigid_motion():
     assert np.allclose(wire.mesh.geometry.x, nodes @ R.T + [1.0, 2.0, 3.0], atol=1e-12)
 
 
-@pytest.mark.parametrize(("call", "place"), [
-    (lambda: coil_section(5.0, 4.0, 12.0, 90.0, 4, MPI.COMM_WORLD), "mean_diameter"),
-    (lambda: coil_section(5.0, 40.0, 12.0, 0.0, 4, MPI.COMM_WORLD), "degrees"),
-    (lambda: coil_section(5.0, 40.0, 12.0, np.inf, 4, MPI.COMM_WORLD), "degrees"),
-    (lambda: coil_section(5.0, 40.0, np.nan, 90.0, 4, MPI.COMM_WORLD), "pitch"),
-    (lambda: straight_wire(-5.0, 40.0, 4, MPI.COMM_WORLD), "diameter"),
-    (lambda: straight_wire(5.0, 40.0, 0, MPI.COMM_WORLD), "layers"),
-    (lambda: straight_wire(5.0, 40.0, 4, MPI.COMM_WORLD, cell="wedge"), "cell"),
-    (lambda: SectionGrid(0, 1), "grid"),
-    (lambda: SectionGrid(2, 1, core_size=1.5), "grid.core_size"),
-    (lambda: SectionGrid(2, 1, grading=0.0), "grid.grading"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("call", "place"),
+    [
+        (lambda: coil_section(5.0, 4.0, 12.0, 90.0, 4, MPI.COMM_WORLD), "mean_diameter"),
+        (lambda: coil_section(5.0, 40.0, 12.0, 0.0, 4, MPI.COMM_WORLD), "degrees"),
+        (lambda: coil_section(5.0, 40.0, 12.0, np.inf, 4, MPI.COMM_WORLD), "degrees"),
+        (lambda: coil_section(5.0, 40.0, np.nan, 90.0, 4, MPI.COMM_WORLD), "pitch"),
+        (lambda: straight_wire(-5.0, 40.0, 4, MPI.COMM_WORLD), "diameter"),
+        (lambda: straight_wire(5.0, 40.0, 0, MPI.COMM_WORLD), "layers"),
+        (lambda: straight_wire(5.0, 40.0, 4, MPI.COMM_WORLD, cell="wedge"), "cell"),
+        (lambda: SectionGrid(0, 1), "grid"),
+        (lambda: SectionGrid(2, 1, core_size=1.5), "grid.core_size"),
+        (lambda: SectionGrid(2, 1, grading=0.0), "grid.grading"),
+    ],
+)
 def test_impossible_meshes_are_refused(call, place):
     with pytest.raises(InputError, match=place):
         call()

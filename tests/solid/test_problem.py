@@ -6,9 +6,9 @@ from mpi4py import MPI
 from solid_laws import Elastic, IdealPlastic
 
 from coilset.meshes import solid
-from coilset.meshes.compat import to_ranks
-from coilset.meshes.errors import InputError, SolveError
 from coilset.meshes.solid import SectionGrid, coil_section, straight_wire
+from coilset.model.base.compat import to_ranks
+from coilset.model.base.errors import InputError, SolveError
 from coilset.model.equilibrium import methods
 from coilset.model.equilibrium.settings import StepControl
 from coilset.model.material import library

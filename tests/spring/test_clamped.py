@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.spring import SpringSpec
-from coilset.model.analysis import Analysis
+from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.case import Case
-from coilset.model.results.summary import summarise
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 from coilset.verification.springs.curved_rod import clamped_rate
 from coilset.verification.springs.torsion import CoilByCoil
 

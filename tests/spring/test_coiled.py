@@ -4,20 +4,22 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError
 from coilset.model.case.case import check
-from coilset.model.results.summary import summarise
-from coilset.model.results.warnings import run_warnings
+from coilset.model.results.records.summary import summarise
+from coilset.model.results.records.warnings import run_warnings
+from coilset.model.run.analysis import Analysis
 from coilset.model.slice.analysis import SliceAnalysis
 from coilset.verification.references.springback import Bar
 
 SPRING = {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 1.0, "pitch": 20.0, "made_by": "coiling"}
 CASE = {
-    "spring": SPRING, "material": "ck15", "ends": "clamped",
+    "spring": SPRING,
+    "material": "ck15",
+    "ends": "clamped",
     "mesh": {"elements_per_turn": 8, "section": {"radial": 4, "angular": 12}},
     "loading": [{"to": {"travel": 6}, "steps": 3}, {"to": {"force": 0}, "steps": 2}],
-}  # fmt: skip
+}
 RELIEF = {"temperature": 523.15, "minutes": 30.0}
 
 
@@ -84,10 +86,12 @@ def test_the_inside_of_a_left_handed_coil_of_plane_sections_is_found():
         ({"spring": peened([0, 1], [-1, 0], strain=[0.1, 0])}, "spring.peening: give exactly one of strain or stress"),
         ({"spring": {**SPRING, "relieved": RELIEF}}, "spring.relieved: 'ck15' does not creep"),
         ({"spring": {**SPRING, "made_by": None, "relieved": RELIEF}}, "there is no stress to relieve"),
-        ({"spring": {**SPRING, "relieved": {"temperature": 900.0, "minutes": 30.0}}, "material": "creeping"},
-         "spring.relieved.temperature: 900 K is outside the table"),
+        (
+            {"spring": {**SPRING, "relieved": {"temperature": 900.0, "minutes": 30.0}}, "material": "creeping"},
+            "spring.relieved.temperature: 900 K is outside the table",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_cannot_be_coiled(changes, message):
     with pytest.raises(InputError) as caught:
         analysis_of(**changes)
@@ -107,8 +111,15 @@ def test_a_peened_spring_stands_as_drawn(kind):
     spring = analysis_of(spring=PEENED, mesh=mesh)
     scale = np.array([1.0, 1.0, 1.0, 2.5, 2.5, 2.5])
     assert np.abs(spring.rod.coefficients.s / scale).max() < 1e-3 * np.pi * 2.5**2
-    layer = 2.0 / 2.5**2 * 200.0 * sum(np.trapezoid(f * r, r) for r, f in (
-        (np.linspace(2.3, 2.5, 100), 1.0), (np.linspace(1.9, 2.3, 100), np.linspace(0.0, 1.0, 100))))  # fmt: skip
+    layer = (
+        2.0
+        / 2.5**2
+        * 200.0
+        * sum(
+            np.trapezoid(f * r, r)
+            for r, f in ((np.linspace(2.3, 2.5, 100), 1.0), (np.linspace(1.9, 2.3, 100), np.linspace(0.0, 1.0, 100)))
+        )
+    )
     assert spring.rod.surface_state[..., 0].mean() == pytest.approx(layer - 200.0, abs=3.0)
 
 
@@ -132,9 +143,11 @@ def test_relief_in_the_past_is_relief_in_the_load_program():
     relieved is judged by `tests/section/test_coiling.py`.
     """
     relieved = analysis_of(spring={**SPRING, "relieved": RELIEF}, material="creeping")
-    program = [{"heat": {"to": 523.15, "minutes": 0.001, "keep": "force"}, "steps": 1},
-               {"hold": {"minutes": 30, "keep": "force"}, "steps": 12},
-               {"heat": {"to": 293.15, "minutes": 0.001, "keep": "force"}, "steps": 1}]  # fmt: skip
+    program = [
+        {"heat": {"to": 523.15, "minutes": 0.001, "keep": "force"}, "steps": 1},
+        {"hold": {"minutes": 30, "keep": "force"}, "steps": 12},
+        {"heat": {"to": 293.15, "minutes": 0.001, "keep": "force"}, "steps": 1},
+    ]
     coiled = analysis_of(material="creeping", loading=program)
     before = coiled.rod.surface_state[4, 0, 0, 0].copy()
     coiled.run()

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.analysis import Analysis
 from coilset.model.case.case import check
-from coilset.verification.cases.heat_along_wire import material
+from coilset.model.run.analysis import Analysis
+from coilset.verification.cases.time.heat_along_wire import material
 from coilset.verification.study import Study
 
 pytestmark = pytest.mark.mpi
@@ -31,12 +31,20 @@ def close(results):
 def test_heat(tmp_path):
     """Also what was generated and given off."""
     file = COMM.bcast(material(Study(tmp_path), True) if COMM.rank == 0 else None)
-    runs, results = both({
-        "spring": SPRING | {"pitch": 40.0}, "material": file, "temperature": 293.15, "ends": "clamped", "mesh": MESH,
-        "heat": {"conductivity": 50.0, "convection": 200.0, "tips": 1.0},
-        "loading": [{"to": {"travel": 40.0}, "steps": 3, "seconds": 2.0},
-                    {"to": {"force": 0.0}, "steps": 1, "seconds": 60.0}],
-    })  # fmt: skip
+    runs, results = both(
+        {
+            "spring": SPRING | {"pitch": 40.0},
+            "material": file,
+            "temperature": 293.15,
+            "ends": "clamped",
+            "mesh": MESH,
+            "heat": {"conductivity": 50.0, "convection": 200.0, "tips": 1.0},
+            "loading": [
+                {"to": {"travel": 40.0}, "steps": 3, "seconds": 2.0},
+                {"to": {"force": 0.0}, "steps": 1, "seconds": 60.0},
+            ],
+        }
+    )
     close(results)
     assert results[0].steps[2].temperature_K > 293.5
     for name in ("generated", "given_off"):
@@ -45,12 +53,21 @@ def test_heat(tmp_path):
 
 def test_a_wire_with_a_past():
     """Coiled, relieved, peened, then pressed and held warm; also the diameter to which it was coiled."""
-    past = {"made_by": "coiling", "relieved": {"temperature": 523.15, "minutes": 30.0},
-            "peening": {"depth": [0.0, 0.3, 0.8], "stress": [-300.0, -300.0, 0.0]}}  # fmt: skip
-    runs, results = both({
-        "spring": SPRING | past, "material": "creeping", "temperature": 373.15, "ends": "clamped", "mesh": MESH,
-        "loading": [{"to": {"travel": 15.0}, "steps": 2}, {"hold": {"hours": 100.0}, "steps": 2}],
-    })  # fmt: skip
+    past = {
+        "made_by": "coiling",
+        "relieved": {"temperature": 523.15, "minutes": 30.0},
+        "peening": {"depth": [0.0, 0.3, 0.8], "stress": [-300.0, -300.0, 0.0]},
+    }
+    runs, results = both(
+        {
+            "spring": SPRING | past,
+            "material": "creeping",
+            "temperature": 373.15,
+            "ends": "clamped",
+            "mesh": MESH,
+            "loading": [{"to": {"travel": 15.0}, "steps": 2}, {"hold": {"hours": 100.0}, "steps": 2}],
+        }
+    )
     close(results)
     assert results[0].steps[-1].force_N < results[0].steps[1].force_N
     diameters = [run.setup.coiling_diameter for run in runs]

@@ -5,9 +5,9 @@ import pytest
 import yaml
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
+from coilset.model.run.analysis import Analysis
 
 COLD = {"elasticity": {"G": 80000.0, "nu": 0.3}, "isotropic": {"k0_squared": 1.2e5, "a1": 0.0, "a2": 0.0, "a3": 1.0}}
 HOT = {"elasticity": {"G": 70000.0, "nu": 0.3}, "isotropic": {"k0_squared": 0.5e5, "a1": 0.0, "a2": 0.0, "a3": 1.0}}
@@ -22,10 +22,13 @@ def make(example, tmp_path):
     def make(table, *settings):
         rest = {"kinematic": "none", "non_normality": "none"}
         data = {
-            "name": "synthetic", "description": "ideal plastic", "source": "made for this test", "units": "N, mm, K",
+            "name": "synthetic",
+            "description": "ideal plastic",
+            "source": "made for this test",
+            "units": "N, mm, K",
             "validity": {"plastic_work": 100, "remark": "none"},
             "temperatures": [{"temperature": t} | constants | rest for t, constants in table],
-        }  # fmt: skip
+        }
         file = tmp_path / f"material{len(table)}.yaml"
         file.write_text(yaml.safe_dump(data))
         return Analysis(read_case(example, [*COARSE, f"material={file}", *settings]), MPI.COMM_SELF)

@@ -7,19 +7,21 @@ import pytest
 import yaml
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
 from coilset.model.case.case import check
 from coilset.model.material import library
-from coilset.model.results.summary import summarise
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 
 HOLD = [{"to": {"travel": 10}, "steps": 1}, {"hold": {"hours": 1000}, "steps": 8}]
 SPRING = {
     "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 1.0, "pitch": 25.0},
-    "material": "creeping", "temperature": 373.15, "ends": "clamped",
+    "material": "creeping",
+    "temperature": 373.15,
+    "ends": "clamped",
     "mesh": {"elements_per_turn": 8, "section": {"kind": "plane", "radial": 3, "angular": 8}},
-}  # fmt: skip
+}
 
 
 def analysis_of(loading, **changes):
@@ -140,19 +142,28 @@ def test_a_fast_press_bears_more_and_then_relaxes(viscous):
 @pytest.mark.parametrize(
     ("loading", "changes", "message"),
     [
-        ([{"hold": {"hours": 1}}], {"material": "ck15", "temperature": 293.15},
-         "loading.0.hold: 'ck15' does not creep, so that time changes nothing; give a material with creep"),
-        ([{"heat": {"to": 700, "hours": 1}}], {},
-         "loading.0.heat.to: 700 K is outside the table of 'creeping', known for 293.15 to 573.15 K"),
+        (
+            [{"hold": {"hours": 1}}],
+            {"material": "ck15", "temperature": 293.15},
+            "loading.0.hold: 'ck15' does not creep, so that time changes nothing; give a material with creep",
+        ),
+        (
+            [{"heat": {"to": 700, "hours": 1}}],
+            {},
+            "loading.0.heat.to: 700 K is outside the table of 'creeping', known for 293.15 to 573.15 K",
+        ),
         ([{"heat": {"to": 100, "hours": 1}}], {}, "known for 293.15 to 573.15 K; 100 °C is 373.15 K"),
         (HOLD, {"temperature": 20.0}, "temperature: 20 K is outside the table of 'creeping', known for"),
         ([{"hold": {"hours": 1, "minutes": 2}}], {}, "give exactly one of hours or minutes, as in {hours: 48}"),
         ([{"hold": {"hours": 1}, "heat": {"to": 300, "hours": 1}}], {}, "give exactly one of hold or heat"),
         ([{"hold": {"hours": -1}}], {}, "loading.0.hold.hours: -1: must be greater than 0"),
-        ([{"to": {"travel": 1}, "seconds": 2}], {},
-         "loading.0.seconds: no heat flows, and 'creeping' does not depend on the rate"),
+        (
+            [{"to": {"travel": 1}, "seconds": 2}],
+            {},
+            "loading.0.seconds: no heat flows, and 'creeping' does not depend on the rate",
+        ),
     ],
-)  # fmt: skip
+)
 def test_what_time_cannot_be(loading, changes, message):
     with pytest.raises(InputError) as caught:
         analysis_of(loading, **changes)
@@ -195,8 +206,10 @@ def test_the_error_of_steps_without_time_is_known_after_a_heating():
     """No time passes in them, half way neither: it is that of a spring that was warm before, but for its expansion."""
     press = {"to": {"travel": 14}, "steps": 8}
     heat = {"heat": {"to": 423.15, "minutes": 20, "keep": "force"}, "steps": 2}
-    heated, warm = (analysis_of(loading, temperature=start).run().steps[-8:]
-                    for loading, start in (([heat, press], 373.15), ([press], 423.15)))  # fmt: skip
+    heated, warm = (
+        analysis_of(loading, temperature=start).run().steps[-8:]
+        for loading, start in (([heat, press], 373.15), ([press], 423.15))
+    )
     errors = [[step.estimated_force_error_N for step in steps] for steps in (heated, warm)]
     assert None not in errors[0]
     assert errors[0] == pytest.approx(errors[1], abs=0.02 * errors[1][-1])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.spring import SpringSpec
+from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.data import spring_data
 from coilset.model.standards.rate import torsion_rate

@@ -10,7 +10,7 @@ import pytest
 from catalogue import CATALOGUE, G
 from derivations import E, closed_helix, half_wave, haringx, helix_compliance, polygon_length, torus_volume
 
-from coilset.meshes.spring import SpringSpec
+from coilset.meshes.springs.spring import SpringSpec
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.rows import DERIVED, GIVEN, ONE, TWO, sections
 from coilset.model.standards.sheet import Sheet
@@ -20,8 +20,13 @@ from coilset.verification.slice.references import ring_sector
 PRINTED = next(one for one in CATALOGUE if one.name == "D-313J-02")
 d, D, n, TURNS, L0, LN = 3.6, 28.0, 5.5, 7.5, 53.9, 30.78
 LONG = 45.0  # the other working length, mm
-SPEC = {"wire_diameter": d, "mean_diameter": D, "turns": TURNS, "free_length": L0,
-        "end_coils": {"form": "closed and ground", "tip": 0.5}}  # fmt: skip
+SPEC = {
+    "wire_diameter": d,
+    "mean_diameter": D,
+    "turns": TURNS,
+    "free_length": L0,
+    "end_coils": {"form": "closed and ground", "tip": 0.5},
+}
 DENSITY = 7.85e-6
 POLAR = 2 * np.pi * np.trapezoid(np.linspace(0, d / 2, 4001) ** 3, np.linspace(0, d / 2, 4001))  # ∫ r² dA, mm⁴
 SPRING = Cylinder.of(SpringSpec.model_validate(SPEC).build())

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from coilset.meshes.errors import InputError
-from coilset.meshes.spring import SpringSpec
+from coilset.meshes.springs.spring import SpringSpec
+from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
 from coilset.model.standards import found, goodman
 from coilset.model.standards.case_sheet import case_sheet
@@ -17,7 +17,7 @@ from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.rows import sections
 from coilset.model.standards.sheet import Sheet
 from coilset.model.standards.wires import names, wire
-from coilset.scripts.sheet import list_wires, sheet
+from coilset.scripts.commands.sheet import list_wires, sheet
 
 # HeliSpring, spring S.198: wire DM of 5 mm, De 39.6, n 9.5, n_t 11.5, L0 105.8, 280 N at 88.5 mm, 620 N at 67.5 mm
 PRINTED = Cylinder(5.0, 34.6, 11.5, 9.5, 105.8, 9.547, "closed and ground", 57.5)
@@ -52,8 +52,16 @@ WARPING = ("s11", "s22", "s33", "t12", "t13", "t23", "B11", "B22", "B33", "B12",
 def run_folder(folder, residual=-60.0, components=FIBRES):
     """A results folder with a spring that was pressed to 60 mm and released to 100 mm, as `coilset solve` writes it."""
     folder.mkdir()
-    summary = {"free_length_before_mm": 105.8, "free_length_after_mm": 100.0, "set_mm": 5.8, "rate_N_per_mm": 16.0,
-               "force_max_N": 700.0, "shear_max_MPa": 500.0, "block_height_mm": 57.5, "material": "steel"}  # fmt: skip
+    summary = {
+        "free_length_before_mm": 105.8,
+        "free_length_after_mm": 100.0,
+        "set_mm": 5.8,
+        "rate_N_per_mm": 16.0,
+        "force_max_N": 700.0,
+        "shear_max_MPa": 500.0,
+        "block_height_mm": 57.5,
+        "material": "steel",
+    }
     (folder / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     history = "seat_height_mm,force_N\n80,400\n60,700\n80,350\n100,0\n"
     (folder / "history.csv").write_text(history, encoding="utf-8")
@@ -70,12 +78,17 @@ def run_folder(folder, residual=-60.0, components=FIBRES):
     moved = np.array([0.0, 2.0])[:, None]  # sideways, as a whole
     position = np.stack([moved + radius * np.cos(2 * np.pi * turn), radius * np.sin(2 * np.pi * turn), 0 * radius], -1)
     xr.Dataset(
-        {"history": (("snapshot", "element", "gauss", "point", "component"), state),
-         "y": (of_points, y), "z": (of_points, z), "force": ("snapshot", [700.0, 0.0]),
-         "height": ("snapshot", [105.8, 60.0]), "position": (("snapshot", "station", "axis"), position),
-         "weight": (of_points, np.full((46, 1, 4), 0.25 * 0.5 / 0.9**2))},
+        {
+            "history": (("snapshot", "element", "gauss", "point", "component"), state),
+            "y": (of_points, y),
+            "z": (of_points, z),
+            "force": ("snapshot", [700.0, 0.0]),
+            "height": ("snapshot", [105.8, 60.0]),
+            "position": (("snapshot", "station", "axis"), position),
+            "weight": (of_points, np.full((46, 1, 4), 0.25 * 0.5 / 0.9**2)),
+        },
         coords={"turn": ("station", turn), "component": list(components)},
-    ).to_netcdf(folder / "points.nc", engine="h5netcdf")  # fmt: skip
+    ).to_netcdf(folder / "points.nc", engine="h5netcdf")
     return folder
 
 
@@ -118,8 +131,12 @@ def test_values_that_were_found_stand_beside_the_formulas(tmp_path):
 
 def test_what_a_run_found_at_block_and_when_it_buckled(tmp_path):
     run = found.read(run_folder(tmp_path / "run"))
-    run = replace(run, heights=np.append(run.heights, 57.5), forces=np.append(run.forces, 800.0),
-                  summary=run.summary | {"buckling_travel_mm": 41.0})  # fmt: skip
+    run = replace(
+        run,
+        heights=np.append(run.heights, 57.5),
+        forces=np.append(run.forces, 800.0),
+        summary=run.summary | {"buckling_travel_mm": 41.0},
+    )
     shown = rows(Sheet(PRINTED, DM.elastic(5.0), 1260.0, found=run))
     assert shown["force at block Fc"].found == 700.0  # of the summary
     assert shown["growth of D to block"].found == pytest.approx(0.2)
@@ -177,11 +194,14 @@ def test_a_set_is_held_against_presetting_where_the_run_was_at_block(case, tmp_p
     assert ("presetting takes 1 mm" in " ".join(printed.split())) == said
 
 
-@pytest.mark.parametrize(("changes", "said"), [
-    ({}, None),
-    ({"turns": 9.0}, "spring.turns"),
-    ({"turns": 9.0, "hand": "left"}, "spring.turns, spring.hand"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({}, None),
+        ({"turns": 9.0}, "spring.turns"),
+        ({"turns": 9.0, "hand": "left"}, "spring.turns, spring.hand"),
+    ],
+)
 def test_results_of_another_spring_are_told(case, tmp_path, capsys, changes, said):
     folder = run_folder(tmp_path / "run")
     entries = read_case(case).spring.model_dump(mode="json")
@@ -230,9 +250,13 @@ def test_a_warm_spring_has_the_moduli_and_the_yield_stress_of_its_temperature(ex
 
 @pytest.mark.parametrize(
     ("settings", "held"),
-    [([], True), (["ends=clamped"], True), (["seats={hold: groove}"], True),
-     (["seats={hold: groove, top: {turn: free}}"], False)],
-)  # fmt: skip
+    [
+        ([], True),
+        (["ends=clamped"], True),
+        (["seats={hold: groove}"], True),
+        (["seats={hold: groove, top: {turn: free}}"], False),
+    ],
+)
 def test_only_ends_that_are_free_to_turn_are_those_of_the_formula(example, settings, held):
     """Tips in pockets cannot turn: tan²α weighs ½ − ν in place of (1 − ν)/(2 (1 + ν))."""
     made = case_sheet(read_case(example, settings), SPRING, None)

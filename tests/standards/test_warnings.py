@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.spring import MeasuredSpec, SpringSpec
+from coilset.meshes.springs.spring import MeasuredSpec, SpringSpec
 from coilset.model.case import read_case
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.case_warnings import case_warnings
@@ -66,7 +66,7 @@ WARNED = [
     ),
     (
         {"pitch": table([0, 2, 3, 6], [5.0, 5.0, 12.0, 12.0])},
-        "coils of the body touch before any load, between turns 0 and 2; their pitch is 5 mm",
+        "coils of the body touch before any load, between turns 0 and 2.11; their pitch is 5 mm",
     ),
 ]
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.case import check
 from coilset.model.material.points import initial_state, update
 from coilset.model.standards.wires import wire

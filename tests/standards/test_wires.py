@@ -4,25 +4,75 @@ from itertools import pairwise
 
 import pytest
 
-from coilset.meshes.errors import InputError
-from coilset.model.entries.yaml import read_data
+from coilset.model.base.errors import InputError
+from coilset.model.base.yaml import read_data
 from coilset.model.standards.wires import names, wire
 from coilset.model.standards.wires.file import WireFile, with_common
 from coilset.model.standards.wires.library import FOLDER
 
 # Least strengths of EN 10270-1, N/mm², some rows of the tables of springcalc 0.1.24, which are rounded to 10
 TABLES = {
-    "SL": {1.0: 1720, 1.25: 1660, 1.6: 1590, 2.1: 1510, 2.8: 1420,
-           3.4: 1370, 4.5: 1290, 6.0: 1210, 8.0: 1120, 10.0: 1060},
-    "SM": {0.3: 2370, 0.4: 2270, 0.6: 2140, 1.0: 1980, 1.6: 1830,
-           2.5: 1690, 4.0: 1530, 6.3: 1390, 10.0: 1240, 20.0: 1020},
-    "DM": {0.34: 2330, 0.5: 2200, 0.75: 2070, 1.2: 1920, 1.9: 1770,
-           3.0: 1630, 5.0: 1460, 8.0: 1310, 13.0: 1160, 17.0: 1070},
-    "SH": {0.3: 2660, 0.4: 2560, 0.6: 2410, 1.0: 2230, 1.6: 2060,
-           2.5: 1900, 4.0: 1740, 6.3: 1570, 10.0: 1410, 20.0: 1160},
-    "DH": {0.1: 2800, 0.2: 2800, 0.25: 2720, 0.28: 2680, 0.5: 2480,
-           1.2: 2170, 3.0: 1840, 5.0: 1660, 9.0: 1450, 16.0: 1240},
-}  # fmt: skip
+    "SL": {
+        1.0: 1720,
+        1.25: 1660,
+        1.6: 1590,
+        2.1: 1510,
+        2.8: 1420,
+        3.4: 1370,
+        4.5: 1290,
+        6.0: 1210,
+        8.0: 1120,
+        10.0: 1060,
+    },
+    "SM": {
+        0.3: 2370,
+        0.4: 2270,
+        0.6: 2140,
+        1.0: 1980,
+        1.6: 1830,
+        2.5: 1690,
+        4.0: 1530,
+        6.3: 1390,
+        10.0: 1240,
+        20.0: 1020,
+    },
+    "DM": {
+        0.34: 2330,
+        0.5: 2200,
+        0.75: 2070,
+        1.2: 1920,
+        1.9: 1770,
+        3.0: 1630,
+        5.0: 1460,
+        8.0: 1310,
+        13.0: 1160,
+        17.0: 1070,
+    },
+    "SH": {
+        0.3: 2660,
+        0.4: 2560,
+        0.6: 2410,
+        1.0: 2230,
+        1.6: 2060,
+        2.5: 1900,
+        4.0: 1740,
+        6.3: 1570,
+        10.0: 1410,
+        20.0: 1160,
+    },
+    "DH": {
+        0.1: 2800,
+        0.2: 2800,
+        0.25: 2720,
+        0.28: 2680,
+        0.5: 2480,
+        1.2: 2170,
+        3.0: 1840,
+        5.0: 1660,
+        9.0: 1450,
+        16.0: 1240,
+    },
+}
 
 
 @pytest.mark.parametrize("grade", TABLES)
@@ -45,9 +95,11 @@ def test_other_printed_values():
 
 # Shigley's A and m of Rm = A/d^m, the range of diameters, and how far the files' tables may be from it (their remarks)
 SHIGLEY = {
-    "A228": (2211, 0.145, (0.1016, 6.35), (0.93, 0.995)), "A227": (1783, 0.190, (0.7, 12.7), (0.97, 1.015)),
-    "A231": (2005, 0.168, (0.8, 11.1), (0.96, 1.01)), "A313 302": (1867, 0.146, (0.3, 2.03), (0.97, 1.03)),
-}  # fmt: skip
+    "A228": (2211, 0.145, (0.1016, 6.35), (0.93, 0.995)),
+    "A227": (1783, 0.190, (0.7, 12.7), (0.97, 1.015)),
+    "A231": (2005, 0.168, (0.8, 11.1), (0.96, 1.01)),
+    "A313 302": (1867, 0.146, (0.3, 2.03), (0.97, 1.03)),
+}
 
 
 @pytest.mark.parametrize("grade", SHIGLEY)
@@ -112,11 +164,16 @@ WRONG = [
     (lambda: wire("sh"), "material.wire: 'sh' is not a known wire; is EN 10270-1 SH meant?"),
     (lambda: wire(""), "material.wire: '' is not a known wire; `coilset sheet --wires` lists them"),
     (lambda: wire("copper"), "material.wire: 'copper' is not a known wire; `coilset sheet --wires` lists them"),
-    (lambda: wire("EN 10270-1 SL").strength(0.5),
-     "material.wire: the strength of 'EN 10270-1 SL' is not known at 0.5 mm; known for 1 to 10 mm"),
-    (lambda: wire("EN 10270-3 1.4401").strength(1.2),
-     "material.wire: the strength of 'EN 10270-3 1.4401' is not known at 1.2 mm; known for 0.05 to 1 and 1.5 to 6 mm"),
-]  # fmt: skip
+    (
+        lambda: wire("EN 10270-1 SL").strength(0.5),
+        "material.wire: the strength of 'EN 10270-1 SL' is not known at 0.5 mm; known for 1 to 10 mm",
+    ),
+    (
+        lambda: wire("EN 10270-3 1.4401").strength(1.2),
+        "material.wire: the strength of 'EN 10270-3 1.4401' is not known at 1.2 mm; "
+        "known for 0.05 to 1 and 1.5 to 6 mm",
+    ),
+]
 
 
 @pytest.mark.parametrize(("ask", "message"), WRONG)
@@ -142,8 +199,13 @@ def test_numbers_without_their_sources_are_refused():
     strength.pop("value")
     common = {name: number for name in ("young_modulus", "shear_modulus", "density", "elastic_limit", "proof_stress")}
     common["block_stress"] = number | {"of": "uncorrected stress"}
-    file = {"standard": "S", "title": "T", "sources": {"a": "A"}, "common": common,
-            "wires": [{"grade": "G", "strength": strength}]}  # fmt: skip
+    file = {
+        "standard": "S",
+        "title": "T",
+        "sources": {"a": "A"},
+        "common": common,
+        "wires": [{"grade": "G", "strength": strength}],
+    }
     assert WireFile.model_validate(with_common(file)).wires[0].strength.at(2.0) == 0.5
     with pytest.raises(ValueError, match="the source 'b' is not among"):
         WireFile.model_validate(with_common(file | {"common": common | {"density": number | {"sources": ["b"]}}}))

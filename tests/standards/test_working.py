@@ -2,12 +2,12 @@
 
 import pytest
 
-from coilset.meshes.errors import InputError
-from coilset.meshes.spring import SpringSpec
+from coilset.meshes.springs.spring import SpringSpec
+from coilset.model.base.errors import InputError
+from coilset.model.base.warning import Warning
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.wires import wire
 from coilset.model.standards.working import gap_warnings, presetting_warning, stress_warnings
-from coilset.model.warning import Warning
 
 SPEC = {
     "wire_diameter": 4.0,

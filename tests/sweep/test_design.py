@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.case import check
 from coilset.model.sweep.design import rows, unit_cube
 from coilset.model.sweep.sensitivity import rank_correlation, sobol_indices

@@ -4,23 +4,30 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from coilset.model.results.units import unit_of
+from coilset.model.results.records.units import unit_of
 from coilset.model.sweep import findings
 from coilset.model.sweep.dataset import quantity
 
 
 def cases(values):
     columns = {"set_mm": ("set", values), "height": ("height", range(len(values)))}
-    return xr.Dataset({name: ("case", np.array(column, dtype=float), {"long_name": words, "units": "mm"})
-                       for name, (words, column) in columns.items()})  # fmt: skip
+    return xr.Dataset(
+        {
+            name: ("case", np.array(column, dtype=float), {"long_name": words, "units": "mm"})
+            for name, (words, column) in columns.items()
+        }
+    )
 
 
-@pytest.mark.parametrize(("values", "said"), [
-    ([3.0, 2.0, 2.0, -1.0], "The set runs from −1 to 3 mm, and falls with the height"),
-    ([0.0, 2.0, np.nan, 4.5], "The set runs from 0 to 4.5 mm, and grows with the height"),
-    ([0.0, 2.0, 1.0], "The set runs from 0 to 2 mm"),
-    ([2.0, 2.0, 2.0], "The set runs from 2 to 2 mm"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("values", "said"),
+    [
+        ([3.0, 2.0, 2.0, -1.0], "The set runs from −1 to 3 mm, and falls with the height"),
+        ([0.0, 2.0, np.nan, 4.5], "The set runs from 0 to 4.5 mm, and grows with the height"),
+        ([0.0, 2.0, 1.0], "The set runs from 0 to 2 mm"),
+        ([2.0, 2.0, 2.0], "The set runs from 2 to 2 mm"),
+    ],
+)
 def test_a_trend_is_claimed_only_where_each_step_has_it(values, said):
     assert findings.trend(cases(values), "set_mm", "height", [np.array(values)]) == said
 

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.sweep.journal import Journal, read_records, whole_length
 
 

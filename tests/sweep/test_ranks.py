@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
+from coilset.model.run.analysis import Analysis
 from coilset.model.sweep.evaluate import evaluate
 from coilset.model.sweep.journal import Journal, read_records
 from coilset.model.sweep.mpi_pool import mpi_pool
@@ -27,8 +27,10 @@ def relative(found, expected):
 
 def apart(found, expected):
     """Maximum difference between two springs by quantity, each over its own largest magnitude; complete on rank 0."""
-    differences = {name: relative(*([getattr(step, name) for step in result.steps] for result in (found, expected)))
-                   for name in ("seat_height_mm", "force_N")}  # fmt: skip
+    differences = {
+        name: relative(*([getattr(step, name) for step in result.steps] for result in (found, expected)))
+        for name in ("seat_height_mm", "force_N")
+    }
     for shot, other in zip(found.snapshots, expected.snapshots, strict=True):
         if shot.name != "start":
             stresses, forces = slice(0, 6), slice(0, 3)

@@ -17,11 +17,11 @@ import pytest
 import xarray as xr
 from mpi4py import MPI
 
-from coilset.meshes.errors import InputError
-from coilset.model.analysis import Analysis
+from coilset.model.base.errors import InputError
 from coilset.model.case import check
 from coilset.model.material.library import FOLDER
-from coilset.model.results.summary import summarise
+from coilset.model.results.records.summary import summarise
+from coilset.model.run.analysis import Analysis
 from coilset.model.sweep import dataset, pools
 from coilset.model.sweep.evaluate import evaluate
 from coilset.model.sweep.figures import draw
@@ -30,7 +30,7 @@ from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.pools import Workers
 from coilset.model.sweep.run import finished, missing, run
 from coilset.model.sweep.spec import RESPONSES
-from coilset.scripts.log import only_run
+from coilset.scripts.terminal.log import only_run
 
 THREE = """
     vary:
@@ -215,8 +215,12 @@ def test_figures_of_each_kind_and_one_without_a_response(write_sweep, tmp_path):
     assert numbers == set(RESPONSES)  # what `figures.of` may name is known before any case runs
     files, problems = draw(tmp_path, plan, data.drop_vars("seconds"))
     assert [name.split("_")[1] for name in files] == [
-        "lines.png", "map.png", "characteristics.png", "scatter.png", "sensitivity.png",
-    ]  # fmt: skip
+        "lines.png",
+        "map.png",
+        "characteristics.png",
+        "scatter.png",
+        "sensitivity.png",
+    ]
     assert all((tmp_path / name).stat().st_size > 10_000 for name in files)
     assert [error.place for error in problems] == ["figures.5.of"]
     assert "'seconds' is not a response" in problems[0].problem
@@ -233,11 +237,13 @@ def test_figures_of_each_kind_and_one_without_a_response(write_sweep, tmp_path):
         (
             "design: together\nvary: {spring.pitch: [11, 11.5, 12, 12.5], spring.wire_diameter: [4, 4.5, 5, 5.5]}\n"
             "figures: [{kind: map, x: spring.pitch, y: spring.wire_diameter}]",
-            float, None, "the cases lie on one line",
+            float,
+            None,
+            "the cases lie on one line",
         ),
     ],
     ids=["three cases", "constant", "constant, Sobol", "words", "words, one at a time", "on a line"],
-)  # fmt: skip
+)
 def test_what_cannot_be_drawn_does_not_end_a_sweep(write_sweep, tmp_path, text, value, drawn, problem):
     """Responses that never change, too few cases, inputs in words: the other figures are there."""
     plan = Plan(write_sweep(text))
@@ -245,8 +251,9 @@ def test_what_cannot_be_drawn_does_not_end_a_sweep(write_sweep, tmp_path, text, 
         for number, key in enumerate(plan.keys):
             steps = {name: [1.0] * (number + 1) for name in ("travel_mm", "seat_height_mm", "force_N", "phase")}
             summary = {"set_mm": value(number), "force_max_N": 10.0 + number, "warnings": []}
-            journal.append({"key": key, "status": "done", "reason": "", "seconds": 1.0, "summary": summary,
-                            "steps": steps})  # fmt: skip
+            journal.append(
+                {"key": key, "status": "done", "reason": "", "seconds": 1.0, "summary": summary, "steps": steps}
+            )
     files, problems = draw(tmp_path, plan, dataset.collect(plan, tmp_path / "journal.jsonl"))
     assert (files[-1].split("_")[1] if files else None) == (drawn and f"{drawn}.png")
     assert [problem in error.problem for error in problems] == [True] * bool(problem)
@@ -341,8 +348,15 @@ def test_inputs_have_the_units_of_their_entries(write_sweep, tmp_path):
     """
     data = dataset.collect(Plan(write_sweep(text)), tmp_path / "journal.jsonl")
     found = {name: data[name].attrs["units"] for name in data.attrs["inputs"]}
-    assert found == {"spring.wire_diameter": "mm", "loading.0.to.travel": "mm", "spring.turns": "", "material": "",
-                     "inches": "in", "both": "mm", "mixed": ""}  # fmt: skip
+    assert found == {
+        "spring.wire_diameter": "mm",
+        "loading.0.to.travel": "mm",
+        "spring.turns": "",
+        "material": "",
+        "inches": "in",
+        "both": "mm",
+        "mixed": "",
+    }
     assert dataset.quantity("plastic_work_max_N_per_mm2") == ("maximum plastic work", "N/mm²")
 
 

@@ -7,10 +7,10 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from coilset.meshes.errors import SolveError
-from coilset.scripts.verify import verify
+from coilset.model.base.errors import SolveError
+from coilset.scripts.commands.verify import verify
 from coilset.verification import registry
-from coilset.verification.cases import force_centre, two_circles
+from coilset.verification.cases.contact import force_centre, two_circles
 from coilset.verification.page import page
 from coilset.verification.study import Study
 
@@ -35,11 +35,15 @@ def test_fast_cases_are_within_tolerance(name, tmp_path):
 @pytest.mark.parametrize(
     ("ours", "reference", "tolerance", "kind", "good"),
     [
-        (1.009, 1.0, 0.01, "relative", True), (-1.0, 1.0, 0.01, "relative", False),
-        (1.02, 1.0, 0.01, "absolute", False), (float("nan"), 1.0, 0.01, "absolute", False),
-        (7, 6, 0, "at_most", False), (1, 6, 0, "at_most", True), (float("nan"), 6, 0, "at_most", False),
+        (1.009, 1.0, 0.01, "relative", True),
+        (-1.0, 1.0, 0.01, "relative", False),
+        (1.02, 1.0, 0.01, "absolute", False),
+        (float("nan"), 1.0, 0.01, "absolute", False),
+        (7, 6, 0, "at_most", False),
+        (1, 6, 0, "at_most", True),
+        (float("nan"), 6, 0, "at_most", False),
     ],
-)  # fmt: skip
+)
 def test_a_number_that_is_off_does_not_pass(tmp_path, ours, reference, tolerance, kind, good):
     study = Study(tmp_path)
     study.check("a number", ours, reference, "by hand", tolerance, kind)
@@ -61,8 +65,10 @@ def test_a_number_that_is_shown_is_not_judged(tmp_path):
 def test_the_legend_of_the_force_centre_is_clear_of_the_ring(tmp_path, monkeypatch):
     drawn = []
     monkeypatch.setattr(Study, "figure", lambda study, name, figure: drawn.append(figure))
-    pressed = {ends: force_centre.press(ends, "elastic", [{"to": {"travel": 1.0}, "steps": 1}])
-               for ends in force_centre.SPRINGS}  # fmt: skip
+    pressed = {
+        ends: force_centre.press(ends, "elastic", [{"to": {"travel": 1.0}, "steps": 1}])
+        for ends in force_centre.SPRINGS
+    }
     force_centre.draw_paths(Study(tmp_path), pressed)
     canvas = FigureCanvasAgg(drawn[0])
     canvas.draw()

@@ -12,8 +12,8 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from coilset.meshes.errors import CoilsetError, InputError
-from coilset.model.examples import EXAMPLES
+from coilset.model.base.errors import CoilsetError, InputError
+from coilset.model.run.examples import EXAMPLES
 from coilset.verification.benchmarks import walk
 from coilset.verification.benchmarks.process import read_json
 
@@ -104,8 +104,10 @@ def walks(
         CoilsetError: if one failed.
     """
     plain, script = _of_a_new_command(environment), str(Path(walk.__file__).resolve())
-    runs = [[read_json([*start, "python", script], f"'{start[0]} python walk.py'", plain) for start in starts]
-            for _ in range(repeats)]  # fmt: skip
+    runs = [
+        [read_json([*start, "python", script], f"'{start[0]} python walk.py'", plain) for start in starts]
+        for _ in range(repeats)
+    ]
     rows = []
     for number, row in enumerate(runs[0][0]):
         found = [[run[side][number]["seconds"] for run in runs] for side in range(len(starts))]

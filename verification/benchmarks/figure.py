@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from coilset.model.results.figures import save
-from coilset.model.style import STYLE
+from coilset.model.base.style import STYLE
+from coilset.model.figures.figures import save
 from coilset.verification.benchmarks.measure import STAGES
 from coilset.verification.benchmarks.target import FLAT, ITERATION, LARGE, per_element, seconds
 
@@ -28,8 +28,9 @@ def draw(path: Path, record: dict[str, Any]) -> None:
         machine = record["machine"]
         large = [per_element(run) for run in record["elements"] if run["elements"] >= LARGE]
         found = f"An iteration takes {min(large):.0f} to {max(large):.0f} µs an element" if large else "coilset bench"
-        figure.suptitle(f"{found}; {machine['processor']}, {machine['cores']} cores, "
-                        f"load {machine['load']:.1f} at the start")  # fmt: skip
+        figure.suptitle(
+            f"{found}; {machine['processor']}, {machine['cores']} cores, load {machine['load']:.1f} at the start"
+        )
         save(figure, path)
 
 
@@ -39,8 +40,11 @@ def _stages(axes: Axes, example: dict[str, Any]) -> None:
     for place, value in enumerate(spent):
         axes.annotate(f" {value:.1f}", (value, place), va="center", fontsize=8)
     axes.invert_yaxis()
-    axes.set(xlabel="processor time in ms", title=f"Example, {example['elements']} elements, {example['steps']} steps, "
-             f"{example['iterations']} iterations: {1e3 * example['analysis'][1]:.0f} ms")  # fmt: skip
+    axes.set(
+        xlabel="processor time in ms",
+        title=f"Example, {example['elements']} elements, {example['steps']} steps, "
+        f"{example['iterations']} iterations: {1e3 * example['analysis'][1]:.0f} ms",
+    )
     axes.title.set_fontsize(9)
     axes.margins(x=0.15)
 
@@ -55,10 +59,16 @@ def _elements(axes: Axes, runs: list[dict[str, Any]]) -> None:
     if len(large):
         middle = np.sqrt(large.min() * large.max())
         half = np.sqrt(1.0 + FLAT)
-        axes.fill_between([LARGE, max(n)], middle / half, middle * half, color="0.85", zorder=0,
-                          label=f"within {100 * FLAT:.0f} %")  # fmt: skip
-    axes.set(xscale="log", yscale="log", xlabel="elements", ylabel="processor time of an element\nin an iteration, µs",
-             title="Cost of an element, one plastic step")  # fmt: skip
+        axes.fill_between(
+            [LARGE, max(n)], middle / half, middle * half, color="0.85", zorder=0, label=f"within {100 * FLAT:.0f} %"
+        )
+    axes.set(
+        xscale="log",
+        yscale="log",
+        xlabel="elements",
+        ylabel="processor time of an element\nin an iteration, µs",
+        title="Cost of an element, one plastic step",
+    )
     axes.title.set_fontsize(9)
     axes.set_ylim(0.2 * max(axes.get_ylim()[0], 1e-3 * total.min()))  # room for the legend below the lines
     axes.legend(fontsize=7, ncols=2, loc="lower left")
@@ -73,6 +83,8 @@ def _ranks(axes: Axes, runs: list[dict[str, Any]]) -> None:
         bottom += height
     axes.set_xticks(place, [f"{run['ranks']} rank{'s' if run['ranks'] > 1 else ''}" for run in runs])
     speed = seconds(runs[0]["stages"], 0) / seconds(runs[-1]["stages"], 0)
-    axes.set(ylabel="time in s (colours as on the left)",
-             title=f"{runs[0]['elements']:,} elements: {speed:.2f} times as fast")  # fmt: skip
+    axes.set(
+        ylabel="time in s (colours as on the left)",
+        title=f"{runs[0]['elements']:,} elements: {speed:.2f} times as fast",
+    )
     axes.title.set_fontsize(9)

@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from coilset.model.material import library, points
-from coilset.model.material.law import Law
+from coilset.model.material.law.law import Law
 
 POINTS = 4000
 INCREMENTS = (1e-4, 3e-4, 1e-3)
@@ -82,8 +82,15 @@ def main() -> None:
             for increment in INCREMENTS:
                 state, increments = prepared(law, components, increment)
                 speed, new, count = rate(law, method, state, increments)
-                table.add_row(form, name, f"{increment:g}", f"{speed / 1e6:.3g}", f"{100 * (count > 0).mean():.4g} %",
-                              f"{count.mean():.2f}", f"{error(law, state, increments, new):.1e}")  # fmt: skip
+                table.add_row(
+                    form,
+                    name,
+                    f"{increment:g}",
+                    f"{speed / 1e6:.3g}",
+                    f"{100 * (count > 0).mean():.4g} %",
+                    f"{count.mean():.2f}",
+                    f"{error(law, state, increments, new):.1e}",
+                )
     console.print(table)
 
 

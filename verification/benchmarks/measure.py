@@ -20,8 +20,8 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from coilset.model.caches import load_without_compiler
-from coilset.model.examples import EXAMPLES
+from coilset.model.run.examples import EXAMPLES
+from coilset.model.runtime.caches import load_without_compiler
 from coilset.verification.benchmarks.same_spring import compare
 from coilset.verification.benchmarks.stopwatch import Stopwatch
 from coilset.verification.benchmarks.walk import SAME, STEPS
@@ -29,8 +29,8 @@ from coilset.verification.benchmarks.walk import SAME, STEPS
 if TYPE_CHECKING:  # at run time their import is measured
     from mpi4py import MPI
 
-    from coilset.model.analysis import Analysis
     from coilset.model.case import Case
+    from coilset.model.run.analysis import Analysis
 
 TURNS = 2.5  # of the example's spring
 MOST_TURNS = 256  # of springs whose coils touch: a thousand do not come to block in one step
@@ -84,7 +84,7 @@ def read_example(settings: Iterable[str] = ()) -> "Case":
 
 def build(watch: Stopwatch, case: "Case", comm: "MPI.Comm") -> "Analysis":
     """An Analysis whose stages are watched."""
-    from coilset.model.analysis import Analysis
+    from coilset.model.run.analysis import Analysis
 
     with watch.stage("set-up"):
         analysis = Analysis(case, comm)
@@ -94,7 +94,7 @@ def build(watch: Stopwatch, case: "Case", comm: "MPI.Comm") -> "Analysis":
 
 def watch_meshing() -> Stopwatch:
     """The Stopwatch whose stage `mesh` is what the analysis has made in `meshes`."""
-    from coilset.model import build as module
+    from coilset.model.run import build as module
 
     watch = Stopwatch()
     for function in ("line_mesh", "section_placement"):
@@ -114,7 +114,7 @@ def example(repeats: int = 5) -> dict[str, Any]:
     with start.stage("import"):
         from mpi4py import MPI
 
-        import coilset.model.analysis  # noqa: F401
+        import coilset.model.run.analysis  # noqa: F401
     watch, runs = watch_meshing(), []
     logged = Logged(watch)
     for _ in range(repeats + 1):
@@ -150,9 +150,10 @@ def pair(watch: Stopwatch, stage: str) -> list[float]:
 
 def write(watch: Stopwatch, analysis: "Analysis") -> None:
     """Everything that `coilset solve` writes, into a folder that is thrown away."""
-    from coilset.model.results import dataset, display, fields, figures, scene
-    from coilset.model.results.folder import write_history, write_summary
-    from coilset.model.results.summary import summarise
+    from coilset.model.figures import display, figures, scene
+    from coilset.model.results.files import dataset, fields
+    from coilset.model.results.files.folder import write_history, write_summary
+    from coilset.model.results.records.summary import summarise
 
     result = analysis.result
     with tempfile.TemporaryDirectory() as temporary:
@@ -174,10 +175,18 @@ def pressed(elements: int, touching: bool) -> list[str]:
     """Settings of a spring between clamped heads and of one step: see `press`."""
     if touching:
         per_turn = max(16, math.ceil(elements / MOST_TURNS))
-        return ["ends=clamped", f"spring.turns={elements / per_turn}", "spring.pitch=5.25",
-                f"mesh.elements_per_turn={per_turn}", "loading=[{to: block, steps: 1}]"]  # fmt: skip
-    return ["ends=clamped", f"mesh.elements_per_turn={elements / TURNS}",
-            f"loading=[{{to: {{travel: {TRAVEL}}}, steps: 1}}]"]  # fmt: skip
+        return [
+            "ends=clamped",
+            f"spring.turns={elements / per_turn}",
+            "spring.pitch=5.25",
+            f"mesh.elements_per_turn={per_turn}",
+            "loading=[{to: block, steps: 1}]",
+        ]
+    return [
+        "ends=clamped",
+        f"mesh.elements_per_turn={elements / TURNS}",
+        f"loading=[{{to: {{travel: {TRAVEL}}}, steps: 1}}]",
+    ]
 
 
 def press(elements: int, repeats: int = 1, touching: int = 0, estimated: int = 1) -> dict[str, Any]:

@@ -40,8 +40,14 @@ def run(model: dict[str, Any]) -> dict[str, Any]:
     ops.integrator("LoadControl", force / steps)
     back = _take(steps)
     seconds, elapsed = time.process_time() - begun[0], time.perf_counter() - begun[1]
-    return {"force_N": force, "set_mm": -ops.nodeDisp(top, 3), "iterations": there + back, "threads": 1,
-            "seconds": seconds, "elapsed": elapsed}  # fmt: skip
+    return {
+        "force_N": force,
+        "set_mm": -ops.nodeDisp(top, 3),
+        "iterations": there + back,
+        "threads": 1,
+        "seconds": seconds,
+        "elapsed": elapsed,
+    }
 
 
 def _build(model: dict[str, Any]) -> None:

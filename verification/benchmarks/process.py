@@ -5,8 +5,8 @@ import subprocess
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from coilset.meshes.errors import CoilsetError
-from coilset.model.processes import end_with_parent
+from coilset.model.base.errors import CoilsetError
+from coilset.model.runtime.processes import end_with_parent
 
 
 def read_json(command: Sequence[str], name: str, environment: Mapping[str, str] | None = None, text: str = "") -> Any:
@@ -21,8 +21,9 @@ def read_json(command: Sequence[str], name: str, environment: Mapping[str, str] 
     Raises:
         CoilsetError: if it failed, with the last line of what it complained of.
     """
-    done = subprocess.run(command, env=environment, input=text, capture_output=True, text=True, check=False,
-                          preexec_fn=end_with_parent)  # fmt: skip
+    done = subprocess.run(
+        command, env=environment, input=text, capture_output=True, text=True, check=False, preexec_fn=end_with_parent
+    )
     if done.returncode:
         reason = (done.stderr.strip() or "no message").splitlines()[-1]
         raise CoilsetError(f"{name} failed: {reason}")

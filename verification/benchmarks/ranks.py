@@ -32,10 +32,15 @@ def compare(measure: Callable[..., dict[str, Any]], size: str, report: Callable[
                 for ranks, taken in enumerate(runs, 1):
                     taken.append(measure("press", elements, 2, touching, ranks=ranks))
             (one, *_), (two, *_) = runs
-            rows.append({
-                "kind": kind, "elements": one["elements"], "contacts": two["contacts"], "iterations": two["iterations"],
-                "elapsed": [median(seconds(run["stages"], 0) for run in taken) for taken in runs],
-                "processor": [median(seconds(run["stages"], 1) for run in taken) for taken in runs],
-                "difference": abs(two["force_N"] / one["force_N"] - 1.0),
-            })  # fmt: skip
+            rows.append(
+                {
+                    "kind": kind,
+                    "elements": one["elements"],
+                    "contacts": two["contacts"],
+                    "iterations": two["iterations"],
+                    "elapsed": [median(seconds(run["stages"], 0) for run in taken) for taken in runs],
+                    "processor": [median(seconds(run["stages"], 1) for run in taken) for taken in runs],
+                    "difference": abs(two["force_N"] / one["force_N"] - 1.0),
+                }
+            )
     return rows

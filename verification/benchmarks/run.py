@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from coilset.model.processes import folder_of_mpirun, mpi_settings, mpirun, usable_cores
+from coilset.model.runtime.processes import folder_of_mpirun, mpi_settings, mpirun, usable_cores
 from coilset.verification.benchmarks.everyday import everyday, launchers, walks
 from coilset.verification.benchmarks.process import read_json
 from coilset.verification.benchmarks.ranks import compare

@@ -20,11 +20,11 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
-from coilset.model.examples import EXAMPLES
+from coilset.model.run.examples import EXAMPLES
 from coilset.verification.benchmarks.process import read_json
 
 if TYPE_CHECKING:
-    from coilset.model.analysis import Analysis
+    from coilset.model.run.analysis import Analysis
 
 TURNS, TRAVEL, STEPS = 2.5, 10.0, 40
 MATERIAL, YIELD_STRESS, HARDENING = "linear_isotropic", 400.0, 2000.0  # N/mm², as in the library's file
@@ -55,14 +55,20 @@ def compare(elements: int, curved: int = 0, repeats: int = 3) -> dict[str, Any]:
 def _coilset(elements: int, axis: str, repeats: int, *more: str) -> tuple["Analysis", dict[str, Any]]:
     from mpi4py import MPI
 
-    from coilset.model.analysis import Analysis
     from coilset.model.case import read_case
-    from coilset.model.threads import usual
+    from coilset.model.run.analysis import Analysis
+    from coilset.model.runtime.threads import usual
 
     down, back = f"{{to: {{travel: {TRAVEL}}}, steps: {STEPS}}}", f"{{to: {{force: 0}}, steps: {STEPS}}}"
-    settings = ["ends=clamped", f"material={MATERIAL}", f"mesh.elements_per_turn={elements / TURNS}",
-                f"mesh.axis={axis}", "mesh.section={kind: plane, radial: 4, angular: 8}",
-                f"loading=[{down}, {back}]", *more]  # fmt: skip
+    settings = [
+        "ends=clamped",
+        f"material={MATERIAL}",
+        f"mesh.elements_per_turn={elements / TURNS}",
+        f"mesh.axis={axis}",
+        "mesh.section={kind: plane, radial: 4, angular: 8}",
+        f"loading=[{down}, {back}]",
+        *more,
+    ]
     case = read_case(EXAMPLES / "ck15_presetting.yaml", settings)
     spent, threads = {"seconds": math.inf, "elapsed": math.inf}, usual(1)
     for _ in range(repeats + 1):  # the first one loads the compiled code
@@ -73,19 +79,32 @@ def _coilset(elements: int, axis: str, repeats: int, *more: str) -> tuple["Analy
             spent[name] = min(spent[name], clock() - begun)
     force = max(step.force_N for step in steps)
     iterations = sum(step.iterations for step in steps)
-    return analysis, {"force_N": force, "set_mm": steps[-1].travel_mm, "iterations": iterations, "threads": threads,
-                      **spent}  # fmt: skip
+    return analysis, {
+        "force_N": force,
+        "set_mm": steps[-1].travel_mm,
+        "iterations": iterations,
+        "threads": threads,
+        **spent,
+    }
 
 
 def _model(analysis: "Analysis") -> dict[str, Any]:
     """Everything that OpenSees needs, as plain data."""
     rod, law = analysis.rod, analysis.law
     R = rod.largest_radius
-    fibres = [(R * y, R * z, math.pi * R * R * weight)
-              for (y, z), weight in zip(rod.rule.points.tolist(), rod.rule.weights.tolist(), strict=True)]  # fmt: skip
+    fibres = [
+        (R * y, R * z, math.pi * R * R * weight)
+        for (y, z), weight in zip(rod.rule.points.tolist(), rod.rule.weights.tolist(), strict=True)
+    ]
     material = {"E": law.E, "nu": 0.5 * law.E / law.G - 1.0, "yield_stress": YIELD_STRESS, "hardening": HARDENING}
-    return {"nodes": rod.line.stations.tolist(), "third_axes": rod.line.in_order(rod.E0)[:, :, 2].tolist(),
-            "fibres": fibres, "material": material, "travel": TRAVEL, "steps": STEPS}  # fmt: skip
+    return {
+        "nodes": rod.line.stations.tolist(),
+        "third_axes": rod.line.in_order(rod.E0)[:, :, 2].tolist(),
+        "fibres": fibres,
+        "material": material,
+        "travel": TRAVEL,
+        "steps": STEPS,
+    }
 
 
 def run_opensees(model: dict[str, Any], repeats: int) -> dict[str, Any]:

@@ -32,18 +32,37 @@ def spread(runs: Sequence[dict[str, Any]], least: int) -> float | None:
 
 def targets(record: dict[str, Any]) -> list[dict[str, Any]]:
     """Rows of the targets: name, value, limit, unit; processor time is that of one core."""
-    rows = [(f"walk of the example, {row['name']}, threads: {row['threads']}", row["seconds"][0],
-             SECONDS_OF_WALKS[row["name"]], "s") for row in record["walks"]]  # fmt: skip
-    rows += [(f"coilset {row['name']}", row["end"][0], COMMANDS[row["name"]], "s")
-             for row in record["commands"] if row["name"] in COMMANDS]  # fmt: skip
-    rows += [(f"time on two ranks over that on one, {row['elements']:,} elements, {row['kind']}",
-              row["elapsed"][1] / row["elapsed"][0], 1.0 / FASTER[row["elements"]], "")
-             for row in record["one_and_two_ranks"] if row["elements"] in FASTER]  # fmt: skip
+    rows = [
+        (
+            f"walk of the example, {row['name']}, threads: {row['threads']}",
+            row["seconds"][0],
+            SECONDS_OF_WALKS[row["name"]],
+            "s",
+        )
+        for row in record["walks"]
+    ]
+    rows += [
+        (f"coilset {row['name']}", row["end"][0], COMMANDS[row["name"]], "s")
+        for row in record["commands"]
+        if row["name"] in COMMANDS
+    ]
+    rows += [
+        (
+            f"time on two ranks over that on one, {row['elements']:,} elements, {row['kind']}",
+            row["elapsed"][1] / row["elapsed"][0],
+            1.0 / FASTER[row["elements"]],
+            "",
+        )
+        for row in record["one_and_two_ranks"]
+        if row["elements"] in FASTER
+    ]
     for run in (*record["elements"], *record["unestimated"]):
         if run["elements"] == 100_000:
             words = "" if run["estimated"] else ", error of the step not estimated"
-            rows += [(f"100,000 elements, one plastic step, one core{words}", seconds(run["stages"]), 25.0, "s"),
-                     (f"100,000 elements, memory{words}", run["memory_GiB"], 2.0, "GiB")]  # fmt: skip
+            rows += [
+                (f"100,000 elements, one plastic step, one core{words}", seconds(run["stages"]), 25.0, "s"),
+                (f"100,000 elements, memory{words}", run["memory_GiB"], 2.0, "GiB"),
+            ]
     differs = spread(record["elements"], LARGE)
     if differs is not None:
         rows.append((f"spread of an element's cost from {LARGE:,} elements on", 100.0 * differs, 100.0 * FLAT, "%"))
@@ -54,6 +73,12 @@ def targets(record: dict[str, Any]) -> list[dict[str, Any]]:
                 threads = run[name]["threads"]
                 for kind, cores in (("seconds", "one core"), ("elapsed", f"by the clock with {threads} threads")):
                     ratio = run[name][kind] / run["opensees"][kind]
-                    rows.append((f"time over that of OpenSees, {run['elements']} elements, {cores}{words}", ratio,
-                                 1.0 / 15.0, ""))  # fmt: skip
+                    rows.append(
+                        (
+                            f"time over that of OpenSees, {run['elements']} elements, {cores}{words}",
+                            ratio,
+                            1.0 / 15.0,
+                            "",
+                        )
+                    )
     return [{"name": name, "value": value, "limit": limit, "unit": unit} for name, value, limit, unit in rows]

@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from statistics import median
 from typing import Any
 
-from coilset.meshes.errors import InputError
-from coilset.model.examples import EXAMPLES
-from coilset.model.processes import usable_cores
+from coilset.model.base.errors import InputError
+from coilset.model.run.examples import EXAMPLES
+from coilset.model.runtime.processes import usable_cores
 
 SAME = ("mesh.section.radial=4", "mesh.section.angular=12")  # so that times of all versions refer to the same work
 STEPS = ("loading.0.steps=12", "loading.1.steps=12")
@@ -30,8 +30,8 @@ def walk(settings: Sequence[str], threads: int) -> float | None:
     """Seconds, the median of three walks after one that loads all they need; None where a checkout cannot walk so."""
     from mpi4py import MPI
 
-    from coilset.model.analysis import Analysis
     from coilset.model.case import read_case
+    from coilset.model.run.analysis import Analysis
 
     spent = []
     try:
@@ -48,12 +48,15 @@ def walk(settings: Sequence[str], threads: int) -> float | None:
 
 def walks() -> list[dict[str, Any]]:
     """Each walk on one thread and on as many as there are cores: `name`, `threads`, `seconds`."""
-    return [{"name": name, "threads": threads, "seconds": walk(settings, threads)}
-            for name, settings in WALKS.items() for threads in sorted({1, usable_cores()})]  # fmt: skip
+    return [
+        {"name": name, "threads": threads, "seconds": walk(settings, threads)}
+        for name, settings in WALKS.items()
+        for threads in sorted({1, usable_cores()})
+    ]
 
 
 if __name__ == "__main__":
-    from coilset.model.caches import load_without_compiler
+    from coilset.model.runtime.caches import load_without_compiler
 
     load_without_compiler()
     json.dump(walks(), sys.stdout)

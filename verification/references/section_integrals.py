@@ -7,7 +7,7 @@ Nothing here knows of section rules, return maps or rods. Of the program only th
 import numpy as np
 from scipy.integrate import quad, solve_ivp
 
-from coilset.model.material.law import Law
+from coilset.model.material.law.law import Law
 
 ACCURACY = {"method": "DOP853", "rtol": 1e-8, "atol": 1e-8}
 
@@ -41,8 +41,12 @@ def plastic_path(law: Law, start: np.ndarray, strains: np.ndarray, times: np.nda
         k2, dk2, ζ, _, κ, _ = law.functions(work)
         n1, n2 = 2.0 / 3.0 * σ - B1, τ - B2
         m, c = (2.0 - κ * dk2) / ((2.0 * ζ + dk2) * k2), 1.0 + κ * ζ
-        flow = np.array([[(2.0 / 3.0 * κ + m * n1 * n1) / c, 2.0 * m * n2 * n1 / c],
-                         [2.0 * m * n1 * n2 / c, 2.0 * (κ + 2.0 * m * n2 * n2) / c]])  # fmt: skip
+        flow = np.array(
+            [
+                [(2.0 / 3.0 * κ + m * n1 * n1) / c, 2.0 * m * n2 * n1 / c],
+                [2.0 * m * n1 * n2 / c, 2.0 * (κ + 2.0 * m * n2 * n2) / c],
+            ]
+        )
         stress = np.linalg.solve(np.diag([1.0 / law.E, 1.0 / law.G]) + flow, strains)
         ep, gp = flow @ stress
         return [*stress, ζ * ep, 0.5 * ζ * gp, 1.5 * n1 * ep + n2 * gp]

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from coilset.model import uniform
 from coilset.model.material import library
 from coilset.model.section.rules import polar
+from coilset.model.uniform import rod as uniform
 from coilset.verification.solid_vs_rod import pressing
 from coilset.verification.solid_vs_rod.pressing import FINE, WIRE, PressedSection
 from coilset.verification.solid_vs_rod.study import diameter

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from coilset.meshes.placement import straight
-from coilset.model.material.law import Law
+from coilset.meshes.springs.placement import straight
+from coilset.model.material.law.law import Law
 from coilset.model.section.kinds import make_sections
 from coilset.model.section.rules import DiskRule, polar
 from coilset.model.section.surface import component, nominal_shear

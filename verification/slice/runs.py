@@ -8,7 +8,7 @@ import numpy as np
 from coilset.meshes.section import section_mesh
 from coilset.meshes.section_shapes import Outline, round_wire
 from coilset.model.material import library
-from coilset.model.material.law import Law
+from coilset.model.material.law.law import Law
 from coilset.model.slice.analysis import ACROSS, INSIDE
 from coilset.model.slice.problem import SliceProblem
 from coilset.model.slice.slice import Coil, Slice
@@ -53,8 +53,15 @@ class Pressed:
     released: np.ndarray
 
 
-def pressed(index: float, pitch: float, travel: float, across: float = ACROSS, degree: int = 2, steps: int = 12,
-            material: str = "ck15") -> Pressed:  # fmt: skip
+def pressed(
+    index: float,
+    pitch: float,
+    travel: float,
+    across: float = ACROSS,
+    degree: int = 2,
+    steps: int = 12,
+    material: str = "ck15",
+) -> Pressed:
     """Press a turn in equal steps and release it in one."""
     coil = Coil(0.5 * index * WIRE, pitch)
     body = Slice(section_mesh(round_wire(WIRE), across, degree, inside=INSIDE), coil, library.load(material))
@@ -70,5 +77,6 @@ def pressed(index: float, pitch: float, travel: float, across: float = ACROSS, d
     problem.go_to_force(0.0)
     seconds = time.process_time() - began
     back = 2 * np.pi * (coil.rise - body.rise)
-    return Pressed(body.u.size + 2, seconds, np.array(travels), np.array(forces), back, full,
-                   watch.section_stress()[:, 4])  # fmt: skip
+    return Pressed(
+        body.u.size + 2, seconds, np.array(travels), np.array(forces), back, full, watch.section_stress()[:, 4]
+    )

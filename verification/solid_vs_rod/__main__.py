@@ -6,7 +6,7 @@ from pathlib import Path
 from mpi4py import MPI
 from rich.console import Console
 
-from coilset.model.results.figures import save
+from coilset.model.figures.figures import save
 from coilset.verification.solid_vs_rod import figures, study
 from coilset.verification.solid_vs_rod.store import Store
 
@@ -21,8 +21,10 @@ def main(folder: str, extent: str = "standard") -> None:
             save(figure, Path(folder) / f"{name}.png")
     for record in study.records(found):
         deviation = record["ours"] / record["reference"] - 1
-        console.print(f"{record['quantity']}: {record['ours']:.5g}, {record['source']} {record['reference']:.5g}, "
-                      f"{100 * deviation:+.2f} % of {100 * record['tolerance']:g} %")  # fmt: skip
+        console.print(
+            f"{record['quantity']}: {record['ours']:.5g}, {record['source']} {record['reference']:.5g}, "
+            f"{100 * deviation:+.2f} % of {100 * record['tolerance']:g} %"
+        )
     for name, unknowns, quantity, solid, rod, deviation in study.table(found):
         last = "" if deviation is None else f"{100 * deviation:+.2f} %"
         console.print(f"{name:28s}{unknowns:8d}  {quantity:32s}{solid:12.4f}{rod:12.4f}  {last}")

@@ -54,10 +54,14 @@ def run(case: ElasticCase, comm: MPI.Comm) -> dict[str, Any]:
     sample = SectionSample(problem.solid, 0.5 * wire.length, np.array([-radius, radius]), np.zeros(2))
     inside, outside = np.abs(sample.stress()[:, 2]) * np.pi * WIRE**3 / (8 * force * D)
     return {
-        "index": case.index, "grid": case.grid, "layers": case.layers, "unknowns": problem.unknowns,
-        "inside": float(inside), "outside": float(outside),
+        "index": case.index,
+        "grid": case.grid,
+        "layers": case.layers,
+        "unknowns": problem.unknowns,
+        "inside": float(inside),
+        "outside": float(outside),
         "force": float(force / (law.G * WIRE**4 * travel / (8 * D**3))),
-    }  # fmt: skip
+    }
 
 
 def records(results: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -74,6 +78,13 @@ def records(results: Iterable[dict[str, Any]]) -> list[dict[str, Any]]:
             ("shear factor inside", best["inside"], exact[0], "Göhner's equation, solved", 0.005),
             ("shear factor outside", best["outside"], exact[1], "Göhner's equation, solved", 0.005),
         ):
-            out.append({"quantity": label.format(place), "ours": ours, "reference": reference, "source": source,
-                        "tolerance": tolerance})  # fmt: skip
+            out.append(
+                {
+                    "quantity": label.format(place),
+                    "ours": ours,
+                    "reference": reference,
+                    "source": source,
+                    "tolerance": tolerance,
+                }
+            )
     return out

@@ -6,7 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.tri import TriContourSet
 
-from coilset.model.style import DIVERGING, STYLE, levels
+from coilset.model.base.style import DIVERGING, STYLE, levels
 from coilset.verification.solid_vs_rod import pressing, references, study
 from coilset.verification.solid_vs_rod.pressing import PressedSection
 
@@ -71,8 +71,10 @@ def characteristic(case: PressedSection, solid: study.Numbers, rod: study.Number
         axes.set(xlabel="travel in mm", ylabel=unit)
         axes.grid(lw=0.3)
         axes.legend(fontsize=8)
-    figure.suptitle(f"The rod sets {rod['set']:.3f} mm, the solid {solid['set']:.3f} mm "
-                    f"(one turn of Ck 15 between clamped heads, D/d = {case.index:g})")  # fmt: skip
+    figure.suptitle(
+        f"The rod sets {rod['set']:.3f} mm, the solid {solid['set']:.3f} mm "
+        f"(one turn of Ck 15 between clamped heads, D/d = {case.index:g})"
+    )
     return figure
 
 
@@ -92,8 +94,10 @@ def sections(case: PressedSection, solid: study.Numbers, rod: study.Numbers) -> 
         axes[row, 2].grid(lw=0.3)
         axes[row, 2].legend(fontsize=8)
     inside, beside = (f"{study.diameter(r, 'end')[1][0]:.0f}".replace("-", "−") for r in (solid, rod))
-    figure.suptitle(f"{inside} MPa of shear remain at the inside of the coil (left) in the solid, {beside} MPa in "
-                    f"the plane rod\n(mid-section of a clamped turn of Ck 15, D/d = {case.index:g})")  # fmt: skip
+    figure.suptitle(
+        f"{inside} MPa of shear remain at the inside of the coil (left) in the solid, {beside} MPa in "
+        f"the plane rod\n(mid-section of a clamped turn of Ck 15, D/d = {case.index:g})"
+    )
     return figure
 
 
@@ -128,8 +132,11 @@ def deviations(pressed: list[study.Pressed]) -> Figure:
     sets = [abs(solid["set"] / best["set"] - 1) for _, solid, _ in meshes[:-1]]
     right.loglog(unknowns, forces, "C0o-", ms=5, lw=1, label="force at full travel")
     right.loglog(unknowns, sets, "C1s-", ms=5, lw=1, label="set")
-    right.set(xlabel="unknowns of the solid", ylabel="relative change to the finest mesh",
-              title="the solid's own change, D/d = 8")  # fmt: skip
+    right.set(
+        xlabel="unknowns of the solid",
+        ylabel="relative change to the finest mesh",
+        title="the solid's own change, D/d = 8",
+    )
     for axes in (left, right):
         axes.grid(lw=0.3)
         axes.legend(fontsize=8)

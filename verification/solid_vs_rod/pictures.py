@@ -11,7 +11,7 @@ from pathlib import Path
 
 from mpi4py import MPI
 
-from coilset.model.results import display
+from coilset.model.figures import display
 from coilset.model.solid import output
 from coilset.model.solid.problem import SolidProblem
 from coilset.verification.solid_vs_rod.pressing import PressedSection, run_solid

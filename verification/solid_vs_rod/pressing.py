@@ -9,10 +9,10 @@ import numpy as np
 from mpi4py import MPI
 
 from coilset.meshes.solid import SectionGrid, coil_section
-from coilset.model.analysis import Analysis
 from coilset.model.case import Case
 from coilset.model.material import library
-from coilset.model.results.record import Snapshot
+from coilset.model.results.records.record import Snapshot
+from coilset.model.run.analysis import Analysis
 from coilset.model.section.surface import component
 from coilset.model.solid.points import MaterialPoints
 from coilset.model.solid.problem import SolidProblem
@@ -115,12 +115,18 @@ def run_solid(
         on_end(problem)
     stations = program.stations
     return {
-        "unknowns": problem.unknowns, "solver": problem.solver, "seconds": time.perf_counter() - began,
-        "travel": [float(s.travel) for s in stations], "force": [float(s.force) for s in stations],
-        "torque": [float(s.torque) for s in stations], "set": float(stations[-1].travel),
+        "unknowns": problem.unknowns,
+        "solver": problem.solver,
+        "seconds": time.perf_counter() - began,
+        "travel": [float(s.travel) for s in stations],
+        "force": [float(s.force) for s in stations],
+        "torque": [float(s.torque) for s in stations],
+        "set": float(stations[-1].travel),
         "iterations": sum(s.iterations for s in stations),
-        "linear_iterations": sum(s.linear_iterations for s in stations), "full": full, "end": _looked_at(sample),
-    }  # fmt: skip
+        "linear_iterations": sum(s.linear_iterations for s in stations),
+        "full": full,
+        "end": _looked_at(sample),
+    }
 
 
 def _looked_at(sample: SectionSample) -> dict[str, Any]:
@@ -139,26 +145,36 @@ def run_rod(case: PressedSection, section: Mapping[str, object] = PLANE) -> dict
         The same as `run_solid`, with the middle element's points, in the section and on the rim.
     """
     began = time.perf_counter()
-    loading = [{"to": {"travel": case.travel}, "steps": case.steps},
-               {"to": {"force": 0}, "steps": max(case.steps // 3, 2)}]  # fmt: skip
+    loading = [
+        {"to": {"travel": case.travel}, "steps": case.steps},
+        {"to": {"force": 0}, "steps": max(case.steps // 3, 2)},
+    ]
     spring = {"wire_diameter": WIRE, "mean_diameter": case.mean_diameter, "turns": 1.0, "pitch": case.pitch}
     mesh = {"elements_per_turn": ROD_ELEMENTS, "section": section}
     analysis = Analysis(
-        Case.model_validate({"spring": spring, "material": case.material, "ends": "clamped", "mesh": mesh,
-                             "loading": loading}), MPI.COMM_SELF)  # fmt: skip
+        Case.model_validate(
+            {"spring": spring, "material": case.material, "ends": "clamped", "mesh": mesh, "loading": loading}
+        ),
+        MPI.COMM_SELF,
+    )
     torque = [0.0]
     result = analysis.run(lambda step: torque.append(_torque(analysis)))
     if any(step.contacts for step in result.steps):
         raise ValueError("the rod's ends touch, which the solid's cannot")
     return {
-        "unknowns": analysis.rod.V.dofmap.index_map.size_global, "seconds": time.perf_counter() - began,
+        "unknowns": analysis.rod.V.dofmap.index_map.size_global,
+        "seconds": time.perf_counter() - began,
         "travel": [0.0] + [step.travel_mm for step in result.steps],
-        "force": [0.0] + [step.force_N for step in result.steps], "torque": torque,
+        "force": [0.0] + [step.force_N for step in result.steps],
+        "torque": torque,
         "set": result.steps[-1].travel_mm,
-        "full": _rod_section(analysis, result.snapshots[1]), "end": _rod_section(analysis, result.snapshots[2]),
-        "inside": [float(analysis.setup.inside.shear(shot.surface_state, shot.components)[ROD_ELEMENTS // 2].mean())
-                   for shot in result.snapshots[1:3]],
-    }  # fmt: skip
+        "full": _rod_section(analysis, result.snapshots[1]),
+        "end": _rod_section(analysis, result.snapshots[2]),
+        "inside": [
+            float(analysis.setup.inside.shear(shot.surface_state, shot.components)[ROD_ELEMENTS // 2].mean())
+            for shot in result.snapshots[1:3]
+        ],
+    }
 
 
 def _torque(analysis: Analysis) -> float:

@@ -57,8 +57,11 @@ def iterations(size: str, comm: MPI.Comm) -> dict[str, Any]:
         began = time.perf_counter()
         effort, _cuts = problem.step(Motion((0.0, 0.0, -travel)))
         seconds = comm.allreduce(time.perf_counter() - began, op=MPI.MAX)
-        out[name] = {"solves": effort.iterations, "iterations": effort.linear_iterations / effort.iterations,
-                     "seconds": seconds}  # fmt: skip
+        out[name] = {
+            "solves": effort.iterations,
+            "iterations": effort.linear_iterations / effort.iterations,
+            "seconds": seconds,
+        }
     return out
 
 
@@ -100,21 +103,26 @@ def _report_iterations(store: Store, sizes: Sequence[str]) -> None:
         result = store.get(f"iterations-{size}", partial(iterations, size, store.comm))
         for name in ("elastic", "plastic"):
             step = result[name]
-            store.report(f"{result['unknowns']:8d} unknowns, {name}: {step['iterations']:.1f} iterations per solve, "
-                         f"{step['solves']} solves, {step['seconds']:.0f} s on {result['ranks']} rank(s)")  # fmt: skip
+            store.report(
+                f"{result['unknowns']:8d} unknowns, {name}: {step['iterations']:.1f} iterations per solve, "
+                f"{step['solves']} solves, {step['seconds']:.0f} s on {result['ranks']} rank(s)"
+            )
 
 
 def _report_times(store: Store) -> None:
     result = store.put(f"time-{store.comm.size}", timed(TIMED, store.comm))
     store.report(f"{result['unknowns']} unknowns on {result['ranks']} rank(s), load {os.getloadavg()[0]:.1f}; seconds")
     for r in result["repetitions"]:
-        store.report(", ".join(f"{stage} {r[stage]:.2f}" for stage in STAGES)
-                     + f"; {r['iterations']} iterations, share of the processor {r['share']:.2f}")  # fmt: skip
+        store.report(
+            ", ".join(f"{stage} {r[stage]:.2f}" for stage in STAGES)
+            + f"; {r['iterations']} iterations, share of the processor {r['share']:.2f}"
+        )
     one = store.read("time-1")
     if result["ranks"] > 1 and one:
         one, more = best(one), best(result)
-        store.report("best of one rank over best of these: "
-                     + ", ".join(f"{name} {one[name] / more[name]:.2f}" for name in more))  # fmt: skip
+        store.report(
+            "best of one rank over best of these: " + ", ".join(f"{name} {one[name] / more[name]:.2f}" for name in more)
+        )
 
 
 def main(folder: str, *what: str) -> None:

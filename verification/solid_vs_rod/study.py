@@ -123,8 +123,15 @@ def records(found: Found) -> list[dict[str, Any]]:
         compared = numbers(case, solid, rod)
         for name, tolerance in (("force at full travel", 0.02), ("set", 0.03)):
             reference, ours = compared[name]
-            out.append({"quantity": label.format(name), "ours": ours, "reference": reference, "source": "solid",
-                        "tolerance": tolerance})  # fmt: skip
+            out.append(
+                {
+                    "quantity": label.format(name),
+                    "ours": ours,
+                    "reference": reference,
+                    "source": "solid",
+                    "tolerance": tolerance,
+                }
+            )
     return out
 
 

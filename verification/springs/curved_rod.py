@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from coilset.meshes.ends import touching_pitch
-from coilset.meshes.spring import Spring
+from coilset.meshes.springs.ends import touching_pitch
+from coilset.meshes.springs.spring import Spring
 
 
 def clamped_rate(spring: Spring, E: float, G: float, curved: bool = False) -> float:

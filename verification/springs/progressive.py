@@ -16,10 +16,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from mpi4py import MPI
 
-from coilset.model.analysis import Analysis
+from coilset.model.base.style import STYLE
 from coilset.model.case import check
-from coilset.model.results.figures import save
-from coilset.model.style import STYLE
+from coilset.model.figures.figures import save
+from coilset.model.run.analysis import Analysis
 from coilset.verification.springs.curved_rod import torsion_characteristic
 
 STEPS = 26
@@ -102,7 +102,9 @@ def figure(found: Mapping[str, Characteristic], path: str | Path) -> None:
             axes.grid(lw=0.3)
         drawn.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8)
         off = 100.0 * max(np.abs(one.formula / one.travel - 1.0).max() for one in found.values())
-        title = (f"Springs grow stiffer as their coils close one by one; travel within {off:.1f} % of torsion alone "
-                 "(Rodriguez et al. 2006)")  # fmt: skip
+        title = (
+            f"Springs grow stiffer as their coils close one by one; travel within {off:.1f} % of torsion alone "
+            "(Rodriguez et al. 2006)"
+        )
         drawn.suptitle(title, fontsize=10)
         save(drawn, Path(path))

@@ -14,22 +14,22 @@ from matplotlib.figure import Figure
 from mpi4py import MPI
 
 from coilset.meshes.line import line_mesh
-from coilset.meshes.placement import polygon_nodes, section_placement
-from coilset.meshes.shapes import Barrel
-from coilset.meshes.spring import Spring, SpringSpec
+from coilset.meshes.springs.placement import polygon_nodes, section_placement
+from coilset.meshes.springs.shapes import Barrel
+from coilset.meshes.springs.spring import Spring, SpringSpec
+from coilset.model.base.style import STYLE
 from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.layout import SEATS, LineLayout
 from coilset.model.equilibrium.methods import rod_method
 from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.system import System
+from coilset.model.figures.figures import save
 from coilset.model.material import library
-from coilset.model.material.law import Law
-from coilset.model.results.figures import save
+from coilset.model.material.law.law import Law
 from coilset.model.rod.kinematics import GAUSS, chord_triads
 from coilset.model.rod.rod import Rod
 from coilset.model.section.rules import polar
-from coilset.model.style import STYLE
 from coilset.verification.springs.curved_rod import clamped_rate
 
 TRAVEL = 1e-4  # of the free length, in both directions
@@ -107,7 +107,9 @@ def figure(errors: Mapping[str, Mapping[str, np.ndarray]], path: str | Path) -> 
         drawn.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8)
         at = ELEMENTS.index(16)
         worst, ours = (100.0 * max(abs(one[key][at]) for one in errors.values()) for key in ("points", "curved"))
-        drawn.suptitle(f"16 elements per turn: the rate is {ours:.1g} % off with sections on the curved axis, "
-                       f"{worst:.2g} % with a polygon\n(clamped springs; reference: the curved rod by Castigliano)",
-                       fontsize=10)  # fmt: skip
+        drawn.suptitle(
+            f"16 elements per turn: the rate is {ours:.1g} % off with sections on the curved axis, "
+            f"{worst:.2g} % with a polygon\n(clamped springs; reference: the curved rod by Castigliano)",
+            fontsize=10,
+        )
         save(drawn, Path(path))

@@ -6,10 +6,10 @@ and seats do to the end coils are left out. Only the law's curve in simple shear
 
 import numpy as np
 
-from coilset.meshes.ends import touching_pitch
-from coilset.meshes.spring import Spring
+from coilset.meshes.springs.ends import touching_pitch
+from coilset.meshes.springs.spring import Spring
 from coilset.model.material import programs
-from coilset.model.material.law import Law
+from coilset.model.material.law.law import Law
 from coilset.verification.springs.curved_rod import _points
 
 REACH, INCREMENTS = 0.05, 500  # shear strain of the flow curve

@@ -12,15 +12,20 @@ import numpy as np
 from scipy.optimize import OptimizeResult, least_squares
 from scipy.stats import t as student
 
-from coilset.meshes.errors import InputError, SolveError
-from coilset.model.material.file import MaterialFile
+from coilset.model.base.errors import InputError, SolveError
 from coilset.model.material.identification.relaxation_tests import Readings
 from coilset.model.material.identification.relaxing import loss
-from coilset.model.material.law import Law
+from coilset.model.material.law.file import MaterialFile
+from coilset.model.material.law.law import Law
 
 CONFIDENCE = 0.95
-BOUNDS = {"log_strain": (-60.0, 0.0), "exponent": (1.0, 50.0), "time_exponent": (0.05, 1.0),
-          "activation_energy": (0.0, 1e6), "log_stress": (0.0, 10.0)}  # fmt: skip
+BOUNDS = {
+    "log_strain": (-60.0, 0.0),
+    "exponent": (1.0, 50.0),
+    "time_exponent": (0.05, 1.0),
+    "activation_energy": (0.0, 1e6),
+    "log_stress": (0.0, 10.0),
+}
 STEPS = {"log_strain": 1e-5, "exponent": 1e-4, "time_exponent": 1e-5, "activation_energy": 10.0, "log_stress": 1e-5}
 LOGARITHMIC = "strain", "stress"
 STARTS = ((5.0, 0.2, 8e4), (8.0, 0.5, 1.5e5))  # N, p, Q
@@ -118,21 +123,28 @@ def fit_creep(
     _check(tests)
     stresses = np.concatenate([one.stress * (1.0 if one.kind == "tension" else np.sqrt(3.0)) for one in tests])
     temperatures = np.concatenate([one.temperature for one in tests])
-    problem = _Problem(form, hardening, tests, tuple(modulus(law, one) for one in tests),
-                       float(f"{np.exp(np.log(stresses).mean()):.3g}"),
-                       float(np.round(temperatures.mean())))  # fmt: skip
+    problem = _Problem(
+        form,
+        hardening,
+        tests,
+        tuple(modulus(law, one) for one in tests),
+        float(f"{np.exp(np.log(stresses).mean()):.3g}"),
+        float(np.round(temperatures.mean())),
+    )
     found = min((_adjusted(problem, start) for start in STARTS), key=lambda one: one.cost)
     freedom = found.fun.size - found.x.size
     scatter = float(np.sqrt(2.0 * found.cost / freedom))
     J = problem.slopes(found.x)
     scale = np.linalg.norm(J, axis=0)
     if not scale.min() > 0.0 or np.linalg.cond(J / scale) > 1e8:
-        raise SolveError("these tests cannot distinguish the constants of creep; other stresses, temperatures or times "
-                         "are needed")  # fmt: skip
+        raise SolveError(
+            "these tests cannot distinguish the constants of creep; other stresses, temperatures or times are needed"
+        )
     inverse = np.linalg.inv((J / scale).T @ (J / scale)) / np.outer(scale, scale)
     intervals = _intervals(problem, found.x, inverse * (scatter * student.isf(0.5 * (1.0 - CONFIDENCE), freedom)) ** 2)
-    return CreepFit(law, form, hardening, problem.constants(found.x), intervals, tests,
-                    tuple(problem.losses(found.x)), scatter)  # fmt: skip
+    return CreepFit(
+        law, form, hardening, problem.constants(found.x), intervals, tests, tuple(problem.losses(found.x)), scatter
+    )
 
 
 def _intervals(problem: _Problem, x: np.ndarray, squares: np.ndarray) -> dict[str, tuple[float, float]]:
@@ -170,8 +182,11 @@ def modulus(law: Law, tests: Readings) -> np.ndarray:
 def _adjusted(problem: _Problem, start: tuple[float, float, float]) -> OptimizeResult:
     """Least squares from a start, with log c₀ found first by trying."""
     bounds = np.array([BOUNDS[name] for name in problem.names]).T
-    tries = [np.array([log_strain, *start, np.log(0.5 * problem.stress)])[: len(problem.names)]
-             for log_strain in np.arange(-24.0, -1.0, 2.0)]  # fmt: skip
+    tries = [
+        np.array([log_strain, *start, np.log(0.5 * problem.stress)])[: len(problem.names)]
+        for log_strain in np.arange(-24.0, -1.0, 2.0)
+    ]
     first = min(tries, key=lambda x: float(np.sum(problem.residual(x) ** 2)))
-    return least_squares(problem.residual, first, problem.slopes, bounds=bounds, x_scale="jac", xtol=1e-9, ftol=1e-12,
-                         max_nfev=100)  # fmt: skip
+    return least_squares(
+        problem.residual, first, problem.slopes, bounds=bounds, x_scale="jac", xtol=1e-9, ftol=1e-12, max_nfev=100
+    )

@@ -1,7 +1,7 @@
 """Identification of several back stresses (Chaboche) from cyclic tests in one direction: tension and compression, or
 torsion.
 
-In one direction the law of `coilset.model.material.back_stresses` is scalar: with the plastic strain's length p,
+In one direction the law of `coilset.model.material.point.back_stresses` is scalar: with the plastic strain's length p,
 
     |σ − Σ Xᵢ| = σ₀ + Q (1 − exp(−m p)),   dXᵢ = Cᵢ dεᵖ − γᵢ Xᵢ dp,
 
@@ -22,11 +22,11 @@ import numpy as np
 from numba import njit
 from scipy.optimize import OptimizeResult, least_squares
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
+from coilset.model.base.kernel import KERNEL
 from coilset.model.material.identification.experiments import Test
 from coilset.model.material.identification.fit import check_units
 from coilset.model.material.identification.result import Fit, coverage, robust_covariance
-from coilset.model.material.kernel import KERNEL
 
 MOST_TERMS = 4
 AXIS = {"tension": 0, "torsion": 1}  # column of the tests' arrays
@@ -105,8 +105,13 @@ class CyclicFit(Fit):
         c = self.constants
         isotropic: dict[str, Any] = {"k0_squared": 2.0 / 3.0 * c["yield_stress"] ** 2}
         if "rise" in c:
-            isotropic = {"law": "voce", "yield_stress": c["yield_stress"], "rise": c["rise"], "rate": c["rate"],
-                         "up_to": max(0.3, self.length)}  # fmt: skip
+            isotropic = {
+                "law": "voce",
+                "yield_stress": c["yield_stress"],
+                "rise": c["rise"],
+                "rate": c["rate"],
+                "up_to": max(0.3, self.length),
+            }
         terms = [{"C": c[f"C_{i}"], "gamma": c[f"gamma_{i}"]} for i in range(1, self.terms + 1)]
         remark = "Cyclic tests in one direction; as far as they went."
         if self.doubtful:
@@ -172,8 +177,10 @@ def _refuse_one_way(paths: Sequence[_Path]) -> None:
         down, up = (np.maximum.accumulate(sign * plastic) - sign * plastic for sign in (1.0, -1.0))
         if min(down.max(), up.max()) > BOTH_WAYS:
             return
-    raise InputError("no test flows in both directions; without a reversal back stresses cannot be told from the size "
-                     "of the yield surface")  # fmt: skip
+    raise InputError(
+        "no test flows in both directions; without a reversal back stresses cannot be told from the size "
+        "of the yield surface"
+    )
 
 
 def _unpacked(x: np.ndarray, terms: int) -> tuple[np.ndarray, np.ndarray]:
@@ -224,8 +231,11 @@ def _lowest(paths: Sequence[_Path], terms: int, starts: Iterable[Sequence[float]
     found = []
     for start in starts:
         x = np.array(start)
-        found.append(least_squares(_residual, x, bounds=(x - BOUND, x + BOUND), xtol=1e-9, ftol=1e-10,
-                                   max_nfev=100, args=(paths, terms)))  # fmt: skip
+        found.append(
+            least_squares(
+                _residual, x, bounds=(x - BOUND, x + BOUND), xtol=1e-9, ftol=1e-10, max_nfev=100, args=(paths, terms)
+            )
+        )
     return min(found, key=lambda one: one.cost)
 
 
@@ -266,5 +276,6 @@ def _result(
         scatter.append(float(np.sqrt(np.mean((stress - test.stress)[:, AXIS[test.kind]] ** 2))))
         length = max(length, float(p))
         work = max(work, float(size[0] * p + size[1] * (p + np.expm1(-size[2] * p) / size[2])))
-    return CyclicFit(*known, constants, standard, uncertainty, tests, tuple(stresses), tuple(scatter), work, enough,
-                     length)  # fmt: skip
+    return CyclicFit(
+        *known, constants, standard, uncertainty, tests, tuple(stresses), tuple(scatter), work, enough, length
+    )

@@ -15,7 +15,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from scipy.optimize import least_squares
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.material.identification.experiments import COMPONENTS, Test
 from coilset.model.material.identification.fitted_law import KINEMATIC, NORMALITY, FittedLaw, moved_by
 from coilset.model.material.identification.hardening import (

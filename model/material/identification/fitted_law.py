@@ -10,9 +10,9 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 from numba import njit
 
-from coilset.model.material import functions as fn
-from coilset.model.material.heun import ROD_METRIC, integrate
 from coilset.model.material.identification.experiments import COMPONENTS, Test
+from coilset.model.material.law import functions as fn
+from coilset.model.material.point.heun import ROD_METRIC, integrate
 
 SUBSTEP = 1e-3  # maximum strain increment of the simulation
 LARGE = 1e3  # residual of a law that cannot follow a test

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from coilset.meshes.errors import InputError
-from coilset.model.material.columns import read_columns
+from coilset.model.base.errors import InputError
+from coilset.model.material.law.columns import read_columns
 
 STRESSES = {"stress": "tension", "shear_stress": "torsion"}  # the column that says what is strained
 NEEDED = ("hours", "temperature", "loss")
@@ -52,11 +52,18 @@ def read_relaxation(path: str | Path) -> Readings:
     if len(table.rows) < FEWEST:
         raise InputError(f"has {len(table.rows)} readings; {FEWEST} are needed at least", "", table.path)
     hours, temperature, loss, stress = (table.numbers(name) for name in (*NEEDED, given[0]))
-    for name, values, low, high in (("hours", hours, 0.0, 1e7), ("temperature", temperature, 0.0, 2000.0),
-                                    ("loss", loss, -100.0, 100.0), (given[0], stress, 0.0, 1e4)):  # fmt: skip
+    for name, values, low, high in (
+        ("hours", hours, 0.0, 1e7),
+        ("temperature", temperature, 0.0, 2000.0),
+        ("loss", loss, -100.0, 100.0),
+        (given[0], stress, 0.0, 1e4),
+    ):
         wrong = (values <= low) | (values >= high)
         if wrong.any():
             k = int(np.argmax(wrong))
-            raise InputError(f"{values[k]:g} must lie between {low:g} and {high:g}",
-                             f"line {table.rows[k][0]}, column {name}", table.path)  # fmt: skip
+            raise InputError(
+                f"{values[k]:g} must lie between {low:g} and {high:g}",
+                f"line {table.rows[k][0]}, column {name}",
+                table.path,
+            )
     return Readings(STRESSES[given[0]], stress, temperature, hours, loss)

@@ -15,7 +15,7 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from coilset.model.material.creep_law import GAS_CONSTANT
+from coilset.model.material.creep.law import GAS_CONSTANT
 from coilset.model.material.identification.relaxation_tests import Readings
 
 # x at which τ is computed: down to a part in 1e9, and up to all but 1e-6

@@ -8,10 +8,10 @@ import numpy as np
 from scipy.optimize import OptimizeResult
 from scipy.stats import norm
 
-from coilset.meshes.errors import SolveError
-from coilset.model.material import functions as fn
+from coilset.model.base.errors import SolveError
 from coilset.model.material.identification.experiments import COMPONENTS, Test
 from coilset.model.material.identification.fitted_law import LARGE, FittedLaw, Variables, moved_by
+from coilset.model.material.law import functions as fn
 
 CONFIDENCE = 0.95
 Minimum = tuple[dict[str, float], OptimizeResult]  # variables, and the result of least squares

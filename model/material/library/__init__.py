@@ -5,10 +5,10 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from coilset.meshes.errors import InputError
-from coilset.model.entries.entry import shortened
-from coilset.model.material.file import read
-from coilset.model.material.law import Law
+from coilset.model.base.entry import shortened
+from coilset.model.base.errors import InputError
+from coilset.model.material.law.file import read
+from coilset.model.material.law.law import Law
 
 FOLDER = Path(str(resources.files(__package__)))
 

@@ -84,8 +84,10 @@ def curve(elastic_limit: float, proof_stress: float, strength: float, young_modu
         ValueError: if they are not in ascending order.
     """
     if not 0 < elastic_limit < proof_stress < strength:
-        raise ValueError(f"elastic limit {elastic_limit:g}, proof stress {proof_stress:g} and strength {strength:g} "
-                         "N/mm² must ascend")  # fmt: skip
+        raise ValueError(
+            f"elastic limit {elastic_limit:g}, proof stress {proof_stress:g} and strength {strength:g} "
+            "N/mm² must ascend"
+        )
     contraction = 2 * nu / young_modulus
     start = _true(elastic_limit, 0.0, contraction)
     proof = _true(proof_stress, PROOF_STRAIN, contraction)

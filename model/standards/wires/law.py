@@ -1,12 +1,12 @@
 """The law of a wire by its name: elasticity from the standard, hardening estimated from its minimum strength."""
 
-from coilset.meshes.errors import InputError
-from coilset.meshes.geometry import Spring
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.base.errors import InputError
 from coilset.model.case import Case
 from coilset.model.case.targets import check_known
 from coilset.model.material import library
-from coilset.model.material.file import MaterialFile
-from coilset.model.material.law import Law
+from coilset.model.material.law.file import MaterialFile
+from coilset.model.material.law.law import Law
 from coilset.model.standards.steel import STEEL, Elastic
 from coilset.model.standards.wires.hardening import Curve, curve
 from coilset.model.standards.wires.library import wire
@@ -57,23 +57,28 @@ def wire_law(name: str, diameter: float, spin: bool = False) -> Law:
     remark = ASSUMPTIONS.format(
         elastic=known.entry.elastic_limit.at(diameter) * strength,
         proof=known.entry.proof_stress.at(diameter) * strength,
-        strength=strength, uniform=100 * found.uniform_strain,
-    )  # fmt: skip
+        strength=strength,
+        uniform=100 * found.uniform_strain,
+    )
     data = {
         "name": f"{known.name}, {diameter:g} mm",
         "description": f"Spring wire {known.name} of {diameter:g} mm; hardening is an estimate",
         "source": "strength " + known.citation(known.entry.strength),
         "units": "N, mm, K",
         "validity": {"plastic_work": found.work(peak), "remark": remark},
-        "temperatures": [{
-            "temperature": ROOM_TEMPERATURE,
-            "elasticity": {"G": elastic.shear_modulus, "nu": poisson_ratio(elastic)},
-            "isotropic": {"k0_squared": start, "saturation": {
-                "b1": 0.0, "k1_squared": start, "k_inf_squared": saturation, "a4": found.rate}},
-            "kinematic": "none",
-            "non_normality": "none",
-        }],
-    }  # fmt: skip
+        "temperatures": [
+            {
+                "temperature": ROOM_TEMPERATURE,
+                "elasticity": {"G": elastic.shear_modulus, "nu": poisson_ratio(elastic)},
+                "isotropic": {
+                    "k0_squared": start,
+                    "saturation": {"b1": 0.0, "k1_squared": start, "k_inf_squared": saturation, "a4": found.rate},
+                },
+                "kinematic": "none",
+                "non_normality": "none",
+            }
+        ],
+    }
     return Law(MaterialFile.model_validate(data), spin)
 
 
@@ -114,6 +119,8 @@ def wire_diameter(spring: Spring) -> float:
     d = spring.wire_diameter(spring.breaks)
     low, high = float(d.min()), float(d.max())
     if high - low > SAME * high:
-        raise InputError(f"a wire of a standard has one diameter; this spring's goes from {low:.4g} to {high:.4g} mm",
-                         "material.wire")  # fmt: skip
+        raise InputError(
+            f"a wire of a standard has one diameter; this spring's goes from {low:.4g} to {high:.4g} mm",
+            "material.wire",
+        )
     return 0.5 * (low + high)

@@ -5,9 +5,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from coilset.meshes.errors import InputError
-from coilset.model.entries.entry import check_entries, shortened
-from coilset.model.entries.yaml import read_data
+from coilset.model.base.entry import check_entries, shortened
+from coilset.model.base.errors import InputError
+from coilset.model.base.yaml import read_data
 from coilset.model.standards.wires.file import WireFile, with_common
 from coilset.model.standards.wires.wire import Wire
 

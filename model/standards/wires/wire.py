@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from coilset.meshes.errors import InputError
+from coilset.model.base.errors import InputError
 from coilset.model.standards.steel import Elastic
 from coilset.model.standards.wires.file import Endurance, Sourced, WireEntry
 
@@ -34,8 +34,9 @@ class Wire:
         value = self.entry.strength.at(diameter)
         if value is None:
             ranges = " and ".join(f"{low:g} to {high:g}" for low, high in self.ranges)
-            raise InputError(f"the strength of '{self.name}' is not known at {diameter:g} mm; known for {ranges} mm",
-                             "material.wire")  # fmt: skip
+            raise InputError(
+                f"the strength of '{self.name}' is not known at {diameter:g} mm; known for {ranges} mm", "material.wire"
+            )
         return value
 
     @property

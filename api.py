@@ -1,0 +1,434 @@
+"""coilset from Python: a case, its run and results, the slice, sweeps, designs and materials.
+
+These names, their arguments and units are stable; modules under `coilset.model` may change with every version.
+Units are N, mm, MPa and K. Wrong input raises `InputError` in one line; a run that finds no equilibrium raises
+`SolveError`.
+
+>>> from coilset.api import Case, solve
+>>> case = Case(
+...     {
+...         "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0},
+...         "material": "ck15",
+...         "loading": [{"to": "block"}, {"to": {"force": 0}}],
+...     }
+... )
+>>> result = solve(case)
+>>> print(f"set {result.set:.1f} mm, {result.force_at(10):.0f} N at 10 mm")
+set 13.3 mm, 178 N at 10 mm
+"""
+
+import copy
+import json
+import os
+import shutil
+import tempfile
+import weakref
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+import xarray as xr
+import yaml
+from mpi4py import MPI
+
+from coilset.model.base.agreement import on_first_rank
+from coilset.model.base.errors import CoilsetError, InputError, SolveError, reading
+from coilset.model.case.case import Case as CheckedCase
+from coilset.model.case.case import check, read_case
+from coilset.model.case.settings import put
+from coilset.model.material import library
+from coilset.model.material.law.law import Law
+from coilset.model.material.programs import Program
+from coilset.model.material.programs import run as run_program
+from coilset.model.results.files.folder import make, refuse_results, write_summary
+from coilset.model.results.files.labelled import labelled
+from coilset.model.results.records.provenance import origin
+from coilset.model.results.records.record import Step
+from coilset.model.results.records.summary import summarise
+from coilset.model.results.run_files import write_run
+from coilset.model.run.analysis import Analysis
+from coilset.model.runtime.processes import usable_cores
+from coilset.model.runtime.threads import usual
+
+__all__ = [
+    "Case",
+    "CoilsetError",
+    "InputError",
+    "Material",
+    "Result",
+    "SolveError",
+    "Step",
+    "material",
+    "slice_",
+    "solve",
+    "sweep",
+]
+
+SEGMENTS = 100  # increments of a segment of a material test
+
+
+class Case:
+    """A spring, its material and its load program, checked.
+
+    Args:
+        entries: nested entries, as in a case file.
+        folder: what relative paths in them count from; default is the working directory.
+
+    Raises:
+        InputError: an entry is missing, unknown or wrong.
+
+    >>> case = Case(
+    ...     {
+    ...         "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0},
+    ...         "material": "ck15",
+    ...         "loading": [{"to": {"travel": 10}}],
+    ...     }
+    ... )
+    >>> case.entries["mesh"]["elements_per_turn"]
+    16.0
+    """
+
+    def __init__(self, entries: Mapping[str, Any], folder: str | Path = ".") -> None:
+        self._case: CheckedCase = check(copy.deepcopy(dict(entries)), Path(folder) / "case")
+
+    @classmethod
+    def _of(cls, case: CheckedCase) -> Self:
+        made = cls.__new__(cls)
+        made._case = case
+        return made
+
+    @classmethod
+    def read(cls, path: str | Path, settings: Sequence[str] = ()) -> Self:
+        """Read a case file.
+
+        Args:
+            path: the YAML file.
+            settings: texts `entry=value` that replace entries, as `--set` does.
+
+        Raises:
+            InputError: the file cannot be read, or an entry is wrong.
+
+        >>> Case.read("examples/ck15_presetting.yaml", ["spring.pitch=11"]).entries["spring"]["pitch"]
+        11.0
+        """
+        return cls._of(read_case(path, settings))
+
+    @property
+    def entries(self) -> dict[str, Any]:
+        """All entries with their defaults, as plain data."""
+        return self._case.model_dump(mode="json")
+
+    def change(self, entries: Mapping[str, Any]) -> Self:
+        """The case with other values of some entries, by their paths.
+
+        Raises:
+            InputError: an entry is wrong.
+
+        >>> case = Case.read("examples/ck15_presetting.yaml")
+        >>> case.change({"spring.wire_diameter": 4.5}).entries["spring"]["wire_diameter"]
+        4.5
+        """
+        data = self.entries
+        for entry, value in entries.items():
+            put(data, entry, value, entry)
+        return self._of(check(data))
+
+    def save(self, path: str | Path) -> None:
+        """Write the case, with all its defaults, as a YAML file.
+
+        >>> import tempfile
+        >>> file = tempfile.mkdtemp() + "/case.yaml"
+        >>> Case.read("examples/ck15_presetting.yaml").save(file)
+        >>> Case.read(file).entries["material"]
+        'ck15'
+        """
+        Path(path).write_text(yaml.safe_dump(self.entries, sort_keys=False, allow_unicode=True), encoding="utf-8")
+
+
+@dataclass(frozen=True)
+class Result:
+    """Results of a run or of a slice.
+
+    Attributes:
+        folder: where its files are; temporary until it is saved.
+        summary: numbers of summary.json; units are in the names.
+        data: labelled arrays with `units`: columns of history.csv and seats.csv over `step`, section points and the
+            wire's surface at the snapshots, numbers of the summary as `summary_…`.
+
+    >>> result = solve(Case.read("examples/ck15_presetting.yaml", ["loading=[{to: {travel: 5}}, {to: {force: 0}}]"]))
+    >>> result.data["force_N"].attrs["units"]
+    'N'
+    >>> print(f"{result.summary['force_max_N']:.0f} N")
+    161 N
+    """
+
+    folder: Path
+    summary: dict[str, Any] = field(repr=False)
+    data: xr.Dataset = field(repr=False)
+
+    @classmethod
+    def open(cls, folder: str | Path) -> Self:
+        """Open the results that a run has written.
+
+        Raises:
+            InputError: the folder holds no results, or a file cannot be read.
+
+        >>> import tempfile
+        >>> folder = tempfile.mkdtemp() + "/pressed"
+        >>> case = Case.read("examples/ck15_presetting.yaml", ["loading=[{to: {travel: 5}}]"])
+        >>> solve(case).save(folder)
+        >>> round(float(Result.open(folder).travel[-1]), 9)
+        5.0
+        """
+        data = labelled(folder)
+        with reading(Path(folder, "summary.json")):
+            summary = json.loads(Path(folder, "summary.json").read_text(encoding="utf-8"))
+        return cls(Path(folder), summary, data)
+
+    def save(self, folder: str | Path, overwrite: bool = False) -> None:
+        """Write all files of the results into a folder.
+
+        Raises:
+            InputError: it already holds results and `overwrite` is not given.
+
+        >>> import os, tempfile
+        >>> folder = tempfile.mkdtemp() + "/pressed"
+        >>> solve(Case.read("examples/ck15_presetting.yaml", ["loading=[{to: {travel: 5}}]"])).save(folder)
+        >>> sorted(os.listdir(folder))
+        ['fields', 'history.csv', 'points.nc', 'seats.csv', 'summary.json']
+        """
+        refuse_results(folder, overwrite)
+        shutil.copytree(self.folder, folder, dirs_exist_ok=True)
+
+    @property
+    def set(self) -> float | None:
+        """Loss of free length by the load program, mm; None if the spring was not released."""
+        return self.summary["set_mm"]
+
+    @property
+    def free_length(self) -> float | None:
+        """Free length after the load program, mm; None if the spring was not released."""
+        return self.summary["free_length_after_mm"]
+
+    @property
+    def travel(self) -> np.ndarray:
+        """Shortening at the end of each step, mm, shape (steps,)."""
+        return self.data["travel_mm"].to_numpy()
+
+    @property
+    def force(self) -> np.ndarray:
+        """Axial force at the end of each step, N, compression positive, shape (steps,)."""
+        return self.data["force_N"].to_numpy()
+
+    def force_at(self, travel: float, phase: int | None = None) -> float:
+        """Axial force at a travel, N, interpolated between the steps.
+
+        Args:
+            travel: shortening of the unloaded spring as wound, mm.
+            phase: number of the phase of the load program, from 0 on; default is the first that reaches the travel.
+
+        Raises:
+            InputError: the spring does not reach the travel in that phase.
+
+        >>> result = solve(Case.read("examples/ck15_presetting.yaml"))
+        >>> print(f"{result.force_at(10):.0f} N when pressed, {result.force_at(15, phase=1):.0f} N on release")
+        178 N when pressed, 71 N on release
+        """
+        of_step = self.data["phase"].to_numpy()
+        travels, forces = np.append(0.0, self.travel), np.append(0.0, self.force)
+        numbers = np.unique(of_step) if phase is None else [phase]
+        for number in numbers:
+            rows = np.flatnonzero(of_step == number) + 1  # the row before is the end of the phase before
+            if not len(rows):
+                break
+            x, y = (values[rows[0] - 1 : rows[-1] + 1] for values in (travels, forces))
+            if x.min() <= travel <= x.max():
+                order = np.argsort(x)
+                return float(np.interp(travel, x[order], y[order]))
+        where = "in no phase" if phase is None else f"not in phase {phase}"
+        raise InputError(f"{travel:g} mm is reached {where} of the load program", "travel")
+
+
+def solve(
+    case: Case, report: Callable[[Step], object] = lambda step: None, threads: int | None = None, comm: Any = None
+) -> Result:
+    """Run the load program of a case; collective.
+
+    Args:
+        case: Case.
+        report: called with each converged Step.
+        threads: of each rank; default is as `coilset solve`. No number depends on it.
+        comm: MPI communicator whose ranks share the spring; default is all.
+
+    Raises:
+        InputError: the spring cannot be built, or cannot do what its load program requires.
+        SolveError: no equilibrium was found.
+
+    >>> case = Case.read("examples/ck15_presetting.yaml")
+    >>> result = solve(case)
+    >>> print(f"set {result.set:.2f} mm of {result.summary['free_length_before_mm']:.0f} mm")
+    set 13.28 mm of 35 mm
+    """
+    comm = MPI.COMM_WORLD if comm is None else comm
+    analysis = Analysis(case._case, comm, threads=threads or usual(comm.size))
+    analysis.run(report)
+
+    def write(folder: Path) -> None:
+        summary = summarise(analysis.setup, analysis.result)
+        write_run(folder, analysis.setup, analysis.result, summary, origin(case._case))
+
+    result = on_first_rank(comm, lambda: _temporary(write))
+    copied = comm.bcast(result)
+    return result or copied  # the folder is removed with rank 0's
+
+
+def _temporary(write: Callable[[Path], object]) -> Result:
+    """The results that `write` puts into a folder, which is removed with the last reference to them."""
+    folder = Path(tempfile.mkdtemp(prefix="coilset-"))
+    try:
+        write(folder)
+        result = Result.open(folder)
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+    weakref.finalize(result, shutil.rmtree, folder, ignore_errors=True)
+    return result
+
+
+def slice_(case: Case, section: str | None = None) -> Result:
+    """Run the slice of a cylindrical spring: one section of its wire as a 3D body, without ends and seats.
+
+    Args:
+        case: Case; its mesh, seats and solver are not used.
+        section: cross-section in words or the CSV file of its outline, as for `coilset slice --section`; default is
+            round wire.
+
+    Raises:
+        InputError: the spring is not cylindrical, or its load program is one in time or goes below block.
+        SolveError: no equilibrium was found.
+
+    >>> case = Case.read("examples/ck15_presetting.yaml", ["loading=[{to: {travel: 5}, steps: 4}]"])
+    >>> print(f"{slice_(case).force[-1]:.0f} N")
+    162 N
+    """
+    from coilset.meshes.section_shapes import parse
+    from coilset.model.slice.analysis import SliceAnalysis
+    from coilset.model.slice.output import write_fields
+    from coilset.model.slice.summary import summarise as summarise_slice
+    from coilset.model.slice.summary import write_history
+
+    analysis = SliceAnalysis(case._case, parse(section) if section else None)
+    analysis.run()
+
+    def write(folder: Path) -> None:
+        write_history(folder, analysis.result.steps)
+        write_fields(folder, analysis)
+        write_summary(folder, {**summarise_slice(analysis), "origin": origin(case._case)})
+
+    return _temporary(write)
+
+
+def sweep(plan: str | Path, folder: str | Path, jobs: int | None = None, overwrite: bool = False) -> xr.Dataset:
+    """Run the cases of a sweep file that its folder does not hold yet, in processes of this machine.
+
+    Args:
+        plan: the sweep file.
+        folder: the sweep's folder: journal and data set; cases that it holds already are not run again.
+        jobs: number of processes; default is one for each core.
+        overwrite: discard the cases that the folder holds.
+
+    Returns:
+        Inputs, responses, characteristic and status over `case`, with `units`; failed cases have a `reason`.
+
+    Raises:
+        InputError: a file is wrong; then nothing is run.
+
+    >>> import tempfile
+    >>> data = sweep("examples/sweeps/preset_height.yaml", tempfile.mkdtemp())
+    >>> bool((data["status"] == "done").all())
+    True
+    """
+    from coilset.model.sweep import dataset
+    from coilset.model.sweep.journal import Journal
+    from coilset.model.sweep.plan import Plan
+    from coilset.model.sweep.pools import Workers
+    from coilset.model.sweep.run import finished, missing, run
+
+    checked, folder = Plan(plan), Path(folder)
+    make(folder)
+    path = folder / "journal.jsonl"
+    if overwrite:
+        path.unlink(missing_ok=True)
+    with (
+        Workers(jobs or usable_cores(), dict(os.environ)) as workers,
+        workers.pool(folder / "workers.log") as pool,
+        closing(Journal(path)) as journal,
+    ):
+        run(checked, missing(checked, finished(path, retry=False)), pool, journal)
+    data = dataset.collect(checked, path)
+    dataset.write(folder / "sweep.nc", data)
+    return data
+
+
+@dataclass(frozen=True)
+class Material:
+    """A material of the library, of a file or a named wire.
+
+    Attributes:
+        name, source: as its file gives them.
+        E, G, nu: Young's modulus and shear modulus, MPa, and Poisson's ratio, at the first temperature.
+
+    >>> print(f"G = {material('ck15').G:.0f} MPa")
+    G = 84000 MPa
+    """
+
+    name: str
+    source: str
+    E: float
+    G: float
+    nu: float
+    _law: Law = field(repr=False, compare=False)
+
+    def tension(self, strain: Sequence[float]) -> np.ndarray:
+        """Stress at the end of each segment of a uniaxial test, MPa.
+
+        Args:
+            strain: logarithmic strains that the bar is driven to, one after the other, shape (n,).
+
+        >>> ck15 = material("ck15")
+        >>> ck15.tension([0.0008, 0.001]).round(1).tolist()  # it yields at sqrt(1.5 · 22480) = 183.6 MPa
+        [173.4, 184.9]
+        """
+        return self._driven("eps11", "stress", strain, 0)
+
+    def torsion(self, shear: Sequence[float]) -> np.ndarray:
+        """Shear stress at the end of each segment of a torsion test of a thin tube, MPa.
+
+        Args:
+            shear: engineering shear strains, shape (n,).
+
+        >>> material("ck15").torsion([0.001]).round(1).tolist()
+        [84.0]
+        """
+        return self._driven("gamma12", "stress", shear, 1)
+
+    def _driven(self, strain: str, name: str, values: Sequence[float], component: int) -> np.ndarray:
+        steps = [{"to": {strain: float(value)}, "increments": SEGMENTS} for value in values]
+        history = run_program(self._law, Program.model_validate({"name": "test", "steps": steps}))
+        return getattr(history, name)[SEGMENTS::SEGMENTS, component]
+
+
+def material(name: str | Path) -> Material:
+    """A material by the name of the library or the path of its file.
+
+    Raises:
+        InputError: there is no such material, or its file is wrong.
+
+    >>> material("voce").name
+    'voce'
+    """
+    law = library.load(name)
+    return Material(law.name, law.source, law.E, law.G, law.nu, law)

@@ -1,0 +1,1 @@
+"""What every room may use: errors, entries of files, warnings, compatibility with versions of DOLFINx."""

@@ -1,0 +1,1 @@
+"""Figures as PNG files, and the spring in 3D."""

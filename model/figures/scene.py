@@ -1,0 +1,136 @@
+"""The spring in 3D: its wire as a tube at several moments, coloured by the stress in it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pyvista as pv
+import pyvista.plotting
+
+from coilset.model.base.style import QUARTERED, round_end
+from coilset.model.results.files.folder import whole
+from coilset.model.results.records.labels import plain
+from coilset.model.results.records.record import Snapshot
+
+POINTS_PER_ELEMENT = 6
+WIDTH, LEAST_HEIGHT, MOST_HEIGHT = 1500, 620, 1500  # of the picture, pixels
+LABELS, BAR = 100, 130  # pixels above the springs and below them
+COLUMN = 320  # pixels per label
+ABOVE = 0.22  # tangent of the angle of view above the horizontal
+
+
+@dataclass(frozen=True)
+class Arrangement:
+    """Arrangement of springs in a picture so that all of them fit, however tall.
+
+    Attributes:
+        height: of the picture, pixels.
+        scale: pixels per millimetre.
+        column: distance from spring to spring, mm.
+    """
+
+    height: int
+    scale: float
+    column: float
+
+    @classmethod
+    def of(cls, across: float, tall: float, springs: int) -> "Arrangement":
+        """That of a number of springs of the given width and height, mm."""
+        seen = tall + ABOVE * across
+        scale = min(WIDTH / (1.35 * across * springs), (MOST_HEIGHT - LABELS - BAR) / seen)
+        column = max(1.35 * across, min(COLUMN, WIDTH / springs) / scale)
+        return cls(max(LEAST_HEIGHT, round(seen * scale) + LABELS + BAR), scale, column)
+
+
+def tube(x: np.ndarray, radius: np.ndarray, values: np.ndarray, name: str) -> pv.PolyData:
+    """A smooth tube through the stations; `radius` and `values` per station, shape (n + 1,)."""
+    line = pv.Spline(x, POINTS_PER_ELEMENT * (len(x) - 1) + 1)
+    along = np.linspace(0.0, 1.0, line.n_points)
+    length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(x, axis=0), axis=1))])
+    line["radius"] = np.interp(along, length / length[-1], radius)
+    line[name] = np.interp(along, length / length[-1], values)
+    return line.tube(scalars="radius", absolute=True, n_sides=24)
+
+
+def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.ndarray) -> None:
+    """Draw the snapshots side by side, coloured by the maximum shear stress in each cross-section, surface included.
+
+    Args:
+        path: PNG to write.
+        snapshots: Snapshots from left to right.
+        wire_radius: of the elements, shape (n,), mm.
+    """
+    name = "maximum shear stress in the section in MPa"
+    radius = 0.5 * (np.append(wire_radius, wire_radius[-1]) + np.append(wire_radius[0], wire_radius))
+    x = np.concatenate([shot.x for shot in snapshots])
+    low, high = float(x[:, 2].min() - radius.max()), float(x[:, 2].max() + radius.max())
+    across = float(np.ptp(x[:, :2], axis=0).max()) + 2.0 * float(radius.max())
+    aside = 0.5 * float(x[:, 0].min() + x[:, 0].max())  # a buckled spring deflects to one side
+    view = Arrangement.of(across, high - low, len(snapshots))
+    end = round_end(max(float(s.shear.max()) for s in snapshots), QUARTERED)
+    force = max(abs(shot.force) for shot in snapshots)
+    middle = aside + 0.5 * view.column * (len(snapshots) - 1)
+    plotter = pv.Plotter(off_screen=True, window_size=(WIDTH, view.height))
+    plotter.set_background("white")
+    for place, shot in enumerate(snapshots):
+        stress = shot.shear.max(axis=(1, 2))
+        values = 0.5 * (np.append(stress, stress[-1]) + np.append(stress[0], stress))
+        mesh = tube(shot.x + np.array([place * view.column, 0.0, 0.0]), radius, values, name)
+        plotter.add_mesh(
+            mesh,
+            scalars=name,
+            clim=(0.0, end),
+            cmap="viridis",
+            smooth_shading=True,
+            scalar_bar_args=_bar(view, name),
+        )
+        foot = [aside + place * view.column, 0.0, high + (0.5 * ABOVE * across + 15.0 / view.scale)]
+        plotter.add_point_labels(
+            [foot],
+            [caption(shot, force)],
+            font_size=20,
+            text_color="black",
+            shape=None,
+            show_points=False,
+            always_visible=True,
+            justification_horizontal="center",
+        )
+    centre, away = 0.5 * (low + high) + 0.5 * (LABELS - BAR) / view.scale, 10.0 * (high - low + across)
+    plotter.camera_position = [(middle, -away, centre + ABOVE * away), (middle, 0.0, centre), (0, 0, 1)]
+    plotter.camera.parallel_projection = True
+    plotter.camera.parallel_scale = 0.5 * view.height / view.scale
+    try:
+        with whole(path) as partial:
+            plotter.screenshot(str(partial))
+    finally:
+        plotter.close()
+
+
+def caption(shot: Snapshot, greatest: float) -> str:
+    """Name, height and force of a snapshot, the force of a pulled spring with its sign.
+
+    Args:
+        shot: Snapshot.
+        greatest: magnitude of the greatest force of all that are shown, N; small parts of it count as zero.
+    """
+    bears = shot.force if abs(shot.force) > 1e-6 * greatest else 0.0
+    return f"{shot.name}\n{plain(shot.height, 5)} mm, {plain(bears)} N"
+
+
+def _bar(view: Arrangement, title: str) -> dict[str, Any]:
+    """The colour bar, of the same size in all pictures; an empty line separates its title from the numbers."""
+    bar = BAR - 28.0
+    return {
+        "title": f"{title}\n",
+        "color": "black",
+        "n_labels": 5,
+        "fmt": "%.5g",
+        "title_font_size": 17,
+        "label_font_size": 16,
+        "position_x": 0.3,
+        "width": 0.4,
+        "position_y": 12 / view.height,
+        "height": bar / view.height,
+    }

@@ -1,0 +1,87 @@
+"""Time series for ParaView: the centre line, the wire as a closed tube, and the section points."""
+
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import meshio
+import numpy as np
+
+from coilset.model.figures.wire import moments, section_points, tubes
+from coilset.model.results.files.folder import make, whole
+from coilset.model.results.files.opened import Run
+
+PER_ELEMENT = 2  # rings of the tube
+Series = Iterable[tuple[float, meshio.Mesh]]
+
+
+def write_series(run: Run) -> list[Path]:
+    """Write fields/line.pvd, wire.pvd and sections.pvd, each with a file for each of its times.
+
+    Times are numbers of steps; the section points are known at the start and where phases end.
+
+    Returns:
+        The three files.
+
+    Raises:
+        CoilsetError: if one cannot be written.
+    """
+    folder = run.folder / "fields"
+    make(folder)
+    parts = {"line": _lines(run), "wire": _wires(run), "sections": _sections(run)}
+    return [_write(folder, name, series) for name, series in parts.items()]
+
+
+def _lines(run: Run) -> Iterator[tuple[float, meshio.Mesh]]:
+    """The stations, with the greatest shear on the surface of each element."""
+    shown, n = moments(run), run.data.sizes["station"] - 1
+    cells = [("line", np.stack([np.arange(n), np.arange(1, n + 1)], axis=1))]
+    for time, x, shear in zip(_times(run), shown.x, shown.shear, strict=True):
+        data = {"surface_shear_max_MPa": [np.abs(shear).max(axis=1).astype(float)]}
+        yield time, meshio.Mesh(x, cells, cell_data=data)
+
+
+def _wires(run: Run) -> Iterator[tuple[float, meshio.Mesh]]:
+    """A closed surface: quadrilaterals around the wire and triangles over its tips."""
+    shown = moments(run)
+    rings = PER_ELEMENT * (run.data.sizes["station"] - 1) + 1
+    places, stress = tubes(run, shown, rings)
+    around = places.shape[2] - 1
+    number = np.arange(rings * around).reshape(rings, around)
+    following = np.roll(number, -1, axis=1)
+    sides = np.stack([number[:-1], following[:-1], following[1:], number[1:]], axis=-1).reshape(-1, 4)
+    fan = np.stack([np.zeros(around - 2, int), np.arange(2, around), np.arange(1, around - 1)], axis=-1)
+    cells = [("quad", sides), ("triangle", np.concatenate([number[0][fan], number[-1][fan[:, ::-1]]]))]
+    for time, place, value in zip(_times(run), places, stress, strict=True):
+        data = {"shear_MPa": value[:, :-1].ravel().astype(float)}
+        yield time, meshio.Mesh(place[:, :-1].reshape(-1, 3), cells, point_data=data)
+
+
+def _sections(run: Run) -> Iterator[tuple[float, meshio.Mesh]]:
+    """All section points, with the components of their state."""
+    names, phase = [str(name) for name in run.data["component"].values], run.data["phase"].values
+    ends = np.append(np.flatnonzero(np.diff(phase)), len(phase) - 1) if len(phase) else np.empty(0, int)
+    times = [0.0, *run.data["step"].values[ends].astype(float)]
+    for snapshot, time in enumerate(times[: run.data.sizes["snapshot"]]):
+        places = section_points(run, snapshot).reshape(-1, 3)
+        state = run.data["history"].values[snapshot].reshape(-1, len(names))
+        cells = [("vertex", np.arange(len(places))[:, None])]
+        yield time, meshio.Mesh(places, cells, point_data=dict(zip(names, state.T, strict=True)))
+
+
+def _times(run: Run) -> list[float]:
+    return [0.0, *run.data["step"].values.astype(float)] if "step_position" in run.data else [0.0]
+
+
+def _write(folder: Path, name: str, series: Series) -> Path:
+    """A file for each time, and the collection that names them (ParaView's .pvd)."""
+    top = ET.Element("VTKFile", type="Collection", version="0.1")
+    collection = ET.SubElement(top, "Collection")
+    for number, (time, mesh) in enumerate(series):
+        file = f"{name}-{number:04d}.vtu"
+        with whole(folder / file) as path:
+            meshio.write(path, mesh)
+        ET.SubElement(collection, "DataSet", timestep=f"{time:g}", part="0", file=file)
+    with whole(folder / f"{name}.pvd") as path:
+        ET.ElementTree(top).write(path, encoding="utf-8", xml_declaration=True)
+    return folder / f"{name}.pvd"

@@ -1,0 +1,147 @@
+"""The wire as a tube: its surface in space, and the stress on it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from coilset.model.results.files.opened import Run
+from coilset.model.results.records.labels import plain
+from coilset.model.section.surface import Inside
+
+GAUSS = 0.5 / np.sqrt(3.0)  # from the middle of an element to its sections, over its length
+
+
+def inside(run: Run) -> Inside:
+    """Where the inside of the coil is on the surface."""
+    return Inside.of(bool(run.data["curvature"].values.any()), hand(run))
+
+
+def hand(run: Run) -> int:
+    """+1 of a right-handed coil, −1 of a left-handed one, by its wire: the file of a measured one does not say it."""
+    x, y = run.data["position"].values[0, :, :2].T
+    return 1 if np.sum(x[:-1] * y[1:] - y[:-1] * x[1:]) > 0.0 else -1  # twice the area that the radius passes over
+
+
+def shear_around(run: Run) -> np.ndarray:
+    """Shear stress about the wire's axis on its surface, positive as in a compressed spring, MPa.
+
+    Returns:
+        Shape (snapshots, elements, 2, angles); the angles are those of the data.
+    """
+    return inside(run).shear_around(run.data["surface"].values, tuple(map(str, run.data["component"].values)))
+
+
+def section_turns(run: Run) -> np.ndarray:
+    """Turns of the sections at which stress is known, shape (elements, 2)."""
+    turn = run.data["turn"].values
+    middle, length = 0.5 * (turn[1:] + turn[:-1]), np.diff(turn)
+    return middle[:, None] + length[:, None] * np.array([-GAUSS, GAUSS])
+
+
+@dataclass(frozen=True)
+class Moments:
+    """The wire at the start and after steps.
+
+    Attributes:
+        labels: what moment each is.
+        x: stations, shape (moments, n + 1, 3), mm.
+        shear: `shear_around`, mean of an element's sections, shape (moments, n, angles), MPa.
+    """
+
+    labels: tuple[str, ...]
+    x: np.ndarray
+    shear: np.ndarray
+
+
+def moments(run: Run, most: int | None = None) -> Moments:
+    """The start and every step.
+
+    Args:
+        run: opened results.
+        most: so many at most, evenly chosen; the ends of phases are among them however many they are.
+    """
+    data = run.data
+    labels, x, shear = ["start"], data["position"].values[:1], shear_around(run)[:1].mean(axis=2)
+    steps = data.sizes["step"] if "step_position" in data else 0
+    kept = _kept(data["phase"].values, steps if most is None else most - 1) if steps else np.empty(0, int)
+    if len(kept):
+        x = np.concatenate([x, data["step_position"].values[kept]])
+        shear = np.concatenate([shear, data["step_shear"].values[kept]])
+    names = [*run.snapshots[1:], "last equilibrium"]
+    for k in kept:
+        step, phase, travel, force = (float(data[name].values[k]) for name in ("step", "phase", "travel_mm", "force_N"))
+        to, bears = names[min(int(phase), len(names) - 1)], round(force, 6) + 0.0
+        labels.append(f"step {step:g}, to {to}: {plain(travel)} mm of travel, {plain(bears)} N")
+    return Moments(tuple(labels), x, shear)
+
+
+def _kept(phase: np.ndarray, most: int) -> np.ndarray:
+    """Places of steps: the last one of each phase, and of the others evenly as many as there is room for."""
+    ends = np.append(np.flatnonzero(np.diff(phase)), len(phase) - 1)
+    others = np.setdiff1d(np.arange(len(phase)), ends)
+    room = max(min(most - len(ends), len(others)), 0)
+    some = others[np.linspace(0, len(others) - 1, room).round().astype(int)] if room else others[:0]
+    return np.union1d(ends, some)
+
+
+def tubes(run: Run, shown: Moments, rings: int) -> tuple[np.ndarray, np.ndarray]:
+    """Surface of the wire at moments, and the stress there.
+
+    The angle about the wire is counted from the inside of the coil towards the binormal of the centre line, as in
+    sections that include the curvature; both directions are taken from the deformed centre line.
+
+    Args:
+        run: opened results.
+        shown: Moments.
+        rings: along the wire.
+
+    Returns:
+        Places, shape (moments, rings, angles + 1, 3), mm, and `shear_around` there.
+    """
+    turn = run.data["turn"].values
+    at = np.linspace(turn[0], turn[-1], rings)
+    middle = 0.5 * (turn[1:] + turn[:-1])
+    radius = np.interp(at, middle, run.data["wire_radius"].values)
+    angle = np.radians(np.append(run.data["angle"].values, 360.0)) + inside(run).angle
+    places = np.stack([_tube(CubicSpline(turn, x, axis=0), at, radius, angle) for x in shown.x])
+    along = np.clip(np.searchsorted(middle, at) - 1, 0, len(middle) - 2)
+    part = np.clip((at - middle[along]) / (middle[along + 1] - middle[along]), 0.0, 1.0)[:, None]
+    stress = (1.0 - part) * shown.shear[:, along] + part * shown.shear[:, along + 1]
+    return places, np.concatenate([stress, stress[..., :1]], axis=-1)
+
+
+def closed(places: np.ndarray, stress: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Tubes of `tubes` with a disk over each end: two more rings, of no radius, with the stress of the ring beside."""
+    first, last = (
+        np.broadcast_to(places[:, [end], :-1].mean(axis=2, keepdims=True), places[:, [end]].shape) for end in (0, -1)
+    )
+    values = np.concatenate([stress[:, :1], stress, stress[:, -1:]], axis=1)
+    return np.concatenate([first, places, last], axis=1), values
+
+
+def section_points(run: Run, snapshot: int) -> np.ndarray:
+    """Where the section points lie in space at a snapshot, shape (elements, 2, points, 3), mm."""
+    turn, at = run.data["turn"].values, section_turns(run)
+    line = CubicSpline(turn, run.data["position"].values[snapshot], axis=0)
+    centre, inwards, binormal = (values.reshape(*at.shape, 1, 3) for values in _directions(line, at.ravel()))
+    y, z = (run.data[name].values[..., None] for name in "yz")
+    turned = np.cos(inside(run).angle)
+    return centre + turned * (y * inwards + z * binormal)
+
+
+def _tube(line: CubicSpline, at: np.ndarray, radius: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Surface about a centre line, shape (rings, angles, 3)."""
+    centre, inwards, binormal = _directions(line, at)
+    ring = np.cos(angle)[:, None] * inwards[:, None] + np.sin(angle)[:, None] * binormal[:, None]
+    return centre[:, None] + radius[:, None, None] * ring
+
+
+def _directions(line: CubicSpline, at: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Places on a centre line, and unit vectors across it: towards the spring's axis, and the binormal."""
+    centre, along = line(at), line(at, 1)
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    inwards = -centre * [1.0, 1.0, 0.0]
+    inwards -= np.sum(inwards * along, axis=1)[:, None] * along
+    inwards /= np.linalg.norm(inwards, axis=1)[:, None]
+    return centre, inwards, np.cross(along, inwards)

@@ -1,0 +1,1 @@
+"""What coiling, stress relief and peening leave in the wire."""

@@ -1,0 +1,168 @@
+"""The past of a rod's wire: coiled, relieved or peened, it is not free of stress before its first load."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from mpi4py import MPI
+
+from coilset.meshes.springs.past import Peening, Relief
+from coilset.meshes.springs.placement import STRAIGHT
+from coilset.meshes.springs.spring import SpringSpec
+from coilset.model.base.errors import InputError, SolveError
+from coilset.model.base.warning import Warning
+from coilset.model.manufacture.coiling import coil, grind
+from coilset.model.manufacture.peening import Layer, peen, peening_warnings
+from coilset.model.material.creep.creep import Creeping
+from coilset.model.material.creep.law import CreepLaw
+from coilset.model.material.law.functions import HEATING, elasticity
+from coilset.model.rod.rod import Rod
+from coilset.model.section.fibres import FibreSections
+from coilset.model.section.segment import WHOLE
+from coilset.model.section.wire import SectionLaw
+
+DIGITS = 9  # to which sections must agree to have the same past
+INTERVALS = 12  # of a stress relief, equal ones of log(1 + t/t₁), with t₁ = FIRST of it
+FIRST = 1e-6
+START = "point_state", "surface_state"
+
+
+@dataclass(frozen=True)
+class _Past:
+    """What all sections of a rod went through: the law without time, that of the relief's intervals, the layer."""
+
+    law: SectionLaw
+    coiled: bool
+    relief: tuple[Creeping, ...]
+    layer: Layer | None
+
+
+def give_past(rod: Rod, spring: object) -> float | None:
+    """Give all sections the stresses that the wire's past leaves, if it has one; collective.
+
+    Args:
+        rod: with sections of fibres whose placement knows the wire's curvature; its equilibrium is replaced, without a
+            force on any section.
+        spring: the entries of a case.
+
+    Returns:
+        Mean diameter to which the wire was coiled at mid-wire, before it sprang back, mm; None if it was not coiled.
+
+    Raises:
+        InputError: if the wire cannot be coiled to the spring, not be relieved or not be peened so.
+    """
+    if not isinstance(spring, SpringSpec) or not (spring.made_by or spring.peening):
+        return None
+    sections = rod.sections
+    assert isinstance(sections, FibreSections)
+    state = {name: rod.state[name].equilibrium for name in START}
+    law = sections.law_over_time.over(state, state)
+    law = _cold(law) if isinstance(law, np.ndarray) else law
+    past = _Past(
+        law,
+        bool(spring.made_by),
+        _relief(rod, spring.relieved),
+        None if spring.peening is None else _layer(rod, spring.peening),
+    )
+    tight, problem = np.zeros((2, *rod.placement.curvature.shape)), None
+    try:
+        _through(rod, past, tight)
+    except SolveError as error:
+        problem = str(error)
+    problem = next((one for one in rod.mesh.comm.allgather(problem) if one), None)
+    if problem:
+        if not past.coiled:
+            raise InputError(f"the section finds no balance with the layer: {problem}", "spring.peening")
+        wanted = "'coiling' needs a wire that yields and keeps its shape"
+        raise InputError(f"{wanted}: {problem}", "spring.made_by")
+    rod.state.restore()
+    rod.rest()
+    ordered = rod.mesh.comm.bcast(rod.line.in_order(np.moveaxis(tight, 0, -1)))
+    curvature, torsion = ordered[len(ordered) // 2, 0]
+    return float(2.0 * curvature / (curvature**2 + torsion**2)) if past.coiled else None
+
+
+def past_warnings(rod: Rod, spring: object) -> list[Warning]:
+    """Warnings about the wire's past; collective."""
+    if not isinstance(spring, SpringSpec) or spring.peening is None:
+        return []
+    return peening_warnings(_layer(rod, spring.peening), rod.rule, rod.largest_radius)
+
+
+def _layer(rod: Rod, peening: Peening) -> Layer:
+    """The layer's eigenstrain, ε* = −σ/E of a given stress.
+
+    Raises:
+        InputError: if it is thicker than the wire's radius.
+    """
+    radius = float(rod.mesh.comm.allreduce(rod.radius.min(initial=np.inf), op=MPI.MIN))
+    if peening.depth[-1] > radius:
+        raise InputError(
+            f"goes down to {peening.depth[-1]:g} mm, below the wire's axis at {radius:g} mm", "spring.peening.depth"
+        )
+    if peening.strain is not None:
+        return Layer(np.array(peening.depth), np.array(peening.strain))
+    E, _, _ = elasticity(rod.parameters, rod.temperature)
+    return Layer(np.array(peening.depth), -np.array(peening.stress) / E)
+
+
+def _relief(rod: Rod, relief: Relief | None) -> tuple[Creeping, ...]:
+    """The law over the intervals of a stress relief; heating and cooling take no time."""
+    if relief is None:
+        return ()
+    if rod.law.creep is None:
+        raise InputError(
+            f"'{rod.law.name}' does not creep, so that time relieves nothing; give a material with creep",
+            "spring.relieved",
+        )
+    try:
+        warm = rod.law.known(relief.temperature)
+    except InputError as error:
+        raise InputError(error.problem, "spring.relieved.temperature") from None
+    hours = relief.minutes / 60.0 * FIRST * np.expm1(np.linspace(0.0, 1.0, INTERVALS + 1) * np.log1p(1.0 / FIRST))
+    creep = CreepLaw(rod.law.creep, _cold(rod.parameters))
+    clocks = [creep.clock(0.0, rod.temperature)]
+    for time, temperature in (*((float(time), warm) for time in hours), (float(hours[-1]), rod.temperature)):
+        clocks.append(creep.clock(time, temperature, clocks[-1]))
+    return tuple(creep.over(before, after) for before, after in pairwise(clocks))
+
+
+def _cold(parameters: np.ndarray) -> np.ndarray:
+    """The law's parameters without heating by plastic work: the wire's past leaves it as warm as the spring."""
+    found = parameters.copy()
+    found[HEATING] = 0.0
+    return found
+
+
+def _through(rod: Rod, past: _Past, tight: np.ndarray) -> None:
+    """Write the states of all sections, and their curvature and torsion before they sprang back."""
+    place, sections = rod.placement, rod.sections
+    assert isinstance(sections, FibreSections)
+    radius = np.broadcast_to(rod.radius[:, None], place.curvature.shape)
+    ground = np.where(np.isfinite(place.flat[..., :1]), place.flat, [WHOLE, 0.0, 0.0])
+    wires = np.concatenate([np.stack([radius, place.curvature, place.torsion], axis=-1), ground], axis=-1)
+    wires = wires.reshape(-1, wires.shape[-1])
+    size = np.abs(wires).max(axis=0, initial=0.0)
+    alike = np.round(wires / np.where(size > 0.0, size, 1.0), DIGITS)
+    _, first, which = np.unique(alike, axis=0, return_index=True, return_inverse=True)
+    virgin, guess = sections.initial_state()["point_state"], None
+    points, surface = (rod.state[name].equilibrium for name in START)
+    for k, (radius, curvature, torsion, *_) in enumerate(wires[first]):
+        states = virgin[0, 0, :1]
+        here = np.nonzero((which == k).reshape(place.curvature.shape))
+        left = sections.cut_points(here[0][0], here[1][0])  # of a ground section
+        rim = None if left is None else left[0][:2].T / radius
+        if past.coiled and curvature >= STRAIGHT:
+            if guess is not None:  # as the last one, turned by as much more as this one is
+                guess = guess[0] + curvature - wires[first][k - 1, 1], guess[1] + torsion - wires[first][k - 1, 2]
+            coiled = coil(
+                past.law, rod.rule, radius, curvature, torsion, states, sections.curved, guess, past.relief, rim
+            )
+            guess, states = coiled.turned, np.concatenate([coiled.points, coiled.surface])
+            tight[0][here], tight[1][here] = coiled.curvature, coiled.torsion
+        if past.layer is not None:
+            states = peen(past.law, rod.rule, radius, curvature, sections.curved, states, past.layer, rim)
+        if left is not None and len(states) > 1:
+            states = grind(past.law, *left, radius, sections.curved, states[len(rod.rule) :])
+        if len(states) > 1:
+            points[here], surface[here] = np.split(states, [len(rod.rule)])

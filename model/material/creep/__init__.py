@@ -1,0 +1,1 @@
+"""Creep, and yield that depends on the rate."""

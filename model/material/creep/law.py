@@ -1,0 +1,113 @@
+"""The constants of creep from a material file, in the form for the kernels of `creep`, and the scaling of time.
+
+Time is scaled with temperature (Orr, Sherby and Dorn, Trans. ASM 46, 1954): an hour at T corresponds to
+
+    exp(−Q/R (1/T − 1/T₀))
+
+hours at the temperature T₀ of the constants. Where plastic work heats the points, each scales its own hours with its
+own temperature, which changes between the steps (`rod/heat.py`).
+"""
+
+import math
+
+import numpy as np
+
+from coilset.model.material.creep.creep import Creeping
+from coilset.model.material.creep.flow import SCALED
+from coilset.model.material.law.file import Creep
+from coilset.model.material.law.functions import B1, K0, N_ROWS, NODES, ROW_LENGTH, ROWS_START
+
+GAS_CONSTANT = 8.31446261815324  # J/(mol K)
+# The clock of a body: hours since the start, temperature (K), and the equivalent hours at T₀.
+HOURS, TEMPERATURE, WORTH = range(3)
+# What is_resolved asks for. Of an error of third order in the creep strain, equal halves remove three quarters; where
+# they remove less than a third of that, it is told three times too small. SLOWING is the logarithm of the factor by
+# which creep may become slower: up to 1.7, holds in one to six steps tell 0.6 of their error and more, with three
+# laws; from 2.0 on some tell a fifth of it, or another sign. Where it becomes slower by STEADY or less there is hardly
+# an error, however the halves share the creep.
+LEAST_REMOVED, SLOWING, STEADY = 0.25, 1.8, 0.2
+CREEP_COLUMNS = ("T", "c")  # what creep adds to a point's state: temperature, K, and equivalent creep strain
+
+
+class CreepLaw:
+    """Creep of a material.
+
+    Args:
+        data: the checked entries.
+        plastic: parameter array of the law, `Law.parameters()`.
+        own: has each point a temperature of its own? Otherwise all have the clock's.
+    """
+
+    def __init__(self, data: Creep, plastic: np.ndarray, own: bool = False) -> None:
+        self.data, self.own, self._plastic, self._elastic = data, own, plastic, without_yield(plastic)
+        self._gauss, self._weights = np.polynomial.legendre.leggauss(12)
+
+    def worth(self, hours: float, start: float, end: float) -> float:
+        """Equivalent hours at T₀ of hours in which the temperature changes linearly between two values, K."""
+        temperatures = start + 0.5 * (1.0 + self._gauss) * (end - start)
+        factors = np.exp(
+            -self.data.activation_energy / GAS_CONSTANT * (1.0 / temperatures - 1.0 / self.data.temperature)
+        )
+        return hours * 0.5 * float(self._weights @ factors)
+
+    def clock(self, hours: float, temperature: float, before: np.ndarray | None = None) -> np.ndarray:
+        """The clock, shape (3,), at a time and temperature; the temperature has changed linearly since `before`."""
+        if before is None:
+            return np.array([hours, temperature, 0.0])
+        passed = float(hours - before[HOURS])
+        worth = passed if self.own else self.worth(passed, float(before[TEMPERATURE]), temperature)
+        return np.array([hours, temperature, before[WORTH] + worth])
+
+    def over(self, start: np.ndarray, end: np.ndarray) -> Creeping:
+        """The law over the time between two clocks."""
+        data, power = self.data, self.data.time_exponent
+        time = float(end[WORTH] - start[WORTH])
+        if data.hardening == "time":
+            time, power = float(end[WORTH] ** power - start[WORTH] ** power), 1.0
+        form = 0.0 if data.form == "norton_bailey" else 1.0
+        energy = data.activation_energy / GAS_CONSTANT if self.own else SCALED
+        viscous = np.array(
+            [time, power, form, data.strain, data.stress, data.exponent, end[TEMPERATURE], energy, data.temperature]
+        )
+        return Creeping(self._plastic, self._elastic, viscous)
+
+    def strain(self, stress: float, hours: float, temperature: float) -> float:
+        """Equivalent creep strain after some hours of constant stress (N/mm²) and temperature (K)."""
+        x = stress / self.data.stress
+        x = x if self.data.form == "norton_bailey" else math.sinh(x)
+        return float(
+            self.data.strain
+            * x**self.data.exponent
+            * self.worth(hours, temperature, temperature) ** self.data.time_exponent
+        )
+
+    def is_resolved(self, clocks: tuple[np.ndarray, np.ndarray, np.ndarray], stress: float, fall: float) -> bool:
+        """Whether two halves of a step show how wrong the whole one is.
+
+        They do not where one of them has nearly all of the creep, nor where creep becomes much slower in the step. The
+        difference is then too small, or has the other sign.
+
+        Args:
+            clocks: at the step's start, where the halves meet, and at its end.
+            stress: equivalent stress of the most stressed point, N/mm².
+            fall: of the logarithm of the stress in the step.
+        """
+        start, middle, end = (float(clock[WORTH]) ** self.data.time_exponent for clock in clocks)
+        first = (middle - start) / (end - start) if end > start else 0.5
+        slowing, removed = self._stress_exponent(stress) * fall, 1.0 - first**3 - (1.0 - first) ** 3
+        return slowing <= STEADY or (slowing <= SLOWING and removed >= LEAST_REMOVED)
+
+    def _stress_exponent(self, stress: float) -> float:
+        """Slope of the logarithm of the creep rate over that of the equivalent stress, N/mm²."""
+        data, x = self.data, stress / self.data.stress
+        steeper = 1.0 if data.form == "norton_bailey" or x == 0.0 else x / math.tanh(x)
+        return data.exponent / (1.0 if data.hardening == "time" else data.time_exponent) * steeper
+
+
+def without_yield(plastic: np.ndarray) -> np.ndarray:
+    """A parameter array with an infinite yield stress."""
+    elastic = plastic.copy()
+    rows = elastic[ROWS_START : ROWS_START + int(plastic[N_ROWS]) * ROW_LENGTH].reshape(-1, ROW_LENGTH)
+    rows[:, [K0, B1]] = np.inf
+    rows[:, NODES] = 0.0
+    return elastic

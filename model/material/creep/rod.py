@@ -1,0 +1,197 @@
+"""Creep of a rod's point that does not yield: both stages of `creep` in closed form but for one unknown each.
+
+With c = θ σ the equivalent creep strain of a stage, its stress follows from the elastic one s̃ of the whole strain,
+
+    σ11 = s̃11/(1 + E θ),   τ1j = τ̃1j/(1 + 3 G θ),
+
+and θ from θ σ(θ) = c(σ(θ)). In logarithms the difference of both sides increases with log θ, linearly where creep is
+little and where it is much; Newton's method starts at c(σ̃)/σ̃, above the root. The compliance of the stage is
+
+    C⁻¹ + ∂x/∂s = diag(1/E + θ, 1/G + 3θ, 1/G + 3θ) + (∂c/∂σ − θ) d dᵀ,   d = ∂σ/∂s,
+
+inverted in closed form, too (Sherman and Morrison). Where a stage's stress lies outside the yield surface, all is left
+to `creep.creep_map`.
+"""
+
+import math
+from collections import namedtuple
+
+import numpy as np
+from numba import njit
+
+from coilset.model.base.kernel import INLINE, KERNEL
+from coilset.model.material.creep.creep import GAMMA, MAX_ITERATIONS, TOLERANCE, Creeping, creep_map
+from coilset.model.material.creep.flow import POWER, TIME, passes, rate
+from coilset.model.material.law.functions import elasticity, functions
+from coilset.model.material.point.rod_plastic import active, inner
+from coilset.model.material.point.spin import Vector
+
+WEIGHTS = (1.0, 3.0, 3.0)  # of σ11, τ12, τ13 in σ²
+# A stage's end: stress, its direction d, θ, c, u, and ∂c/∂σ − θ at constant time; iterations, -1 if there is none.
+Stage = namedtuple("Stage", "stress d theta c u normal count")
+# The inverse of C⁻¹ + ∂x/∂s: diag(D) − k v vᵀ.
+Inverse = namedtuple("Inverse", "D k v")
+
+
+@njit(**KERNEL)
+def rod_map(
+    law: Creeping, old: np.ndarray, de11: float, dg12: float, dg13: float, new: np.ndarray, C: np.ndarray
+) -> int:
+    """`creep.creep_map` with the arguments of the rod's return mapping."""
+    q = law.viscous
+    count = -1
+    if q[TIME] > 0.0:
+        count = _without_yield(law, old, (de11, dg12, dg13), new, C)
+    return count if count >= 0 else creep_map(law, old, np.array([de11, dg12, dg13]), new, C)
+
+
+@njit(**KERNEL)
+def _without_yield(law: Creeping, old: np.ndarray, de: Vector, new: np.ndarray, C: np.ndarray) -> int:
+    """One increment if no stage yields; else, or if a stage finds no end, -1, and nothing of what is written counts."""
+    q, power = law.viscous, law.viscous[POWER]
+    h, after = passes(q, old[7])
+    before, change, c0 = old[7], after - old[7], old[8]
+    u0 = c0 ** (1.0 / power)
+    c0 = u0**power  # with the rounding of all others
+    E0, G0, alpha0 = elasticity(law.plastic, before)
+
+    E, G, alpha = elasticity(law.plastic, before + GAMMA * change)
+    thermal = 0.5 * (alpha0 + alpha) * GAMMA * change
+    trial = (
+        old[0] * E / E0 + E * (GAMMA * de[0] - thermal),
+        old[1] * G / G0 + G * GAMMA * de[1],
+        old[2] * G / G0 + G * GAMMA * de[2],
+    )
+    one = _stage(q, trial, E, G, c0, u0, GAMMA * h)
+    if one.count < 0 or _yields(law.plastic, one.stress, old, before + GAMMA * change):
+        return -1
+    S = _inverse(one, E, G)
+
+    # creep strain of the first stage's stress over 1 − γ, and how it and u change with that stress
+    sigma = _equivalent(one.stress)
+    g, slope = rate(q, sigma)
+    middle = u0 + (1.0 - GAMMA) * h * g
+    c1 = middle**power
+    theta = (c1 - c0) / sigma if sigma > 0.0 else 0.0
+    normal = power * c1 / middle * (1.0 - GAMMA) * h * slope - theta if middle > 0.0 else 0.0
+
+    E, G, alpha = elasticity(law.plastic, before + change)
+    thermal = 0.5 * (alpha0 + alpha) * change
+    s = one.stress
+    trial = (
+        old[0] * E / E0 + E * (de[0] - thermal - theta * s[0]),
+        old[1] * G / G0 + G * (de[1] - 3.0 * theta * s[1]),
+        old[2] * G / G0 + G * (de[2] - 3.0 * theta * s[2]),
+    )
+    two = _stage(q, trial, E, G, c1, middle, GAMMA * h)
+    if two.count < 0 or _yields(law.plastic, two.stress, old, before + change):
+        return -1
+    for i in range(3):
+        new[i] = two.stress[i]
+    for i in range(3, 7):
+        new[i] = old[i]
+    new[7], new[8] = before + change, c1 + two.c
+
+    # dX₂/du at fixed σ₂, times ∂u/∂σ₁
+    own = 0.0
+    if middle > 0.0:
+        own = power * ((c1 + two.c) / two.u - c1 / middle) * (1.0 - GAMMA) * h * slope
+    _tangent(_inverse(two, E, G), S, one.d, (normal, theta), _scaled(two.d, own), C)
+    return one.count + two.count
+
+
+@njit(**INLINE)
+def _scaled(a: Vector, f: float) -> Vector:
+    return (f * a[0], f * a[1], f * a[2])
+
+
+@njit(**INLINE)
+def _equivalent(s: Vector) -> float:
+    return math.sqrt(s[0] * s[0] + 3.0 * (s[1] * s[1] + s[2] * s[2]))
+
+
+@njit(**INLINE)
+def _yields(p: np.ndarray, s: Vector, old: np.ndarray, temperature: float) -> bool:
+    n = active(s, (old[3], old[4], old[5]))
+    return not inner(n, n) <= functions(p, old[6], temperature)[0] * (1.0 + 1e-12)
+
+
+@njit(**KERNEL)
+def _stage(q: np.ndarray, trial: Vector, E: float, G: float, c0: float, u0: float, h: float) -> Stage:
+    """The end of a stage of length h that starts with the creep strain c0 = u0^p.
+
+    Args:
+        trial: stress of the stage's strain without its creep, N/mm².
+    """
+    power = q[POWER]
+    axial, shear = trial[0] * trial[0], 3.0 * (trial[1] * trial[1] + trial[2] * trial[2])
+    sigma = math.sqrt(axial + shear)
+    g, slope = rate(q, sigma)
+    u = u0 + h * g
+    c = u**power - c0
+    if not c > 0.0:  # nothing, or less than rounding
+        return Stage(trial, _direction(trial, sigma), 0.0, 0.0, u, 0.0, 1 if c == c else -1)
+    theta, strain = c / sigma, sigma / E
+    for iteration in range(1, MAX_ITERATIONS):
+        a, b = 1.0 / (1.0 + E * theta), 1.0 / (1.0 + 3.0 * G * theta)
+        sa, sb = axial * a * a, shear * b * b
+        sigma = math.sqrt(sa + sb)
+        g, slope = rate(q, sigma)
+        u = u0 + h * g
+        c = u**power - c0
+        if not c > 0.0:
+            return Stage(trial, _direction(trial, sigma), 0.0, 0.0, u, 0.0, -1)
+        dc = power * (c0 + c) / u * h * slope  # ∂c/∂σ
+        falls = (E * theta * a * sa + 3.0 * G * theta * b * sb) / (sa + sb)  # −d log σ/d log θ
+        step = -math.log(theta * sigma / c) / (1.0 + (dc * sigma / c - 1.0) * falls)
+        if abs(step) * theta * sigma <= TOLERANCE * (strain + c) + 1e-16:
+            theta *= 1.0 + step
+            s = (trial[0] / (1.0 + E * theta), trial[1] / (1.0 + 3.0 * G * theta), trial[2] / (1.0 + 3.0 * G * theta))
+            c = theta * _equivalent(s)
+            return Stage(s, _direction(s, _equivalent(s)), theta, c, (c0 + c) ** (1.0 / power), dc - theta, iteration)
+        theta *= math.exp(step)
+    return Stage(trial, _direction(trial, sigma), 0.0, 0.0, u, 0.0, -1)
+
+
+@njit(**INLINE)
+def _direction(s: Vector, sigma: float) -> Vector:
+    """∂σ/∂s."""
+    f = 1.0 / sigma if sigma > 0.0 else 0.0
+    return (s[0] * f, 3.0 * s[1] * f, 3.0 * s[2] * f)
+
+
+@njit(**INLINE)
+def _inverse(stage: Stage, E: float, G: float) -> Inverse:
+    """The inverse of C⁻¹ + ∂x/∂s at the end of a stage."""
+    d, theta = stage.d, stage.theta
+    shear = G / (1.0 + 3.0 * G * theta)
+    D = (E / (1.0 + E * theta), shear, shear)
+    v = (D[0] * d[0], D[1] * d[1], D[2] * d[2])
+    k = stage.normal / (1.0 + stage.normal * (d[0] * v[0] + d[1] * v[1] + d[2] * v[2]))
+    return Inverse(D, k, v)
+
+
+@njit(**INLINE)
+def _tangent(
+    two: Inverse, one: Inverse, d: Vector, by_stress: tuple[float, float], by_start: Vector, C: np.ndarray
+) -> None:
+    """Write S₂ (1 − A S₁), with S₁ = γ (C⁻¹ + ∂x/∂s)⁻¹ of the first stage and A = ∂(x of the rest)/∂σ₁.
+
+    Args:
+        two, one: the stages' inverses.
+        d: direction of the first stage's stress.
+        by_stress: normal and tangential part of the creep strain over 1 − γ, A = normal d dᵀ + θ diag(1, 3, 3).
+        by_start: what u at its start does to the second stage's creep strain, along d.
+    """
+    normal, theta = by_stress
+    shrink = GAMMA - GAMMA * one.k * (d[0] * one.v[0] + d[1] * one.v[1] + d[2] * one.v[2])
+    r = (shrink * one.v[0], shrink * one.v[1], shrink * one.v[2])  # S₁ d
+    left = (normal * d[0] + by_start[0], normal * d[1] + by_start[1], normal * d[2] + by_start[2])
+    for j in range(3):
+        along = 0.0
+        for i in range(3):  # column j of 1 − A S₁, kept in C
+            S = GAMMA * ((one.D[i] if i == j else 0.0) - one.k * one.v[i] * one.v[j])
+            C[i, j] = (1.0 if i == j else 0.0) - left[i] * r[j] - theta * WEIGHTS[i] * S
+            along += two.v[i] * C[i, j]
+        for i in range(3):
+            C[i, j] = two.D[i] * C[i, j] - two.k * two.v[i] * along

@@ -1,0 +1,1 @@
+"""A material's functions, read from its file."""

@@ -1,0 +1,99 @@
+"""What a law refuses: entries that do not go together, and functions that violate a condition of the theory."""
+
+from collections.abc import Callable
+from typing import NoReturn
+
+import numpy as np
+
+from coilset.model.material.law.file import MaterialFile
+
+Refuse = Callable[[str, str], NoReturn]  # raises InputError about an entry of the file, with the problem
+Functions = Callable[[np.ndarray, float], np.ndarray]  # of b*, N/mm², and a temperature, K; see `Law.functions`
+
+
+def check_combinations(data: MaterialFile, spin: bool, refuse: Refuse) -> None:
+    """Refuse what does not go together.
+
+    Args:
+        data: the material file.
+        spin: as in Law.
+        refuse: Refuse.
+    """
+    at_all, known = data.temperatures, [at.temperature for at in data.temperatures]
+    if np.any(np.diff(known) <= 0):
+        refuse("temperatures", f"{known} K do not ascend; sort the entries, none twice")
+    if data.heating and len(at_all) == 1:
+        refuse("heating", "plastic work warms the material; give its constants at two temperatures at least")
+    if len({at.isotropic == "none" for at in at_all}) == 2:
+        refuse("temperatures", "isotropic is 'none' at some temperatures only; give it at all or at none")
+    if len({len(at.terms) for at in at_all}) > 1:
+        refuse("temperatures", "not all have the same number of back stresses; give as many terms at each")
+    if at_all[0].terms:
+        _check_back_stresses(data, spin, refuse)
+    if data.heating and data.creep and data.creep.hardening == "time":
+        refuse("creep.hardening", "points that plastic work heats have no common time; give strain")
+    if spin and data.creep:
+        refuse("creep", "there is none with spin; leave out creep, or the spin")
+    if data.rate:
+        _check_rate(data, refuse)
+
+
+def _check_back_stresses(data: MaterialFile, spin: bool, refuse: Refuse) -> None:
+    """Several back stresses go with isotropic hardening alone."""
+    if any(at.non_normality != "none" for at in data.temperatures):
+        refuse("temperatures", "several back stresses go with normality only; make non_normality 'none'")
+    for part, word in ((data.heating, "heating"), (data.creep, "creep"), (data.rate, "rate")):
+        if part:
+            refuse(word, "goes not with several back stresses; leave it out, or give kinematic constants")
+    if spin:
+        refuse("temperatures.0.kinematic", "several back stresses have no spin; leave out the spin")
+
+
+def _check_rate(data: MaterialFile, refuse: Refuse) -> None:
+    """Yield that depends on the rate goes with hardening alone."""
+    for part, word in ((data.heating, "heating"), (data.creep, "creep")):
+        if part:
+            refuse("rate", f"goes not with {word}; leave one of both out")
+    if any(at.isotropic == "none" for at in data.temperatures):
+        refuse("rate", "a material that never yields has no rate-dependent yield; leave it out")
+    if any(at.non_normality != "none" for at in data.temperatures):
+        refuse("rate", "goes with normality only; make non_normality 'none', or leave rate out")
+
+
+def check_functions(data: MaterialFile, functions: Functions, refuse: Refuse) -> None:
+    """k² > 0, 2ζ + k²′ ≥ 0 and κ k²′ < 2 over the range of validity: else (3.1.9) is not positive.
+
+    Args:
+        data: the material file.
+        functions: Functions of its law.
+        refuse: Refuse; told the value and where it is found.
+    """
+    work, known = np.linspace(0, data.validity.plastic_work, 2001), [at.temperature for at in data.temperatures]
+    for i, at in enumerate(data.temperatures):
+        if at.isotropic == "none":
+            continue
+        # Between two temperatures, too: the product of the interpolated κ and k²′ may be larger than at both.
+        for temperature in np.unique(np.linspace(known[i], known[min(i + 1, len(known) - 1)], 5)):
+            values_at = functions(work, temperature)
+            if not np.isfinite(values_at).all():
+                refuse(f"temperatures.{i}", f"its functions overflow at {temperature:g} K; are the units N and mm?")
+            k2, dk2, zeta, _, kappa, _ = values_at
+            for entry, name, unit, values, broken, rule in (
+                ("isotropic", "k²", " N²/mm⁴", k2, ~(k2 > 0), "must be positive"),
+                ("isotropic", "2ζ + k²′", " N/mm²", 2 * zeta + dk2, 2 * zeta + dk2 < 0, "must not be negative"),
+                (
+                    "non_normality.a",
+                    "κ k²′",
+                    "",
+                    kappa * dk2,
+                    kappa * dk2 >= 2,
+                    "must stay below 2, or (3.1.9) is not positive definite",
+                ),
+            ):
+                if broken.any():
+                    first = int(np.argmax(broken))
+                    where = f"at b* = {work[first]:g} N/mm² and {temperature:g} K"
+                    refuse(
+                        f"temperatures.{i}.{entry}",
+                        f"{name} = {values[first]:.4g}{unit} {where}; it {rule} (checked up to validity.plastic_work)",
+                    )

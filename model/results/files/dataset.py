@@ -1,0 +1,126 @@
+"""The labelled data set of a run: section points at the snapshots, the wire and the pressure on it after each step."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from coilset.model.results.files.netcdf import LabelledData, Variable, write_netcdf
+from coilset.model.results.records.record import Result, Setup, Snapshot
+from coilset.model.results.records.warnings import run_warnings
+from coilset.model.section.ground import section_points
+from coilset.model.section.rules import SURFACE_POINTS
+
+RESULTANTS = ["N", "Q2", "Q3", "Mt", "M2", "M3"]
+
+
+def point_state(setup: Setup, result: Result) -> LabelledData:
+    """All section points at all snapshots with units and coordinates."""
+    rule, radius, snapshots = setup.rule, setup.wire_radius, result.snapshots
+    places, weights = section_points(rule, setup.placement)
+    places *= radius[:, None, None, None]
+    of_points = ("element", "gauss", "point")
+    of_sections = ("snapshot", "element", "gauss")
+
+    def shots(name: str) -> np.ndarray:
+        return np.stack([getattr(shot, name) for shot in snapshots])
+
+    mm, curvature = {"units": "mm"}, {"units": "1/mm", "about": "towards y"}
+    surface = {"units": "MPa", "about": "points on the wire's surface; the angle is counted from y to z"}
+    resultants = {"units": "N, N mm", "about": "chord axis and triad of each element"}
+    data = LabelledData(
+        {
+            "history": Variable((*of_sections, "point", "component"), shots("point_state"), {"units": "MPa"}),
+            "surface": Variable((*of_sections, "angle", "component"), shots("surface_state"), surface),
+            "resultants": Variable((*of_sections, "resultant"), shots("resultants"), resultants),
+            "position": Variable(("snapshot", "station", "axis"), shots("x"), mm),
+            "height": Variable(("snapshot",), shots("height"), mm),
+            "force": Variable(("snapshot",), shots("force"), {"units": "N"}),
+            "y": Variable(of_points, places[..., 0], mm),
+            "z": Variable(of_points, places[..., 1], mm),
+            "wire_radius": Variable(("element",), radius, mm),
+            "weight": Variable(of_points, weights),
+            "curvature": Variable(("element", "gauss"), setup.placement.curvature, curvature),
+            "torsion": Variable(("element", "gauss"), setup.placement.torsion, {"units": "1/mm"}),
+        },
+        _coordinates(setup, snapshots),
+        {
+            "title": "section points of the rod",
+            "material": setup.material,
+            "section_rule": rule.name,
+            "section_kind": setup.section_kind,
+        },
+    )
+    return data.merged(way_of_wire(result)).merged(pressure_along_wire(setup, result))
+
+
+def _coordinates(setup: Setup, snapshots: Sequence[Snapshot]) -> dict[str, Variable]:
+    names = list(snapshots[0].components)
+    names += ["temperature"] * (snapshots[0].point_state.shape[-1] - len(names))
+    degrees = np.arange(SURFACE_POINTS) * 360.0 / SURFACE_POINTS
+    return {
+        "snapshot": _words("snapshot", [shot.name for shot in snapshots]),
+        "turn": Variable(("station",), setup.turns, {"units": "1"}),
+        "component": _words("component", names),
+        "angle": Variable(("angle",), degrees, {"units": "degree"}),
+        "resultant": _words("resultant", RESULTANTS),
+        "axis": _words("axis", ["x", "y", "z"]),
+    }
+
+
+def _words(dimension: str, words: Sequence[str]) -> Variable:
+    return Variable((dimension,), np.array(words))
+
+
+def way_of_wire(result: Result) -> LabelledData:
+    """Where the wire is after every step, and the stress on it."""
+    if not result.frames:
+        return LabelledData({}, {})
+    places, shear = (np.stack([getattr(frame, name) for frame in result.frames]) for name in ("x", "shear"))
+    about = "about the wire's axis, positive as in a compressed spring; mean of an element's two sections"
+    return LabelledData(
+        {
+            "step_position": Variable(("step", "station", "axis"), places, {"units": "mm"}),
+            "step_shear": Variable(("step", "element", "angle"), shear, {"units": "MPa", "about": about}),
+        },
+        {"step": Variable(("step",), np.array([step.number for step in result.steps]))},
+    )
+
+
+def pressure_along_wire(setup: Setup, result: Result) -> LabelledData:
+    """Force per length of wire for each kind of contact in every step, at the points that are ever in contact."""
+    resultants, kinds = result.seats, setup.contacts
+    wire_turns = next((kind.wire_turns for kind in kinds if len(kind.wire_turns)), None)
+    if wire_turns is None or not resultants:
+        return LabelledData({}, {})
+    rows = np.concatenate([one.pressure for one in resultants])
+    bearing, place = np.unique(rows[:, 1].astype(int), return_inverse=True)
+    values = np.zeros((len(resultants), len(kinds), len(bearing)))
+    step = np.repeat(np.arange(len(resultants)), [len(one.pressure) for one in resultants])
+    values[step, rows[:, 0].astype(int), place] = rows[:, 2]
+    attrs = {"units": "N/mm", "about": "bedding pressure, force per length of wire"}
+    return LabelledData(
+        {"pressure": Variable(("step", "contact", "wire_point"), values, attrs)},
+        {
+            "step": Variable(("step",), np.array([one.step for one in resultants])),
+            "contact": _words("contact", [kind.name for kind in kinds]),
+            "wire_turn": Variable(("wire_point",), wire_turns[bearing], {"units": "1"}),
+        },
+    )
+
+
+def with_origin(data: LabelledData, setup: Setup, result: Result, origin: Mapping[str, Any]) -> LabelledData:
+    """The data with its provenance and the run's warnings, as JSON texts in its attributes."""
+    warnings = [asdict(warning) for warning in run_warnings(setup, result)]
+    texts = {name: value if isinstance(value, str) else json.dumps(value) for name, value in origin.items()}
+    renamed = {"material_file" if name == "material" else name: text for name, text in texts.items()}
+    told = {"warnings": json.dumps(warnings), "complete": str(result.complete).lower()}
+    return replace(data, attrs={**data.attrs, **renamed, **told})
+
+
+def write_points(folder: str | Path, data: LabelledData) -> None:
+    """points.nc (NetCDF 4)."""
+    write_netcdf(Path(folder) / "points.nc", data)

@@ -1,0 +1,190 @@
+"""The results folder: nothing is overwritten unless asked, and no file is ever left half written."""
+
+import contextlib
+import csv
+import errno
+import json
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+
+from coilset.model.base.errors import CoilsetError, InputError
+from coilset.model.results.records.record import SeatReactions, Step
+
+RECORDS = ("summary.json", "history.csv", "seats.csv", "points.nc", "checkpoint/*.npz", "checkpoint/*.jsonl")
+DERIVED = (
+    "fields/*.vtu",
+    "fields/*.pvd",
+    "characteristic.png",
+    "springs.png",
+    "cross_section.png",
+    "force_centre.png",
+    "seat_pressure.png",
+    "buckling_mode.png",
+    "section.png",
+    "goodman.png",
+    "animation.gif",
+    "report.html",
+)
+RESULTS = RECORDS + DERIVED
+DRAWN = ("drawing.png", "spring.png")
+"""Pictures of the unloaded spring by `coilset mesh`."""
+
+
+@contextlib.contextmanager
+def whole(path: str | Path) -> Iterator[Path]:
+    """A temporary path, moved to `path` once it is complete; a full disk is reported in one line.
+
+    Raises:
+        CoilsetError: if the file cannot be written.
+    """
+    path = Path(path)
+    partial = path.with_name(f".{path.stem}.partial{path.suffix}")
+    try:
+        yield partial
+        if not partial.exists():  # VTK reports nothing, and removes a file that it could not finish
+            raise OSError(errno.EIO, "nothing of it was written; is the disk full?")
+        os.replace(partial, path)
+    except OSError as error:
+        raise CoilsetError(f"{path}: cannot be written: {error.strerror or error}") from None
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def make(folder: str | Path) -> None:
+    """Make a folder, unless it exists.
+
+    Raises:
+        CoilsetError: if it cannot be made.
+    """
+    try:
+        Path(folder).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise CoilsetError(f"{folder}: cannot be made: {error.strerror}") from None
+
+
+@contextlib.contextmanager
+def making(folder: Path) -> Iterator[None]:
+    """Context in which what the system has against a results folder is an error of --out."""
+    try:
+        yield
+    except OSError as error:
+        raise InputError(f"cannot be made: {error.strerror}", "--out", folder) from None
+
+
+def refuse_obstacles(folder: str | Path, files: Iterable[str], folders: Iterable[str] = ()) -> None:
+    """Check whether all files can be written, before any is.
+
+    Raises:
+        InputError: if a folder has the name of a file, or a file that of a folder.
+    """
+    names = [
+        *((name, os.path.isdir, "folder") for name in files),
+        *((name, os.path.isfile, "file") for name in folders),
+    ]
+    for name, is_other, kind in names:
+        if is_other(os.path.join(folder, name)):
+            raise InputError(
+                f"there is a {kind} named {name} in it, in the way of a result; move it, or give another --out",
+                "--out",
+                folder,
+            )
+
+
+def refuse_to_replace(paths: Iterable[Path], force: bool) -> None:
+    """Check whether files can be written, before any is.
+
+    Raises:
+        InputError: if one of them exists already and `force` is not given.
+    """
+    for path in paths:
+        if path.exists() and not force:
+            raise InputError("already exists; use --force to overwrite it", "", path)
+
+
+def refuse_results(folder: str | Path, force: bool) -> None:
+    """Check whether a run may write into a folder, and leave it as it is.
+
+    Raises:
+        InputError: if it already holds results or an interrupted run and `force` is not given.
+    """
+    plain = [name for name in RESULTS if "*" not in name]
+    refuse_obstacles(
+        folder, [*plain, "log.txt", "checkpoint/state.npz", "checkpoint/steps.jsonl"], ["checkpoint", "fields"]
+    )
+    folder = Path(folder)
+    with making(folder):
+        if (folder / "summary.json").exists() and not force:
+            raise InputError("already holds results; use --force to overwrite them, or another --out", "--out", folder)
+        if (folder / "checkpoint" / "state.npz").exists() and not force:
+            raise InputError(
+                "holds an interrupted run; use --resume to continue it, --force to start again, or another --out",
+                "--out",
+                folder,
+            )
+
+
+def prepare(folder: str | Path, force: bool) -> Path:
+    """Make the results folder.
+
+    Raises:
+        InputError: if it already holds results or an interrupted run and `force` is not given, or cannot be made.
+    """
+    refuse_results(folder, force)
+    folder = Path(folder)
+    with making(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise InputError("cannot be written to; give another --out", "--out", folder)
+    return folder
+
+
+def clear(folder: str | Path, patterns: Sequence[str] = RESULTS) -> None:
+    """Remove the results of an earlier run, the summary first, so that a folder never mixes two runs.
+
+    Args:
+        folder: results folder.
+        patterns: which files; `DERIVED` are those made from the others, which a continued run makes out of date.
+
+    Raises:
+        CoilsetError: if a file cannot be removed.
+    """
+    for pattern in patterns:
+        for path in Path(folder).glob(pattern):
+            try:
+                path.unlink()
+            except OSError as error:
+                raise CoilsetError(f"{path}: cannot be removed: {error.strerror}") from None
+
+
+def write_summary(folder: str | Path, summary: Mapping[str, Any]) -> None:
+    """summary.json."""
+    with whole(Path(folder) / "summary.json") as path:
+        path.write_text(json.dumps(summary, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+def write_history(folder: str | Path, steps: Sequence[Step]) -> None:
+    """history.csv: one row per step; numbers with all their digits."""
+    write_table(
+        Path(folder) / "history.csv", [item.name for item in fields(Step)], (asdict(step).values() for step in steps)
+    )
+
+
+def write_seats(folder: str | Path, seats: Sequence[SeatReactions]) -> None:
+    """seats.csv: one row per step."""
+    rows = [one.row() for one in seats]
+    write_table(Path(folder) / "seats.csv", list(rows[0]) if rows else ["step"], (row.values() for row in rows))
+
+
+def write_table(target: Path, columns: Sequence[str], rows: Iterable[Iterable[object]]) -> None:
+    """A file of comma-separated values: a line of names, then the rows, numbers with all their digits.
+
+    Raises:
+        CoilsetError: if it cannot be written.
+    """
+    with whole(target) as path, open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        writer.writerows(rows)

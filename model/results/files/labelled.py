@@ -1,0 +1,68 @@
+"""All results in a folder as one labelled data set with units."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from coilset.model.base.errors import reading
+from coilset.model.results.files.opened import open_run, table
+from coilset.model.results.records.units import unit_of
+
+
+def labelled(folder: str | Path) -> xr.Dataset:
+    """Read the results of `coilset solve`, `coilset slice` or `coilset sweep`.
+
+    Args:
+        folder: the results folder.
+
+    Returns:
+        Of a run: the columns of history.csv and seats.csv over `step`, all of points.nc, and each number of
+        summary.json as `summary_…`, with `units`; its words and the case (JSON) are attributes. Of a slice: the
+        columns of history.csv and the summary. Of a sweep: sweep.nc.
+
+    Raises:
+        InputError: if there are no such results in it, or a file of them cannot be read.
+    """
+    folder = Path(folder)
+    if (folder / "sweep.nc").is_file():
+        with reading(folder / "sweep.nc"), xr.open_dataset(folder / "sweep.nc", engine="h5netcdf") as file:
+            return file.load()
+    if is_slice(folder):
+        return _slice(folder)
+    run = open_run(folder)
+    data = run.data.copy()
+    add_summary(data, run.summary)
+    data.attrs["case"] = json.dumps(run.case)
+    return data
+
+
+def is_slice(folder: Path) -> bool:
+    """Whether a folder holds the results of `coilset slice`, which has no section points of a rod."""
+    return (
+        (folder / "summary.json").is_file()
+        and not (folder / "points.nc").exists()
+        and not (folder / "seats.csv").exists()
+    )
+
+
+def _slice(folder: Path) -> xr.Dataset:
+    with reading(folder / "summary.json"):
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    with reading(folder / "history.csv"):
+        data = table(folder / "history.csv")
+    add_summary(data, summary)
+    data.attrs["case"] = json.dumps(summary["origin"]["case"])
+    return data
+
+
+def add_summary(data: xr.Dataset, summary: Mapping[str, Any]) -> None:
+    """Add each number of a summary as `summary_…` with its `units`, NaN for none, and its words as attributes."""
+    for name, value in summary.items():
+        if isinstance(value, int | float) or value is None:
+            number = float("nan") if value is None else float(value)
+            data[f"summary_{name}"] = ((), number, {"units": unit_of(name)})
+        elif isinstance(value, str):
+            data.attrs[name] = value

@@ -1,0 +1,79 @@
+"""Reading a results folder: the summary, the tables and the section points, for reports and studies."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from coilset.model.base.errors import InputError, unreadable
+from coilset.model.results.records.units import unit_of
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run, read from its folder.
+
+    Attributes:
+        folder: its path.
+        summary: of summary.json.
+        data: history.csv and seats.csv along the dimension `step`, and all of points.nc; each with its `units`.
+    """
+
+    folder: Path
+    summary: dict[str, Any]
+    data: xr.Dataset
+
+    @property
+    def case(self) -> dict[str, Any]:
+        """The case with all its defaults."""
+        case: dict[str, Any] = self.summary["origin"]["case"]
+        return case
+
+    @property
+    def snapshots(self) -> list[str]:
+        """Names of the snapshots: the start, and the end of each phase."""
+        return [str(name) for name in self.data["snapshot"].values]
+
+
+def open_run(folder: str | Path) -> Run:
+    """Read a results folder of `coilset solve`.
+
+    Raises:
+        InputError: if it holds no run, or a file cannot be read.
+    """
+    folder = Path(folder)
+    for name in ("summary.json", "points.nc"):
+        if not (folder / name).is_file():
+            within = min(folder.glob("*/points.nc"), default=None)  # of a nest's springs, or of runs in one folder
+            hint = f"; is {within.parent} meant?" if within else ""
+            raise InputError(f"holds no results of a run: there is no {name}{hint}", "", folder)
+    path = folder / "summary.json"
+    try:
+        summary = json.loads(path.read_text(encoding="utf-8"))
+        path = folder / "points.nc"
+        with xr.open_dataset(path, engine="h5netcdf") as file:
+            data = file.load()
+        for name in ("history", "seats"):
+            path = folder / f"{name}.csv"
+            data = data.merge(table(path), compat="override", join="outer")
+    except (OSError, ValueError, KeyError) as error:
+        raise unreadable(path, error) from None
+    if "origin" not in summary:
+        raise InputError("is of a version without the case in it; solve it again", "", folder / "summary.json")
+    return Run(folder, summary, data)
+
+
+def table(path: Path) -> xr.Dataset:
+    """Columns of a CSV as variables along `step`, NaN for empty fields."""
+    if not path.stat().st_size:
+        raise ValueError("it is empty")
+    rows = np.atleast_1d(np.genfromtxt(path, delimiter=",", names=True, encoding="utf-8"))
+    names = rows.dtype.names or ()
+    if not names or len(rows.shape) == 0 or names == ("step",):
+        return xr.Dataset()
+    number = names[0]  # of the step
+    columns = {name: ("step", rows[name], {"units": unit_of(name)}) for name in names if name != number}
+    return xr.Dataset(columns, coords={"step": rows[number].astype(int)})

@@ -1,0 +1,85 @@
+"""Rates of a spring from its characteristic: as spring makers measure it, and at given travels."""
+
+from collections.abc import Sequence
+from itertools import dropwhile
+
+import numpy as np
+
+from coilset.model.results.records.record import Result, Setup, Step
+
+MAKERS = (0.3, 0.7)  # of the travel to block, between which EN 15800 measures the rate
+STANDS = 1e-9  # of the greatest travel and force: a step that changes both by less changes nothing
+
+
+def first_compression(steps: Sequence[Step]) -> tuple[np.ndarray, np.ndarray]:
+    """Travel, mm, and force, N, from the start to the first release; a free spring may be heated before."""
+    pressed = dropwhile(lambda step: step.travel_mm <= 0.0, steps)
+    return _ascending([(step.travel_mm, step.force_N) for step in pressed])
+
+
+def last_release(steps: Sequence[Step], height: float) -> tuple[np.ndarray, np.ndarray]:
+    """Travel, mm, counted from the final free length, and force, N, of the last release."""
+    return _ascending([(height - step.seat_height_mm, step.force_N) for step in reversed(steps[:-1])])
+
+
+def _ascending(points: Sequence[tuple[float, float]]) -> tuple[np.ndarray, np.ndarray]:
+    """Travels and forces from 0 on, as far as the travel grows; points that repeat the one before are left out."""
+    least = STANDS * np.abs(points).max(axis=0, initial=0.0)
+    found = [(0.0, 0.0)]
+    for point in points:
+        if np.all(np.abs(np.subtract(point, found[-1])) <= least):
+            continue
+        if point[0] <= found[-1][0]:
+            break
+        found.append(point)
+    travel, force = np.array(found).T
+    return travel, force
+
+
+def makers_rate(travel: np.ndarray, force: np.ndarray, whole: float) -> float | None:
+    """Force over travel between 30 and 70 % of the travel to block, N/mm; None if the curve does not extend that far.
+
+    Args:
+        travel, force: ascending travels, mm, and forces, N.
+        whole: travel to block, mm.
+    """
+    low, high = (share * whole for share in MAKERS)
+    if whole <= 0.0 or travel[-1] < high:
+        return None
+    return float(np.diff(np.interp([low, high], travel, force))[0] / (high - low))
+
+
+def rate_at(travel: np.ndarray, force: np.ndarray, at: float) -> float | None:
+    """Slope at a travel of the parabola through the three points next to it, N/mm; None beyond the curve."""
+    if len(travel) < 3 or at > travel[-1]:
+        return None
+    middle = int(np.clip(np.abs(travel - at).argmin(), 1, len(travel) - 2))
+    near = slice(middle - 1, middle + 2)
+    return float(np.polyval(np.polyder(np.polyfit(travel[near] - at, force[near], 2)), 0.0))
+
+
+def rates(setup: Setup, result: Result, is_released: bool) -> dict[str, object]:
+    """Entries of the summary: the rate between 30 and 70 % of the travel to block, and the requested rates.
+
+    Args:
+        setup: Setup.
+        result: Result.
+        is_released: whether the spring is free of load at the current state.
+    """
+    travel, force = first_compression(result.steps)
+    block, height = setup.spring.block_height, result.snapshots[-1].height
+    after = None
+    if is_released:
+        after = makers_rate(*last_release(result.steps, height), height - block)
+    return {
+        "rate_30_70_N_per_mm": makers_rate(travel, force, setup.spring.free_length - block),
+        "rate_30_70_after_N_per_mm": after,
+        "rates": [
+            {
+                "travel_mm": at,
+                "force_N": float(np.interp(at, travel, force)) if at <= travel[-1] else None,
+                "rate_N_per_mm": rate_at(travel, force, at),
+            }
+            for at in setup.rates_at
+        ],
+    }

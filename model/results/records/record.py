@@ -1,0 +1,326 @@
+"""What a run has found, as frozen records: writers, figures and checkpoints take these and nothing else."""
+
+import math
+from dataclasses import asdict, dataclass, field, fields
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from coilset.meshes.springs.ends import ENDS
+from coilset.meshes.springs.geometry import Spring
+from coilset.meshes.springs.placement import Placement
+from coilset.model.base.warning import Warning
+from coilset.model.results.records.frame import Frame
+from coilset.model.section import surface
+from coilset.model.section.rules import DiskRule
+
+
+@dataclass(frozen=True)
+class Step:
+    """One converged step.
+
+    Its `iterations` are those of the solve that found it; its `evaluations` of states, and `failed_solves`, count what
+    failed before it too, see coilset.model.equilibrium.convergence.Outcome.
+
+    Attributes:
+        number: from 1 on; phase: number of the phase that it belongs to, from 0 on.
+        progress: part of the phase that is behind at its end.
+        seat_height_mm: distance of the seats or heads; travel_mm: that of the unloaded spring, less this.
+        cuts: how often it was cut.
+        contacts: closed contact elements; penetration_mm: the greatest of coils and seats.
+        force_N: axial force of the seats or heads on the spring, compression positive; 0 where a seat is left.
+        negative_pivots: negative eigenvalues of the tangent; the state is unstable if there are any.
+        left_branch: 1 if the spring snapped on the way to it, from a path that ends or is unstable, else 0.
+        released_energy_Nmm: potential energy that it lost then.
+        axis_offset_mm: maximum distance by which a turn's mean has moved off the spring's axis.
+        least_eigenvalue: of the tangent, N/mm; None where it was not asked for.
+        plastic_work_max_N_per_mm2: maximum b* on the wire's surface.
+        lift_off_mm: clearance between the wire and the seat that it has left; 0 while both seats press.
+        least_rise: least rise from a coil to the next, over the rise with which it lies on it; None where coils pass
+            each other by their shape, or there is only one.
+        estimated_force_error_N: what the length of the steps up to here has left wrong in the force, and
+            estimated_height_error_mm in the height at which this force would be; None where it is not known.
+        hours: since the start, of a material that creeps.
+        temperature_K: of the spring; at its start where plastic work heats it.
+        load_loss_percent: of the force with which time began to pass, at constant height; None where no time passes.
+    """
+
+    number: int
+    phase: int
+    progress: float
+    seat_height_mm: float
+    travel_mm: float
+    force_N: float
+    iterations: int
+    evaluations: int
+    failed_solves: int
+    cuts: int
+    contacts: int
+    penetration_mm: float
+    negative_pivots: int = 0
+    left_branch: int = 0
+    released_energy_Nmm: float = 0.0
+    axis_offset_mm: float = 0.0
+    least_eigenvalue: float | None = None
+    plastic_work_max_N_per_mm2: float = 0.0
+    lift_off_mm: float = 0.0
+    least_rise: float | None = None
+    estimated_force_error_N: float | None = None
+    estimated_height_error_mm: float | None = None
+    hours: float = 0.0
+    temperature_K: float = 0.0
+    load_loss_percent: float | None = None
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """The spring at one moment, in the order of its stations and elements; complete on rank 0.
+
+    Attributes:
+        name: what moment it is, such as `start`, `block`, `force 0 N`.
+        height, force: of the seats, mm and N.
+        x: station positions, shape (n + 1, 3), mm.
+        triads: element triads (columns), shape (n, 3, 3).
+        resultants: N, Q2, Q3, Mt, M2, M3 at the Gauss sections, shape (n, 2, 6), N and N mm.
+        point_state: at the section points, shape (n, 2, points, n_state), MPa.
+        surface_state: at the points on the wire's surface, shape (n, 2, surface points, n_state), MPa.
+        components: names of the columns of both.
+    """
+
+    name: str
+    height: float
+    force: float
+    x: np.ndarray
+    triads: np.ndarray
+    resultants: np.ndarray
+    point_state: np.ndarray
+    surface_state: np.ndarray
+    components: tuple[str, ...]
+
+    @property
+    def shear(self) -> np.ndarray:
+        """Magnitude of the shear stress at the section points, shape (n, 2, points), MPa."""
+        return surface.shear(self.point_state, self.components)
+
+
+@dataclass(frozen=True)
+class SeatReaction:
+    """What one seat, or clamped head, does to the spring.
+
+    Attributes:
+        force_N: axial force, compression positive; a seat that is left bears none.
+        lateral_x_N, lateral_y_N: force across the axis, with that of a held tip.
+        moment_x_Nmm, moment_y_Nmm, moment_z_Nmm: about the point where the axis meets the seat, with those of a held
+            tip; z along the axis.
+        centre_x_mm, centre_y_mm: where the resultant crosses the seat (force centre), from the axis.
+        eccentricity_mm: its distance from the axis.
+        pressure_x_mm, pressure_y_mm: centre of the seat's pressure alone, without what a held tip takes.
+        length_mm: length of wire in contact with the seat, to the spacing of its points.
+        down_turns: extent of the contact, turns from the wire's tip to the farthest place where it touches the seat.
+        tilt_rad: angle between the seat's axis and the spring's.
+    """
+
+    force_N: float
+    lateral_x_N: float
+    lateral_y_N: float
+    moment_x_Nmm: float
+    moment_y_Nmm: float
+    moment_z_Nmm: float
+    centre_x_mm: float
+    centre_y_mm: float
+    eccentricity_mm: float
+    pressure_x_mm: float
+    pressure_y_mm: float
+    length_mm: float
+    down_turns: float
+    tilt_rad: float
+
+
+@dataclass(frozen=True)
+class SeatReactions:
+    """Both ends after one step.
+
+    Attributes:
+        step: number of the step.
+        active_turns: turns that bear the load, ∫ (Mt/(F r))² dt: the number of turns under the torque F r throughout
+            that would hold as much torsional energy, as in R = G d⁴/(64 r³ n). On release, and up to the maximum force
+            so far, of the step's changes of Mt and F: a spring that has set keeps a torque that goes with no force.
+        free_turns: turns of wire that touch neither seat nor coil.
+        bottom, top: SeatReactions of the ends.
+        pressure: one row for each point of the wire that bears: number of the kind of contact, number of the point,
+            force per length of wire in N/mm; shape (m, 3). Between coils it is twice what the point itself has found,
+            for both wires look for each other with half of the bedding each.
+    """
+
+    step: int
+    active_turns: float
+    free_turns: float
+    bottom: SeatReaction
+    top: SeatReaction
+    pressure: np.ndarray
+
+    def row(self) -> dict[str, Any]:
+        """As flat entries, without the pressure."""
+        flat: dict[str, Any] = {name: getattr(self, name) for name in ("step", "active_turns", "free_turns")}
+        for end in ENDS:
+            flat |= {f"{end}_{name}": value for name, value in asdict(getattr(self, end)).items()}
+        return flat
+
+    @classmethod
+    def from_row(cls, row: dict[str, Any], pressure: np.ndarray) -> "SeatReactions":
+        """The reverse of `row`."""
+        names = [item.name for item in fields(SeatReaction)]
+        bottom, top = (SeatReaction(**{name: row[f"{end}_{name}"] for name in names}) for end in ENDS)
+        return cls(row["step"], row["active_turns"], row["free_turns"], bottom, top, pressure)
+
+
+@dataclass(frozen=True)
+class ContactRecord:
+    """One kind of contact.
+
+    Attributes:
+        name: for labels.
+        end: `bottom` or `top` for a seat, else None.
+        wire_turns: turns of the points of the wire on which it bears, shape (m,); empty for kinds that do not.
+    """
+
+    name: str
+    end: str | None
+    wire_turns: np.ndarray
+
+    @property
+    def turns_from_tip(self) -> np.ndarray:
+        """Turns from the wire's tip at a seat's end to each point, shape (m,)."""
+        return np.abs(self.wire_turns - self.wire_turns[0 if self.end == "bottom" else -1])
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What the numbers of a run are held against.
+
+    Attributes:
+        plastic_work: b* up to which the material's constants are valid, N/mm².
+        strength: least tensile strength of the wire, MPa; None if no wire of a standard is named.
+        penetration: usual maximum penetration, mm.
+        accuracy: error by the steps' length that is asked for, over the maximum force and over the set; None: it is
+            not estimated.
+    """
+
+    plastic_work: float
+    strength: float | None
+    penetration: float
+    accuracy: float | None
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What a run was made of.
+
+    Attributes:
+        spring: geometry of the spring.
+        material: name of the law.
+        ends: `seats` or `clamped`.
+        phases: labels of the load program.
+        turns: of the stations, shape (n + 1,).
+        wire_radius: of the elements, shape (n,), mm.
+        rule: DiskRule.
+        contacts: ContactRecords.
+        section_kind: plane, curved or warping.
+        placement: of the sections, Placement.
+        buckling_travel: at which the spring buckles after EN 13906-1, mm; infinite if it never does.
+        limits: Limits.
+        rates_at: travels, mm, at which the rate is asked for.
+        warnings: Warnings about the case, before it ran.
+        coiling_diameter: mean diameter to which the wire was coiled at mid-wire, mm; None: it was not coiled.
+    """
+
+    spring: Spring
+    material: str
+    ends: str
+    phases: tuple[str, ...]
+    turns: np.ndarray
+    wire_radius: np.ndarray
+    rule: DiskRule
+    contacts: tuple[ContactRecord, ...]
+    section_kind: str
+    placement: Placement
+    buckling_travel: float
+    limits: Limits
+    rates_at: tuple[float, ...] = ()
+    warnings: tuple[Warning, ...] = ()
+    coiling_diameter: float | None = None
+
+    @property
+    def slender(self) -> bool:
+        """Whether it can buckle."""
+        return math.isfinite(self.buckling_travel)
+
+    @property
+    def section_turns(self) -> np.ndarray:
+        """Turns at which the Gauss sections stand, shape (n, 2)."""
+        from coilset.model.rod.kinematics import GAUSS  # not where results are only read
+
+        return self.turns[:-1, None] + np.diff(self.turns)[:, None] * GAUSS
+
+    @cached_property
+    def inside(self) -> surface.Inside:
+        """Where the inside of the coil is on the wire's surface; plane sections know the curvature of a past."""
+        return surface.Inside.of(bool(self.placement.curvature.any()), self.spring.hand)
+
+    @cached_property
+    def mean_diameter(self) -> float:
+        """Mean diameter of the coil at half of its turns, mm."""
+        return 2.0 * float(self.spring.mean_radius(0.5 * self.spring.turns))
+
+    def outer_length(self, x: np.ndarray) -> float:
+        """Height of the wire between two planes across the axis that just touch it, stations at `x`, mm."""
+        top = x[:, 2] + self.spring.seat_distance(self.turns, "top")
+        bottom = x[:, 2] - self.spring.seat_distance(self.turns, "bottom")
+        return float(top.max() - bottom.min())
+
+
+@dataclass(frozen=True)
+class BucklingMode:
+    """How a slender spring would go off its axis: the weakest mode of its tangent where that was least.
+
+    Attributes:
+        travel_mm, force_N: of the step.
+        eigenvalue: of the tangent there, N/mm.
+        x: station positions, shape (n + 1, 3), mm.
+        displacement: of the stations, the greatest 1 mm, shape (n + 1, 3).
+    """
+
+    travel_mm: float
+    force_N: float
+    eigenvalue: float
+    x: np.ndarray
+    displacement: np.ndarray
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a run has found up to now; `complete` is False if it ended before its program did.
+
+    Attributes:
+        steps: converged Steps.
+        seats, frames: SeatReactions and Frames of the wire after each of them; empty if only the steps are recorded.
+        snapshots: Snapshots at the start and after each phase.
+        rate: initial rate, N/mm; NaN where no equilibrium was found for it.
+        warnings: Warnings of moments that its other records do not show.
+        mode: BucklingMode of a spring that is slender enough to buckle; else None.
+    """
+
+    steps: tuple[Step, ...] = ()
+    seats: tuple[SeatReactions, ...] = ()
+    frames: tuple[Frame, ...] = field(default=(), repr=False)
+    snapshots: tuple[Snapshot, ...] = field(default=(), repr=False)
+    rate: float = float("nan")
+    complete: bool = False
+    warnings: tuple[Warning, ...] = ()
+    mode: BucklingMode | None = field(default=None, repr=False)
+
+    @property
+    def greatest_force(self) -> float:
+        """Magnitude of the largest force so far, N."""
+        return max((abs(step.force_N) for step in self.steps), default=0.0)

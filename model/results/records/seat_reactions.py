@@ -1,0 +1,188 @@
+"""Reactions at both ends of the spring, pressure along the wire, active turns."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from coilset.model.base.agreement import sum_of_ranks
+from coilset.model.contact.base import ENDS, SEAT_DOFS, Contact, Contribution
+from coilset.model.contact.bearing import bearing_on_seat, pressures_on, turns_without
+from coilset.model.contact.resultants import Wrench
+from coilset.model.equilibrium.axial_control import AxialControl
+from coilset.model.equilibrium.layout import LineLayout
+from coilset.model.equilibrium.system import System
+from coilset.model.results.records.record import SeatReaction, SeatReactions
+from coilset.model.rod.rod import Rod
+from coilset.model.rotations.kernels import exponential
+
+ROUNDING = 2e-13  # axial forces below this part of E A are rounding, whatever came before
+FAINT = 1e-6  # axial forces below this part of the largest one so far have no centre and load no turns
+
+
+Parts = Sequence[tuple[Contact, Contribution]]
+OnWire = Sequence[tuple[int, Any, Contribution]]  # contacts that bear on the wire (BearsOnWire), with their numbers
+
+
+def seat_reactions(
+    system: System,
+    control: AxialControl,
+    turns: np.ndarray,
+    step: int,
+    greatest_force: float,
+    before: tuple[float, np.ndarray],
+    now: tuple[float, np.ndarray],
+) -> SeatReactions:
+    """Reactions at the equilibrium just reached; collective.
+
+    Args:
+        system: System of a Rod.
+        control: AxialControl.
+        turns: of the stations, shape (n + 1,).
+        step: number of the step.
+        greatest_force: magnitude of the largest axial force so far, this one's included, N.
+        before: axial force, N, and `mean_torque` of the last equilibrium but this.
+        now: those of this one.
+
+    Returns:
+        SeatReactions, the same on every rank.
+    """
+    observer = _Observer(system, control)
+    rod, pressure = observer.layout.rod, pressures(observer.on_wire)
+    faint = faint_force(rod, greatest_force)
+    bottom, top = (observer.reaction(end, faint) for end in ENDS)
+    force, torque = change = now
+    if abs(force) < greatest_force:  # it has borne more: only what has changed since counts
+        change = force - before[0], torque - before[1]
+    active = active_turns(rod, turns, *change) if min(abs(force), abs(change[0])) > faint else np.nan
+    return SeatReactions(step, active, free_turns(observer.on_wire, pressure), bottom, top, pressure)
+
+
+def faint_force(rod: Rod, greatest_force: float) -> float:
+    """Axial force below which it counts as zero, N; `greatest_force` is the magnitude of the largest one so far."""
+    return max(FAINT * greatest_force, ROUNDING * rod.axial_force)
+
+
+class _Observer:
+    """Reads what acts at the ends of a spring."""
+
+    def __init__(self, system: System, control: AxialControl) -> None:
+        assert isinstance(system.layout, LineLayout)
+        self.layout, self.system, self.control = system.layout, system, control
+        self.x = self.layout.gather(system.state["x"].trial)
+        self.chart = self.layout.gather(self.layout.rod.chart)
+        self.parts: Parts = list(zip(system.contacts, system.gathered_contacts(), strict=True))
+        self.on_wire: OnWire = [(kind, *self.parts[kind]) for kind, bears in enumerate(system.bearing) if bears]
+
+    def wrench(self, end: str) -> Wrench:
+        """Resultant of all that an end's seat, or its prescribed unknowns, exert on the wire."""
+        own = [part for contact, part in self.parts if contact.end == end]
+        station, components = self.control.tips[end]
+        held = np.zeros(6)
+        held[components] = self.layout.values(self.system.internal, self.layout.station_dofs[station, components])
+        return Wrench.of_contacts(own, self.x, self.chart, station, held)
+
+    def reaction(self, end: str, faint: float) -> SeatReaction:
+        """The SeatReaction of an end."""
+        wrench = self.wrench(end).about(self.control.centre(end, self.x))
+        side = 1.0 if end == "bottom" else -1.0  # the bottom pushes up
+        lateral_x, lateral_y, along = wrench.force.tolist()
+        crossing = wrench.crossing() if abs(along) > faint else (math.nan, math.nan)
+        spot, length, down = (np.nan, np.nan), 0.0, 0.0
+        for _, contact, part in self.on_wire:
+            if contact.end == end:
+                wire = contact.points
+                bears, reach, x, y = bearing_on_seat(
+                    part.point,
+                    part.pressure,
+                    part.bears,
+                    wire.weights,
+                    wire.stations,
+                    self.x,
+                    wire.length,
+                    wire.turns,
+                    wire.tip(end),
+                    faint,
+                )
+                length, down = length + bears, max(down, reach)
+                if not math.isnan(x):
+                    spot = x, y
+        axial = side * along
+        if not self.control.clamped and axial < -faint:
+            axial = 0.0  # a seat cannot pull: tension comes from the spring that holds a lifted tip
+        mx, my, mz = wrench.moment.tolist()
+        return SeatReaction(
+            axial,
+            lateral_x,
+            lateral_y,
+            mx,
+            my,
+            mz,
+            *crossing,
+            math.hypot(*crossing),
+            *spot,
+            length,
+            down,
+            self.tilt(end),
+        )
+
+    def tilt(self, end: str) -> float:
+        """Angle between the axes of a seat and of the spring, rad."""
+        first, R = SEAT_DOFS * ENDS.index(end), np.empty((3, 3))
+        exponential(self.system.seats[first + 3 : first + SEAT_DOFS], R)
+        return math.atan2(math.hypot(R[0, 2], R[1, 2]), R[2, 2])
+
+
+def mean_torque(rod: Rod) -> np.ndarray:
+    """Mt of the owned elements, the mean over each, N mm."""
+    torque = rod.coefficients.s[:, :, 3]
+    return 0.5 * (torque[:, 0] + torque[:, 1])
+
+
+def active_turns(rod: Rod, turns: np.ndarray, force: float, torque: np.ndarray) -> float:
+    """∫ (ΔMt/(ΔF r))² dt over all turns, Mt the torque, r the distance of each element from the axis; collective.
+
+    Args:
+        rod: Rod.
+        turns: of the stations, shape (n + 1,).
+        force, torque: ΔF, change of the axial force, N, and that of `mean_torque`.
+    """
+    return sum_of_ranks(rod.comm, _active_turns(torque, force, rod.x, rod.cells, turns, rod.line.element))
+
+
+@njit(cache=True)
+def _active_turns(
+    torque: np.ndarray,
+    force: float,
+    x: np.ndarray,
+    cells: np.ndarray,
+    turns: np.ndarray,
+    element: np.ndarray,
+) -> float:
+    """That of the owned elements; `x` of the nodes, `cells`: nodes of the elements, `element`: their numbers."""
+    active = 0.0
+    for c in range(len(torque)):
+        middle = 0.5 * (x[cells[c, 0]] + x[cells[c, 1]])
+        share = torque[c] / (force * math.hypot(middle[0], middle[1]))
+        active += share * share * (turns[element[c] + 1] - turns[element[c]])
+    return active
+
+
+def pressures(parts: OnWire) -> np.ndarray:
+    """Rows of SeatReactions.pressure: forces of each kind of contact, summed at each point."""
+    rows: list[np.ndarray] = [np.empty((0, 3))]
+    for kind, contact, part in parts:
+        if not len(part.point):
+            continue
+        halves = 1.0 if contact.end else 2.0
+        rows.append(pressures_on(kind, part.point, part.pressure, part.bears, contact.lengths, halves))
+    return np.concatenate(rows)
+
+
+def free_turns(parts: OnWire, pressure: np.ndarray) -> float:
+    """Turns of wire that touch nothing, weighted by the turns assigned to each point."""
+    if not parts:
+        return float("nan")
+    return turns_without(parts[0][1].points.share_of_turns, pressure)

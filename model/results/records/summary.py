@@ -1,0 +1,156 @@
+"""The summary of a run."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from coilset.model.results.records.buckling import buckling
+from coilset.model.results.records.rates import rates
+from coilset.model.results.records.record import Result, Setup, Snapshot
+from coilset.model.results.records.warnings import released as is_released
+from coilset.model.results.records.warnings import run_warnings, set_error
+from coilset.model.section import surface
+
+
+def summarise(setup: Setup, result: Result) -> dict[str, Any]:
+    """Summary of a run as plain numbers, with units in the names; unknown values (no release, no block) are None.
+
+    Args:
+        setup: Setup.
+        result: Result, complete or not; its snapshots are complete on rank 0 only.
+    """
+    last = result.snapshots[-1]
+    forces = [step.force_N for step in result.steps]
+    greatest = max(forces, default=0.0, key=abs)
+    released = is_released(result)
+    axis = setup.spring.measured_axis
+    before, buckled = setup.spring.free_length, buckling(result.steps, setup.mean_diameter)
+    after = setup.outer_length(last.x) if released else None
+    return {
+        "complete": result.complete,
+        "free_length_before_mm": before,
+        "free_length_after_mm": after,
+        "set_mm": None if after is None else before - after,
+        "rate_N_per_mm": result.rate if isfinite(result.rate) else None,
+        **rates(setup, result, released),
+        "force_max_N": greatest,
+        "block_height_mm": setup.spring.block_height,
+        "residual_shear_max_MPa": shear_peak(setup, last).value if released else None,
+        "shear_max_MPa": max(shear_peak(setup, shot).value for shot in result.snapshots),
+        **ends_peak(setup, last if released else None),
+        "residual_shear_inside_MPa": shear_inside(setup, last) if released else None,
+        "shear_inside_max_MPa": max(shear_inside(setup, shot) for shot in result.snapshots),
+        **peaks(setup, "residual_", [last] if released else []),
+        **peaks(setup, "", result.snapshots),
+        **plastic_work(setup, result),
+        **step_errors(result),
+        "load_loss_percent": load_loss(result),
+        "coiling_diameter_mm": setup.coiling_diameter,
+        "measured_axis_offset_mm": axis.offset if axis else None,
+        "measured_axis_tilt_deg": axis.tilt if axis else None,
+        "steps": len(result.steps),
+        "iterations": sum(step.iterations for step in result.steps),
+        "evaluations": sum(step.evaluations for step in result.steps),
+        "failed_solves": sum(step.failed_solves for step in result.steps),
+        "material": setup.material,
+        "ends": setup.ends,
+        "unstable_steps": sum(step.negative_pivots > 0 for step in result.steps),
+        "buckled": buckled is not None,
+        "buckling_travel_mm": buckled and buckled.travel_mm,
+        "buckling_force_N": buckled and buckled.force_N,
+        "buckling_travel_EN_13906_1_mm": setup.buckling_travel if isfinite(setup.buckling_travel) else None,
+        "elements": len(setup.turns) - 1,
+        "section_kind": setup.section_kind,
+        "section_rule": setup.rule.name,
+        "lift_off_max_mm": max((step.lift_off_mm for step in result.steps), default=0.0),
+        "warnings": [asdict(warning) for warning in run_warnings(setup, result)],
+    }
+
+
+def load_loss(result: Result) -> float | None:
+    """Percentage of the force that the spring had lost when time last passed at constant height."""
+    losses = [step.load_loss_percent for step in result.steps if step.load_loss_percent is not None]
+    return losses[-1] if losses else None
+
+
+def step_errors(result: Result) -> dict[str, float | None]:
+    """Errors due to the step size: of the maximum force, and of the set."""
+    top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
+    return {
+        "estimated_force_error_N": None if top is None else top.estimated_force_error_N,
+        "estimated_set_error_mm": set_error(result),
+    }
+
+
+def is_middle(setup: Setup) -> np.ndarray:
+    """Whether sections lie in the middle turns: a turn from the tips, or from the end coils of closed ends."""
+    spring = setup.spring
+    first, last = spring.bottom.end_turns, spring.turns - spring.top.end_turns
+    return surface.is_middle(setup.section_turns, first, last)
+
+
+def shear_peak(setup: Setup, snapshot: Snapshot, ends: bool = False) -> surface.Peak:
+    """The maximum shear stress on the wire's surface in the middle turns or, on request, in the end turns.
+
+    The surface value is a property of the spring. The core holds a larger residual shear stress, but the value found
+    there depends on the position of the section points.
+    """
+    among = is_middle(setup) != ends
+    stress = surface.shear(snapshot.surface_state, snapshot.components)
+    return surface.peak(stress[among], setup.section_turns[among], setup.inside)
+
+
+def ends_peak(setup: Setup, snapshot: Snapshot | None) -> dict[str, float | None]:
+    """The maximum residual shear on the ends' surface, MPa, its turn and its angle from the coil's inside, degrees.
+
+    None before the release, and of half a turn or less, all of which is its middle.
+    """
+    top = None if snapshot is None or is_middle(setup).all() else shear_peak(setup, snapshot, ends=True)
+    value, turn, angle = (None,) * 3 if top is None else (top.value, top.turn, top.angle)
+    return {
+        "residual_shear_ends_max_MPa": value,
+        "residual_shear_ends_max_turn": turn,
+        "residual_shear_ends_max_angle_deg": angle,
+    }
+
+
+def shear_inside(setup: Setup, snapshot: Snapshot) -> float:
+    """Shear stress on the wire's surface at the inside of the coil, MPa, positive as in a compressed spring.
+
+    The value of largest magnitude in the middle turns.
+    """
+    middle = setup.inside.shear(snapshot.surface_state, snapshot.components)[is_middle(setup)]
+    return float(middle[np.argmax(np.abs(middle))])
+
+
+def peaks(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, float | None]:
+    """The maximum shear and equivalent stress on the surface in the snapshots, MPa, and where: turn, and angle from
+    the inside of the coil, degrees; None without snapshots."""
+    found = {}
+    for name, stress in (("shear", surface.shear), ("equivalent", surface.equivalent)):
+        tops = [
+            surface.peak(stress(shot.surface_state, shot.components), setup.section_turns, setup.inside)
+            for shot in snapshots
+        ]
+        top = max(tops, key=lambda one: one.value, default=None)
+        for unit, value in (("MPa", "value"), ("turn", "turn"), ("angle_deg", "angle")):
+            found[f"{prefix}{name}_surface_max_{unit}"] = getattr(top, value) if top else None
+    return found
+
+
+def plastic_work(setup: Setup, result: Result) -> dict[str, float | None]:
+    """The maximum plastic work b* on the surface, where it is, and up to which the material's constants are valid."""
+    tops = [
+        surface.peak(surface.component(shot.surface_state, shot.components, "b"), setup.section_turns, setup.inside)
+        for shot in result.snapshots
+    ]
+    top = max(tops, key=lambda one: one.value)
+    return {
+        "plastic_work_max_N_per_mm2": max([top.value, *(step.plastic_work_max_N_per_mm2 for step in result.steps)]),
+        "plastic_work_max_turn": top.turn if top.value > 0.0 else None,
+        "plastic_work_max_angle_deg": top.angle if top.value > 0.0 else None,
+        "plastic_work_known_to_N_per_mm2": setup.limits.plastic_work,
+    }

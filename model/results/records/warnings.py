@@ -1,0 +1,245 @@
+"""Warnings of a run, derived from its records, so that a resumed run gives the same ones."""
+
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+from math import isfinite
+
+from coilset.model.base.warning import Warning
+from coilset.model.results.records.buckling import buckling, snapped
+from coilset.model.results.records.record import Result, Setup, Snapshot, Step
+from coilset.model.section import surface
+from coilset.model.standards.working import presetting_warning
+
+SLIPPED = 0.7  # of the rise to touch: coils of one wire that lie so are shifted sideways by 0.71 of their diameter
+# Change of the force over that of the travel, both in per cent, from which a spring counts as standing on a wall: a
+# spring of constant rate has 1, the example at block 1.1, the cone 160.
+WALL = 20.0
+WALL_FORCE = 0.002  # of the force, for which the warning tells the height where no accuracy is asked for
+NOTICED = 1e-5  # of the free length: a set uncertain by less, 0.3 µm of 30 mm, is known to whoever measures it
+FREE = 1e-6  # of the greatest force: a spring that bears no more is free of load
+Check = Callable[[Setup, Result], Iterator[Warning]]
+
+
+def run_warnings(setup: Setup, result: Result) -> list[Warning]:
+    """All warnings of a run: those about its case, those of its steps, those about what it has found.
+
+    Args:
+        setup: Setup.
+        result: Result, complete or not; its snapshots are whole on rank 0 only.
+    """
+    found = [warning for check in FOUND for warning in check(setup, result)]
+    return [*setup.warnings, *result.warnings, *step_warnings(setup, result), *found]
+
+
+def step_warnings(setup: Setup, result: Result) -> list[Warning]:
+    """Warnings that the steps alone show, at the first step that shows them."""
+    return [warning for check in SEEN for warning in check(setup, result)]
+
+
+def accuracy_warning(error: float, asked: float, place: str, of: str = "the force", size: str = "") -> Warning | None:
+    """A step whose estimated error is above the accuracy that was asked for; both are relative.
+
+    Args:
+        error, asked: parts of 1.
+        place: where the error is.
+        of: what is wrong by it; size: how much that is, in words.
+    """
+    if error <= asked:
+        return None
+    message = (
+        f"{of} is uncertain by about {100 * error:.2g} %{size and f', {size},'} because of the step size, more than "
+        f"the case's accuracy of {100 * asked:.2g} %; a smaller accuracy or more steps reduce it"
+    )
+    return Warning("step error", place, message, error, asked)
+
+
+def beyond_validity(greatest: float, limit: float, material: str, place: str) -> Warning:
+    """Plastic work beyond the range in which the material's constants are valid, N/mm²; `place` is where it began."""
+    message = (
+        f"the plastic work b* reaches {greatest:.4g} N/mm², but the constants of {material} are valid up to "
+        f"{limit:.4g} N/mm² only; exceeded since {place}"
+    )
+    return Warning("plastic work", place, message, greatest, limit, "N/mm²")
+
+
+# ---- from the steps --------------------------------------------------------------------------------------------------
+
+
+def _plastic_work(setup: Setup, result: Result) -> Iterator[Warning]:
+    """Since the start if the wire's past went that far."""
+    limit = setup.limits.plastic_work
+    first = next((step for step in result.steps if step.plastic_work_max_N_per_mm2 > limit), None)
+    if first is not None:
+        greatest = max(step.plastic_work_max_N_per_mm2 for step in result.steps)
+        past = any(_work(shot) > limit for shot in result.snapshots[:1])
+        yield beyond_validity(greatest, limit, setup.material, "the start" if past else _place(first))
+
+
+def _lift_off(setup: Setup, result: Result) -> Iterator[Warning]:
+    lifted = [step for step in result.steps if step.lift_off_mm > 0.0]
+    if lifted:
+        greatest, place = max(step.lift_off_mm for step in lifted), _place(lifted[0])
+        message = (
+            f"the spring lifts off a seat at {place}, by up to {greatest:.4g} mm: seats cannot pull, so they carry "
+            "no force there; weak springs at its tips hold it in place"
+        )
+        yield Warning("lift-off", place, message, greatest, 0.0, "mm")
+
+
+def _slipped(setup: Setup, result: Result) -> Iterator[Warning]:
+    first = next((step for step in result.steps if _rise(step) < SLIPPED), None)
+    if first is not None:
+        least, place = min(_rise(step) for step in result.steps), _place(first)
+        message = (
+            f"coils have slipped past each other since {place}: the rise from one to the next is {least:.2g} of that "
+            "of coils that lie on each other; contact.friction.coils may hold them"
+        )
+        yield Warning("coils slipped", place, message, least, SLIPPED)
+
+
+def _wall(setup: Setup, result: Result) -> Iterator[Warning]:
+    """At the end of a compression; a free spring that cools also gets shorter."""
+    accuracy, free = setup.limits.accuracy or WALL_FORCE, FREE * result.greatest_force
+    for before, step in pairwise(result.steps):
+        travel = step.travel_mm - before.travel_mm
+        if step.phase != before.phase or step.progress < 1.0 or travel <= 0.0 or step.force_N <= free:
+            continue
+        rate = (step.force_N - before.force_N) / travel
+        percent = abs(rate) * step.travel_mm / step.force_N
+        if percent > WALL:
+            height = accuracy * step.force_N / abs(rate)
+            message = (
+                f"at {_place(step)} the force changes by {rate:.3g} N/mm: the spring stands on a wall, as its coils "
+                f"are closed or slip, and {100 * accuracy:.2g} % of the force correspond to {height:.2g} mm of height"
+            )
+            yield Warning("wall", _place(step), message, percent, WALL)
+
+
+def _rise(step: Step) -> float:
+    return 1.0 if step.least_rise is None else step.least_rise
+
+
+def _penetration(setup: Setup, result: Result) -> Iterator[Warning]:
+    deepest, limit = max(result.steps, key=lambda step: step.penetration_mm, default=None), setup.limits.penetration
+    if deepest is not None and deepest.penetration_mm > limit:
+        depth, place = deepest.penetration_mm, _place(deepest)
+        message = f"coils or seats penetrate each other by {depth:.3g} mm at {place}, more than {limit:.3g} mm"
+        yield Warning("penetration", place, message, depth, limit, "mm")
+
+
+def _buckled(setup: Setup, result: Result) -> Iterator[Warning]:
+    found, limit = buckling(result.steps, setup.mean_diameter), setup.buckling_travel
+    if found is not None:
+        beside = f"at {limit:.4g} mm" if isfinite(limit) else "never"
+        message = (
+            f"the spring buckled at a travel of {found.travel_mm:.4g} mm and {found.force_N:.4g} N (EN 13906-1: "
+            f"{beside}); the results beyond are for the buckled shape"
+        )
+        place = f"travel {found.travel_mm:.4g} mm"
+        yield Warning("buckled", place, message, found.travel_mm, limit if isfinite(limit) else None, "mm")
+
+
+def _unstable(setup: Setup, result: Result) -> Iterator[Warning]:
+    unstable = [step for step in result.steps if step.negative_pivots > 0]
+    if unstable:
+        message = (
+            f"{len(unstable)} steps ended in unstable equilibria with no stable one nearby: there are several "
+            "branches, and smaller steps may find another"
+        )
+        yield Warning("unstable", _place(unstable[0]), message, len(unstable), 0.0)
+
+
+def _snapped(setup: Setup, result: Result) -> Iterator[Warning]:
+    before = [0.0, *(step.force_N for step in result.steps)]
+    snaps = [
+        (force, step) for force, step in zip(before, result.steps, strict=False) if snapped(step, setup.mean_diameter)
+    ]
+    if snaps:
+        force, step = max(snaps, key=lambda snap: snap[1].released_energy_Nmm)
+        times = "" if len(snaps) == 1 else f", {len(snaps)} times in all"
+        message = (
+            f"the spring snapped through at a travel of {step.travel_mm:.5g} mm, from {force:.5g} N to "
+            f"{step.force_N:.5g} N, and released {step.released_energy_Nmm:.2g} N mm{times}: several branches exist, "
+            "and it came to rest on the one that a slow snap leads to"
+        )
+        yield Warning("snapped", _place(step), message, step.released_energy_Nmm, 0.0, "N mm")
+
+
+def _place(step: Step) -> str:
+    return f"step {step.number}, travel {step.travel_mm:.4g} mm"
+
+
+# ---- from what was found ---------------------------------------------------------------------------------------------
+
+
+def _strength(setup: Setup, result: Result) -> Iterator[Warning]:
+    strength = setup.limits.strength
+    if strength is None or not result.snapshots:
+        return
+    greatest, shot = max(((_equivalent(shot), shot) for shot in result.snapshots), key=lambda pair: pair[0])
+    if greatest > strength:
+        message = (
+            f"the equivalent stress is {greatest:.4g} N/mm² at {shot.name}, above the wire's minimum "
+            f"tensile strength Rm of {strength:.4g} N/mm²"
+        )
+        yield Warning("strength", shot.name, message, greatest, strength, "MPa")
+
+
+def _work(shot: Snapshot) -> float:
+    return float(surface.component(shot.surface_state, shot.components, "b").max(initial=0.0))
+
+
+def _equivalent(shot: Snapshot) -> float:
+    return float(surface.equivalent(shot.surface_state, shot.components).max())
+
+
+def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
+    """The worse of force, at its greatest, and set; or that the former is not known."""
+    asked = setup.limits.accuracy
+    top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
+    if asked is None or top is None or not top.force_N:
+        return
+    if top.estimated_force_error_N is None:
+        if not abs(top.force_N) <= FREE * result.rate * setup.spring.free_length:  # also where the rate is not known
+            message = (
+                f"how uncertain the force is because of the step size is not known at its greatest, {_place(top)}; "
+                "compare it with that of smaller steps"
+            )
+            yield Warning("unknown error", _place(top), message, None, asked)
+        return
+    worst, place, of = abs(top.estimated_force_error_N / top.force_N), _place(top), ("the force", "")
+    error = set_error(result)
+    set_mm = setup.spring.free_length - setup.outer_length(result.snapshots[-1].x)
+    noticed = error is not None and abs(error) > NOTICED * setup.spring.free_length
+    if error is not None and noticed and set_mm > 0.0 and abs(error) > worst * set_mm:
+        worst, place, of = abs(error) / set_mm, "set", ("the set", f"{abs(error):.2g} mm")
+    warning = accuracy_warning(worst, asked, place, *of)
+    if warning is not None:
+        yield warning
+
+
+def set_error(result: Result) -> float | None:
+    """Estimated error of the set by the steps' length, mm; None where there is none, or it is not known."""
+    error = result.steps[-1].estimated_height_error_mm if result.steps and released(result) else None
+    return None if error is None else -error
+
+
+def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
+    """Of a program that goes to block and comes back."""
+    if "block" in setup.phases and released(result):
+        spring = setup.spring
+        set_mm = spring.free_length - setup.outer_length(result.snapshots[-1].x)
+        warning = presetting_warning(set_mm, spring.free_length - spring.block_height)
+        if warning is not None:
+            yield warning
+
+
+def released(result: Result) -> bool:
+    """Whether the spring is free of load now; one that has left a seat is held by its tip springs only."""
+    if not result.steps or result.steps[-1].lift_off_mm:
+        return False
+    return abs(result.snapshots[-1].force) <= FREE * result.greatest_force
+
+
+SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _wall, _penetration, _buckled, _unstable, _snapped)
+FOUND: tuple[Check, ...] = (_strength, _step_error, _presetting)

@@ -1,0 +1,187 @@
+"""From a case to the parts of its analysis: mesh and rod, heat, Newton's method, control, continuation, records."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from mpi4py import MPI
+
+from coilset.meshes.line import line_mesh
+from coilset.meshes.springs.geometry import Spring
+from coilset.meshes.springs.placement import Placement, chord_placement, refuse_sharp_bends, section_placement
+from coilset.model.base.warning import Warning
+from coilset.model.case import Case
+from coilset.model.contact.base import BearsOnWire, Contact
+from coilset.model.equilibrium.axial_control import AxialControl
+from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
+from coilset.model.equilibrium.continuation import Continuation
+from coilset.model.equilibrium.layout import LineLayout
+from coilset.model.equilibrium.methods import Method, rod_method
+from coilset.model.equilibrium.newton import Newton
+from coilset.model.equilibrium.stability import Stability
+from coilset.model.equilibrium.step_error import StepError
+from coilset.model.equilibrium.system import System
+from coilset.model.manufacture.initial_state import past_warnings
+from coilset.model.material.law.law import Law
+from coilset.model.results.records.record import ContactRecord, Limits, Setup
+from coilset.model.rod.heat import WireHeat, heat_constants
+from coilset.model.rod.kinematics import GAUSS, chord_triads
+from coilset.model.rod.rod import Rod
+from coilset.model.run.coarse_mesh import coarse_mesh_warnings
+from coilset.model.run.effort import Effort, machine_memory
+from coilset.model.runtime.threads import Threads
+from coilset.model.standards.buckling import buckling_travel
+from coilset.model.standards.case_warnings import case_warnings
+from coilset.model.standards.wires.law import case_elastic, case_strength
+
+PENETRATION = 0.02  # usual maximum penetration in wire diameters; a case may allow more
+AUGMENTED = 2.0  # times the maximum penetration: up to there contacts are augmented although the case does not say so
+
+
+@dataclass(frozen=True)
+class MeshedWire:
+    """The wire of a spring in elements.
+
+    Attributes:
+        turns: of the stations, shape (n + 1,).
+        radius: of the elements, shape (n,), mm.
+        placement: Placement of their sections.
+        rod: Rod.
+        warnings: about mesh and effort.
+    """
+
+    turns: np.ndarray
+    radius: np.ndarray
+    placement: Placement
+    rod: Rod
+    warnings: tuple[Warning, ...]
+
+
+def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: int) -> MeshedWire:
+    """The wire of a case's spring.
+
+    Raises:
+        InputError: if it needs more memory than there is, bends too sharply, or lies outside the law's temperatures.
+    """
+    turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
+    section, automatic = case.mesh.section, case.solver.control.steps.automatic
+    steps = sum(phase.count(automatic) for phase in case.loading)
+    effort = Effort.of(len(turns) - 1, section.points, steps, case.steps_error is not None)
+    effort.check_memory(machine_memory())
+    # before the rod is made, which takes the memory that this needs for a moment
+    coarse = coarse_mesh_warnings(spring, turns)
+    line = line_mesh(spring.centre_line(turns), comm)
+    radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
+    chords = chord_triads(np.diff(line.stations, axis=0))
+    if case.mesh.axis == "chords":
+        placement = chord_placement(spring, turns, chords, GAUSS)
+    else:
+        to_normal = section.kind != "plane" or bool(case.past)
+        placement = section_placement(spring, turns, chords, GAUSS, to_normal)
+        refuse_sharp_bends(placement, radius, turns)
+    rod = Rod(
+        line, radius, law, section.build(), placement, case.temperature, section.kind, section.degree, Threads(threads)
+    )
+    return MeshedWire(turns, radius, placement, rod, (*coarse, *effort.warnings()))
+
+
+def build_heat(case: Case, rod: Rod) -> WireHeat | None:
+    """Heat along the wire, if the case asks for it."""
+    spec = case.heat
+    if spec is None:
+        return None
+    start = rod.temperature if spec.surroundings is None else spec.surroundings
+    return WireHeat(rod, heat_constants(rod.law, spec.conductivity, spec.convection, spec.tips, start))
+
+
+def _deepest(case: Case, least_radius: float) -> float:
+    """Penetration above which contacts are augmented or states rejected, mm, by that of the thinnest element."""
+    return case.contact.penetration_limit * 2.0 * least_radius
+
+
+def build_newton(case: Case, system: System, least_radius: float) -> Newton:
+    """Newton's method, or the other one that the case names.
+
+    Args:
+        least_radius: of the elements, mm.
+    """
+    solver, contact = case.solver, case.contact
+    control, wire_diameter = solver.control.newton, 2.0 * system.line.rod.largest_radius
+    limit = ContactLimit(system, control, free_penetration(control, contact.penetration_limit) * wire_diameter)
+    tolerance, augmented = contact.augmentation_tolerance, np.inf
+    if tolerance is None:  # a much deeper state is on the wrong side, or from too long a step
+        tolerance = _deepest(case, least_radius)
+        augmented = AUGMENTED * tolerance
+    return Newton(
+        system, build_method(case, system.line, solver.method), solver.tolerance, control, limit, tolerance, augmented
+    )
+
+
+def build_method(case: Case, layout: LineLayout, name: str) -> Method:
+    """An iteration method with the case's options.
+
+    Raises:
+        InputError: if there is no such method.
+    """
+    # an arc by which every node moves by about the wire's radius
+    arc = layout.rod.largest_radius * np.sqrt(len(layout.station_dofs))
+    return rod_method(name, layout.comm.size, case.solver.options, arc)
+
+
+def build_control(case: Case, spring: Spring, system: System) -> AxialControl:
+    """The spring between its heads."""
+    seats = case.seats
+    return AxialControl(
+        system,
+        spring.free_length,
+        case.ends == "clamped",
+        seats.hold == "tips",
+        (seats.bottom.held(), seats.top.held()),
+    )
+
+
+def build_continuation(
+    case: Case, newton: Newton, control: AxialControl, stability: Stability, least_radius: float
+) -> Continuation:
+    """The steps along the path, with an estimate of their error unless the case wants none.
+
+    Args:
+        least_radius: of the elements, mm.
+    """
+    steps, accuracy = case.solver.control.steps, case.steps_error
+    error = None if accuracy is None else StepError(control, accuracy, steps)
+    return Continuation(newton, steps, _deepest(case, least_radius), stability=stability, step_error=error)
+
+
+def build_setup(
+    case: Case, spring: Spring, wire: MeshedWire, contacts: Sequence[Contact], coiling_diameter: float | None
+) -> Setup:
+    """What the records of a run are about."""
+    rod, law, least_radius = wire.rod, wire.rod.law, float(wire.radius.min())
+    records = tuple(
+        ContactRecord(one.name, one.end, one.points.turns if isinstance(one, BearsOnWire) else np.empty(0))
+        for one in contacts
+    )
+    limits = Limits(
+        law.validity.plastic_work, case_strength(case, spring), PENETRATION * 2.0 * least_radius, case.steps_error
+    )
+    warnings = (*case_warnings(case, spring, law), *past_warnings(rod, case.spring), *wire.warnings)
+    elastic = case_elastic(case, law)
+    buckling = buckling_travel(spring, elastic.shear_modulus / elastic.young_modulus)
+    return Setup(
+        spring=spring,
+        material=law.name,
+        ends=case.ends,
+        phases=tuple(phase.label for phase in case.loading),
+        turns=wire.turns,
+        wire_radius=wire.radius,
+        rule=rod.rule,
+        contacts=records,
+        section_kind=case.mesh.section.kind,
+        placement=wire.placement,
+        buckling_travel=buckling,
+        limits=limits,
+        rates_at=tuple(case.rates_at),
+        warnings=warnings,
+        coiling_diameter=coiling_diameter,
+    )

@@ -1,0 +1,205 @@
+"""What a run records: an entry for each step, and the spring at the ends of its phases."""
+
+import logging
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from coilset.model.base.agreement import max_of_ranks
+from coilset.model.base.warning import Warning
+from coilset.model.body.state import Where
+from coilset.model.case.phases import AnyPhase, TimePhase
+from coilset.model.equilibrium.axial_control import AxialControl
+from coilset.model.equilibrium.convergence import Outcome
+from coilset.model.equilibrium.program import StepTaken
+from coilset.model.equilibrium.stability import Stability, Weakest
+from coilset.model.equilibrium.system import System
+from coilset.model.results.records.buckling import axis_offset, buckling
+from coilset.model.results.records.record import BucklingMode, Frame, Result, SeatReactions, Setup, Snapshot, Step
+from coilset.model.results.records.seat_reactions import faint_force, mean_torque, seat_reactions
+from coilset.model.results.records.shape import LeastRise, clearance
+from coilset.model.results.records.warnings import step_warnings
+from coilset.model.rod.rod import Rod
+from coilset.model.section import surface
+
+log = logging.getLogger("coilset.steps")
+
+
+class Recorder:
+    """Reads the last equilibrium and adds it to the result.
+
+    Args:
+        setup: what the records refer to.
+        rod, system, control, stability: of the analysis.
+        detailed: record SeatReactions and Frames, too, and log warnings as soon as a step shows them.
+
+    Attributes:
+        result: the Result so far.
+    """
+
+    def __init__(
+        self, setup: Setup, rod: Rod, system: System, control: AxialControl, stability: Stability, detailed: bool
+    ) -> None:
+        self.setup, self.rod, self.system, self.control = setup, rod, system, control
+        self.layout, self._stability, self._detailed = system.line, stability, detailed
+        self.torque = system.state.add("torque", mean_torque(rod), Where.ELEMENT)
+        self.torque_force = system.state.add("torque_force", np.zeros(1), Where.SHARED)
+        self.result, self._least_rise = Result(), LeastRise(setup.turns, setup.spring)
+        self._warned: set[str] | None = None  # names of the steps' warnings so far; None until they are requested
+
+    def begin(self, rate: float) -> None:
+        """Record the unloaded spring and its initial rate, N/mm, NaN if unknown; collective."""
+        warnings = self.result.warnings
+        if math.isnan(rate):
+            problem = "the initial rate is not known: no equilibrium was found at the first touch"
+            warnings = (*warnings, Warning("initial rate", "start", problem))
+        self.result = replace(self.result, rate=rate, snapshots=(self.snapshot("start"),), warnings=warnings)
+
+    def resume(self, result: Result) -> None:
+        """Continue with the result of a checkpoint."""
+        self.result, self._warned = result, None
+
+    def end(self) -> None:
+        """The load program is complete."""
+        self.result = replace(self.result, complete=True)
+
+    def record(self, phase: int, taken: StepTaken, loading: Sequence[AnyPhase]) -> Step:
+        """Add the last equilibrium to the result; collective.
+
+        Args:
+            phase: number of the phase; taken: the step that led there; loading: all phases.
+        """
+        x, weakest = self.layout.gather(self.rod.x), self._weakest()
+        greatest = max(self.result.greatest_force, abs(self.control.force))
+        step = self._step(phase, taken, loading, x, weakest, greatest)
+        if weakest and (self.result.mode is None or weakest.value < self.result.mode.eigenvalue):
+            mode = BucklingMode(
+                step.travel_mm, step.force_N, weakest.value, x, self._stability.displacements(weakest.mode)
+            )
+            self.result = replace(self.result, mode=mode)
+        before, seats, frames = self.result, self.result.seats, self.result.frames
+        if self._detailed:
+            seats, frames = (*seats, self._seat_reactions(step.number, greatest)), (*frames, self._frame(x))
+        self.result = replace(before, steps=(*before.steps, step), seats=seats, frames=frames)
+        if self._detailed:
+            self._announce(before)
+        return step
+
+    def _step(
+        self,
+        phase: int,
+        taken: StepTaken,
+        loading: Sequence[AnyPhase],
+        x: np.ndarray,
+        weakest: Weakest | None,
+        greatest: float,
+    ) -> Step:
+        """The last equilibrium, stations at `x`, with the greatest force so far, N; collective."""
+        height, force, outcome = self.control.height, self.control.force, taken.outcome
+        pulls = self.setup.ends == "seats" and force < -faint_force(self.rod, greatest)
+        lift_off = max(clearance(self.system, x), 0.0) if pulls else 0.0
+        force_error, height_error = self._errors(outcome)
+        return Step(
+            number=taken.number,
+            phase=phase,
+            progress=taken.progress,
+            seat_height_mm=height,
+            travel_mm=self.setup.spring.free_length - height,
+            force_N=0.0 if lift_off else force + 0.0,  # the pull of the tip springs is ignored; and zero has no sign
+            iterations=outcome.iterations,
+            evaluations=outcome.evaluations,
+            failed_solves=outcome.failed_solves,
+            cuts=taken.cuts,
+            contacts=self.system.last.closed,
+            penetration_mm=self.system.max_penetration,
+            negative_pivots=outcome.negative_pivots,
+            left_branch=int(outcome.left_branch),
+            released_energy_Nmm=outcome.released,
+            axis_offset_mm=axis_offset(x, self.rod.line.stations, self.setup.turns),
+            least_eigenvalue=weakest.value if weakest else None,
+            plastic_work_max_N_per_mm2=self._greatest_plastic_work(),
+            lift_off_mm=lift_off,
+            least_rise=self._least_rise.of(x),
+            estimated_force_error_N=force_error,
+            estimated_height_error_mm=height_error,
+            hours=float(self.rod.clock[0]),
+            temperature_K=self.rod.hottest,
+            load_loss_percent=self._load_loss(phase, force, loading),
+        )
+
+    def _announce(self, before: Result) -> None:
+        """Log the warnings that the last step has brought; `before` is the result without it.
+
+        Whether a slender spring has buckled all its eigenvalues tell; what else is new shows in the last two steps.
+        """
+        if self._warned is None:
+            self._warned = {warning.name for warning in step_warnings(self.setup, before)}
+        steps = self.result.steps if self.setup.slender else self.result.steps[-2:]
+        for warning in step_warnings(self.setup, Result(steps, snapshots=self.result.snapshots[:1])):
+            if warning.name not in self._warned:
+                log.warning("warning: %s", warning.message)
+                self._warned.add(warning.name)
+
+    def _frame(self, x: np.ndarray) -> Frame:
+        """The wire at the last equilibrium, stations at `x`; collective."""
+        around = self.setup.inside.shear_around(self.rod.surface_state, self.rod.sections.components)
+        mean = 0.5 * (around[:, 0] + around[:, 1])
+        return Frame(x, self.rod.line.in_order(mean.astype(np.float32)))
+
+    def _seat_reactions(self, step: int, greatest_force: float) -> SeatReactions:
+        """The seats' reactions at the last equilibrium; keeps its torque and force for the next step's active turns."""
+        before = float(self.torque_force.equilibrium[0]), self.torque.equilibrium
+        force, torque = now = self.control.force, mean_torque(self.rod)
+        reactions = seat_reactions(self.system, self.control, self.setup.turns, step, greatest_force, before, now)
+        self.torque.trial[:] = self.torque.equilibrium[:] = torque
+        self.torque_force.trial[0] = self.torque_force.equilibrium[0] = force
+        return reactions
+
+    def _greatest_plastic_work(self) -> float:
+        """Maximum b* on the wire's surface at the last equilibrium, N/mm²; collective."""
+        work = surface.component(self.rod.surface_state, self.rod.sections.components, "b")
+        return max_of_ranks(self.system.comm, work.max(initial=0.0))
+
+    def _load_loss(self, phase: int, force: float, loading: Sequence[AnyPhase]) -> float | None:
+        """Percentage of the force lost since time began to pass at constant height; None if it does not."""
+        first = phase
+        while first >= 0 and isinstance(one := loading[first], TimePhase) and one.duration.keep == "height":
+            first -= 1
+        if first == phase:
+            return None
+        before = next((step.force_N for step in reversed(self.result.steps) if step.phase <= first), 0.0)
+        if abs(before) <= faint_force(self.rod, self.result.greatest_force):
+            return None
+        return 100.0 * (1.0 - force / before)
+
+    def _errors(self, outcome: Outcome) -> tuple[float | None, float | None]:
+        """Estimated errors of force and height due to the step size, N and mm; None if unknown."""
+        if outcome.estimate is None:
+            return None, None
+        force, height = (
+            value if math.isfinite(value) else None for value in (outcome.estimate.force, outcome.estimate.height)
+        )
+        return force, height
+
+    def _weakest(self) -> Weakest | None:
+        """Weakest of the tangent, for a spring slender enough to buckle, until it buckles; else None; collective."""
+        setup = self.setup
+        if not setup.slender or buckling(self.result.steps, setup.mean_diameter) is not None:
+            return None
+        return self._stability.weakest(self._stability.iteration.load)
+
+    def add_snapshot(self, name: str) -> None:
+        """Record the spring in its current state; collective."""
+        self.result = replace(self.result, snapshots=(*self.result.snapshots, self.snapshot(name)))
+
+    def snapshot(self, name: str) -> Snapshot:
+        """The current state of the spring, gathered on rank 0; its force is that of the last step; collective."""
+        force = self.result.steps[-1].force_N if self.result.steps else self.control.force
+        rod = self.rod
+        parts = (rod.coefficients.E, rod.coefficients.s, rod.point_state, rod.surface_state)
+        cells = [rod.line.in_order(values) for values in parts]
+        x, components = self.layout.gather(rod.x), rod.sections.components
+        triads, resultants, state, surface = cells
+        return Snapshot(name, self.control.height, force, x, triads, resultants, state, surface, components)

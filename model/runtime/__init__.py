@@ -1,0 +1,1 @@
+"""Libraries, caches, processes and threads."""

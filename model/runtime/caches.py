@@ -1,0 +1,151 @@
+"""Where compiled functions are kept between runs, and how they are loaded."""
+
+import functools
+import hashlib
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+from coilset.model.runtime.switches import enabled
+
+SOURCES = Path(__file__).resolve().parents[1]  # all of model
+
+
+def keep_by_content() -> None:
+    """Give each version of the compiled functions a folder of its own in numba's cache.
+
+    Numba compiles a function anew when its own file changes, but not when one that it calls does, and would go on with
+    what it compiled against the old one.
+    """
+    content = hashlib.sha256()
+    for path in sorted(SOURCES.rglob("*.py")):
+        text = path.read_bytes()
+        if b"njit" in text:
+            content.update(text)
+    root = os.environ.get("NUMBA_CACHE_DIR") or Path.home() / ".cache" / "coilset" / "numba"
+    version = content.hexdigest()[:16]
+    if Path(root).name != version:  # a process started by this one has it already
+        os.environ["NUMBA_CACHE_DIR"] = str(Path(root) / version)
+    if "numba" in sys.modules:  # it has read its environment
+        sys.modules["numba"].config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
+
+
+def load_without_compiler() -> None:
+    """Have numba load what it has compiled without setting up its compiler first, which takes longer than all else.
+
+    A version of numba that has no such function, or no such flag, loads as it always does.
+    """
+    from numba.core import entrypoints
+
+    for name, change in (
+        ("compiler", _set_up_when_compiling),
+        ("lookup", _sought_when_called),
+        ("bitcode", _link_when_compiling),
+        ("imports", _import_nothing),
+    ):
+        if enabled(name):
+            change()
+    if enabled("compiler") and hasattr(entrypoints, "_already_initialized"):
+        entrypoints._already_initialized = True  # no extensions of numba: it would look through all installed packages
+
+
+def _set_up_when_compiling() -> None:
+    """Compiled functions need numba's runtime, which is set up here; its compiler is set up before it is used."""
+    from numba.core.caching import Cache
+    from numba.core.runtime import rtsys
+
+    def load_overload(cache: Any, signature: Any, target: Any) -> Any:
+        """As numba's own, but for the compiler."""
+        if not ready:
+            rtsys.initialize(target)
+            ready.append(True)
+        with cache._guard_against_spurious_io_errors():
+            return cache._load_overload(signature, target)
+
+    ready: list[bool] = []
+    if all(hasattr(Cache, name) for name in ("load_overload", "_load_overload")):
+        Cache.load_overload = load_overload
+
+
+def _sought_when_called() -> None:
+    """The place of a compiled function on disk is sought when it is called, not when it is defined.
+
+    Most functions are only called by others, whose machine code holds theirs.
+    """
+    from numba.core.caching import FunctionCache
+    from numba.core.dispatcher import Dispatcher
+
+    class Sought:
+        """Stands for the FunctionCache of a dispatcher until something is asked of it."""
+
+        def __init__(self, dispatcher: Any) -> None:
+            self._dispatcher = dispatcher
+
+        def __getattr__(self, name: str) -> Any:
+            self._dispatcher._cache = FunctionCache(self._dispatcher.py_func)
+            return getattr(self._dispatcher._cache, name)
+
+    def enable_caching(dispatcher: Any) -> None:
+        dispatcher._cache = Sought(dispatcher)
+
+    if hasattr(Dispatcher, "enable_caching"):
+        Dispatcher.enable_caching = enable_caching
+
+
+def _link_when_compiling() -> None:
+    """Beside machine code numba keeps bitcode, for callers that are compiled later; it is parsed when there is one.
+
+    It takes twice as long as all else of the loading.
+    """
+    from llvmlite import binding
+    from numba.core.codegen import CPUCodeLibrary, JitEngine
+    from numba.core.compiler import CompileResult
+
+    def rebuild(target: Any, kept: tuple, function: Any, *rest: Any) -> Any:
+        """As numba's own, with an empty module in place of the bitcode."""
+        name, kind, (code, bitcode) = kept
+        engine = target.codegen()._engine
+        engine._defined_symbols.add(function.llvm_cpython_wrapper_name)
+        empty = binding.parse_assembly("").as_bitcode()
+        made = own(target, (name, kind, (code, empty)), function, *rest)
+
+        def module_for_linking() -> Any:
+            del made.library._get_module_for_linking  # numba's own comes to light again
+            made.library._shared_module = binding.parse_bitcode(bitcode)
+            engine._load_defined_symbols(made.library._shared_module)
+            return made.library._shared_module
+
+        made.library._get_module_for_linking = module_for_linking
+        return made
+
+    needed = (
+        (CompileResult, "_rebuild"),
+        (CPUCodeLibrary, "_get_module_for_linking"),
+        (JitEngine, "_load_defined_symbols"),
+    )
+    if all(hasattr(owner, name) for owner, name in needed):
+        own = CompileResult._rebuild
+        CompileResult._rebuild = staticmethod(rebuild)
+
+
+def _import_nothing() -> None:
+    """The module of a function that was compiled into another is not loaded.
+
+    Only code that works on Python's objects reads its globals, and none of these functions does.
+    """
+    from numba.core import environment
+
+    def rebuild(module: str, constants: list, name: str) -> Any:
+        """As numba's own, but for the module."""
+        found = environment.lookup_environment(name)
+        if found is None:
+            there = sys.modules.get(module)
+            found = environment.Environment(vars(there) if there else {"__name__": module})
+            found.consts[:] = constants
+            found.env_name = name
+            environment.Environment._memo[name] = found
+        return found
+
+    if hasattr(environment, "_rebuild_env"):  # under whose name what is kept calls it
+        environment._rebuild_env = functools.wraps(environment._rebuild_env)(rebuild)

@@ -1,0 +1,25 @@
+"""Switches of what makes a command start faster; the results are the same without it.
+
+`COILSET_WITHOUT` names what is left out, separated by commas, or `all`. docs/scaling.md lists what each saves.
+"""
+
+import os
+
+SAVINGS = {
+    "compiler": "kernels are loaded without setting up numba's compiler",
+    "bitcode": "the bitcode of a kernel is parsed only for a caller that is compiled",
+    "lookup": "a kernel is looked up on disk when Python calls it, not when it is defined",
+    "imports": "the module of a kernel within another kernel is not imported",
+    "modules": "modules that libraries import without using them are loaded when something of them is used",
+    "checks": "pydantic neither searches for plug-ins nor checks its own schemas",
+    "linking": "MPI, PETSc and DOLFINx are linked by a second thread",
+    "rich": "typer is loaded without rich",
+    "garbage": "garbage is collected rarely, and not among what the libraries have made",
+    "ending": "the process ends without tearing Python down",
+}
+
+
+def enabled(name: str) -> bool:
+    """Whether a saving of SAVINGS is in use."""
+    without = os.environ.get("COILSET_WITHOUT", "")
+    return not without or not {name, "all"} & set(without.split(","))

@@ -1,0 +1,1 @@
+"""The uniform rod: a coil whose state is the same all along the wire."""

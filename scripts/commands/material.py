@@ -1,0 +1,248 @@
+"""`coilset material`: draw a material's functions, drive one point through a program, fit constants to tests."""
+
+import os
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from coilset.model.base.errors import InputError, naming
+from coilset.scripts.compiling import announce_compiling
+from coilset.scripts.plain import typer
+from coilset.scripts.terminal.target import folder_target, results_folder
+
+if TYPE_CHECKING:  # commands load what they need
+    from matplotlib.figure import Figure
+    from rich.table import Table
+
+    from coilset.model.material.identification.cyclic import CyclicFit
+    from coilset.model.material.law.law import Law
+    from coilset.model.material.programs import History, Program
+    from coilset.scripts.terminal.console import Console
+
+app = typer.Typer(help="Show a material, test it at one point, or fit it to test data.", no_args_is_help=True)
+MATERIAL = typer.Argument(help="name in the library, or path of a material file")
+DATA = typer.Argument(help="tests (CSV): columns eps11, gamma12, sigma11, tau12; of tension strain, stress")
+RELAXATION = typer.Argument(help="relaxation tests (CSV): columns hours, temperature, loss, stress or shear_stress")
+OUT = typer.Option(None, callback=folder_target, help="results folder [default: results/material/NAME]")
+FORCE = typer.Option(False, "--force", help="overwrite existing files")
+
+
+@app.command()
+def show(material: str = MATERIAL, out: str = OUT, force: bool = FORCE) -> None:
+    """Print a material's constants and draw k², ζ and 2Gκ over the plastic work."""
+    from coilset.model.material import library
+    from coilset.model.material.identification import figures
+    from coilset.scripts.terminal.console import Console
+
+    law = library.load(material)
+    picture = _free(_folder(out, law.name), force, "functions.png")[0]
+    console = Console()
+    console.print(f"[bold]{law.name}[/]: {law.description}\nsource: {law.source}\nvalid: {law.validity.remark}")
+    console.print(_constants(law))
+    _save(figures.material_functions(law), picture, console)
+
+
+@app.command("test")
+def run_program(
+    material: str = MATERIAL,
+    program: str = typer.Argument(help="program file (YAML): targets of strain and stress"),
+    integrator: str = typer.Option("return_mapping", help="return_mapping, or heun as in the thesis"),
+    spin: bool = typer.Option(False, help="include the spin terms of the rod's form (5.2.33)"),
+    out: str = OUT,
+    force: bool = FORCE,
+) -> None:
+    """Drive one material point through a program of strain and stress, and draw the result."""
+    from coilset.model.material import library, points, programs
+    from coilset.model.material.identification import figures
+    from coilset.model.results.files.folder import make
+    from coilset.scripts.terminal.console import Console
+
+    announce_compiling()
+    if integrator not in points.INTEGRATORS:
+        raise InputError(f"'{integrator}' is none of {', '.join(points.INTEGRATORS)}", "--integrator")
+    law, steps = library.load(material, spin=spin), programs.read(program)
+    name = Path(program).stem
+    table, picture = _free(_folder(out, law.name), force, f"{name}.csv", f"{name}.png")
+    console = Console()
+    with naming(program):
+        history = programs.run(law, steps, integrator)
+    console.print(_ends(steps, history))
+    make(table.parent)
+    _write_csv(table, history)
+    _save(figures.program(law, steps, history), picture, console)
+
+
+@app.command()
+def fit(
+    data: list[str] = DATA,
+    shear_modulus: float = typer.Option(..., "--G", min=0.0, help="shear modulus, N/mm²"),
+    poisson: float = typer.Option(..., "--nu", min=-1.0, max=0.5, help="Poisson's ratio"),
+    temperature: float = typer.Option(293.15, min=0.0, help="temperature of the tests, K"),
+    saturation: bool | None = typer.Option(
+        None,
+        "--saturation/--no-saturation",
+        help="fit the second branch of k², which the tests must reach [default: not for tension tests alone]",
+    ),
+    back_stresses: int | None = typer.Option(
+        None, "--back-stresses", help="fit so many back stresses (Chaboche), 1 to 4, to cyclic tension or torsion"
+    ),
+    engineering: bool = typer.Option(False, "--engineering", help="tension tests have engineering strain and stress"),
+    name: str = typer.Option("fitted", help="name of the material"),
+    out: str = OUT,
+    force: bool = FORCE,
+) -> None:
+    """Identify material constants: k² from tension tests, with reversed torsion and tension-torsion also ζ and κ.
+
+    With --back-stresses: a yield stress, its rise, and several back stresses from cyclic tests in one direction.
+    """
+    from rich.table import Table
+
+    from coilset.model.material.identification import cyclic, experiments, figures
+    from coilset.model.material.identification import fit as fitting
+    from coilset.model.material.law.file import UNITS
+    from coilset.scripts.terminal.console import Console
+
+    announce_compiling()
+    file, picture = _free(_folder(out, name), force, f"{name}.yaml", "fit.png")
+    tests = [experiments.read_test(path, engineering) for path in data]
+    if back_stresses is None:
+        result = fitting.fit(tests, shear_modulus, poisson, saturation, temperature)
+    else:
+        result = cyclic.fit_back_stresses(tests, shear_modulus, poisson, back_stresses, temperature)
+    console = Console()
+    table = Table("constant", "value", "standard deviation", "± (95 %, all together)", "unit", box=None, padding=(0, 2))
+    for key, value in result.constants.items():
+        unit = UNITS[re.sub(r"_\d+$", "", key)]  # C_1, C_2, ...
+        table.add_row(key, f"{value:.6g}", f"{result.standard[key]:.2g}", f"{result.uncertainty[key]:.2g}", unit)
+    console.print(table)
+    if isinstance(result, cyclic.CyclicFit):
+        _say_what_is_told(result, console)
+    for test, scatter in zip(result.tests, result.scatter, strict=True):
+        console.print(f"{test.name} ({test.kind}): rms residual {scatter:.3g} N/mm²")
+    _write_material(file, result.material(name), console)
+    _save(figures.fit(result, name), picture, console)
+
+
+def _say_what_is_told(fit: "CyclicFit", console: "Console") -> None:
+    """What the tests do not tell of back stresses."""
+    if fit.doubtful:
+        console.print(f"the tests hardly tell {', '.join(fit.doubtful)}")
+    if fit.enough < fit.terms:
+        console.print(f"{fit.enough} back stress{'es' * (fit.enough > 1)} would do: the others are within the scatter")
+
+
+@app.command()
+def creep(
+    material: str = MATERIAL,
+    data: list[str] = RELAXATION,
+    form: str = typer.Option("norton_bailey", help="norton_bailey, or garofalo"),
+    hardening: str = typer.Option("strain", help="strain, or time"),
+    name: str = typer.Option("creeping", help="name of the material"),
+    out: str = OUT,
+    force: bool = FORCE,
+) -> None:
+    """Fit the constants of creep to relaxation tests, and write the material with them."""
+    from rich.table import Table
+
+    from coilset.model.material import library
+    from coilset.model.material.identification.creep_figure import creep_figure
+    from coilset.model.material.identification.creep_fit import UNITS, fit_creep
+    from coilset.model.material.identification.relaxation_tests import read_relaxation
+    from coilset.scripts.terminal.console import Console
+
+    for value, known, option in (
+        (form, ("norton_bailey", "garofalo"), "--form"),
+        (hardening, ("strain", "time"), "--hardening"),
+    ):
+        if value not in known:
+            raise InputError(f"'{value}' is none of {', '.join(known)}", option)
+    file, picture = _free(_folder(out, name), force, f"{name}.yaml", f"{name}.png")
+    result = fit_creep(library.load(material), tuple(read_relaxation(path) for path in data), form, hardening)
+    console = Console()
+    table = Table("constant", "value", "from", "to (95 %)", "unit", box=None, padding=(0, 2))
+    for key, (low, high) in result.interval.items():
+        table.add_row(key, f"{result.constants[key]:.4g}", f"{low:.4g}", f"{high:.4g}", UNITS[key])
+    console.print(table)
+    console.print(
+        f"at {result.constants['temperature']:g} K and, of strain, {result.constants['stress']:g} N/mm²; "
+        f"residual {result.scatter:.2g} % of the load"
+    )
+    source = "coilset material creep, " + ", ".join(Path(one).name for one in data)
+    _write_material(file, result.material(name, source), console)
+    _save(creep_figure(result), picture, console)
+
+
+def _folder(out: str | None, name: str) -> Path:
+    return results_folder(out, name, "material")
+
+
+def _free(folder: Path, force: bool, *names: str) -> list[Path]:
+    """Files that a command will write, none of which is there unless forced: found before it computes or writes any."""
+    from coilset.model.results.files.folder import refuse_to_replace
+
+    paths = [folder / name for name in names]
+    refuse_to_replace(paths, force)
+    return paths
+
+
+def _write_material(file: Path, content: dict[str, Any], console: "Console") -> None:
+    import yaml
+
+    from coilset.model.results.files.folder import make, whole
+
+    make(file.parent)
+    with whole(file) as path:
+        path.write_text(yaml.safe_dump(content, sort_keys=False, allow_unicode=True), encoding="utf-8")
+    console.say(f"material file in {file}")
+
+
+def _save(figure: "Figure", path: Path, console: "Console") -> None:
+    from coilset.model.figures.figures import save
+    from coilset.model.results.files.folder import make
+
+    make(path.parent)
+    save(figure, path)
+    console.say(f"picture in {path.parent}{os.sep}{path.name}")
+
+
+def _write_csv(path: Path, history: "History") -> None:
+    from coilset.model.results.files.folder import write_table
+
+    names, values = zip(*history.columns(), strict=True)
+    write_table(path, names, zip(*(column.tolist() for column in values), strict=True))
+
+
+def _constants(law: "Law") -> "Table":
+    from rich.table import Table
+
+    table = Table(box=None, padding=(0, 2))
+    table.add_column("constant")
+    for temperature in law.temperatures:
+        table.add_column(f"{temperature:g} K", justify="right")
+    table.add_column("unit")
+    rows = [dict(law.constants(temperature)) for temperature in law.temperatures]
+    for name, unit in {name: unit for row in rows for name, (_, unit) in row.items()}.items():
+        table.add_row(name, *(f"{row[name][0]:.7g}" if name in row else "–" for row in rows), unit)
+    if law.is_adiabatic:
+        table.add_row("heating", f"{law.heating:.4g}", *[""] * (len(rows) - 1), "K mm²/N")
+    return table
+
+
+def _ends(program: "Program", history: "History") -> "Table":
+    """Table of the state at the end of each step: the strains and stresses of the program, and b*."""
+    import numpy as np
+    from rich.table import Table
+
+    from coilset.model.material.identification.figures import SYMBOLS
+
+    names = {**SYMBOLS, "plastic_work": "b*", "temperature": "T"}
+    columns = [(names[name], values) for name, values in history.columns() if name in names and np.ptp(values) > 1e-9]
+    table = Table(box=None, padding=(0, 1))
+    table.add_column("end of step")
+    for name, _ in columns:
+        table.add_column(name, justify="right", no_wrap=True)
+    for index, step in enumerate(program.steps):
+        row = (history.step == index).nonzero()[0][-1]
+        values = (values[row] if abs(values[row]) > 1e-9 * abs(values).max() else 0.0 for _, values in columns)
+        table.add_row(f"{index + 1} {step.name}", *(f"{value:.5g}" for value in values))
+    return table

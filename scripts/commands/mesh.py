@@ -1,0 +1,99 @@
+"""`coilset mesh`: the data of a case's spring, its drawing, and its mesh as a file."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from mpi4py import MPI
+from rich.table import Table
+
+from coilset.meshes.springs.spring import Spring
+from coilset.model.base.errors import InputError, naming
+from coilset.model.case import read_case
+from coilset.model.results.files.folder import DRAWN, make, refuse_to_replace, whole
+from coilset.model.standards.data import SpringData, spring_data
+from coilset.model.standards.warnings import spring_warnings
+from coilset.model.standards.wires.law import case_elastic, case_law
+from coilset.scripts.terminal.console import Console
+from coilset.scripts.terminal.target import results_folder
+
+
+def mesh(
+    case_file: str | Path,
+    out: str | Path | None = None,
+    force: bool = False,
+    settings: Sequence[str] = (),
+    write: Sequence[str] = (),
+    pictures: bool = True,
+) -> None:
+    """Print the data of a spring, draw it, and write its mesh; see `coilset mesh --help`.
+
+    Args:
+        case_file: the case file.
+        out: folder of the pictures; default results/NAME-OF-CASE.
+        force: replace existing files.
+        settings: texts `key=value` that replace entries of the case file.
+        write: mesh files to write; the suffix determines the format.
+        pictures: draw the spring.
+
+    Raises:
+        InputError: wrong input, or files that exist already.
+    """
+    if MPI.COMM_WORLD.rank:
+        return  # too little work to be worth distributing
+    console = Console()
+    case = read_case(case_file, settings)
+    if write:
+        from coilset.meshes.export import check_format, write_mesh
+
+        for path in write:
+            check_format(path)
+    folder = results_folder(out, Path(case_file).stem)
+    with naming(case_file):
+        spring = case.spring.build()
+        turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
+        elastic = case_elastic(case, case_law(case, spring))
+    refuse_to_replace([folder / name for name in DRAWN if pictures] + [Path(path) for path in write], force)
+    console.print(_table(spring_data(spring, elastic), turns))
+    for warning in spring_warnings(spring, elastic):
+        console.warn(warning.message)
+    for path in write:
+        make(Path(path).parent)
+        try:
+            with whole(path) as partial:
+                write_mesh(spring, turns, partial)
+        except InputError as error:
+            raise InputError(error.problem, error.place, path) from None
+        console.say(f"mesh in {path}")
+    if pictures:
+        make(folder)
+        _draw(spring, folder, Path(case_file).stem, console)
+        console.say(f"pictures in {folder}{os.sep}")
+
+
+def _table(data: SpringData, turns: np.ndarray) -> Table:
+    table = Table(show_header=False, box=None, padding=(0, 2))
+    for label, value, unit in data.rows():
+        table.add_row(label, f"{value} {unit}".strip())
+    table.add_row("elements", str(len(turns) - 1))
+    return table
+
+
+def _draw(spring: Spring, out: Path, name: str, console: Console) -> None:
+    import matplotlib as mpl
+
+    from coilset.meshes import drawing, view
+    from coilset.model.base.style import STYLE
+    from coilset.model.figures import display
+    from coilset.model.figures.figures import save
+    from coilset.model.results.records.labels import plain
+
+    size = f"{plain(spring.turns)} turns, {plain(spring.free_length)} mm long"
+    with mpl.rc_context(STYLE):
+        save(drawing.drawing(spring, f"{name}: {size}"), out / DRAWN[0])
+    if not display.ensure():
+        console.warn(f"{DRAWN[1]} is not drawn: there is no display and no Xvfb")
+        return
+    with whole(out / DRAWN[1]) as path:
+        view.picture(spring, path)

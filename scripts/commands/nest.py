@@ -1,0 +1,77 @@
+"""`coilset nest`: two coaxial springs between the same seats."""
+
+import os
+from pathlib import Path
+from typing import Any
+
+from mpi4py import MPI
+from rich.table import Table
+
+from coilset.model.nest import output
+from coilset.model.nest.file import NAMES, read_nest
+from coilset.model.nest.nest import Pressed, press
+from coilset.model.results.files.folder import RESULTS, clear, make, prepare, refuse_results, write_summary
+from coilset.model.results.records.provenance import origin
+from coilset.model.results.records.record import Step
+from coilset.model.results.records.summary import summarise
+from coilset.model.results.run_files import write_run
+from coilset.model.runtime.threads import usual
+from coilset.scripts.terminal.console import Console
+from coilset.scripts.terminal.step_words import quantity, without_minus
+from coilset.scripts.terminal.target import results_folder
+
+
+def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool, threads: int | None = None) -> None:
+    """Press a nest; see `coilset nest --help`.
+
+    Raises:
+        InputError, SolveError: nothing is written then.
+    """
+    if MPI.COMM_WORLD.rank:
+        return  # both springs are run by one process
+    console, wanted = Console(), read_nest(file)
+    folder = results_folder(out, Path(file).stem)
+    refuse_results(folder, force)
+
+    def told(name: str, step: Step) -> None:
+        console.print(f"{name:6}{step.number:6d}{step.seat_height_mm:14.4f} mm{without_minus(step.force_N, 3):>14} N")
+
+    pressed = press(wanted, told, threads or usual(1))
+    prepare(folder, force)
+    for one in (folder, *(folder / name for name in NAMES)):  # of a spring that the seats no longer reach, too
+        clear(one, (*RESULTS, output.STEPS, "report.html"))
+    found = output.summary(pressed)
+    for member in pressed.members:
+        if member.result is not None:
+            make(folder / member.name)
+            own = summarise(member.setup, member.result)
+            write_run(folder / member.name, member.setup, member.result, own, origin(member.case))
+    output.write_steps(folder / output.STEPS, pressed)
+    if pictures:
+        output.draw(folder / "characteristic.png", pressed, found)
+    write_summary(folder, found)
+    _conclude(console, pressed, found, folder)
+
+
+def _conclude(console: Console, pressed: Pressed, found: dict[str, Any], folder: Path) -> None:
+    table = Table("", "nest", *(member.name for member in pressed.members), box=None, padding=(0, 2))
+    rows = {
+        "free length before": "free_length_before_mm",
+        "free length after": "free_length_after_mm",
+        "set": "set_mm",
+        "block": "block_height_mm",
+    }
+    columns = [found, *(found[member.name] or {} for member in pressed.members)]
+    for name, key in rows.items():
+        table.add_row(name, *(quantity(one.get(key), "mm") for one in columns))
+    table.add_row("maximum force", *(quantity(one.get("force_max_N"), "N", 2) for one in columns))
+    for name, key in (("maximum", "shear_inside_max_MPa"), ("residual", "residual_shear_inside_MPa")):
+        table.add_row(f"shear inside, {name}", "", *(quantity(one.get(key), "MPa", 1) for one in columns[1:]))
+    table.add_row("minimum clearance", quantity(found["clearance_min_mm"], "mm"), "", "")
+    console.print(table)
+    for warning in pressed.warnings:
+        console.warn(warning.message)
+    for member in pressed.members:
+        for warning in (found[member.name] or {"warnings": []})["warnings"]:
+            console.warn(f"{member.name}: {warning['message']}")
+    console.say(f"results in {folder}{os.sep}")

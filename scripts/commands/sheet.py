@@ -1,0 +1,149 @@
+"""`coilset sheet`: the formulas of the standards for a case's spring, beside the results of a run."""
+
+import os
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import get_args
+
+from mpi4py import MPI
+
+from coilset.meshes.springs.spring import Spring
+from coilset.model.base.errors import InputError, naming
+from coilset.model.base.warning import Warning
+from coilset.model.case import Case, read_case
+from coilset.model.figures import goodman_figure
+from coilset.model.results.files.folder import make, refuse_to_replace
+from coilset.model.standards import found, goodman
+from coilset.model.standards.case_sheet import case_sheet
+from coilset.model.standards.case_warnings import sheet_warnings
+from coilset.model.standards.en15800 import Grade
+from coilset.model.standards.rows import Row, sections
+from coilset.model.standards.sheet import Sheet
+from coilset.model.standards.warnings import spring_warnings
+from coilset.model.standards.wires import names, wire
+from coilset.model.standards.wires.file import Surface
+from coilset.model.standards.wires.library import files
+from coilset.model.standards.wires.words import described
+from coilset.model.standards.working import presetting_warning
+from coilset.scripts.terminal.console import Console
+from coilset.scripts.terminal.target import results_folder
+
+FIGURE = "goodman.png"
+GRADES: dict[int, Grade] = {grade: grade for grade in get_args(Grade)}
+
+
+def sheet(
+    case_file: str | Path | None,
+    results: str | Path | None = None,
+    wire_name: str | None = None,
+    lengths: Sequence[float] = (),
+    grade: int = 2,
+    surface: str = "as coiled",
+    dynamic: bool = False,
+    out: str | Path | None = None,
+    force: bool = False,
+    settings: Sequence[str] = (),
+    pictures: bool = True,
+) -> None:
+    """Print the sheet of a spring and draw its Goodman diagram; see `coilset sheet --help`.
+
+    Raises:
+        InputError: wrong input, a spring that is not cylindrical, or a figure that already exists.
+    """
+    if MPI.COMM_WORLD.rank:
+        return  # too little work to be worth distributing
+    console = Console()
+    if surface not in get_args(Surface):
+        raise InputError(f"'{surface}' is no surface; give {' or '.join(get_args(Surface))}", "--surface")
+    if case_file is None:
+        raise InputError("name a case file, or give --wires to list the wires", "coilset sheet")
+    case = read_case(case_file, settings)
+    folder = results_folder(out, Path(case_file).stem)
+    run = found.read(results) if results else None
+    with naming(case_file):
+        spring = case.spring.build()
+        made = case_sheet(case, spring, run, wire_name, lengths, GRADES[grade], surface, dynamic)
+    diagram = _diagram(made) if pictures else None
+    if diagram is not None:
+        refuse_to_replace([folder / FIGURE], force)
+    if run:
+        console.say(f"first the number by the formula, then that of {results}", whole=True)
+    for title, rows in sections(made):
+        console.print(f"[bold]{title}[/]")
+        for line in _lines(rows, run is not None):
+            console.print(line, soft_wrap=True)
+    if run and made.wire and not str(run.summary.get("material")).startswith(made.wire.name):
+        console.print(f"the run was made with the material {run.summary.get('material')}, not with {made.wire.name}")
+    if run and (other := _otherwise(run, case)):
+        console.warn(f"{results} is of another spring: {', '.join(other)}")
+    for warning in _warnings(spring, made):
+        console.warn(warning.message)
+    if diagram is not None:
+        make(folder)
+        goodman_figure.draw(folder / FIGURE, *diagram, run.residual if run else None)
+        console.say(f"Goodman diagram in {folder}{os.sep}{FIGURE}")
+
+
+def _otherwise(run: found.Found, case: Case) -> list[str]:
+    """Entries of the spring that a run had otherwise than the case."""
+    then = run.summary.get("origin", {}).get("case", {}).get("spring", {})
+    now = case.spring.model_dump(mode="json")
+    return [f"spring.{name}" for name in then if then[name] != now.get(name)]
+
+
+def list_wires(name: str | None = None) -> None:
+    """Print the known wires, their diameters and how certain their strength is, or all numbers of one of them.
+
+    Raises:
+        InputError: if there is no wire of this name.
+    """
+    console = Console()
+    if name is not None:
+        known = wire(name)
+        console.print(f"[bold]{known.name}[/], d in mm")
+        for label, number, citation in described(known):
+            console.print(f"  {label:29} {number}\n  {'':29} [dim]{citation}[/]", soft_wrap=True)
+        for missing in files()[known.standard].missing:
+            console.print(f"  not found: {missing}", soft_wrap=True)
+        return
+    for name in names():
+        known = wire(name)
+        ranges = ", ".join(f"{low:.4g} to {high:.4g}" for low, high in known.ranges)
+        console.print(f"{name:28} {ranges + ' mm':24} {known.entry.strength.sure}", soft_wrap=True)
+
+
+def _diagram(made: Sheet) -> tuple[str, goodman.Line, goodman.Cycle] | None:
+    """Wire, line and cycle of the Goodman diagram; None without a wire of known endurance or a cycle."""
+    known, endured, cycle = made.wire, made.endured, made.cycle
+    if known is None or endured is None or cycle is None:
+        return None
+    return f"{known.name}, {made.spring.d:g} mm", endured, cycle
+
+
+def _warnings(spring: Spring, made: Sheet) -> list[Warning]:
+    cylinder = made.spring
+    warnings = [*spring_warnings(spring, made.elastic), *sheet_warnings(made, [cylinder.solid])]
+    set_mm = made.at_run("set_mm")
+    if set_mm is not None and made.was_at_block:  # any other run is no presetting
+        warnings += filter(None, [presetting_warning(set_mm, cylinder.length - cylinder.solid)])
+    return warnings
+
+
+def _lines(rows: Sequence[Row], beside: bool) -> Iterator[str]:
+    """Text of a section: label, value, unit, result, formula and how it was checked; reasons on lines below."""
+    width = max(len(row.label) for row in rows)
+    for row in rows:
+        found = _number(row.found) if row.found is not None else ""
+        parts = [
+            f"  {row.label:{width}} {_number(row.value):>9} {row.unit:5}",
+            f"{found:>9}  " if beside else "",
+            f"{row.formula}  " if row.formula else "",
+            f"[dim]{row.sure}[/]" if row.sure else "",
+        ]
+        yield "".join(parts).rstrip()
+        if row.why and (row.found is not None or row.value is None):
+            yield f"  {'':{width}} [dim]{row.why}[/]"
+
+
+def _number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.5g}"

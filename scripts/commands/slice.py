@@ -1,0 +1,117 @@
+"""`coilset slice`: a cylindrical spring as a 3D body, from a single section of its wire."""
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from mpi4py import MPI
+from rich.table import Table
+
+from coilset.meshes.section_shapes import parse
+from coilset.meshes.springs.spring import SpringSpec
+from coilset.model.base.errors import InputError, SolveError
+from coilset.model.case import Case, read_case
+from coilset.model.results.files.folder import clear, prepare, write_summary
+from coilset.model.results.records.provenance import origin
+from coilset.model.slice.analysis import ACROSS, SliceAnalysis, SliceStep
+from coilset.model.slice.summary import summarise, write_history
+from coilset.model.standards.case_warnings import case_warnings
+from coilset.scripts.terminal.console import Console
+from coilset.scripts.terminal.step_words import HEAD, quantity, step_row
+from coilset.scripts.terminal.target import results_folder
+
+
+def slice_case(
+    case_file: str | Path,
+    out: str | Path | None = None,
+    force: bool = False,
+    settings: Sequence[str] = (),
+    section: str | None = None,
+    across: float | None = None,
+    pictures: bool = True,
+) -> None:
+    """Run the slice of a case; see `coilset slice --help`.
+
+    Args:
+        case_file: the case file.
+        out: results folder; default results/NAME-OF-CASE-slice.
+        force: replace existing results.
+        settings: texts `key=value` that replace entries of the case file.
+        section: the section in words or a CSV file of its outline, see `meshes.section_shapes.parse`; default is round.
+        across: triangles across the section.
+        pictures: draw the figure.
+
+    Raises:
+        InputError, SolveError: the latter after the results so far are written.
+    """
+    if MPI.COMM_WORLD.rank:
+        return  # a section is too small to be distributed
+    console = Console()
+    case = read_case(case_file, settings)
+    folder = results_folder(out, f"{Path(case_file).stem}-slice")
+    try:
+        outline = parse(section) if section else None
+        analysis = SliceAnalysis(case, outline, ACROSS if across is None else across)
+    except InputError as error:
+        raise _placed(error, case, case_file) from None
+    prepare(folder, force)
+    for warning in case_warnings(case, analysis.spring, analysis.law):
+        console.warn(warning.message)
+    targets = ", ".join(phase.label for phase in case.loading)
+    console.say(f"{Path(case_file).name}: slice with {analysis.body.u.size + 2} unknowns, to {targets}")
+    console.print(f"{HEAD}  touching")
+    failure = None
+    try:
+        analysis.run(lambda step: console.print(_row(step)))
+    except SolveError as error:
+        failure = error
+    summary = summarise(analysis)
+    _write(folder, analysis, summary, pictures)
+    _conclude(console, summary, folder)
+    if failure is not None:
+        raise failure
+
+
+def _placed(error: InputError, case: Case, case_file: str | Path) -> InputError:
+    """The error with the option, or the entry of the case file, that gave what is wrong."""
+    group, _, entry = error.place.partition(".")
+    if error.file:
+        return error
+    if group == "section":
+        return InputError(error.problem, "--across" if entry == "across" else f"--section: {entry}")
+    if group == "--section":
+        return error
+    given = case.spring.diameter_entry if isinstance(case.spring, SpringSpec) else "mean_diameter"
+    return InputError(error.problem, error.place.replace("mean_diameter", given), case_file)
+
+
+def _row(step: SliceStep) -> str:
+    return step_row(step) + ("  coils" if step.contacts else "")
+
+
+def _write(out: Path, analysis: SliceAnalysis, summary: dict[str, Any], pictures: bool) -> None:
+    from coilset.model.slice import output
+
+    clear(out)
+    write_history(out, analysis.result.steps)
+    output.write_fields(out, analysis)
+    write_summary(out, {**summary, "origin": origin(analysis.case)})  # before the picture, which takes longest
+    if pictures:
+        output.figure(out / "section.png", analysis)
+
+
+def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
+    table = Table(show_header=False, box=None, padding=(0, 2))
+    table.add_row("free length before", quantity(summary["free_length_before_mm"], "mm"))
+    table.add_row("free length after", quantity(summary["free_length_after_mm"], "mm"))
+    table.add_row("[bold]set[/]", f"[bold]{quantity(summary['set_mm'], 'mm')}[/]")
+    table.add_row("initial rate", quantity(summary["rate_N_per_mm"], "N/mm"))
+    table.add_row("maximum force", quantity(summary["force_max_N"], "N", 2))
+    table.add_row("shear stress, inside of coil, loaded", quantity(summary["shear_inside_max_MPa"], "MPa", 2))
+    table.add_row("maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2))
+    table.add_row("residual shear stress, inside of coil", quantity(summary["residual_shear_inside_MPa"], "MPa", 2))
+    console.print(table)
+    console.say(f"  results in {out}{os.sep}", whole=True)
+    for warning in summary["warnings"]:
+        console.warn(warning["message"])

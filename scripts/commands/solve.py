@@ -1,0 +1,152 @@
+"""`coilset solve`: read, run, write, draw, and print the results."""
+
+import contextlib
+import logging
+import os
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from mpi4py import MPI
+
+from coilset.model.base.agreement import on_first_rank
+from coilset.model.base.errors import CoilsetError, InputError, SolveError, naming
+from coilset.model.case import Case, read_case
+from coilset.model.figures.pictures import Pictured
+from coilset.model.results.files.checkpoint import Checkpoint
+from coilset.model.results.files.folder import DRAWN, RESULTS, clear, prepare
+from coilset.model.results.records.provenance import origin
+from coilset.model.results.records.record import Step
+from coilset.model.results.records.summary import summarise
+from coilset.model.results.run_files import write_run
+from coilset.model.run.analysis import Analysis
+from coilset.model.runtime.threads import usual
+from coilset.scripts.interrupt import Interrupt
+from coilset.scripts.terminal.drawing import Drawings
+from coilset.scripts.terminal.interactive import Prompt
+from coilset.scripts.terminal.log import run_log
+from coilset.scripts.terminal.target import results_folder
+from coilset.scripts.terminal.telling import VOICES, Lines
+
+log = logging.getLogger("coilset.steps")
+STARTED = float(os.environ.get("COILSET_STARTED", time.time()))
+
+
+def solve(
+    case_file: str | Path,
+    out: str | Path | None,
+    force: bool,
+    settings: Sequence[str],
+    pictures: bool,
+    resume: bool = False,
+    interactive: bool = False,
+    comm: MPI.Comm = MPI.COMM_WORLD,
+    drawings: Drawings | None = None,
+    voice: str = "lines",
+    verbose: bool = False,
+    threads: int | None = None,
+) -> None:
+    """Run one case; see `coilset solve --help`. Drawings draws the pictures, `VOICES` are the ways to print a run.
+
+    Raises:
+        InputError, SolveError: after the results so far are written.
+    """
+    telling = VOICES[voice](comm.rank == 0, verbose)
+    if interactive and comm.size > 1:
+        raise InputError("works on one rank only; omit -n", "--interactive")
+    if interactive and voice != "lines":
+        raise InputError(f"shows each step, and --{voice} does not; give one of the two", "--interactive")
+    case = read_case(case_file, settings)
+    folder = results_folder(out, Path(case_file).stem)
+    with contextlib.ExitStack() as stack:
+        interrupt = stack.enter_context(Interrupt(comm, telling.say))
+        with naming(case_file):
+            analysis = Analysis(case, comm, threads=threads or usual(comm.size))
+        on_first_rank(comm, lambda: _prepare(folder, analysis.case, force, resume))
+        on_first_rank(comm, lambda: _begin(stack.enter_context(run_log(folder)), folder, force, resume))
+        drawings = (drawings or stack.enter_context(Drawings(os.environ))) if pictures else None
+        _solve(telling, analysis, case_file, folder, drawings, resume, interactive, interrupt)
+
+
+def _prepare(folder: Path, case: Case, force: bool, resume: bool) -> None:
+    if resume:
+        if force:
+            raise InputError("continues a run, and --force discards it; give one of the two", "--resume")
+        Checkpoint(folder, case).require()
+    prepare(folder, force or resume)
+
+
+def _begin(log: logging.FileHandler, out: Path, force: bool, resume: bool) -> None:
+    """Remove everything of an earlier run from the folder, except what is to be continued.
+
+    Pictures of `coilset mesh` may be of this spring, made before it is solved; where results are replaced, they go.
+    """
+    if not resume:
+        assert log.stream is not None  # it is opened in advance
+        log.stream.truncate(0)
+        clear(out, RESULTS + DRAWN if force else RESULTS)
+
+
+def _solve(
+    telling: Lines,
+    analysis: Analysis,
+    case_file: str | Path,
+    out: Path,
+    drawings: Drawings | None,
+    resume: bool,
+    interactive: bool,
+    interrupt: Interrupt,
+) -> None:
+    comm, checkpoint = analysis.comm, Checkpoint(out, analysis.case)
+    if resume:
+        analysis.resume(checkpoint.load(comm))
+    telling.begin(analysis, case_file, resume)
+    began = time.perf_counter()
+    failure = _run(telling, analysis, checkpoint, interactive, interrupt)
+    if comm.rank == 0:
+        checkpoint.over()
+    interrupt.over()
+    analysed = time.perf_counter() - began
+    summary = comm.bcast(summarise(analysis.setup, analysis.result) if comm.rank == 0 else None)
+    on_first_rank(comm, lambda: write_run(out, analysis.setup, analysis.result, summary, origin(analysis.case)))
+    telling.conclude(summary, out)
+    for warning in summary["warnings"]:
+        log.warning("warning: %s: %s", warning["name"], warning["message"])
+    if drawings:
+        run = Pictured(analysis.setup, analysis.result, summary)
+        try:
+            on_first_rank(comm, lambda: _draw(drawings, out, run, telling))
+        except CoilsetError as error:
+            if failure is None:
+                raise
+            telling.warn(str(error))
+    telling.say(f"analysis {analysed:.2f} s, all {time.time() - STARTED:.2f} s")
+    if failure is not None:
+        if analysis.result.steps:
+            telling.say("continue from the last step with --resume")
+        raise failure
+
+
+def _run(
+    telling: Lines, analysis: Analysis, checkpoint: Checkpoint, interactive: bool, interrupt: Interrupt
+) -> SolveError | KeyboardInterrupt | None:
+    """Run the program; an exception that ended it early is returned, since the results so far are written first."""
+    ask = Prompt(analysis, telling.say) if interactive else None
+
+    def report(step: Step) -> None:
+        telling.step(step)
+        interrupt.check()
+        if ask:
+            ask(step)
+
+    try:
+        with telling.iterations():
+            analysis.run(report, checkpoint.save, interrupt.check)
+    except (SolveError, KeyboardInterrupt) as error:
+        return error
+    return None
+
+
+def _draw(drawings: Drawings, out: Path, run: Pictured, telling: Lines) -> None:
+    for warning in drawings.draw(out, run):
+        telling.warn(warning)

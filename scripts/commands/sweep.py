@@ -1,0 +1,177 @@
+"""`coilset sweep`: run a sweep file, keep every case as soon as it ends, and draw the results."""
+
+import os
+import signal
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack, closing, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+from rich.table import Table
+
+from coilset.model.base.errors import InputError, SolveError
+from coilset.model.results.files.folder import clear, making, refuse_obstacles
+from coilset.model.sweep.journal import Journal
+from coilset.model.sweep.plan import Plan
+from coilset.model.sweep.pools import Pool, Workers
+from coilset.model.sweep.run import finished, missing, run
+from coilset.scripts.terminal.console import Console
+from coilset.scripts.terminal.log import only_run
+from coilset.scripts.terminal.target import results_folder
+
+if TYPE_CHECKING:  # at run time only after the environment is saved
+    from mpi4py import MPI
+
+REPORT_SECONDS = 30.0  # seconds between progress lines without a terminal
+SHOWN_FAILURES = 5
+
+
+def sweep(
+    sweep_file: str,
+    out: str | None,
+    force: bool,
+    resume: bool,
+    retry: bool,
+    workers: Workers,
+    ranks_per_case: int,
+    pictures: bool,
+) -> None:
+    """Run a sweep, by the Workers if there is one rank only; see `coilset sweep --help`.
+
+    Raises:
+        InputError: before anything is run, if a file is wrong or the folder already holds a sweep.
+        SolveError: cases failed; after the results are written.
+        KeyboardInterrupt: after the finished cases are collected.
+    """
+    from mpi4py import MPI
+
+    from coilset.model.base.agreement import on_first_rank
+
+    comm = MPI.COMM_WORLD
+    folder = results_folder(out, Path(sweep_file).stem)
+    console = Console()
+    interrupted = False
+    with ExitStack() as held:
+        plan = on_first_rank(comm, lambda: _prepare(sweep_file, folder, force, resume or retry, held))
+        try:
+            with _pool(comm, workers, ranks_per_case, folder) as pool:
+                if pool is not None and plan is not None:
+                    _lead(plan, folder, retry, pool, console)
+        except KeyboardInterrupt:
+            interrupted = True
+        failed = comm.bcast(0 if plan is None else _conclude(plan, folder, pictures, console))
+    if interrupted:
+        console.print("interrupted; run the same command with --resume to continue")
+        raise KeyboardInterrupt
+    if failed:
+        raise SolveError(f"{failed} case(s) failed; their reasons are in the journal, --retry runs them again")
+
+
+def _prepare(sweep_file: str, out: Path, force: bool, resume: bool, held: ExitStack) -> Plan:
+    """The plan of a sweep, whose folder is `held` for it from now on."""
+    if force and resume:
+        raise InputError("discards what --resume and --retry continue; give one of them", "--force")
+    refuse_obstacles(out, ["journal.jsonl", "sweep.nc", "workers.log"])
+    plan = Plan(sweep_file)
+    journal = out / "journal.jsonl"
+    if journal.exists() and not (force or resume):
+        raise InputError("holds a sweep; use --resume to finish it, or --force to overwrite it", "--out", out)
+    with making(out):
+        out.mkdir(parents=True, exist_ok=True)
+    held.enter_context(only_run(out))
+    if force:
+        clear(out, ("sweep.nc", "report.html", journal.name))
+    return plan
+
+
+@contextmanager
+def _pool(comm: "MPI.Comm", workers: Workers, ranks_per_case: int, out: Path) -> Iterator[Pool | None]:
+    if comm.size > 1:
+        from coilset.model.sweep.mpi_pool import mpi_pool
+
+        with mpi_pool(comm, ranks_per_case) as pool:
+            yield pool
+    else:
+        with workers.pool(out / "workers.log") as pool:
+            yield pool
+
+
+def _lead(plan: Plan, out: Path, retry: bool, pool: Pool, console: Console) -> None:
+    """Run the missing cases, with a progress bar."""
+    signal.signal(signal.SIGTERM, signal.getsignal(signal.SIGINT))  # a batch system's signal at the end of a job
+    path = out / "journal.jsonl"
+    with closing(Journal(path)) as journal:
+        todo = list(missing(plan, finished(path, retry)))
+        there = len(set(plan.keys)) - len(todo)
+        for notice in plan.notices:
+            console.warn(notice)
+        console.say(f"{plan.path.name}: {len(plan)} cases, {there} done already, {pool.workers} at a time")
+        progress = Bar(len(todo), console)
+        with progress.bar:
+            run(plan, todo, pool, journal, progress.report)
+
+
+class Bar:
+    """Progress bar with cases per minute and time left; an occasional line without a terminal."""
+
+    def __init__(self, total: int, console: Console) -> None:
+        self.total, self.console, self.done, self.failed = total, console, 0, 0
+        self.began = self.said = time.monotonic()
+        self.bar = Progress(
+            TextColumn("{task.description}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TextColumn("{task.fields[rate]}"),
+            TimeRemainingColumn(),
+            TextColumn("[red]{task.fields[failed]}"),
+            console=console,
+            disable=not console.is_terminal,
+            speed_estimate_period=120.0,
+        )
+        self.task = self.bar.add_task("cases", total=total, rate="", failed="")
+
+    def report(self, record: dict[str, Any]) -> None:
+        """A case has ended."""
+        now = time.monotonic()
+        self.done += 1
+        self.failed += record["status"] == "failed"
+        speed = 60.0 * self.done / max(now - self.began, 1e-9)
+        failed = f"{self.failed} failed" if self.failed else ""
+        self.bar.update(self.task, completed=self.done, rate=f"{speed:.1f} a minute", failed=failed)
+        if not self.console.is_terminal and now - self.said > REPORT_SECONDS:
+            self.said = now
+            left = f"{(self.total - self.done) / speed:.1f} minutes left"
+            self.console.print(f"{self.done}/{self.total} cases, {speed:.1f} a minute, {left} {failed}")
+
+
+def _conclude(plan: Plan, out: Path, pictures: bool, console: Console) -> int:
+    """Data set, figures and a summary in words; returns the number of failed cases."""
+    from coilset.model.sweep import dataset  # not before the cases run: xarray and matplotlib take half a second
+    from coilset.model.sweep.figures import FILES, draw
+
+    data = dataset.collect(plan, out / "journal.jsonl")
+    clear(out, ("report.html", *FILES))  # of other cases
+    dataset.write(out / "sweep.nc", data)
+    files, problems = draw(out, plan, data) if pictures else ([], [])
+    counts = {status: int((data.status == status).sum()) for status in ("done", "failed", "missing")}
+    table = Table(show_header=True, box=None, padding=(0, 2))
+    for column in ("", "minimum", "mean", "maximum"):
+        table.add_column(column, justify="left" if not column else "right")
+    for name in ("set_mm", "force_max_N", "rate_N_per_mm", "residual_shear_max_MPa"):
+        if name in data and data[name].notnull().any():
+            words, unit = dataset.quantity(name)
+            values = data[name]
+            numbers = (f"{float(value):.5g}" for value in (values.min(), values.mean(), values.max()))
+            table.add_row(f"{words}, {unit}", *numbers)
+    console.print(table)
+    failures = data.where(data.status == "failed", drop=True)
+    for k in range(min(failures.sizes["case"], SHOWN_FAILURES)):
+        inputs = ", ".join(f"{name} = {failures[name].values[k]}" for name in plan.names)
+        console.warn(f"{inputs}: {failures.reason.values[k]}", "failed")
+    console.print(", ".join(f"{count} {status}" for status, count in counts.items() if count or status == "done"))
+    console.say(f"results in {out}{os.sep} (sweep.nc, journal.jsonl{''.join(', ' + name for name in files)})")
+    for problem in problems:
+        console.warn(str(problem))
+    return counts["failed"]

@@ -1,0 +1,39 @@
+"""The stable interface: every example of its docstrings, and what it refuses."""
+
+import doctest
+
+import pytest
+
+import coilset.api
+from coilset.api import Case, InputError, Result, material
+
+
+def test_every_example_runs(monkeypatch, example):
+    monkeypatch.chdir(example.parent.parent)
+    found = doctest.testmod(coilset.api, optionflags=doctest.ELLIPSIS)
+    assert found.attempted > 25
+    assert found.failed == 0
+
+
+def test_every_public_name_has_an_example():
+    finder = doctest.DocTestFinder(exclude_empty=False)
+    examples = {test.name.removeprefix("coilset.api."): test.examples for test in finder.find(coilset.api)}
+    own = [name for name in coilset.api.__all__ if getattr(coilset.api, name).__module__ == "coilset.api"]
+    assert len(own) > 5
+    assert [name for name in own if not examples[name]] == []
+
+
+def test_a_wrong_entry_is_one_line():
+    with pytest.raises(InputError, match=r"case: spring\.wire_diametre: .*wire_diameter") as problem:
+        Case({"spring": {"wire_diametre": 5.0}, "material": "ck15", "loading": [{"to": "block"}]})
+    assert "\n" not in str(problem.value)
+
+
+def test_a_folder_without_results_is_refused(tmp_path):
+    with pytest.raises(InputError, match="holds no results"):
+        Result.open(tmp_path)
+
+
+def test_an_unknown_material_is_refused():
+    with pytest.raises(InputError, match="neither a material of the library"):
+        material("unobtainium")

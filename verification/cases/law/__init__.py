@@ -1,0 +1,1 @@
+"""The law at a point and in a bar."""

@@ -1,0 +1,1 @@
+"""Coiling and peening."""

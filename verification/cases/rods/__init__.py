@@ -1,0 +1,1 @@
+"""Rods at large rotations against closed and published solutions."""

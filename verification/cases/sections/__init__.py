@@ -1,0 +1,1 @@
+"""Cross-sections against exact integrals and the solid."""

@@ -1,0 +1,1 @@
+"""The slice, the solid and the rod against each other."""

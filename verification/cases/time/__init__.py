@@ -1,0 +1,1 @@
+"""Creep, relaxation and heat."""
