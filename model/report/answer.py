@@ -52,7 +52,7 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
     against = "" if inside is None or inside == 0.0 else "against the load" if inside < 0.0 else "with the load"
     return [
         Number("set", _said(s["set_mm"], "mm", 3), share),
-        Number("free length", _said(after, "mm", 3), f"after; {before:.3f} mm before"),
+        Number("free length", _said(after, "mm", 3), _lengths(s)),
         Number(
             "residual shear stress",
             _said(inside, "MPa", 1),
@@ -63,6 +63,18 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
         Number("initial rate", _said(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
         Number("block height", _said(s["block_height_mm"], "mm", 2)),
     ]
+
+
+def release_lengths(summary: Mapping[str, Any]) -> list[float]:
+    """Free lengths after each release to zero force, mm; none where the summary does not list them."""
+    return [one["free_length_mm"] for one in summary.get("releases") or ()]
+
+
+def _lengths(summary: Mapping[str, Any]) -> str:
+    """The free length before, and after the releases before the last one."""
+    earlier = [f"{length:.3f} mm" for length in release_lengths(summary)[:-1]]
+    between = f"; {', '.join(earlier)} after earlier releases" if earlier else ""
+    return f"after; {summary['free_length_before_mm']:.3f} mm before{between}"
 
 
 def _said(value: float | None, unit: str, digits: int) -> str:

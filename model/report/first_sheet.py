@@ -13,6 +13,7 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.base.style import STYLE
 from coilset.model.case import Case, check
+from coilset.model.report.answer import release_lengths
 from coilset.model.report.panel import said
 from coilset.model.report.verdict import Check, checks, verdict
 from coilset.model.results.files.opened import Run
@@ -47,7 +48,7 @@ def first_sheet(run: Run) -> FirstSheet:
         spring = None
     made = checks(run.summary, spring is not None and _is_cylinder(spring), isinstance(run.case["material"], dict))
     rows = [] if spring is None else _geometry(spring)
-    return FirstSheet(rows + _results(run.summary), "" if spring is None else _drawn(spring), made, verdict(made))
+    return FirstSheet(rows + results(run.summary), "" if spring is None else _drawn(spring), made, verdict(made))
 
 
 def _is_cylinder(spring: Spring) -> bool:
@@ -77,7 +78,8 @@ def _span(values: np.ndarray) -> str:
     return f"{plain(low, 5)} mm" if high - low < 1e-6 * high else f"{plain(low, 4)} to {plain(high, 4)} mm"
 
 
-def _results(summary: dict[str, Any]) -> list[tuple[str, str]]:
+def results(summary: dict[str, Any]) -> list[tuple[str, str]]:
+    """Names and values of the results of a run, of summary.json."""
     s = summary
     rows = [
         ("material", s["material"]),
@@ -96,12 +98,10 @@ def _results(summary: dict[str, Any]) -> list[tuple[str, str]]:
 
 def _releases(summary: dict[str, Any]) -> list[tuple[str, str]]:
     """The free length after each release, where the summary lists them; else after the last one."""
-    lengths = summary.get("free_lengths_after_mm") or [summary["free_length_after_mm"]]
-    names = [f"free length after release {number}" for number in range(1, len(lengths) + 1)]
-    return [
-        (name if len(lengths) > 1 else "free length after release", _text(length, "mm", 2))
-        for name, length in zip(names, lengths, strict=True)
-    ]
+    lengths = release_lengths(summary)
+    if len(lengths) < 2:
+        return [("free length after release", _text(summary["free_length_after_mm"], "mm", 2))]
+    return [(f"free length after release {k}", _text(length, "mm", 2)) for k, length in enumerate(lengths, 1)]
 
 
 def _text(value: float | None, unit: str, digits: int) -> str:
