@@ -15,11 +15,12 @@ from fuzz_judge import SLOWEST, check_line
 from hypothesis import given
 from hypothesis import strategies as st
 
-from coilset.model import build
 from coilset.model.base.errors import CoilsetError
+from coilset.model.run import build
 from coilset.model.slice import analysis as slices
-from coilset.scripts import design, main, material, mesh, ranks, report, running, solve, sweep, verify, warm
-from coilset.scripts import slice as slice_command
+from coilset.scripts import main, ranks, running, warm
+from coilset.scripts.commands import design, material, mesh, report, solve, sweep, verify
+from coilset.scripts.commands import slice as slice_command
 from coilset.scripts.plain import typer
 from coilset.verification.benchmarks import everyday
 
@@ -148,7 +149,7 @@ def place(tmp_path, monkeypatch):
         (mesh, "make"),
         (build, "line_mesh"),
         (slices.SliceAnalysis, "run"),
-        (design, "find"),
+        (design, "solve"),
         (everyday, "timed"),
         (warm, "warm"),
         (report, "open_run"),
@@ -158,7 +159,7 @@ def place(tmp_path, monkeypatch):
         monkeypatch.setattr(module, name, reach)
     monkeypatch.setattr("coilset.model.material.identification.fit.fit", reach)
     monkeypatch.setattr("coilset.model.material.programs.run", reach)
-    monkeypatch.setattr("coilset.scripts.test.test", reach)
+    monkeypatch.setattr("coilset.scripts.commands.test.test", reach)
     return tmp_path
 
 
