@@ -10,7 +10,7 @@ from coilset.scripts.commands.material import app as material
 from coilset.scripts.compiling import NOTICE, announce_compiling, compile_first, compiled
 from coilset.scripts.loading import keeping, load_for_solve
 from coilset.scripts.plain import typer
-from coilset.scripts.terminal.target import file_targets, folder_target, page_target
+from coilset.scripts.terminal.target import OVERWRITE, file_targets, folder_target, page_target
 
 HELP = """How far does a coil spring set, and what stress remains in it?
 
@@ -61,7 +61,7 @@ def options(
 def solve(
     case: str = typer.Argument(help="case file (YAML)"),
     out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-CASE]"),
-    force: bool = typer.Option(False, "--force", help="overwrite existing results"),
+    force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing results"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
     pictures: bool = typer.Option(True, help="draw the figures"),
     resume: bool = typer.Option(False, "--resume", help="continue from the last converged step in the results folder"),
@@ -80,7 +80,7 @@ def solve(
     if quiet + json + verbose > 1:
         raise InputError("are three ways to print a run; give one of them", "--quiet, --json, --verbose")
     if not (quiet or json):
-        announce_begin("solves", case, out)
+        announce_begin(case, out)
     settings = [*settings, f"solver.method={method}"] if method else settings
     compile_first(lambda: _check_case(case, settings))
     with Drawings(os.environ) as drawings:
@@ -117,7 +117,7 @@ def _check_case(case: str, settings: list[str]) -> None:
 def slice_(
     case: str = typer.Argument(help="case file (YAML) of a cylindrical spring"),
     out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-CASE-slice]"),
-    force: bool = typer.Option(False, "--force", help="overwrite existing results"),
+    force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing results"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
     section: str = typer.Option(None, help="oval:4:5, rectangle:4:5:0.5, trapezoid:4:5:6:0.4, FILE.csv"),
     across: float = typer.Option(None, help="number of triangles across the section [default: 5.75]"),
@@ -133,7 +133,7 @@ def slice_(
 def nest(
     file: str = typer.Argument(help="nest file (YAML): two case files, and the heights of their common seats"),
     out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-FILE]"),
-    force: bool = typer.Option(False, "--force", help="overwrite existing results"),
+    force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing results"),
     pictures: bool = typer.Option(True, help="draw the characteristic"),
     threads: int = THREADS,
 ) -> None:
@@ -150,7 +150,7 @@ def mesh(
     out: str = typer.Option(
         None, callback=folder_target, help="folder for the pictures [default: results/NAME-OF-CASE]"
     ),
-    force: bool = typer.Option(False, "--force", help="overwrite existing files"),
+    force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing files"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
     write: list[str] = typer.Option(
         [], callback=file_targets, metavar="FILE", help="write the mesh: .msh, .vtu, .vtk, .inp, .xdmf, ..."
@@ -175,7 +175,7 @@ def sheet(
     out: str = typer.Option(
         None, callback=folder_target, help="folder for the Goodman diagram [default: results/NAME-OF-CASE]"
     ),
-    force: bool = typer.Option(False, "--force", help="overwrite an existing figure"),
+    force: bool = typer.Option(False, *OVERWRITE, help="overwrite an existing figure"),
     settings: list[str] = typer.Option([], "--set", metavar="KEY=VALUE", help="override an entry of the case file"),
     wires: bool = typer.Option(False, "--wires", help="list the standard wires, or all numbers of --wire"),
     pictures: bool = typer.Option(True, help="draw the Goodman diagram"),
@@ -224,7 +224,7 @@ def animate(
 def sweep(
     sweep_file: str = typer.Argument(metavar="SWEEP", help="sweep file (YAML)"),
     out: str = typer.Option(None, callback=folder_target, help="results folder [default: results/NAME-OF-SWEEP]"),
-    force: bool = typer.Option(False, "--force", help="discard existing cases"),
+    force: bool = typer.Option(False, *OVERWRITE, help="discard existing cases"),
     resume: bool = typer.Option(False, "--resume", help="run only the missing cases"),
     retry: bool = typer.Option(False, "--retry", help="like --resume, but also rerun failed cases"),
     jobs: int = typer.Option(None, min=1, help="processes on this machine [default: one per core]"),
@@ -234,7 +234,7 @@ def sweep(
     """Solve many variants of a case."""
     from coilset.model.sweep.pools import Workers
 
-    announce_begin("sweeps", sweep_file, out)
+    announce_begin(sweep_file, out)
     compile_first(lambda: _check_sweep(sweep_file))
     with Workers((jobs or usable_cores()) if number_of_ranks() == 1 else 0, dict(os.environ)) as workers:
         from coilset.scripts.commands.sweep import sweep as run_sweep
@@ -252,7 +252,7 @@ def _check_sweep(sweep_file: str) -> None:
 def design(
     file: str = typer.Argument(help="design file (YAML): a case, unknowns in it (find:), and conditions (such_that:)"),
     out: str = typer.Option(None, callback=folder_target, help="results folder; default results/NAME-OF-FILE"),
-    force: bool = typer.Option(False, "--force", help="replace an existing design"),
+    force: bool = typer.Option(False, *OVERWRITE, help="replace an existing design"),
     resume: bool = typer.Option(False, "--resume", help="continue an unfinished search"),
     threads: int = THREADS,
 ) -> None:
@@ -317,7 +317,7 @@ def compile_() -> None:
 def examples(
     name: str = typer.Argument(None, help="example to copy; without a name, list all"),
     out: str = typer.Option(".", callback=folder_target, help="folder to copy it to"),
-    force: bool = typer.Option(False, "--force", help="overwrite existing files"),
+    force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing files"),
 ) -> None:
     """List the examples, or copy one as a starting point."""
     from coilset.scripts.commands import examples as shipped

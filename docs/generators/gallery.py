@@ -61,7 +61,7 @@ def draw_command(name: str) -> None:
     """Run a command into a folder of its own, and keep its pictures."""
     words, kept = COMMANDS[name]
     with tempfile.TemporaryDirectory() as folder:
-        command = [sys.executable, "-m", "coilset.scripts", *words, "--out", folder, "--force"]
+        command = [sys.executable, "-m", "coilset.scripts", *words, "--out", folder, "--overwrite"]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         for picture, place in kept.items():
             shutil.copyfile(Path(folder, f"{picture}.png"), DOCS / "pictures" / f"{place}.png")

@@ -20,7 +20,7 @@ shift
 cd "${SLURM_SUBMIT_DIR:?to be started by sbatch, from the folder of coilset}"
 
 # Once, before all ranks start: finds the environment, compiles forms and kernels into the cache in the home folder.
-srun --nodes=1 --ntasks=1 scripts/coilset solve examples/ck15_presetting.yaml --no-pictures --force \
+srun --nodes=1 --ntasks=1 scripts/coilset solve examples/ck15_presetting.yaml --no-pictures --overwrite \
     --out "results/warm-$SLURM_JOB_ID"
 
 # MPI of the environment must know SLURM's process manager (srun --mpi=list shows which there are).

@@ -10,10 +10,14 @@ LIBRARIES = {
 
 def versions() -> str:
     """One line for people: coilset's version and those of the libraries that its numbers rest on."""
-    import platform  # here, as the metadata below: a command that only wants the version would wait for both
+    import platform
+
+    from coilset.model.base.content import (
+        described,  # here, as the metadata below: a command that only wants the version would wait for both
+    )
 
     found = [f"{name} {version}" for name, packages in LIBRARIES.items() if (version := _first(packages))]
-    return ", ".join([f"coilset {__version__}", *found, f"Python {platform.python_version()}"])
+    return ", ".join([f"coilset {__version__} ({described()})", *found, f"Python {platform.python_version()}"])
 
 
 def _first(packages: tuple[str, ...]) -> str:

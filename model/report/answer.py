@@ -49,6 +49,8 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
         else "the spring was not released"
     )
     inside = s["residual_shear_inside_MPa"]
+    turn = s.get("residual_shear_inside_turn")
+    at = "" if turn is None else f" at turn {turn:.2f}"
     against = "" if inside is None or inside == 0.0 else "against the load" if inside < 0.0 else "with the load"
     return [
         Number("set", _said(s["set_mm"], "mm", 3), share),
@@ -56,7 +58,7 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
         Number(
             "residual shear stress",
             _said(inside, "MPa", 1),
-            f"at the inside of the middle coils{', ' + against if against else ''}",
+            f"inside of the coil{at}{', ' + against if against else ''}",
         ),
         Number("maximum force", _said(s["force_max_N"], "N", 1), _error(s["estimated_force_error_N"])),
         Number("maximum shear stress", _said(s["shear_inside_max_MPa"], "MPa", 0), "at the inside of the coil"),
@@ -72,13 +74,13 @@ def release_lengths(summary: Mapping[str, Any]) -> list[float]:
 
 def _lengths(summary: Mapping[str, Any]) -> str:
     """The free length before, and after the releases before the last one."""
-    earlier = [f"{length:.3f} mm" for length in release_lengths(summary)[:-1]]
-    between = f"; {', '.join(earlier)} after earlier releases" if earlier else ""
+    earlier = [f"{length:.3f} mm after release {k}" for k, length in enumerate(release_lengths(summary)[:-1], 1)]
+    between = f", {', '.join(earlier)}" if earlier else ""
     return f"after; {summary['free_length_before_mm']:.3f} mm before{between}"
 
 
 def _said(value: float | None, unit: str, digits: int) -> str:
-    return "not reached" if value is None else said(value, unit, digits)
+    return "none" if value is None else said(value, unit, digits)
 
 
 def _error(value: float | None) -> str:

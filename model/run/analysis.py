@@ -220,7 +220,7 @@ class Analysis:
         problem = self.comm.bcast(problem)
         if problem:
             raise InputError(
-                "the checkpoint's array is missing or not of this spring; use --force instead of "
+                "the checkpoint's array is missing or not of this spring; use --overwrite instead of "
                 "--resume to start again",
                 problem,
             )

@@ -15,6 +15,8 @@ from coilset.model.standards.case_warnings import case_warnings
 # Entries of a spring's summary that a single section, whose axis cannot bend, does not have or gives differently:
 # its stresses at the surface are in `loaded` and `released`.
 UNSEEN = (
+    "releases",
+    "residual_shear_inside_turn",
     "unstable_steps",
     "buckled",
     "buckling_travel_mm",

@@ -50,6 +50,7 @@ RESPONSES = (
     "estimated_set_error_mm",
     "load_loss_percent",
     "coiling_diameter_mm",
+    "residual_shear_inside_turn",
     "measured_axis_offset_mm",
     "measured_axis_tilt_deg",
     "steps",

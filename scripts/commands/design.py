@@ -177,11 +177,11 @@ def _prepare(folder: Path, force: bool, resume: bool) -> bool:
         if not (force or resume):
             if (folder / "design.json").exists():
                 raise InputError(
-                    "holds a design already; give --force to replace it, or another --out", "--out", folder
+                    "holds a design already; give --overwrite to replace it, or another --out", "--out", folder
                 )
             if (folder / "evaluations.jsonl").exists():
                 raise InputError(
-                    "holds an unfinished search; give --resume to go on with it, --force to begin "
+                    "holds an unfinished search; give --resume to go on with it, --overwrite to begin "
                     "anew, or another --out",
                     "--out",
                     folder,

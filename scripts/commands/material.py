@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from coilset.model.base.errors import InputError, naming
 from coilset.scripts.compiling import announce_compiling
 from coilset.scripts.plain import typer
-from coilset.scripts.terminal.target import folder_target, results_folder
+from coilset.scripts.terminal.target import OVERWRITE, folder_target, results_folder
 
 if TYPE_CHECKING:  # commands load what they need
     from matplotlib.figure import Figure
@@ -24,7 +24,7 @@ MATERIAL = typer.Argument(help="name in the library, or path of a material file"
 DATA = typer.Argument(help="tests (CSV): columns eps11, gamma12, sigma11, tau12; of tension strain, stress")
 RELAXATION = typer.Argument(help="relaxation tests (CSV): columns hours, temperature, loss, stress or shear_stress")
 OUT = typer.Option(None, callback=folder_target, help="results folder [default: results/material/NAME]")
-FORCE = typer.Option(False, "--force", help="overwrite existing files")
+FORCE = typer.Option(False, *OVERWRITE, help="overwrite existing files")
 
 
 @app.command()

@@ -71,7 +71,7 @@ def solve(
 def _prepare(folder: Path, case: Case, force: bool, resume: bool) -> None:
     if resume:
         if force:
-            raise InputError("continues a run, and --force discards it; give one of the two", "--resume")
+            raise InputError("continues a run, and --overwrite discards it; give one of the two", "--resume")
         Checkpoint(folder, case).require()
     prepare(folder, force or resume)
 

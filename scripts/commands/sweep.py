@@ -72,12 +72,12 @@ def sweep(
 def _prepare(sweep_file: str, out: Path, force: bool, resume: bool, held: ExitStack) -> Plan:
     """The plan of a sweep, whose folder is `held` for it from now on."""
     if force and resume:
-        raise InputError("discards what --resume and --retry continue; give one of them", "--force")
+        raise InputError("discards what --resume and --retry continue; give one of them", "--overwrite")
     refuse_obstacles(out, ["journal.jsonl", "sweep.nc", "workers.log"])
     plan = Plan(sweep_file)
     journal = out / "journal.jsonl"
     if journal.exists() and not (force or resume):
-        raise InputError("holds a sweep; use --resume to finish it, or --force to overwrite it", "--out", out)
+        raise InputError("holds a sweep; use --resume to finish it, or --overwrite to overwrite it", "--out", out)
     with making(out):
         out.mkdir(parents=True, exist_ok=True)
     held.enter_context(only_run(out))

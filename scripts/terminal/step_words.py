@@ -18,8 +18,8 @@ def step_row(step: "Step | SliceStep") -> str:
 
 
 def quantity(value: float | None, unit: str, digits: int = 4) -> str:
-    """A value with its unit; in words if there is none."""
-    return "not reached" if value is None else f"{without_minus(value, digits)} {unit}"
+    """A value with its unit; `none` where the run gave none, as of a spring that was not released."""
+    return "none" if value is None else f"{without_minus(value, digits)} {unit}"
 
 
 def without_minus(value: float, digits: int) -> str:

@@ -6,6 +6,8 @@ from pathlib import Path
 
 from coilset.model.base.errors import InputError
 
+OVERWRITE = ("--overwrite", "--force")
+"""Names of the option that replaces existing results; the second is its earlier name."""
 UNFIT = re.compile(r"[/\0]|^\.+$")  # in the name of a folder
 
 

@@ -90,11 +90,16 @@ class Lines:
         """What was found."""
         table = Table(show_header=False, box=None, padding=(0, 2))
         table.add_row("free length before", quantity(summary["free_length_before_mm"], "mm"))
-        table.add_row("free length after", quantity(summary["free_length_after_mm"], "mm"))
+        for number, release in enumerate(summary["releases"][:-1], 1):
+            table.add_row(f"free length after release {number}", quantity(release["free_length_mm"], "mm"))
+        last = "free length after the last release" if len(summary["releases"]) > 1 else "free length after"
+        table.add_row(last, quantity(summary["free_length_after_mm"], "mm"))
         table.add_row("[bold]set[/]", f"[bold]{quantity(summary['set_mm'], 'mm')}[/]")
         table.add_row("initial rate", quantity(summary["rate_N_per_mm"], "N/mm"))
-        if summary["force_max_N"] >= 0.0:  # of a spring that is pressed
-            table.add_row("rate between 30 and 70 % of the travel", quantity(summary["rate_30_70_N_per_mm"], "N/mm"))
+        if summary["force_max_N"] >= 0.0:  # of a spring that is compressed
+            finished = summary["rate_30_70_after_N_per_mm"]
+            name = "rate at 30 to 70 % of the travel" if finished is None else "rate of the finished spring, 30 to 70 %"
+            table.add_row(name, quantity(finished or summary["rate_30_70_N_per_mm"], "N/mm"))
         for rate in summary["rates"]:
             table.add_row(f"rate at {rate['travel_mm']:g} mm", quantity(rate["rate_N_per_mm"], "N/mm"))
         table.add_row("maximum force", quantity(summary["force_max_N"], "N", 2))
@@ -102,8 +107,9 @@ class Lines:
             table.add_row("load lost in time", quantity(summary["load_loss_percent"], "%", 2))
         table.add_row("block height", quantity(summary["block_height_mm"], "mm"))
         table.add_row("maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2))
-        inside = quantity(summary["residual_shear_inside_MPa"], "MPa", 2)
-        table.add_row("residual shear stress, inside of coil", inside)
+        inside, turn = quantity(summary["residual_shear_inside_MPa"], "MPa", 2), summary["residual_shear_inside_turn"]
+        at = "" if turn is None else f" at turn {turn:.2f}"
+        table.add_row("residual shear stress, inside of coil", inside + at)
         self.console.print(table)
         self.console.say(f"  results in {out}{os.sep}", whole=True)
         for warning in summary["warnings"]:

@@ -198,7 +198,7 @@ def test_two_ranks_compile_too(monkeypatch, tmp_path):
 
 def test_a_warm_solve_does_not_say_it(example, tmp_path):
     """The first solve may; the second finds everything compiled."""
-    command = [sys.executable, "-m", "coilset.scripts", "solve", str(example), "--force", "--out", "out", *SMALL]
+    command = [sys.executable, "-m", "coilset.scripts", "solve", str(example), "--overwrite", "--out", "out", *SMALL]
     first, second = (
         subprocess.run(command, cwd=tmp_path, env=dict(os.environ), capture_output=True, text=True, check=True)
         for _ in range(2)

@@ -27,8 +27,8 @@ def test_commands_follow_each_other():
         option = dict(itertools.pairwise(words))
         case = REPOSITORY / option["solve"]
         folder = option.get("--out", f"results/{case.stem}")
-        assert folder not in taken or {"--force", "--resume"} & set(words), words
-        assert folder in taken or not {"--force", "--resume"} & set(words), words
+        assert folder not in taken or {"--overwrite", "--resume"} & set(words), words
+        assert folder in taken or not {"--overwrite", "--resume"} & set(words), words
         taken.add(folder)
         settings = [value for word, value in itertools.pairwise(words) if word == "--set"]
         build_input(read_case(case, settings))

@@ -100,7 +100,7 @@ def test_solve_writes_what_the_readme_says(example, tmp_path):
     assert printed["maximum residual shear stress"] == f"{summary['residual_shear_max_MPa']:.2f}"
     again = coilset("solve", example, "--out", "here", *SHORT, cwd=tmp_path)
     assert again.returncode == 2
-    assert "--force" in again.stderr
+    assert "--overwrite" in again.stderr
 
 
 def test_pictures_are_drawn(example, tmp_path):

@@ -46,7 +46,7 @@ def test_a_pulled_spring_has_no_rate_on_the_way_to_block(tmp_path, capsys, trave
     path.write_text(CASE)
     program = [f"loading=[{{to: {{travel: {travel}}}, steps: 1}}]", "ends=clamped"]
     solve(path, tmp_path / "out", True, program, pictures=False, comm=MPI.COMM_SELF)
-    assert ("rate between 30 and 70 % of the travel" in capsys.readouterr().out) == told
+    assert ("rate at 30 to 70 % of the travel" in capsys.readouterr().out) == told
 
 
 def test_json_has_the_rows_of_the_history_and_the_summary(said):

@@ -161,7 +161,7 @@ def test_a_checkpoint_of_another_version_is_called_so(example, folder, damage):
     """Not "not readable: 'on_path'"."""
     name, spoil = DAMAGES[damage]
     spoil(folder / "checkpoint" / name)
-    with pytest.raises(InputError, match="written by another version of coilset, or is damaged; use --force"):
+    with pytest.raises(InputError, match="written by another version of coilset, or is damaged; use --overwrite"):
         resume(example, folder)
 
 
@@ -172,7 +172,7 @@ def test_a_damaged_checkpoint_gets_one_line(example, folder, damage):
     with pytest.raises(InputError) as caught:
         resume(example, folder)
     assert "\n" not in str(caught.value)
-    assert "--force" in str(caught.value)
+    assert "--overwrite" in str(caught.value)
     assert not (folder / "summary.json").exists()
 
 
@@ -233,7 +233,7 @@ def test_damage_at_every_array_gets_one_line(example, folder):
         with pytest.raises(InputError) as caught:
             analysis.resume(Checkpoint(folder, case).load(COMM))
         assert "\n" not in str(caught.value)
-        assert "--force" in str(caught.value)
+        assert "--overwrite" in str(caught.value)
         path.write_bytes(whole)
     np.testing.assert_array_equal(analysis.system.state["x"].trial, before)
     analysis.resume(Checkpoint(folder, case).load(COMM))
@@ -264,7 +264,7 @@ def test_nothing_to_go_on_from_leaves_nothing(example, tmp_path):
 
 
 def test_resume_and_force_are_not_both(example, folder):
-    with pytest.raises(InputError, match="--resume: continues a run, and --force discards it"):
+    with pytest.raises(InputError, match="--resume: continues a run, and --overwrite discards it"):
         solve(example, folder, True, SMALL, False, resume=True, comm=COMM)
     assert (folder / "checkpoint" / STATE).exists()
 
@@ -277,7 +277,7 @@ def test_a_folder_may_begin_with_a_tilde(example, tmp_path, monkeypatch):
 
 
 def test_an_interrupted_run_is_not_thrown_away(example, folder):
-    with pytest.raises(InputError, match=r"--resume.*--force"):
+    with pytest.raises(InputError, match=r"--resume.*--overwrite"):
         solve(example, folder, False, SMALL, False, comm=COMM)
     assert (folder / "checkpoint" / STATE).exists()
 

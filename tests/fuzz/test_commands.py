@@ -25,9 +25,18 @@ from coilset.scripts.plain import typer
 from coilset.verification.benchmarks import everyday
 
 COMMANDS = {  # a right line each, and the options that it takes besides
-    "solve case.yaml": ["--force", "--resume", "--no-pictures", "--interactive", "--method", "bfgs", "--out", "there"],
-    "slice case.yaml": ["--force", "--section", "oval:4:5", "--across", "3", "--no-pictures", "--out", "there"],
-    "mesh case.yaml --no-pictures": ["--force", "--write", "wire.vtu", "--out", "there"],
+    "solve case.yaml": [
+        "--overwrite",
+        "--resume",
+        "--no-pictures",
+        "--interactive",
+        "--method",
+        "bfgs",
+        "--out",
+        "there",
+    ],
+    "slice case.yaml": ["--overwrite", "--section", "oval:4:5", "--across", "3", "--no-pictures", "--out", "there"],
+    "mesh case.yaml --no-pictures": ["--overwrite", "--write", "wire.vtu", "--out", "there"],
     "sheet case.yaml --no-pictures": [
         "--wire",
         "EN 10270-1 SH",
@@ -41,19 +50,19 @@ COMMANDS = {  # a right line each, and the options that it takes besides
         "--wires",
         "--results",
         "there",
-        "--force",
+        "--overwrite",
     ],
-    "sweep sweep.yaml": ["--force", "--resume", "--retry", "--jobs", "1", "--ranks-per-case", "2", "--no-pictures"],
-    "material show ck15": ["--out", "there", "--force"],
-    "material test ck15 program.yaml": ["--integrator", "heun", "--no-spin", "--out", "there", "--force"],
+    "sweep sweep.yaml": ["--overwrite", "--resume", "--retry", "--jobs", "1", "--ranks-per-case", "2", "--no-pictures"],
+    "material show ck15": ["--out", "there", "--overwrite"],
+    "material test ck15 program.yaml": ["--integrator", "heun", "--no-spin", "--out", "there", "--overwrite"],
     "material fit test.csv --G 80000 --nu 0.3": ["--temperature", "300", "--no-saturation", "--name", "mine"],
-    "design design.yaml": ["--force", "--resume", "--out", "there"],
-    "report run": ["--force", "--out", "there"],
+    "design design.yaml": ["--overwrite", "--resume", "--out", "there"],
+    "report run": ["--overwrite", "--out", "there"],
     "bench": ["--full", "--cold", "--against", "taken", "--out", "there"],
-    "compile": ["--force"],
+    "compile": ["--overwrite"],
     "verify bend-45": ["--fast", "--list", "--page", "page.md", "--out", "there"],
-    "examples ck15_presetting": ["--force", "--out", "there"],
-    "-n 2 solve case.yaml": ["--force"],
+    "examples ck15_presetting": ["--overwrite", "--out", "there"],
+    "-n 2 solve case.yaml": ["--overwrite"],
 }
 DESIGN = "case: case.yaml\nfind: {spring.pitch: [11.0, 13.0]}\nsuch_that: {set_mm: 13}\n"
 SETTINGS = [

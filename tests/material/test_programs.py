@@ -134,7 +134,7 @@ def test_wrong_programs(content, message, tmp_path):
 
 
 def test_the_command_draws_and_keeps(tmp_path):
-    """CSV and picture are written once; a second run needs --force; a temperature outside the table is refused."""
+    """CSV and picture are written once; a second run needs --overwrite; a temperature outside the table is refused."""
     command = [sys.executable, "-m", "coilset.scripts", "material", "test", "ck15"]
 
     def run(*arguments):

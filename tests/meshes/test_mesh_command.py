@@ -43,7 +43,7 @@ def test_files_and_pictures(tmp_path, capsys):
     for name in ("drawing.png", "spring.png"):
         image = matplotlib.image.imread(out / name)[..., :3]
         assert 0.02 < np.mean(image.min(axis=-1) < 0.95) < 0.6  # neither empty nor full
-    with pytest.raises(InputError, match="already exists; use --force to overwrite it"):
+    with pytest.raises(InputError, match="already exists; use --overwrite to overwrite it"):
         mesh(SPRINGS / "closed_and_ground.yaml", out=out)
     with pytest.raises(InputError, match="coils overlap"):  # the spring is judged first, as in the tutorial
         mesh(SPRINGS / "cylinder.yaml", out=out, settings=["spring.pitch=3"])

@@ -24,7 +24,7 @@ class Browser:
             "--headless=new",
             "--no-sandbox",
             "--disable-gpu",
-            "--force-device-scale-factor=1",
+            "--overwrite-device-scale-factor=1",
             "--enable-unsafe-swiftshader",
             "--disable-dev-shm-usage",
         ]

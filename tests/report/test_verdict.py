@@ -56,5 +56,5 @@ def test_the_free_length_after_each_release_is_given():
     assert ("free length after release 1", "46.50 mm") in results(twice)
     assert ("free length after release 2", "45.00 mm") in results(twice)
     card = next(one for one in answer(twice) if one.term == "free length")
-    assert card.remark == "after; 50.000 mm before; 46.500 mm after earlier releases"
+    assert card.remark == "after; 50.000 mm before, 46.500 mm after release 1"
     assert next(one for one in answer(summary) if one.term == "free length").remark == "after; 50.000 mm before"

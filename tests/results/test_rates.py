@@ -5,7 +5,7 @@ import pytest
 from mpi4py import MPI
 
 from coilset.model.case import read_case
-from coilset.model.results.records.rates import first_compression, last_release, makers_rate, rate_at
+from coilset.model.results.records.rates import finished, first_compression, makers_rate, rate_at
 from coilset.model.results.records.record import Step
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
@@ -35,9 +35,11 @@ def test_branches_of_a_characteristic():
     assert first_compression([*there, *back])[0].tolist() == [0.0, 2.0, 4.0, 6.0]
     grown = [step(k, -0.1 * k, 0.0) for k in range(3)]  # by heat
     assert first_compression([*grown, *there, *back])[0].tolist() == [0.0, 2.0, 4.0, 6.0]
-    travel, force = last_release([*there, *back], 48.0)
+    travel, force = finished([*there, *back], 0, 48.0)
     assert travel.tolist() == [0.0, 2.0, 4.0]
     assert force.tolist() == [0.0, 6.0, 12.0]
+    again = [Step(9, 1, 1.0, 48.0 - travel, 2.0 + travel, 2.5 * travel, 1, 1, 0, 0, 0, 0.0) for travel in (1.0, 3.0)]
+    assert finished([*there, *back, *again], 0, 48.0)[1].tolist() == [0.0, 2.5, 7.5]
 
 
 def test_steps_to_where_the_spring_is_end_no_branch():
@@ -45,7 +47,7 @@ def test_steps_to_where_the_spring_is_end_no_branch():
     there = [step(k, travel, 2 * travel) for k, travel in enumerate((2.0, 4.0, 4.0, 6.0))]
     back = [step(4 + k, travel, 3 * (travel - 2.0)) for k, travel in enumerate((4.0, 4.0, 2.0, 2.0 + 1e-12, 2.0))]
     assert first_compression([*there, *back])[0].tolist() == [0.0, 2.0, 4.0, 6.0]
-    assert last_release([*there, *back], 48.0)[1].tolist() == [0.0, 6.0, 12.0]
+    assert finished([*there, *back], 0, 48.0)[1].tolist() == [0.0, 6.0, 12.0]
     relaxed = [step(0, 2.0, 4.0), step(1, 2.0, 3.0), step(2, 4.0, 7.0)]
     assert first_compression(relaxed)[1].tolist() == [0.0, 4.0]
     assert first_compression([])[0].tolist() == [0.0]
@@ -76,3 +78,28 @@ def test_the_rates_of_a_spring_that_sets(pressed):
     (asked,) = summary["rates"]
     assert asked["travel_mm"] == 1.0
     assert asked["rate_N_per_mm"] == pytest.approx(summary["rate_N_per_mm"], rel=0.1)
+
+
+def test_free_length_and_set_are_those_after_the_last_release(pressed):
+    """The spring is loaded again at the end; before, its set was not reported."""
+    summary = summarise(pressed.setup, pressed.result)
+    (release,) = summary["releases"]
+    assert (release["phase"], release["name"]) == (1, "force 0 N")
+    free = pressed.result.steps[11]
+    assert (free.phase, free.force_N) == (1, pytest.approx(0.0, abs=1e-6))
+    assert summary["free_length_after_mm"] == release["free_length_mm"]
+    assert summary["set_mm"] == pytest.approx(pressed.spring.free_length - release["free_length_mm"], rel=1e-12)
+    assert 0.0 < summary["set_mm"] < 13.0
+    assert summary["residual_shear_inside_MPa"] < 0.0
+    assert 1.0 <= summary["residual_shear_inside_turn"] <= 1.5  # a turn from the tips of 2.5
+
+
+def test_each_release_has_its_free_length(example):
+    loading = "loading=[{to: {travel: 10}, steps: 5}, {to: {force: 0}}, {to: {travel: 16}, steps: 5}, {to: {force: 0}}]"
+    settings = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", loading]
+    analysis = Analysis(read_case(example, settings), MPI.COMM_SELF)
+    analysis.run()
+    summary = summarise(analysis.setup, analysis.result)
+    lengths = [release["free_length_mm"] for release in summary["releases"]]
+    assert len(lengths) == 2
+    assert 35.0 > lengths[0] > lengths[1] == summary["free_length_after_mm"]

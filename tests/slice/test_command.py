@@ -33,7 +33,7 @@ def test_files_and_summary(example, tmp_path):
     assert summary["residual_shear_inside_MPa"] == -summary["released"]["shear_inside_MPa"] < 0
     assert (tmp_path / "here" / "section.png").read_bytes().startswith(b"\x89PNG")
     assert len(list((tmp_path / "here" / "fields").glob("*.vtu"))) == 3
-    with pytest.raises(InputError, match="--force"):
+    with pytest.raises(InputError, match="--overwrite"):
         slice_case(example, tmp_path / "here", settings=SHORT, across=3.0)
     slice_case(example, tmp_path / "here", force=True, settings=SHORT, across=3.0, pictures=False)
     assert not (tmp_path / "here" / "section.png").exists()

@@ -179,7 +179,7 @@ def test_command_prints_and_draws(case, tmp_path, capsys):
     assert "force at 40 mm" in printed
     assert "972.33 MPa" in printed
     assert (tmp_path / "out" / "goodman.png").stat().st_size > 10_000
-    with pytest.raises(InputError, match="already exists; use --force"):
+    with pytest.raises(InputError, match="already exists; use --overwrite"):
         sheet(case, wire_name="EN 10270-1 SH", surface="shot peened", out=tmp_path / "out")
 
 

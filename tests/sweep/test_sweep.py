@@ -167,7 +167,7 @@ def test_kill_and_resume_lose_nothing_and_repeat_nothing(write_sweep, tmp_path):
         assert data.set_mm.notnull().all()
 
 
-@pytest.mark.parametrize("option", ["--force", "--resume"])
+@pytest.mark.parametrize("option", ["--overwrite", "--resume"])
 def test_a_sweep_leaves_the_folder_of_one_that_runs(write_sweep, tmp_path, option):
     out = tmp_path / "out"
     out.mkdir()

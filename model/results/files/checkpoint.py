@@ -29,7 +29,7 @@ from coilset.model.results.records.record import BucklingMode, Result, Snapshot
 
 # what must be unchanged to resume
 SPRING_ENTRIES = ("spring", "material", "temperature", "ends", "seats", "mesh", "contact", "heat")
-ANEW = "use --force instead of --resume to start again"
+ANEW = "use --overwrite instead of --resume to start again"
 
 
 @dataclass(frozen=True)

@@ -101,7 +101,7 @@ def refuse_to_replace(paths: Iterable[Path], force: bool) -> None:
     """
     for path in paths:
         if path.exists() and not force:
-            raise InputError("already exists; use --force to overwrite it", "", path)
+            raise InputError("already exists; use --overwrite to overwrite it", "", path)
 
 
 def refuse_results(folder: str | Path, force: bool) -> None:
@@ -117,10 +117,12 @@ def refuse_results(folder: str | Path, force: bool) -> None:
     folder = Path(folder)
     with making(folder):
         if (folder / "summary.json").exists() and not force:
-            raise InputError("already holds results; use --force to overwrite them, or another --out", "--out", folder)
+            raise InputError(
+                "already holds results; use --overwrite to replace them, or another --out", "--out", folder
+            )
         if (folder / "checkpoint" / "state.npz").exists() and not force:
             raise InputError(
-                "holds an interrupted run; use --resume to continue it, --force to start again, or another --out",
+                "holds an interrupted run; use --resume to continue it, --overwrite to start again, or another --out",
                 "--out",
                 folder,
             )

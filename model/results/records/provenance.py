@@ -6,6 +6,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+from coilset.model.base.content import described
 from coilset.model.base.errors import InputError
 from coilset.model.base.version import __version__, versions
 from coilset.model.case import Case
@@ -32,8 +33,8 @@ def contents(case: Case) -> dict[str, str]:
 
 
 def provenance(case: Case) -> dict[str, object]:
-    """Version and contents, for a checkpoint; raises as `contents`."""
-    return {"version": __version__, "contents": contents(case)}
+    """Version, the program's content and contents, for a checkpoint; raises as `contents`."""
+    return {"version": __version__, "program": described(), "contents": contents(case)}
 
 
 def origin(case: Case) -> dict[str, Any]:
@@ -44,13 +45,14 @@ def origin(case: Case) -> dict[str, Any]:
 
     Returns:
         Plain data: the `case` with all its defaults, the constants of its `material`, digests of the `contents` that it
-        names, `versions`, `date` (UTC) and `platform`.
+        names, `program` (digest of its content, and the commit in a checkout), `versions`, `date` (UTC) and `platform`.
     """
     law = case_law(case, case.spring.build())
     return {
         "case": case.model_dump(mode="json"),
         "material": law.data.model_dump(mode="json"),
         "contents": contents(case),
+        "program": described(),
         "versions": versions(),
         "date": datetime.now(UTC).isoformat(timespec="seconds"),
         "platform": platform.platform(),

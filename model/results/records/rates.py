@@ -6,6 +6,7 @@ from itertools import dropwhile
 import numpy as np
 
 from coilset.model.results.records.record import Result, Setup, Step
+from coilset.model.results.records.releases import Release
 
 MAKERS = (0.3, 0.7)  # of the travel to block, between which EN 15800 measures the rate
 STANDS = 1e-9  # of the greatest travel and force: a step that changes both by less changes nothing
@@ -17,9 +18,15 @@ def first_compression(steps: Sequence[Step]) -> tuple[np.ndarray, np.ndarray]:
     return _ascending([(step.travel_mm, step.force_N) for step in pressed])
 
 
-def last_release(steps: Sequence[Step], height: float) -> tuple[np.ndarray, np.ndarray]:
-    """Travel, mm, counted from the final free length, and force, N, of the last release."""
-    return _ascending([(height - step.seat_height_mm, step.force_N) for step in reversed(steps[:-1])])
+def finished(steps: Sequence[Step], phase: int, height: float) -> tuple[np.ndarray, np.ndarray]:
+    """Travel, mm, and force, N, of the finished spring, after a release that ended at a seat height, mm.
+
+    Those of the compression after the released phase where one follows, else those of the release, backwards.
+    """
+    before = [step for step in steps if step.phase <= phase]
+    later = [step for step in steps if step.phase > phase]
+    path = later if later else list(reversed(before[:-1]))
+    return _ascending([(height - step.seat_height_mm, step.force_N) for step in path])
 
 
 def _ascending(points: Sequence[tuple[float, float]]) -> tuple[np.ndarray, np.ndarray]:
@@ -58,19 +65,19 @@ def rate_at(travel: np.ndarray, force: np.ndarray, at: float) -> float | None:
     return float(np.polyval(np.polyder(np.polyfit(travel[near] - at, force[near], 2)), 0.0))
 
 
-def rates(setup: Setup, result: Result, is_released: bool) -> dict[str, object]:
+def rates(setup: Setup, result: Result, release: Release | None) -> dict[str, object]:
     """Entries of the summary: the rate between 30 and 70 % of the travel to block, and the requested rates.
 
     Args:
         setup: Setup.
         result: Result.
-        is_released: whether the spring is free of load at the current state.
+        release: the last release, if there was one.
     """
     travel, force = first_compression(result.steps)
-    block, height = setup.spring.block_height, result.snapshots[-1].height
-    after = None
-    if is_released:
-        after = makers_rate(*last_release(result.steps, height), height - block)
+    block, after = setup.spring.block_height, None
+    if release is not None:
+        height = release.snapshot.height
+        after = makers_rate(*finished(result.steps, release.phase, height), height - block)
     return {
         "rate_30_70_N_per_mm": makers_rate(travel, force, setup.spring.free_length - block),
         "rate_30_70_after_N_per_mm": after,

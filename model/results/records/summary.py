@@ -10,43 +10,46 @@ import numpy as np
 from coilset.model.results.records.buckling import buckling
 from coilset.model.results.records.rates import rates
 from coilset.model.results.records.record import Result, Setup, Snapshot
-from coilset.model.results.records.warnings import released as is_released
-from coilset.model.results.records.warnings import run_warnings, set_error
+from coilset.model.results.records.releases import Release, releases
+from coilset.model.results.records.warnings import run_warnings
 from coilset.model.section import surface
 
 
 def summarise(setup: Setup, result: Result) -> dict[str, Any]:
     """Summary of a run as plain numbers, with units in the names; unknown values (no release, no block) are None.
 
+    Free length, set and residual stress are those after the last release, also if the spring is loaded again.
+
     Args:
         setup: Setup.
         result: Result, complete or not; its snapshots are complete on rank 0 only.
     """
-    last = result.snapshots[-1]
     forces = [step.force_N for step in result.steps]
     greatest = max(forces, default=0.0, key=abs)
-    released = is_released(result)
+    freed = releases(setup, result)
+    release = freed[-1] if freed else None
+    last = None if release is None else release.snapshot
     axis = setup.spring.measured_axis
     before, buckled = setup.spring.free_length, buckling(result.steps, setup.mean_diameter)
-    after = setup.outer_length(last.x) if released else None
     return {
         "complete": result.complete,
         "free_length_before_mm": before,
-        "free_length_after_mm": after,
-        "set_mm": None if after is None else before - after,
+        "free_length_after_mm": None if release is None else release.free_length,
+        "set_mm": None if release is None else release.set,
+        "releases": [_release(one) for one in freed],
         "rate_N_per_mm": result.rate if isfinite(result.rate) else None,
-        **rates(setup, result, released),
+        **rates(setup, result, release),
         "force_max_N": greatest,
         "block_height_mm": setup.spring.block_height,
-        "residual_shear_max_MPa": shear_peak(setup, last).value if released else None,
+        "residual_shear_max_MPa": None if last is None else shear_peak(setup, last).value,
         "shear_max_MPa": max(shear_peak(setup, shot).value for shot in result.snapshots),
-        **ends_peak(setup, last if released else None),
-        "residual_shear_inside_MPa": shear_inside(setup, last) if released else None,
-        "shear_inside_max_MPa": max(shear_inside(setup, shot) for shot in result.snapshots),
-        **peaks(setup, "residual_", [last] if released else []),
+        **ends_peak(setup, last),
+        **inside(setup, last),
+        "shear_inside_max_MPa": max(shear_inside(setup, shot)[0] for shot in result.snapshots),
+        **peaks(setup, "residual_", [] if last is None else [last]),
         **peaks(setup, "", result.snapshots),
         **plastic_work(setup, result),
-        **step_errors(result),
+        **step_errors(result, release),
         "load_loss_percent": load_loss(result),
         "coiling_diameter_mm": setup.coiling_diameter,
         "measured_axis_offset_mm": axis.offset if axis else None,
@@ -76,12 +79,21 @@ def load_loss(result: Result) -> float | None:
     return losses[-1] if losses else None
 
 
-def step_errors(result: Result) -> dict[str, float | None]:
+def _release(release: Release) -> dict[str, Any]:
+    return {
+        "phase": release.phase,
+        "name": release.snapshot.name,
+        "free_length_mm": release.free_length,
+        "set_mm": release.set,
+    }
+
+
+def step_errors(result: Result, release: Release | None) -> dict[str, float | None]:
     """Errors due to the step size: of the maximum force, and of the set."""
     top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
     return {
         "estimated_force_error_N": None if top is None else top.estimated_force_error_N,
-        "estimated_set_error_mm": set_error(result),
+        "estimated_set_error_mm": None if release is None else release.set_error,
     }
 
 
@@ -117,13 +129,21 @@ def ends_peak(setup: Setup, snapshot: Snapshot | None) -> dict[str, float | None
     }
 
 
-def shear_inside(setup: Setup, snapshot: Snapshot) -> float:
-    """Shear stress on the wire's surface at the inside of the coil, MPa, positive as in a compressed spring.
+def shear_inside(setup: Setup, snapshot: Snapshot) -> tuple[float, float]:
+    """Shear stress on the wire's surface at the inside of the coil, MPa, positive as in a compressed spring; its turn.
 
     The value of largest magnitude in the middle turns.
     """
-    middle = setup.inside.shear(snapshot.surface_state, snapshot.components)[is_middle(setup)]
-    return float(middle[np.argmax(np.abs(middle))])
+    among = is_middle(setup)
+    middle = setup.inside.shear(snapshot.surface_state, snapshot.components)[among]
+    at = int(np.argmax(np.abs(middle)))
+    return float(middle[at]), float(setup.section_turns[among][at])
+
+
+def inside(setup: Setup, snapshot: Snapshot | None) -> dict[str, float | None]:
+    """Residual shear at the inside of the coil, MPa, and the turn where it is; None before a release."""
+    value, turn = (None, None) if snapshot is None else shear_inside(setup, snapshot)
+    return {"residual_shear_inside_MPa": value, "residual_shear_inside_turn": turn}
 
 
 def peaks(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, float | None]:

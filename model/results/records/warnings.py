@@ -7,6 +7,7 @@ from math import isfinite
 from coilset.model.base.warning import Warning
 from coilset.model.results.records.buckling import buckling, snapped
 from coilset.model.results.records.record import Result, Setup, Snapshot, Step
+from coilset.model.results.records.releases import FREE, last_release
 from coilset.model.section import surface
 from coilset.model.standards.working import presetting_warning
 
@@ -16,7 +17,6 @@ SLIPPED = 0.7  # of the rise to touch: coils of one wire that lie so are shifted
 WALL = 20.0
 WALL_FORCE = 0.002  # of the force, for which the warning tells the height where no accuracy is asked for
 NOTICED = 1e-5  # of the free length: a set uncertain by less, 0.3 µm of 30 mm, is known to whoever measures it
-FREE = 1e-6  # of the greatest force: a spring that bears no more is free of load
 Check = Callable[[Setup, Result], Iterator[Warning]]
 
 
@@ -194,7 +194,7 @@ def _equivalent(shot: Snapshot) -> float:
 
 
 def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
-    """The worse of force, at its greatest, and set; or that the former is not known."""
+    """The larger of the errors of maximum force and set; or that the former could not be estimated."""
     asked = setup.limits.accuracy
     top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
     if asked is None or top is None or not top.force_N:
@@ -202,43 +202,30 @@ def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
     if top.estimated_force_error_N is None:
         if not abs(top.force_N) <= FREE * result.rate * setup.spring.free_length:  # also where the rate is not known
             message = (
-                f"how uncertain the force is because of the step size is not known at its greatest, {_place(top)}; "
-                "compare it with that of smaller steps"
+                f"the step-size error of the maximum force could not be estimated ({_place(top)}); "
+                "compare the force with that of smaller steps"
             )
             yield Warning("unknown error", _place(top), message, None, asked)
         return
     worst, place, of = abs(top.estimated_force_error_N / top.force_N), _place(top), ("the force", "")
-    error = set_error(result)
-    set_mm = setup.spring.free_length - setup.outer_length(result.snapshots[-1].x)
+    release = last_release(setup, result)
+    error = None if release is None else release.set_error
     noticed = error is not None and abs(error) > NOTICED * setup.spring.free_length
-    if error is not None and noticed and set_mm > 0.0 and abs(error) > worst * set_mm:
-        worst, place, of = abs(error) / set_mm, "set", ("the set", f"{abs(error):.2g} mm")
+    if release and error is not None and noticed and release.set > 0.0 and abs(error) > worst * release.set:
+        worst, place, of = abs(error) / release.set, "set", ("the set", f"{abs(error):.2g} mm")
     warning = accuracy_warning(worst, asked, place, *of)
     if warning is not None:
         yield warning
 
 
-def set_error(result: Result) -> float | None:
-    """Estimated error of the set by the steps' length, mm; None where there is none, or it is not known."""
-    error = result.steps[-1].estimated_height_error_mm if result.steps and released(result) else None
-    return None if error is None else -error
-
-
 def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
-    """Of a program that goes to block and comes back."""
-    if "block" in setup.phases and released(result):
-        spring = setup.spring
-        set_mm = spring.free_length - setup.outer_length(result.snapshots[-1].x)
-        warning = presetting_warning(set_mm, spring.free_length - spring.block_height)
-        if warning is not None:
-            yield warning
-
-
-def released(result: Result) -> bool:
-    """Whether the spring is free of load now; one that has left a seat is held by its tip springs only."""
-    if not result.steps or result.steps[-1].lift_off_mm:
-        return False
-    return abs(result.snapshots[-1].force) <= FREE * result.greatest_force
+    """Of a program that goes to block and comes back, if the spring sets: an elastic spring is not preset."""
+    release, spring = last_release(setup, result), setup.spring
+    if "block" not in setup.phases or release is None or release.set <= NOTICED * spring.free_length:
+        return
+    warning = presetting_warning(release.set, spring.free_length - spring.block_height)
+    if warning is not None:
+        yield warning
 
 
 SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _wall, _penetration, _buckled, _unstable, _snapped)

@@ -1,0 +1,55 @@
+"""The releases of a run: the moments at which a loaded spring is free of load again."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from coilset.model.results.records.record import Result, Setup, Snapshot, Step
+
+FREE = 1e-6  # of the maximum force so far: a spring under less is free of load
+
+
+@dataclass(frozen=True)
+class Release:
+    """A spring free of load.
+
+    Attributes:
+        phase: number of the phase that ended so, from 0 on.
+        snapshot: Snapshot at its end.
+        step: the last step up to there.
+        free_length: then, mm.
+        set: loss of free length since the start, mm.
+    """
+
+    phase: int
+    snapshot: Snapshot
+    step: Step
+    free_length: float
+    set: float
+
+    @property
+    def set_error(self) -> float | None:
+        """Estimated error of the set by the steps' length, true value minus result, mm; None if it is unknown."""
+        error = self.step.estimated_height_error_mm
+        return None if error is None else -error
+
+
+def releases(setup: Setup, result: Result) -> list[Release]:
+    """All releases of a run, the last one last; a spring that has left a seat is held by its tips' springs only."""
+    return list(_released(setup, result))
+
+
+def last_release(setup: Setup, result: Result) -> Release | None:
+    """The last release; None if the spring was never free of load again."""
+    return next(reversed(releases(setup, result)), None)
+
+
+def _released(setup: Setup, result: Result) -> Iterator[Release]:
+    number_of_phases = len(result.snapshots) - 1
+    for phase, snapshot in enumerate(result.snapshots[1:]):
+        steps = [step for step in result.steps if step.phase <= phase]
+        maximum = max((abs(step.force_N) for step in steps), default=0.0)
+        ends = phase == number_of_phases - 1
+        if not steps or steps[-1].lift_off_mm or abs(snapshot.force) > FREE * maximum or not (maximum or ends):
+            continue
+        length = setup.outer_length(snapshot.x)
+        yield Release(phase, snapshot, steps[-1], length, setup.spring.free_length - length)
