@@ -191,9 +191,9 @@ def sheet(
 
 @app.command()
 def report(
-    results: str = typer.Argument(metavar="RESULTS", help="results folder of a run, a design or a sweep"),
+    results: str = typer.Argument(metavar="RESULTS", help="results folder of a run, a design, a nest or a sweep"),
 ) -> None:
-    """Write a page of a run, a design or a sweep; it opens from disk without a network."""
+    """Write a page of a run, a design, a nest or a sweep; it opens from disk without a network."""
     announce_compiling()
     from coilset.scripts.commands.report import report as write_page
 
@@ -250,20 +250,20 @@ def _check_sweep(sweep_file: str) -> None:
 
 @app.command()
 def design(
-    wish: str = typer.Argument(help="wish (YAML): a case, what to find: in it, and such_that: conditions"),
-    out: str = typer.Option(None, callback=folder_target, help="results folder; default results/NAME-OF-WISH"),
+    file: str = typer.Argument(help="design file (YAML): a case, unknowns in it (find:), and conditions (such_that:)"),
+    out: str = typer.Option(None, callback=folder_target, help="results folder; default results/NAME-OF-FILE"),
     force: bool = typer.Option(False, *OVERWRITE, help="replace an existing design"),
     resume: bool = typer.Option(False, "--resume", help="continue an unfinished search"),
     threads: int = THREADS,
 ) -> None:
     """Find entries of a case, such as pitch and preset height, for which its run meets conditions."""
-    from coilset.model.design.wish import read_wish
+    from coilset.model.design.file import read_design_file
 
-    compile_first(lambda: read_wish(wish))
+    compile_first(lambda: read_design_file(file))
     announce_compiling()
     from coilset.scripts.commands.design import design as run_design
 
-    run_design(wish, out, force, resume, threads)
+    run_design(file, out, force, resume, threads)
 
 
 @app.command()

@@ -6,7 +6,7 @@ from pathlib import Path
 from coilset.model.case import reference
 from coilset.model.case.case import Case
 from coilset.model.case.reference import Form, Group, Row
-from coilset.model.design.wish import WishSpec
+from coilset.model.design.file import DesignFile
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.programs import Program
 from coilset.model.nest.file import NestFile
@@ -31,11 +31,11 @@ FILES = {  # name of the page: its title, what the file is for, its model
         "Targets of strain and stress for one point: the file of `coilset material test`.",
         Program,
     ),
-    "wish": (
-        "The wish",
-        "A case, entries of it to find, and conditions: the file of `coilset design`. "
-        "[Find dimensions](../../how-to/design.md) shows one.",
-        WishSpec,
+    "design": (
+        "The design file",
+        "A case, unknowns in it, and conditions: the file of `coilset design`. "
+        "[Find dimensions](../../how-to/design.md) shows examples.",
+        DesignFile,
     ),
     "nest": (
         "The nest file",

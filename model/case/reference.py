@@ -136,15 +136,6 @@ def entry_unit(model: type, entry: str) -> str:
     return UNITLESS.get(row.unit, row.unit) if row else ""
 
 
-def entry_words(entry: str) -> str:
-    """An entry's path in words: `spring.wire_diameter` → wire diameter, `loading.0.to.travel` → travel of phase 1."""
-    first, *rest = entry.split(".")
-    words = (rest or [first])[-1].replace("_", " ")
-    if first == "loading" and len(rest) > 1 and rest[0].isdigit():
-        words += f" of phase {int(rest[0]) + 1}"
-    return words
-
-
 def attributes(model: type) -> dict[str, str]:
     """Meanings of a class's attributes, from the section `Attributes:` of its docstring."""
     text = (inspect.getdoc(model) or "").partition("Attributes:\n")[2]

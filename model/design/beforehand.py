@@ -1,4 +1,4 @@
-"""What no spring between the bounds of a wish can be or do, refused before any is run."""
+"""What no spring between the bounds of a design can be or do, refused before any is run."""
 
 import itertools
 from collections.abc import Iterator, Sequence
@@ -8,7 +8,7 @@ import numpy as np
 from coilset.model.base.errors import InputError
 from coilset.model.case.case import Case
 from coilset.model.case.targets import SLACK, lowest_height
-from coilset.model.design.conditions import Condition
+from coilset.model.design.conditions import Condition, without_limit
 from coilset.model.design.evaluation import Evaluator
 
 
@@ -17,11 +17,11 @@ def refuse_beforehand(evaluator: Evaluator, conditions: Sequence[Condition], bou
 
     Args:
         evaluator: Evaluator.
-        conditions: of the wish.
+        conditions: of the design.
         bounds: minimum and maximum values of the unknowns, shape (n, 2).
 
     Raises:
-        InputError: with the wish's own entry: an unknown that takes none of these numbers, or a force at a height
+        InputError: with the design's own entry: an unknown that takes none of these numbers, or a force at a height
             below the block height of all these springs.
     """
     places = np.array([*itertools.product(*bounds), bounds.mean(axis=1)])
@@ -32,7 +32,7 @@ def refuse_beforehand(evaluator: Evaluator, conditions: Sequence[Condition], bou
             raise InputError(
                 f"is {one.height:g} mm, below the block height, which is {lowest:.6g} mm or more between "
                 "these bounds; give a greater height",
-                f"{one.name}.height",
+                f"{without_limit(one.name)}.height",
             )
 
 
@@ -42,12 +42,13 @@ def _cases(evaluator: Evaluator, places: np.ndarray) -> Iterator[Case]:
     for x in places:
         data = evaluator.data(x)
         try:
-            yield evaluator.wish.check(data)
+            yield evaluator.design.check(data)
         except InputError as error:
             errors.append(error)
     wrong = {error.place for error in errors}
-    if len(errors) == len(places) and len(wrong) == 1 and wrong <= set(evaluator.names):
-        raise InputError(errors[0].problem, f"find.{errors[0].place}")
+    owners = {entry: name for name, one in evaluator.design.spec.find.items() for entry in one.driven(name)}
+    if len(errors) == len(places) and len(wrong) == 1 and wrong <= owners.keys():
+        raise InputError(errors[0].problem, f"find.{owners[errors[0].place]}")
 
 
 def _lowest_heights(cases: Sequence[Case]) -> Iterator[float]:

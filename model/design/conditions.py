@@ -1,4 +1,4 @@
-"""Conditions of a wish: the number of a run that each concerns, where it is read, and its deviation."""
+"""Conditions of a design: the number of a run that each concerns, where it is read, and its deviation."""
 
 import copy
 from collections.abc import Mapping, Sequence
@@ -6,11 +6,22 @@ from dataclasses import dataclass
 from typing import Any
 
 from coilset.model.base.errors import InputError
-from coilset.model.design.wish import Conditions, WishSpec
-from coilset.model.results.records.units import unit_of
+from coilset.model.design.file import Conditions, DesignFile, Limits
+from coilset.model.results.records.units import quantity, unit_of
 
-GROUP = "such_that."  # before the names of a wish's conditions
+GROUP = "such_that."  # before the names of conditions
 MEASURING_STEPS = 2  # equal steps to a height at which a force is measured, and back: the path is elastic, or nearly so
+
+
+EQUALS, AT_MOST, AT_LEAST = 0, 1, -1
+SENSES = {EQUALS: "", AT_MOST: "at most ", AT_LEAST: "at least "}
+LIMITS = {"at_most": AT_MOST, "at_least": AT_LEAST}
+ACTIVE = 1e-6  # relative distance from its limit up to which an inequality decides on the solution
+
+
+def without_limit(name: str) -> str:
+    """The name of a condition without that of its limit: the result that it concerns."""
+    return name.removesuffix(".at_most").removesuffix(".at_least")
 
 
 @dataclass(frozen=True)
@@ -18,51 +29,66 @@ class Condition:
     """One condition.
 
     Attributes:
-        name: as in the wish, with a number if it is one of several forces.
-        wish: the target value.
+        name: as in the file, with a number if it is one of several forces, and the limit if it is an inequality.
+        target: the value, or the limit.
         height: at which a force is prescribed, mm; None for numbers of the summary.
         phase: of the load program, at whose end the force is read; None for numbers of the summary.
+        sense: 0 of an equation, 1 of an upper limit, −1 of a lower one.
     """
 
     name: str
-    wish: float
+    target: float
     height: float | None = None
     phase: int | None = None
+    sense: int = EQUALS
 
     @property
     def short_name(self) -> str:
-        """Without the group of the wish; of a number of the summary, its name there."""
-        return self.name.removeprefix(GROUP)
+        """Without the group and the limit; of a number of the summary, its name there."""
+        return without_limit(self.name).removeprefix(GROUP)
 
     @property
     def words(self) -> str:
-        """For progress and messages."""
-        return self.short_name if self.height is None else f"force at {self.height:g} mm"
+        """The result, for progress and messages."""
+        return quantity(self.short_name)[0] if self.height is None else f"force at {self.height:g} mm"
 
     @property
-    def asks(self) -> str | float:
-        """What its value is, whatever is wished of it: a name of the summary, or the height of a force, mm."""
-        return self.name if self.height is None else self.height
+    def wanted(self) -> str:
+        """The target in words, such as `25 mm` or `at most 160 N`."""
+        return f"{SENSES[self.sense]}{self.target:g} {self.unit}"
+
+    @property
+    def subject(self) -> str | float:
+        """Identifies its value, whatever its target: a name of the summary, or the height of a force, mm."""
+        return without_limit(self.name) if self.height is None else self.height
 
     @property
     def unit(self) -> str:
         """Of its value."""
-        return unit_of(self.name) if self.height is None else "N"
+        return unit_of(self.short_name) if self.height is None else "N"
 
     def off(self, value: float) -> float:
         """Deviation of a value from its target, relative to the target."""
-        return (value - self.wish) / abs(self.wish)
+        return (value - self.target) / abs(self.target)
+
+    def missed(self, off: float) -> float:
+        """The part of a relative deviation by which the condition is not met."""
+        return off if self.sense == EQUALS else self.sense * max(self.sense * off, 0.0)
+
+    def is_active(self, off: float) -> bool:
+        """Whether it decides on a solution with this deviation; an equation always does."""
+        return self.sense == EQUALS or self.sense * off >= -ACTIVE
 
 
-def conditions(spec: WishSpec, base: Mapping[str, Any]) -> tuple[list[Condition], dict[str, Any]]:
-    """The conditions of a wish, and its case extended by what is needed to evaluate them.
+def conditions(spec: DesignFile, base: Mapping[str, Any]) -> tuple[list[Condition], dict[str, Any]]:
+    """The conditions of a design, and its case extended by what is needed to evaluate them.
 
     Args:
-        spec: WishSpec.
+        spec: DesignFile.
         base: raw data of the case, checked.
 
     Returns:
-        Conditions in the order of the wish; raw data of the case, whose load program goes to all the heights.
+        Conditions in the order of the file; raw data of the case, whose load program goes to all the heights.
 
     Raises:
         InputError: a condition needs a released spring, but the program does not release it.
@@ -71,25 +97,40 @@ def conditions(spec: WishSpec, base: Mapping[str, Any]) -> tuple[list[Condition]
     program = data["loading"]
     if isinstance(program, dict):  # {accuracy: …, program: […]}
         program = program["program"]
-    found = [Condition(f"{GROUP}{name}", value) for name, value in _numbers(spec.such_that)]
+    found = [one for name, value in _results(spec.such_that) for one in _conditions(f"{GROUP}{name}", value)]
     missing = sorted({at.height for at in spec.such_that.force_at if _phase(program, at.height) is None}, reverse=True)
     released = _is_release(program[-1])
     needing = [one.name for one in found if "after" in one.name or "set_mm" in one.name or "residual" in one.name]
     if not released and (needing or missing):
         name = needing[0] if needing else f"{GROUP}force_at"
-        raise InputError("needs an unloaded spring at the end; let the load program end with {to: {force: 0}}", name)
+        raise InputError(
+            "needs an unloaded spring at the end; let the load program end with {to: {force: 0}}", without_limit(name)
+        )
     for height in missing:
         program.append({"to": {"height": height}, "steps": MEASURING_STEPS})
     if missing:
         program.append({"to": {"force": 0}, "steps": MEASURING_STEPS})
     for number, at in enumerate(spec.such_that.force_at):
         name = f"{GROUP}force_at" + (f".{number}" if len(spec.such_that.force_at) > 1 else "")
-        found.append(Condition(name, at.N, at.height, _phase(program, at.height)))
+        found += _conditions(name, at.N, at.height, _phase(program, at.height))
     return found, data
 
 
-def _numbers(wished: Conditions) -> list[tuple[str, float]]:
-    return [(name, value) for name, value in wished if isinstance(value, float | int)]
+def _results(wanted: Conditions) -> list[tuple[str, float | Limits]]:
+    return [(name, value) for name, value in wanted if isinstance(value, float | int | Limits)]
+
+
+def _conditions(
+    name: str, wanted: float | Limits, height: float | None = None, phase: int | None = None
+) -> list[Condition]:
+    """One equation, or an inequality for each limit."""
+    if not isinstance(wanted, Limits):
+        return [Condition(name, wanted, height, phase)]
+    return [
+        Condition(f"{name}.{limit}", value, height, phase, sense)
+        for limit, sense in LIMITS.items()
+        if (value := getattr(wanted, limit)) is not None
+    ]
 
 
 def _phase(program: Sequence[Mapping[str, Any]], height: float) -> int | None:

@@ -13,9 +13,9 @@ from mpi4py import MPI
 
 from coilset.model.base.errors import CoilsetError, InputError
 from coilset.model.case.settings import put
-from coilset.model.design.conditions import Condition
+from coilset.model.design.conditions import Condition, without_limit
+from coilset.model.design.file import Design
 from coilset.model.design.surrogate import Guess, guess
-from coilset.model.design.wish import Wish
 from coilset.model.material import library
 from coilset.model.results.records.record import Result, Setup
 from coilset.model.results.records.summary import summarise
@@ -61,24 +61,25 @@ class Evaluation:
 
 
 class Evaluator:
-    """Runs the case of a wish with values for its unknowns.
+    """Runs the case of a design with values for its unknowns.
 
     Args:
-        wish: Wish.
+        design: Design.
         conditions, data: see `coilset.model.design.conditions.conditions`.
-        known: records of earlier evaluations by their keys; those of another wish do not count.
+        known: records of earlier evaluations by their keys; those of other unknowns or conditions do not count.
         keep: writes the record of a new one.
         report: called with every Evaluation, and whether it was known.
         threads: of each run.
 
     Attributes:
-        names: of the unknowns.
+        names: of the unknowns in the file.
+        named: the same in words, with their units.
         count: number of evaluations, and of those that were known.
     """
 
     def __init__(
         self,
-        wish: Wish,
+        design: Design,
         conditions: Sequence[Condition],
         data: Mapping[str, Any],
         known: Mapping[str, Mapping[str, Any]],
@@ -86,10 +87,11 @@ class Evaluator:
         report: Callable[[Evaluation, bool], object],
         threads: int,
     ) -> None:
-        self.wish, self.conditions, self._data = wish, conditions, data
-        self.names = list(wish.spec.find)
-        self._asked = [*self.names, *(one.asks for one in conditions)]  # what `x` and `values` of a record are of
-        self._known = {name: record for name, record in known.items() if record.get("of") == self._asked}
+        self.design, self.conditions, self._data = design, conditions, data
+        self.names = list(design.spec.find)
+        self.named = [one.named(name, design.base) for name, one in design.spec.find.items()]
+        self._subject = [*self.names, *(one.subject for one in conditions)]  # what `x` and `values` of a record are of
+        self._known = {name: record for name, record in known.items() if record.get("of") == self._subject}
         self._keep, self._report = keep, report
         self._key, self._load = Keys(), cache(library.load)
         self.count, self.solves, self._threads = 0, 0, threads
@@ -105,8 +107,8 @@ class Evaluator:
         data = copy.deepcopy(dict(self._data))
         for name, value in (others or {}).items():
             put(data, name, copy.deepcopy(value), f"trade_offs.{name}")
-        for name, value in zip(self.names, x, strict=True):
-            put(data, name, float(value), f"find.{name}")
+        for (name, unknown), value in zip(self.design.spec.find.items(), x, strict=True):
+            unknown.put(name, float(value), data)
         program = data["loading"]["program"] if isinstance(data["loading"], dict) else data["loading"]
         for phase, marks in zip(program, plan or (None,) * len(program), strict=True):
             if marks is not None:
@@ -115,14 +117,14 @@ class Evaluator:
 
     def guess(self, x: np.ndarray, others: Mapping[str, Any] | None = None) -> Guess:
         """The uniform rod's estimate; raises InputError if there is no such spring."""
-        return guess(self.wish.check(self.data(x, None, others)), self.conditions, self._load)
+        return guess(self.design.check(self.data(x, None, others)), self.conditions, self._load)
 
     def run(self, x: np.ndarray, plan: Plan | None = None) -> Evaluation:
         """Run it, or take its result from the journal."""
         x, self.count = np.array(x, float), self.count + 1
         began = time.perf_counter()
         try:
-            case = self.wish.check(self.data(x, plan))
+            case = self.design.check(self.data(x, plan))
             name = self._key(case)
         except InputError as error:
             found = self._failed(x, error, began)
@@ -139,22 +141,26 @@ class Evaluator:
                 found = self._failed(x, error, began)
             del analysis
             status = "failed" if found.failed else "done"
-            record = {"key": name, "status": status, "of": self._asked, **_plain(found)}
+            record = {"key": name, "status": status, "of": self._subject, **_plain(found)}
             self._keep(record)
             self._known[name] = json.loads(json.dumps(record))
-        found = _of_record(self._known[name])
+        found = _of_record(self._known[name], x)
         self._report(found, known)
         return found
 
     def _failed(self, x: np.ndarray, error: CoilsetError, began: float) -> Evaluation:
         wrong, reason = isinstance(error, InputError), str(error)
         if isinstance(error, InputError) and error.place:
-            reason = f"{self._asked_at(error.place)}: {error.problem}"
+            reason = f"{self._own_place(error.place)}: {error.problem}"
         return Evaluation(x, np.full(1, np.nan), reason, (), {}, time.perf_counter() - began, wrong)
 
-    def _asked_at(self, place: str) -> str:
-        """An entry of the case, or the wish's own if that holds the same height."""
-        heights = {f"loading.{one.phase}.to.height": f"{one.name}.height" for one in self.conditions if one.height}
+    def _own_place(self, place: str) -> str:
+        """An entry of the case, or the design's own if that holds the same height."""
+        heights = {
+            f"loading.{one.phase}.to.height": f"{without_limit(one.name)}.height"
+            for one in self.conditions
+            if one.height
+        }
         return heights.get(place, place)
 
     def _read(self, x: np.ndarray, setup: Setup, result: Result, began: float) -> Evaluation:
@@ -178,10 +184,8 @@ def _plain(found: Evaluation) -> dict[str, Any]:
     return asdict(found) | {"x": found.x.tolist(), "values": values}
 
 
-def _of_record(record: Mapping[str, Any]) -> Evaluation:
-    """The Evaluation in a line of the journal."""
+def _of_record(record: Mapping[str, Any], x: np.ndarray) -> Evaluation:
+    """The Evaluation in a line of the journal, of a case that these unknowns make."""
     values = np.array([np.nan if value is None else value for value in record["values"]])
     plan = tuple(tuple(marks) for marks in record["plan"])
-    return Evaluation(
-        np.array(record["x"]), values, record["reason"], plan, record["summary"], record["seconds"], record["wrong"]
-    )
+    return Evaluation(x, values, record["reason"], plan, record["summary"], record["seconds"], record["wrong"])

@@ -1,4 +1,4 @@
-"""Why a wish is not met: the range reached within its bounds, from runs, and the reason if it is known."""
+"""Why conditions are not met: the range reached within its bounds, from runs, and the reason if it is known."""
 
 import itertools
 
@@ -35,7 +35,7 @@ def look_around(search: Search, found: Found) -> None:
 def nearest_seen(search: Search) -> Evaluation:
     """The run with the smallest deviation."""
     good = [one for one in search.evaluations if not one.failed]
-    return min(good, key=lambda one: float(np.linalg.norm(search.off(one.values))))
+    return min(good, key=lambda one: float(np.linalg.norm(search.missed(search.off(one.values)))))
 
 
 def refuse(search: Search, found: Found) -> None:
@@ -49,22 +49,22 @@ def refuse(search: Search, found: Found) -> None:
         values = np.array([run.values[number] for run in good])
         low, high = good[int(values.argmin())], good[int(values.argmax())]
         least, most = float(values.min()), float(values.max())
-        if not least <= one.wish <= most:
-            near, end = (high, "greatest") if one.wish > most else (low, "least")
-            reason = plastic_reason(search, near) if one.wish > most and "free_length_after" in one.name else ""
+        if all(one.missed(one.off(value)) for value in (least, most)) and not least <= one.target <= most:
+            near, end = (high, "maximum") if one.target > most else (low, "minimum")
+            reason = plastic_reason(search, near) if one.target > most and "free_length_after" in one.name else ""
             raise InputError(
-                f"{one.wish:g} {one.unit} is out of reach{_at(one)}: between the bounds it goes from about {least:.6g} "
+                f"{one.wanted} is out of reach{_at(one)}: between the bounds it goes from about {least:.6g} "
                 f"to {most:.6g} {one.unit}, the {end} with {search.words(near.x)}{reason}",
                 one.name,
             )
-    worst = int(np.abs(found.off).argmax())
+    worst = int(np.abs(search.missed(found.off)).argmax())
     one = search.conditions[worst]
     nearest = ", ".join(
-        f"{other.words} {value:.6g} for {other.wish:g} {other.unit}"
+        f"{other.words} {value:.6g} for {other.wanted}"
         for other, value in zip(search.conditions, found.best.values, strict=True)
     )
     raise InputError(
-        f"{one.wish:g} {one.unit}{_at(one)} cannot be met together with the other conditions between "
+        f"{one.wanted}{_at(one)} cannot be met together with the other conditions between "
         f"these bounds{_with_others_met(search, found, worst)}; the nearest found is {nearest}, with "
         f"{search.words(found.best.x)}{unfelt(search, found)}",
         one.name,
@@ -76,15 +76,13 @@ def unfelt(search: Search, found: Found) -> str:
     _, sizes, directions = np.linalg.svd(found.slopes)
     if sizes[-1] > DEAD * sizes[0]:
         return ""
-    names = [
-        name for name, part in zip(search.evaluator.names, directions[len(sizes) - 1], strict=True) if abs(part) > 0.3
-    ]
-    return f"; no condition feels {' with '.join(names)} there"
+    names = [name for name, part in zip(search.names, directions[len(sizes) - 1], strict=True) if abs(part) > 0.3]
+    return f"; no condition depends on {' with '.join(names)} there"
 
 
 def plastic_reason(search: Search, near: Evaluation) -> str:
     """Whether longer winding does not help because the wire is fully plastic, in words; empty if it does."""
-    names = search.evaluator.names
+    names = search.names
     column = next((names.index(name) for name in WINDING if name in names), None)
     torque = search.evaluator.guess(near.x).torque
     if torque <= 1.0:
@@ -92,9 +90,9 @@ def plastic_reason(search: Search, near: Evaluation) -> str:
     said = f"; the torque of its wire comes to {torque:.3g} times that at which the surface yields"
     if column is None:
         return said
-    back = near.x.copy()
-    back[column] -= BACK * search.width[column] * (1.0 if back[column] > search.low[column] else -1.0)
-    other = search.full((back - search.low) / search.width)
+    back = search.part(near.x)
+    back[column] -= BACK if back[column] > 0.0 else -BACK
+    other = search.full(back)
     if other.failed:
         return said
     change = near.summary["free_length_before_mm"] - other.summary["free_length_before_mm"]
@@ -110,6 +108,10 @@ def plastic_reason(search: Search, near: Evaluation) -> str:
 def _with_others_met(search: Search, found: Found, worst: int) -> str:
     """The range of a condition where the others are met, by the mapped surrogate; empty if there is no such point."""
     answer, others = search.mapped(found.error), np.arange(len(found.off)) != worst
+
+    def missed(u: np.ndarray) -> np.ndarray:
+        return search.missed(answer(u))[others]
+
     values = []
     for sign in (1.0, -1.0):
         end = minimize(
@@ -118,12 +120,12 @@ def _with_others_met(search: Search, found: Found, worst: int) -> str:
             method="SLSQP",
             bounds=[(0.0, 1.0)] * len(search.width),
             options={"maxiter": 40},
-            constraints={"type": "eq", "fun": lambda u: answer(u)[others]},
+            constraints={"type": "eq", "fun": missed},
         )
-        if np.abs(answer(end.x)[others]).max() > 1e-3:
+        if np.abs(missed(end.x)).max(initial=0.0) > 1e-3:
             return ""
         one = search.conditions[worst]
-        values.append(one.wish + abs(one.wish) * float(answer(end.x)[worst]))
+        values.append(one.target + abs(one.target) * float(answer(end.x)[worst]))
     return f": with these met it goes from about {min(values):.4g} to {max(values):.4g} {search.conditions[worst].unit}"
 
 

@@ -12,6 +12,13 @@ error found by the run there, y = f(x) − s(x) − (f(b) − s(b)), improves it
 
 which converges as fast as a secant method. Slopes that the uniform rod cannot provide start as differences of runs.
 Everything is relative: x between its bounds, f − target over the target.
+
+Of an inequality only the part counts by which it is not met. Where there are fewer equations than unknowns, many
+springs may meet all conditions: the one nearest to the case's own values is sought,
+
+    min |x − x₀|²   with m(x) = 0 of the equations, m(x) ≤ 0 of the upper limits, m(x) ≥ 0 of the lower ones,
+
+by sequential quadratic programming (SLSQP) with the same model.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -19,10 +26,10 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.optimize import least_squares
+from scipy.optimize import least_squares, minimize
 
 from coilset.model.base.errors import InputError, SolveError
-from coilset.model.design.conditions import Condition
+from coilset.model.design.conditions import AT_LEAST, AT_MOST, EQUALS, Condition
 from coilset.model.design.evaluation import Evaluation, Evaluator, Plan
 
 TOLERANCE = 1e-7  # relative, to which conditions are met
@@ -38,6 +45,10 @@ CAREFUL = 0.25  # of the bounds' width: longest first step if only differences o
 SLOPE_STEP = 1e-4  # of the bounds' width, for slopes of the surrogate
 FAR = 10.0  # in place of the surrogate's result where it has none
 START_GRID = 5  # starting points along each unknown for the search with the surrogate
+CLOSE = 1e-2  # of the bounds' width: a step over which the surrogate is practically linear
+STILL = 1e-3  # of the bounds' width: a smaller step ends the search for the nearest of many springs
+LOOSE = 1e-3  # relative deviation up to which such a search goes on from a spring that misses a condition
+POSSIBLE = 1e-6  # relative deviation up to which the model counts as meeting the conditions
 
 
 class SurrogateError(NamedTuple):
@@ -59,12 +70,13 @@ class Found:
     """Result of a search.
 
     Attributes:
-        x: values of the unknowns, shape (n,).
+        x: values of all unknowns, shape (n,).
         best: Evaluation there.
         off: of the conditions, relative, shape (m,).
-        slopes: ∂ off/∂(relative x), shape (m, n).
+        slopes: ∂ off/∂(relative x) of the unknowns that are not fixed, shape (m, free unknowns).
         met: whether all conditions are met to `TOLERANCE`.
         error: SurrogateError about them.
+        search: the one that found it, whose choices are fixed.
         evaluations: all of them, in order.
     """
 
@@ -74,20 +86,33 @@ class Found:
     slopes: np.ndarray
     met: bool
     error: SurrogateError
+    search: "Search"
     evaluations: list[Evaluation] = field(default_factory=list)
+
+    @property
+    def is_one_of_many(self) -> bool:
+        """Whether other springs meet the conditions, too: fewer of them are active than there are unknowns."""
+        conditions = zip(self.search.conditions, self.off, strict=True)
+        return self.met and sum(bool(one.is_active(off)) for one, off in conditions) < len(self.search.names)
 
 
 class Search:
-    """Finds the unknowns of a wish.
+    """Finds the unknowns of a design.
 
     Args:
         evaluator: Evaluator.
         bounds: minimum and maximum values, shape (n, 2).
         conditions: Conditions.
-        start: where to start if the uniform rod does not help, shape (n,); NaN where unknown.
+        start: the case's own values, shape (n,); NaN where unknown. The search starts there if the uniform rod does
+            not help, and stays near if there is a choice.
+        fixed: values of unknowns that are not sought, shape (n,), NaN of the others; default: all are sought.
 
     Attributes:
-        low, width: of the bounds, shape (n,).
+        names: of the unknowns that are sought.
+        low, width: of their bounds, shape (free unknowns,).
+        is_square: as many equations as unknowns, and no inequality.
+        is_open: fewer equations than unknowns.
+        is_over: more equations than unknowns.
         plan: steps of all runs after the first, which chose them automatically.
         evaluations: of all runs.
     """
@@ -98,10 +123,19 @@ class Search:
         bounds: np.ndarray,
         conditions: Sequence[Condition],
         start: np.ndarray,
+        fixed: np.ndarray | None = None,
     ) -> None:
         self.evaluator, self.conditions = evaluator, list(conditions)
-        self.low, self.width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
-        self._start = np.clip((start - self.low) / self.width, 0.0, 1.0)
+        self._bounds, self._given = bounds, start
+        self._fixed = np.full(len(bounds), np.nan) if fixed is None else fixed
+        self.free = np.isnan(self._fixed)
+        self.names = [name for name, free in zip(evaluator.names, self.free, strict=True) if free]
+        self.low, self.width = bounds[self.free, 0], bounds[self.free, 1] - bounds[self.free, 0]
+        self._start = np.clip((start[self.free] - self.low) / self.width, 0.0, 1.0)
+        self._sense = np.array([one.sense for one in self.conditions])
+        equations = int((self._sense == EQUALS).sum())
+        self.is_square = equations == len(self._sense) == len(self.width)
+        self.is_open, self.is_over = equations < len(self.width), equations > len(self.width)
         self.plan: Plan | None = None
         self._replans = REPLANS
         self.evaluations: list[Evaluation] = []
@@ -109,12 +143,27 @@ class Search:
     # ---- shares -----------------------------------------------------------------------------------------------------
 
     def value(self, u: np.ndarray) -> np.ndarray:
-        """Values of unknowns from relative ones; exact at their bounds."""
-        return np.where(u >= 1.0, self.low + self.width, self.low + u * self.width)
+        """Values of all unknowns from the relative ones of those that are sought; exact at their bounds."""
+        x = self._fixed.copy()
+        x[self.free] = np.where(u >= 1.0, self.low + self.width, self.low + u * self.width)
+        return x
+
+    def part(self, x: np.ndarray) -> np.ndarray:
+        """The inverse of `value`."""
+        return (x[self.free] - self.low) / self.width
+
+    def with_fixed(self, fixed: np.ndarray) -> "Search":
+        """The same search with values of some unknowns fixed, shape (n,), NaN of the others."""
+        return Search(self.evaluator, self._bounds, self.conditions, self._given, fixed)
 
     def off(self, values: np.ndarray) -> np.ndarray:
         """Relative deviations of values from the conditions, shape (m,)."""
         return np.array([one.off(value) for one, value in zip(self.conditions, values, strict=True)])
+
+    def missed(self, off: np.ndarray) -> np.ndarray:
+        """The parts of relative deviations by which conditions are not met, shape (m,)."""
+        met = (self._sense * off < 0.0) & (self._sense != EQUALS)
+        return np.where(met, 0.0, off)
 
     def surrogate(self, u: np.ndarray, others: Mapping[str, Any] | None = None) -> np.ndarray:
         """Relative deviations of the uniform rod from the conditions; 0 for those that it does not know, shape (m,).
@@ -150,25 +199,28 @@ class Search:
             InputError: no spring within the bounds can be run, or no condition depends on an unknown.
             SolveError: the search does not converge.
         """
+        if not len(self.width):
+            return self._only()
         u, best = self._first() if again is None else self._planned(again)
         off = self.off(best.values)
         base = self.surrogate(u)
         E = self._unknown_slopes(u, off, base)
         blind = bool(np.any(E))  # only differences are known
-        reach, square = CAREFUL if blind else 1.0, len(off) == len(u)
-        ended, norms = len(self.evaluations) + MOST, [float(np.linalg.norm(off))]
+        reach, square = CAREFUL if blind else 1.0, self.is_square
+        ended, norms = len(self.evaluations) + MOST, [float(np.linalg.norm(self.missed(off)))]
         while len(self.evaluations) < ended:
-            if np.abs(off).max() <= REPLAN and self._replans > 0 and best.rough:
+            if np.abs(self.missed(off)).max() <= REPLAN and self._replans > 0 and best.rough:
                 self._replans -= 1
                 u, best = self._planned(self.value(u))
                 off = self.off(best.values)
-            if np.abs(off).max() <= TOLERANCE:
+            met = bool(np.abs(self.missed(off)).max() <= TOLERANCE)
+            if met and not self.is_open:
                 return self._found(u, best, off, base, E, True)
             to = self._nearest(u, off, base, E, reach)
             step = to - u
-            size = float(np.abs(step).max())
-            if size <= SETTLED * (0.01 if square else 1.0):
-                return self._found(u, best, off, base, E, False)
+            size = float(np.abs(step).max(initial=0.0))
+            if size <= (STILL if met else SETTLED * (0.01 if square or self.is_open else 1.0)):
+                return self._found(u, best, off, base, E, met)
             there = self.full(to)
             if there.failed:
                 reach = 0.5 * size
@@ -178,20 +230,25 @@ class Search:
             off_there, base_there = self.off(there.values), self.surrogate(to)
             y = (off_there - base_there) - (off - base)
             E = E + np.outer(y - E @ step, step) / (step @ step)
-            if np.linalg.norm(off_there) < np.linalg.norm(off):
-                gained = np.linalg.norm(off_there) < 0.5 * np.linalg.norm(off)
+            missed, missed_there = (float(np.linalg.norm(self.missed(one))) for one in (off, off_there))
+            if missed_there < missed or (self.is_open and missed_there < LOOSE):
+                gained = missed_there < 0.5 * missed or self.is_open
                 u, best, off, base = to, there, off_there, base_there
                 reach = min(1.0, 4.0 * max(reach, size)) if gained else max(size, 0.5 * reach)
             else:
                 reach = 0.5 * size
                 if reach <= SETTLED:
-                    return self._found(u, best, off, base, E, False)
-            norms.append(float(np.linalg.norm(off)))
-            if square and norms[-1] > ENOUGH * norms[max(len(norms) - 1 - PATIENCE, 0)] and len(norms) > PATIENCE:
+                    return self._found(u, best, off, base, E, met)
+            norms.append(float(np.linalg.norm(self.missed(off))))
+            if (
+                not self.is_over
+                and norms[-1] > ENOUGH * norms[max(len(norms) - 1 - PATIENCE, 0)]
+                and len(norms) > PATIENCE
+            ):
                 return self._found(u, best, off, base, E, False)
         raise SolveError(
             f"the search has not ended after {MOST} evaluations; the nearest is "
-            f"{self.words(self.value(u))}, off by {np.abs(off).max():.2g}"
+            f"{self.words(self.value(u))}, off by {np.abs(self.missed(off)).max():.2g}"
         )
 
     def words(self, x: np.ndarray) -> str:
@@ -203,9 +260,9 @@ class Search:
         middle = np.full(len(self.width), 0.5)
         given = np.where(np.isnan(self._start), 0.5, self._start)
         places = [given, middle, *np.random.default_rng(0).random((START_GRID ** min(len(middle), 2), len(middle)))]
-        starts = sorted(places, key=lambda place: float(np.linalg.norm(self.surrogate(place))))[:2]
+        starts = sorted(places, key=lambda place: float(np.linalg.norm(self.missed(self.surrogate(place)))))[:2]
         ends = [self.nearest(self.surrogate, start) for start in starts]
-        u = min(ends, key=lambda place: float(np.linalg.norm(self.surrogate(place))))
+        u = min(ends, key=lambda place: float(np.linalg.norm(self.missed(self.surrogate(place)))))
         reason = ""
         for part in (0.0, 0.1, 0.3, 1.0):
             for goal in (given, middle):
@@ -219,8 +276,19 @@ class Search:
                     break
         raise InputError(f"no spring can be run between these bounds; {reason}", "find")
 
+    def _only(self) -> Found:
+        """All unknowns are fixed: one run."""
+        u = np.zeros(0)
+        best = self.full(u)
+        if best.failed:
+            raise SolveError(f"no equilibrium with {self.words(self.value(u))}: {best.reason}")
+        self.plan = best.plan
+        off, none = self.off(best.values), np.zeros((len(self.conditions), 0))
+        met = bool(np.abs(self.missed(off)).max() <= TOLERANCE)
+        return self._found(u, best, off, self.surrogate(u), none, met)
+
     def _planned(self, x: np.ndarray) -> tuple[np.ndarray, Evaluation]:
-        u = (x - self.low) / self.width
+        u = self.part(x)
         self.plan = None
         found = self.full(u)
         if found.failed:
@@ -249,7 +317,7 @@ class Search:
                         "no condition depends on it: the results do not change from "
                         f"{self.value(u)[column]:.6g} to {self.value(to)[column]:.6g}; leave it out, or give a "
                         "condition that depends on it",
-                        f"find.{self.evaluator.names[column]}",
+                        f"find.{self.names[column]}",
                     )
         return E
 
@@ -267,38 +335,82 @@ class Search:
     def _nearest(self, u: np.ndarray, off: np.ndarray, base: np.ndarray, E: np.ndarray, reach: float) -> np.ndarray:
         """Where the mapped surrogate comes closest to the conditions, no farther away than `reach`."""
         low, high = np.maximum(u - reach, 0.0), np.minimum(u + reach, 1.0)
-        if np.abs(off).max() < 1e-3:  # the surrogate is practically linear over this distance, and has rounding errors
-            slopes = self.slopes(self.surrogate, u) + E
-            return self._solve(lambda v: off + slopes @ (v - u), u, low, high)
-        return self._solve(self.mapped(SurrogateError(u, off - base, E)), u, low, high)
+        near = np.abs(self.missed(off)).max() < 1e-3  # the surrogate is practically linear over this distance
+        if not near or self.is_open:
+            to = self._solve(self.mapped(SurrogateError(u, off - base, E)), u, low, high)
+            if not near or np.abs(to - u).max() > CLOSE:
+                return to
+        slopes = self.slopes(self.surrogate, u) + E  # the surrogate has rounding errors
+        return self._solve(lambda v: off + slopes @ (v - u), u, low, high)
 
     def slopes(self, answer: Callable[[np.ndarray], np.ndarray], u: np.ndarray) -> np.ndarray:
         """∂ result/∂u by central differences, within the bounds, shape (m, n)."""
-        columns = []
+        columns: list[np.ndarray] = []
+        if not len(u):
+            return np.zeros((len(self.conditions), 0))
         for step in SLOPE_STEP * np.eye(len(u)):
             up, down = np.minimum(u + step, 1.0), np.maximum(u - step, 0.0)
             columns.append((answer(up) - answer(down)) / (up - down).max())
         return np.array(columns).T
 
     def nearest(self, answer: Callable[[np.ndarray], np.ndarray], start: np.ndarray) -> np.ndarray:
-        """Where a result comes closest to 0 within the bounds, in relative unknowns."""
+        """Where a result comes closest to the conditions within the bounds, in relative unknowns."""
+        if not len(start):
+            return start
         return self._solve(answer, start, np.zeros_like(start), np.ones_like(start))
 
     def _solve(
         self, answer: Callable[[np.ndarray], np.ndarray], u: np.ndarray, low: np.ndarray, high: np.ndarray
     ) -> np.ndarray:
-        """Bounded least squares."""
+        """Bounded least squares of what is missed; the nearest to the case's own values if many miss nothing."""
+        if self.is_open and (nearest := self._nearest_own(answer, u, low, high)) is not None:
+            return nearest
         room = 1e-12
         start = np.clip(u, low + room, np.maximum(high - room, low + room))
         found = least_squares(
-            answer, start, bounds=(low, high), diff_step=SLOPE_STEP, xtol=1e-12, ftol=1e-14, gtol=1e-14, max_nfev=60
+            lambda v: self.missed(answer(v)),
+            start,
+            bounds=(low, high),
+            diff_step=SLOPE_STEP,
+            xtol=1e-12,
+            ftol=1e-14,
+            gtol=1e-14,
+            max_nfev=60,
         )
         x = found.x
         x = np.where(x - low < 1e-9, low, x)  # the solver stays strictly inside: the bound itself is meant
         return np.where(high - x < 1e-9, high, x)
 
+    def _nearest_own(
+        self, answer: Callable[[np.ndarray], np.ndarray], u: np.ndarray, low: np.ndarray, high: np.ndarray
+    ) -> np.ndarray | None:
+        """Where a result meets the conditions nearest to the case's own values; None if it does nowhere."""
+        own = np.where(np.isnan(self._start), 0.5, self._start)
+        parts = []
+        for kind, sense, sign in (("eq", EQUALS, 1.0), ("ineq", AT_MOST, -1.0), ("ineq", AT_LEAST, 1.0)):
+            rows = np.flatnonzero(self._sense == sense)
+            if len(rows):
+                parts.append(
+                    {
+                        "type": kind,
+                        "fun": lambda v, rows=rows, sign=sign: sign * answer(v)[rows],
+                        "jac": lambda v, rows=rows, sign=sign: sign * self.slopes(answer, v)[rows],
+                    }
+                )
+        found = minimize(
+            lambda v: 0.5 * float((v - own) @ (v - own)),
+            np.clip(u, low, high),
+            jac=lambda v: v - own,
+            method="SLSQP",
+            bounds=list(zip(low, high, strict=True)),
+            constraints=parts,
+            options={"ftol": 1e-15, "maxiter": 100},
+        )
+        x = np.clip(found.x, low, high)
+        return x if np.abs(self.missed(answer(x))).max() <= POSSIBLE else None
+
     def _found(
         self, u: np.ndarray, best: Evaluation, off: np.ndarray, base: np.ndarray, E: np.ndarray, met: bool
     ) -> Found:
         slopes = self.slopes(self.surrogate, u) + E
-        return Found(self.value(u), best, off, slopes, met, SurrogateError(u, off - base, E), self.evaluations)
+        return Found(self.value(u), best, off, slopes, met, SurrogateError(u, off - base, E), self, self.evaluations)

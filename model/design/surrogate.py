@@ -60,7 +60,7 @@ def guess(case: Case, conditions: Sequence[Condition], load: Callable[[str], Law
     """Take the uniform rod through the load program of a case.
 
     Args:
-        case, conditions: what is run, and what is asked for.
+        case, conditions: what is run, and which results are needed.
         load: gives the law of a material's name.
 
     Raises:

@@ -18,7 +18,7 @@ class TradeOff:
     """One row.
 
     Attributes:
-        of: what differs from the wish: a condition or an entry.
+        of: what differs from the design: a condition, by its name, or an entry.
         value: its value.
         unknowns: values of the unknowns, by their names.
         off: largest relative deviation from the conditions.
@@ -46,8 +46,8 @@ def trade_offs(search: Search, found: Found, others: Mapping[str, Sequence[Any]]
         for sign in (-1.0, 1.0):
             shift = np.zeros(len(search.conditions))
             shift[number] = sign * CHANGE
-            wish = one.wish + sign * CHANGE * abs(one.wish)
-            yield _row(search, found, one.words, wish, {}, shift)
+            target = one.target + sign * CHANGE * abs(one.target)
+            yield _row(search, found, one.name, target, {}, shift)
     for name, values in others.items():
         for value in values:
             yield _row(search, found, name, value, {name: value}, np.zeros(len(search.conditions)))
@@ -56,11 +56,11 @@ def trade_offs(search: Search, found: Found, others: Mapping[str, Sequence[Any]]
 def _row(search: Search, found: Found, of: str, value: Any, others: dict[str, Any], shift: np.ndarray) -> TradeOff:
     mapped = search.mapped(found.error, others)
     u = search.nearest(lambda u: mapped(u) - shift, found.error.about)
-    off = float(np.abs(mapped(u) - shift).max())
+    off = float(np.abs(search.missed(mapped(u) - shift)).max())
     x = search.value(u)
     unknowns = dict(zip(search.evaluator.names, x.tolist(), strict=True))
     try:
-        case = search.evaluator.wish.check(search.evaluator.data(x, None, others))
+        case = search.evaluator.design.check(search.evaluator.data(x, None, others))
         spring, torque = case.spring.build(), search.evaluator.guess(x, others).torque
     except InputError:
         return TradeOff(of, value, unknowns, FAR, None, None, None)

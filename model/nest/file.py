@@ -40,7 +40,7 @@ class Press(Strict):
 
 
 class NestFile(Strict):
-    """Two springs between the same seats. At the end both are let go."""
+    """Two springs between the same seats. At the end both are released."""
 
     outer: Annotated[Member, Field(description="the spring outside")]
     inner: Annotated[Member, Field(description="the spring inside it")]
@@ -57,7 +57,7 @@ class NestFile(Strict):
 
 @dataclass(frozen=True)
 class Nest:
-    """What a nest file asks for.
+    """The content of a nest file.
 
     Attributes:
         cases: of the outer and the inner spring.

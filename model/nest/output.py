@@ -11,6 +11,7 @@ from coilset.model.base.style import STYLE
 from coilset.model.figures.figures import save
 from coilset.model.nest.nest import Pressed
 from coilset.model.results.files.folder import write_table
+from coilset.model.results.records.labels import plain
 from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.summary import summarise
 
@@ -46,6 +47,12 @@ def write_steps(path: Path, pressed: Pressed) -> None:
     write_table(path, COLUMNS, ([number, *(float(value) for value in row)] for number, row in enumerate(rows)))
 
 
+def headline(found: dict[str, Any]) -> str:
+    """Maximum force and set of a nest, of its summary."""
+    lost = "" if found["set_mm"] is None else f", set {found['set_mm']:z.2f} mm".replace("-", "−")
+    return f"Maximum force {plain(found['force_max_N'], 5)} N{lost}"
+
+
 def draw(path: Path, pressed: Pressed, found: dict[str, Any]) -> None:
     """Force over height, of both and of each."""
     with mpl.rc_context(STYLE):
@@ -56,12 +63,7 @@ def draw(path: Path, pressed: Pressed, found: dict[str, Any]) -> None:
             axes.plot(heights, force, "o-", ms=3, lw=1.0, color=f"C{number}", label=member.name)
         axes.axvline(pressed.plan.block, color="0.6", lw=0.8, ls="--", label=f"block, {pressed.plan.block:.4g} mm high")
         axes.invert_xaxis()
-        lost = "" if found["set_mm"] is None else f", the nest sets {found['set_mm']:.3f} mm"
-        axes.set(
-            xlabel="height in mm",
-            ylabel="axial force in N",
-            title=f"Pressed with up to {found['force_max_N']:.4g} N{lost}",
-        )
+        axes.set(xlabel="height in mm", ylabel="axial force in N", title=headline(found))
         axes.legend(fontsize=8)
         axes.grid(lw=0.3)
         save(figure, path)

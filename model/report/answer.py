@@ -44,28 +44,41 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
     s = summary
     before, after = s["free_length_before_mm"], s["free_length_after_mm"]
     share = (
-        f"{100.0 * s['set_mm'] / before:.1f} % of the free length" if s["set_mm"] is not None else "it was not released"
+        f"{100.0 * s['set_mm'] / before:.1f} % of the free length"
+        if s["set_mm"] is not None
+        else "the spring was not released"
     )
     inside = s["residual_shear_inside_MPa"]
-    told = ""
-    if inside:  # positive as in a compressed spring, so that it is the load's sign of a spring that is pulled
-        told = "with the load" if inside * s["force_max_N"] > 0.0 else "against the load"
     turn = s.get("residual_shear_inside_turn")
     at = "" if turn is None else f" at turn {turn:.2f}"
-    lengths = [f"{one['free_length_mm']:.3f} mm after release {k}" for k, one in enumerate(s.get("releases") or [], 1)]
-    earlier = f", {', '.join(lengths[:-1])}" if len(lengths) > 1 else ""
+    against = ""
+    if inside:  # positive as in a compressed spring, so that it is the load's sign of a spring that is pulled
+        against = "against the load" if inside * s["force_max_N"] < 0.0 else "with the load"
     return [
         Number("set", _said(s["set_mm"], "mm", 3), share),
-        Number("free length", _said(after, "mm", 3), f"after; {before:.3f} mm before{earlier}"),
+        Number("free length", _said(after, "mm", 3), _lengths(s)),
         Number(
             "residual shear stress",
             _said(inside, "MPa", 1),
-            f"inside of the coil{at}{', ' + told if told else ''}",
+            f"inside of the coil{at}{', ' + against if against else ''}",
         ),
         Number("maximum force", _said(s["force_max_N"], "N", 1), _error(s["estimated_force_error_N"])),
+        Number("maximum shear stress", _said(s["shear_inside_max_MPa"], "MPa", 0), "at the inside of the coil"),
         Number("initial rate", _said(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
         Number("block height", _said(s["block_height_mm"], "mm", 2)),
     ]
+
+
+def release_lengths(summary: Mapping[str, Any]) -> list[float]:
+    """Free lengths after each release to zero force, mm; none where the summary does not list them."""
+    return [one["free_length_mm"] for one in summary.get("releases") or ()]
+
+
+def _lengths(summary: Mapping[str, Any]) -> str:
+    """The free length before, and after the releases before the last one."""
+    earlier = [f"{length:.3f} mm after release {k}" for k, length in enumerate(release_lengths(summary)[:-1], 1)]
+    between = f", {', '.join(earlier)}" if earlier else ""
+    return f"after; {summary['free_length_before_mm']:.3f} mm before{between}"
 
 
 def _said(value: float | None, unit: str, digits: int) -> str:

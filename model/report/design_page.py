@@ -1,4 +1,4 @@
-"""The page of a design: what to wind, how well it meets the wish, and what else could be had."""
+"""The page of a design: what to wind, how well it meets the conditions, and what else could be had."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -6,23 +6,28 @@ from typing import Any
 
 import numpy as np
 
-from coilset.model.base.errors import reading
-from coilset.model.case import Case
-from coilset.model.case.reference import entry_unit, entry_words
-from coilset.model.design.conditions import GROUP
+from coilset.model.base.errors import InputError, reading
+from coilset.model.case.names import EntryName, entry_name
+from coilset.model.design.conditions import GROUP, SENSES
 from coilset.model.design.opened import FILE, read_design
+from coilset.model.design.output import LIMITS
 from coilset.model.report.answer import Number, answer
+from coilset.model.report.characteristic import characteristic
 from coilset.model.report.page import made_with
 from coilset.model.report.panel import Panel, axis, curve
 from coilset.model.report.render import write_page
+from coilset.model.report.spring_view import spring_view
+from coilset.model.results.files.opened import Run, open_run
 from coilset.model.results.records.labels import plain
-from coilset.model.sweep.dataset import quantity
 
 LEAST_OFF = 1e-12  # relative, to which the figure goes down
+FOUND = "found"  # the folder of the results of found.yaml, beside it
 
 
 def write_design_report(folder: str | Path) -> Path:
     """Write report.html into the folder of a finished design.
+
+    Its folder `found`, if it holds the results of found.yaml, gives the characteristic and the spring in 3D.
 
     Returns:
         The file.
@@ -34,110 +39,161 @@ def write_design_report(folder: str | Path) -> Path:
     design, records = read_design(folder)
     with reading(folder / FILE):
         case = (folder / "found.yaml").read_text(encoding="utf-8")
-        design["summary"]["set_mm"], design["origin"]["case"], design["trade_offs"]
-    names = list(design["found"])
+        design["summary"]["set_mm"], design["origin"]["case"], design["trade_offs"], design["choices"]
+        design["is_one_of_many"]
+        names = [EntryName(one["words"], one["unit"]) for one in design["unknowns"].values()]
+        sought = [
+            EntryName(design["unknowns"][name]["words"], design["unknowns"][name]["unit"])
+            for name in next(iter(design["slopes"].values()))
+        ]
     found = [
-        Number(entry_words(name), f"{plain(value, 6)} {_unit(name)}".strip()) for name, value in design["found"].items()
+        Number(name.words, f"{plain(value, 6)} {name.unit}".strip())
+        for name, value in zip(names, design["found"].values(), strict=True)
     ]
+    run = found_run(folder, design)
+    drawn = [] if run is None else [("The spring that was found", [characteristic(run), spring_view(run)])]
     return write_page(
         folder,
         "design",
-        [("The search", [search(design, records)])],
+        [*drawn, ("The search", [search(design, records)])],
         {},
         title=f"{folder.resolve().name}: {', '.join(f'{one.term} {one.value}' for one in found)}",
-        subtitle=f"{', '.join(entry_words(name) for name in names)} for {_wish(design)}",
+        subtitle=f"{', '.join(name.words for name in names)} for {_targets(design)}",
         design=design,
         found=found,
+        is_drawn=run is not None,
         conditions=[_condition(one) for one in design["conditions"]],
         answer=answer(design["summary"]),
-        unknowns=[_head(name) for name in names],
-        slopes=_slopes(design, names),
-        trade_offs=[_trade_off(row, names) for row in design["trade_offs"]],
+        unknowns=[name.head for name in names],
+        sought=[name.head for name in sought],
+        slopes=_slopes(design),
+        choices=_choices(design),
+        trade_offs=[_trade_off(row, design) for row in design["trade_offs"]],
         case=case,
         made_with=made_with(design["origin"]),
     )
 
 
+def found_run(folder: Path, design: Mapping[str, Any]) -> Run | None:
+    """The results of the case that was found, in the design's folder; None without them, or if they are of another."""
+    try:
+        run = open_run(folder / FOUND)
+    except InputError:
+        return None
+    return run if run.case == design["origin"]["case"] else None
+
+
 def search(design: Mapping[str, Any], records: Sequence[Mapping[str, Any]]) -> Panel:
     """How far each evaluation was from the conditions."""
-    wishes = [one["wish"] for one in design["conditions"]]
     numbers = np.arange(1, len(records) + 1)
     traces = []
-    for place, (one, wish) in enumerate(zip(design["conditions"], wishes, strict=True)):
-        off = [_off(record["values"][place : place + 1], wish) for record in records]
+    for place, one in enumerate(design["conditions"]):
+        off = [_off(record["values"][place : place + 1], one) for record in records]
         traces.append(curve(numbers, np.array(off), place, marker=7, name=_named(one)))
     ended = "met all conditions" if design["met"] else "came as near as the bounds allow"
     finding = f"The search {ended} after {design['evaluations']} evaluations"
     return Panel(
         "search",
         finding,
-        f"{finding}. Distance of each condition from its wish, relative, over the evaluations.",
+        f"{finding}. Relative deviation of each condition from its target, over the evaluations.",
         traces,
         {
             "xaxis": axis("evaluation", dtick=1 if len(records) < 16 else None),
-            "yaxis": axis("off by, relative", type="log", exponentformat="power"),
+            "yaxis": axis("deviation, relative", type="log", exponentformat="power"),
         },
     )
 
 
-def _off(values: list[float | None], wish: float) -> float:
-    """Relative distance; NaN of a run that failed."""
+def _sense(condition: Mapping[str, Any]) -> int:
+    return LIMITS.get(condition["kind"], 0)
+
+
+def _off(values: list[float | None], condition: Mapping[str, Any]) -> float:
+    """The relative deviation by which a condition is missed; NaN of a run that failed."""
     if not values or values[0] is None:
         return float("nan")
-    return max(abs(values[0] - wish) / abs(wish), LEAST_OFF)
-
-
-def _unit(name: str) -> str:
-    return entry_unit(Case, name)
-
-
-def _head(name: str) -> str:
-    unit = _unit(name)
-    return entry_words(name) + (f", {unit}" if unit else "")
+    off, sense = (values[0] - condition["target"]) / abs(condition["target"]), _sense(condition)
+    return max(abs(off) if not sense or sense * off > 0.0 else 0.0, LEAST_OFF)
 
 
 def _named(condition: Mapping[str, Any]) -> str:
-    if condition["height_mm"] is not None:
-        return f"force at {condition['height_mm']:g} mm"
-    return quantity(condition["name"].removeprefix(GROUP))[0]
+    """The result, and the limit if there is one."""
+    return f"{condition['words']}, {SENSES[_sense(condition)]}".rstrip(", ")
 
 
-def _wish(design: Mapping[str, Any]) -> str:
-    return " and ".join(f"{_named(one)} {one['wish']:g} {one['unit']}" for one in design["conditions"])
+def _wanted(condition: Mapping[str, Any], target: float) -> str:
+    return f"{SENSES[_sense(condition)]}{target:.6g} {condition['unit']}"
+
+
+def _targets(design: Mapping[str, Any]) -> str:
+    return " and ".join(f"{one['words']} {_wanted(one, one['target'])}" for one in design["conditions"])
 
 
 def _condition(one: Mapping[str, Any]) -> dict[str, Any]:
+    inside = one["met"] and not one["active"]
     return {
-        "words": _named(one),
-        "wish": f"{one['wish']:g} {one['unit']}",
+        "words": one["words"],
+        "target": _wanted(one, one["target"]),
         "value": f"{plain(one['value'], 7)} {one['unit']}",
-        "off": f"{100.0 * abs(one['residual']):.1g} %",
-        "met": one["met"],
+        "off": _percent(one["residual"]) + (" inside the limit" if inside else ""),
+        "met": "yes, not active" if inside else ("yes" if one["met"] else "no") + (", active" if _sense(one) else ""),
     }
 
 
-def _slopes(design: Mapping[str, Any], names: list[str]) -> list[tuple[str, list[str]]]:
+def _percent(part: float) -> str:
+    percent = 100.0 * abs(part)
+    return f"{plain(percent, 2)} %" if percent >= 1e-3 else "below 0.001 %"
+
+
+def _slopes(design: Mapping[str, Any]) -> list[tuple[str, list[str]]]:
     """Each condition, and its change with each unknown."""
     rows = ((f"{_named(one)}, {one['unit']}", design["slopes"][one["name"]]) for one in design["conditions"])
-    return [(words, [plain(row[name]).replace("-", "−") for name in names]) for words, row in rows]
+    return [(words, [plain(value).replace("-", "−") for value in row.values()]) for words, row in rows]
 
 
-def _of(name: str) -> str:
-    """What is other than in the wish: an entry of the case, or a condition."""
-    return entry_words(name) if "." in name else quantity(name)[0]
-
-
-def _trade_off(row: Mapping[str, Any], names: list[str]) -> dict[str, Any]:
-    force = "N" if row["of"].startswith("force at ") else ""
-    value = plain(row["value"], 6) if isinstance(row["value"], float) else str(row["value"])
-    numbers = [
-        *(row["unknowns"][name] for name in names),
-        row["wire_length_mm"],
-        row["free_length_before_mm"],
-        row["torque"],
-    ]
+def _choices(design: Mapping[str, Any]) -> dict[str, Any] | None:
+    """The combinations of values that were evaluated; None without choices."""
+    choices = design["choices"]
+    if choices is None:
+        return None
+    tried, units = choices["tried"], [one["unit"] for one in design["conditions"]]
+    unknowns = design["unknowns"]
+    others = [name for name in unknowns if name not in tried[0]["chosen"]]
+    among = (
+        f"All {len(tried)} combinations"
+        if len(tried) == choices["total"]
+        else f"The {len(tried)} of {choices['total']} combinations next to the solution with any value: the best of "
+        "these need not be the best of all"
+    )
+    rows = []
+    for one in tried:
+        numbers = [*one["chosen"].values(), *((one["found"] or {}).get(name) for name in others)]
+        values = one["values"] or [None] * len(units)
+        off = "yes" if one["met"] else one["reason"] or f"no, off by {100.0 * one['off']:.2g} %"
+        cells = ["–" if value is None else plain(value, 6) for value in (*numbers, *values)]
+        rows.append({"cells": cells, "met": off, "is_best": one["is_best"]})
+    heads = [EntryName(unknowns[name]["words"], unknowns[name]["unit"]).head for name in (*tried[0]["chosen"], *others)]
     return {
-        "of": f"{_of(row['of'])} {value} {_unit(row['of']) or quantity(row['of'])[1] or force}".strip(),
+        "about": among,
+        "rows": rows,
+        "heads": [*heads, *(f"{_named(one)}, {one['unit']}" for one in design["conditions"])],
+    }
+
+
+def _trade_off(row: Mapping[str, Any], design: Mapping[str, Any]) -> dict[str, Any]:
+    numbers = [*row["unknowns"].values(), row["wire_length_mm"], row["free_length_before_mm"], row["torque"]]
+    return {
+        "of": _other(row, design),
         "numbers": ["–" if number is None else plain(number, 5) for number in numbers],
         "possible": row["possible"],
     }
+
+
+def _other(row: Mapping[str, Any], design: Mapping[str, Any]) -> str:
+    """What differs: a condition with another target, or an entry of the case with another value."""
+    if row["of"].startswith(GROUP):
+        one = next(one for one in design["conditions"] if one["name"] == row["of"])
+        return f"{one['words']} {_wanted(one, row['value'])}"
+    name = entry_name(row["of"], design["origin"]["case"])
+    value = plain(row["value"], 6) if isinstance(row["value"], float) else str(row["value"])
+    return f"{name.words} {value} {name.unit}".strip()

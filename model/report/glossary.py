@@ -9,6 +9,7 @@ GLOSSARY = {
     "initial rate": "Rate of the spring before anything yields or touches.",
     "residual shear stress": "Shear stress that remains in the unloaded wire. If it acts against the load, the spring "
     "can carry more, because the load must first overcome it.",
+    "maximum shear stress": "Largest shear stress on the wire's surface at the inside of the coil, under load.",
     "inside of the coil": "The side of the wire that faces the spring's axis. The stress is highest there, and springs "
     "break there.",
     "travel": "Distance by which the seats have approached each other since the spring was free.",

@@ -11,6 +11,7 @@ from coilset.model.report.answer import answer, subtitle
 from coilset.model.report.bearing import contact, force_centre
 from coilset.model.report.characteristic import characteristic, rate_curve
 from coilset.model.report.cost import cost, step_error
+from coilset.model.report.first_sheet import first_sheet
 from coilset.model.report.maker_sheet import maker_sheet
 from coilset.model.report.material_curves import material_curve
 from coilset.model.report.panel import Panel
@@ -51,6 +52,7 @@ def write_report(run: Run) -> Path:
         summary=run.summary,
         answer=found,
         sheet=maker_sheet(run),
+        first=first_sheet(run),
         case=yaml.safe_dump(given(run.case), sort_keys=False, allow_unicode=True),
         made_with=made_with(run.summary["origin"]),
     )

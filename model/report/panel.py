@@ -58,4 +58,4 @@ def curve(x: np.ndarray, y: np.ndarray, number: int, marker: int = 0, dash: str 
 
 def said(value: float, unit: str, digits: int = 0) -> str:
     """A number with its unit, for use in text."""
-    return f"{value:.{digits}f} {unit}".replace("-", "−")
+    return f"{value:z.{digits}f} {unit}".replace("-", "−")  # z: no −0

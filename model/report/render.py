@@ -17,6 +17,7 @@ from coilset.model.report.panel import Panel
 from coilset.model.results.files.folder import whole
 
 NAME = "report.html"
+SCRIPTS = {"sweep": "sweep.js", "nest": "nest.js"}  # of kinds of pages; run.js of the others
 Chapters = Sequence[tuple[str, Sequence[Panel]]]
 
 
@@ -25,7 +26,7 @@ def write_page(folder: Path, kind: str, chapters: Chapters, data: dict[str, Any]
 
     Args:
         folder: to write to.
-        kind: of the page, `run`, `design` or `sweep`: its template.
+        kind: of the page, `run`, `design`, `nest` or `sweep`: its template.
         chapters: titles with their figures.
         data: what the scripts of the page take besides; arrays are packed.
         parts: what the template asks for.
@@ -49,7 +50,7 @@ def write_page(folder: Path, kind: str, chapters: Chapters, data: dict[str, Any]
         name=folder.resolve().name,
         chapters=chapters,
         style=_part("style.css"),
-        scripts=[_part("common.js"), _part("sweep.js" if kind == "sweep" else "run.js")],
+        scripts=[_part("common.js"), _part(SCRIPTS.get(kind, "run.js"))],
         plotly=_plotly(),
         data={"figures": _figures(chapters), **packed(data)},
         **parts,

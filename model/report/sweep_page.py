@@ -1,4 +1,4 @@
-"""The page of a sweep: all its cases in a table to filter, sort and open, and what decides."""
+"""The page of a sweep: all its cases in a table to filter, sort and open, and which input matters most."""
 
 import json
 from pathlib import Path
@@ -11,6 +11,7 @@ from coilset.model.base.errors import reading
 from coilset.model.report.answer import Number
 from coilset.model.report.panel import COLOURS, Panel, axis
 from coilset.model.report.render import write_page
+from coilset.model.report.warning_words import in_words
 from coilset.model.results.files.labelled import labelled
 from coilset.model.sweep import findings
 from coilset.model.sweep.sensitivity import rank_correlation
@@ -43,7 +44,7 @@ def write_sweep_report(folder: str | Path) -> Path:
     return write_page(
         folder,
         "sweep",
-        [("What decides", panels)],
+        [("Which input matters most", panels)],
         {"columns": columns, "curves": _curves(data), "files": _files(data)},
         title=f"{folder.resolve().name}: {data.sizes['case']} cases",
         subtitle=f"{data.sizes['case']} cases; {', '.join(names)} varied ({data.attrs['design'].replace('_', ' ')})",
@@ -135,7 +136,11 @@ def _warnings(data: xr.Dataset) -> list[str]:
     for text in data["warnings"].values:
         for name in filter(None, str(text).split(", ")):
             names[name] = names.get(name, 0) + 1
-    return [f"{name}: in {count} of {data.sizes['case']} cases" for name, count in names.items()]
+    cases = data.sizes["case"]
+    return [
+        f"{in_words(name)} (in {f'all {cases}' if count == cases else f'{count} of {cases}'} cases)"
+        for name, count in names.items()
+    ]
 
 
 def _ranked(data: xr.Dataset, of: str) -> list[tuple[str, float, np.ndarray]]:

@@ -1,7 +1,6 @@
 """A sweep as one labelled data set: inputs, responses, characteristic and status of each case."""
 
 import json
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,24 +8,16 @@ import numpy as np
 import xarray as xr
 
 from coilset.model.base.version import versions
-from coilset.model.case import Case
-from coilset.model.case.reference import entry_unit, entry_words
+from coilset.model.case.names import entry_name
 from coilset.model.case.settings import located
 from coilset.model.results.files.folder import whole
 from coilset.model.results.files.netcdf import reserve
-from coilset.model.results.records.units import without_unit
+from coilset.model.results.records.units import quantity
 from coilset.model.sweep.journal import read_records
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.spec import are_numbers
 
 CURVE = {"travel_mm": "mm", "seat_height_mm": "mm", "force_N": "N", "phase": "1"}
-
-
-def quantity(name: str) -> tuple[str, str]:
-    """Description and unit of a response from its name, as in `set_mm`."""
-    stem, unit = without_unit(name)
-    words = stem.replace("_", " ")
-    return f"maximum {words.removesuffix(' max')}" if words.endswith(" max") else words, unit
 
 
 def collect(plan: Plan, journal: str | Path) -> xr.Dataset:
@@ -110,18 +101,18 @@ def _attributes(words: str, unit: str) -> dict[str, str]:
 def _input(plan: Plan, k: int) -> tuple[Any, dict[str, str]]:
     """Values of an input for all cases, words where they are not all numbers, and its attributes."""
     vary, values = plan.spec.vary[plan.names[k]], [row[k] for row in plan.rows]
-    words = vary.label or _plain_words(plan.names)[k]
+    words = vary.label or _plain_words(plan)[k]
     if not are_numbers(values):
         return np.array([str(value) for value in values], dtype=object), _attributes(words, vary.unit or "")
-    units = {entry_unit(Case, entry) for entry in vary.entries or [plan.names[k]]}
+    units = {entry_name(entry).unit for entry in plan.entries(plan.names[k])}
     own = units.pop() if len(units) == 1 else ""
     return np.array(values, dtype=float), _attributes(words, own if vary.unit is None else vary.unit)
 
 
-def _plain_words(names: Sequence[str]) -> list[str]:
+def _plain_words(plan: Plan) -> list[str]:
     """Names of inputs in words; the entries themselves if two of them had the same."""
-    found = [entry_words(name) for name in names]
-    return found if len(set(found)) == len(found) else list(names)
+    found = [entry_name(name, plan.base).words for name in plan.names]
+    return found if len(set(found)) == len(found) else list(plan.names)
 
 
 def write(path: str | Path, data: xr.Dataset) -> None:

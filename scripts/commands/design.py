@@ -3,17 +3,20 @@
 import os
 import time
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 from rich.table import Table
 
 from coilset.model.base.errors import InputError, naming
+from coilset.model.case.names import entry_name
 from coilset.model.design import output
-from coilset.model.design.design import find, make_search
+from coilset.model.design.choices import Options
+from coilset.model.design.design import Solution, make_search, solve
 from coilset.model.design.evaluation import Evaluation
-from coilset.model.design.search import Found, Search
+from coilset.model.design.file import Design, read_design_file
+from coilset.model.design.search import TOLERANCE, Search
 from coilset.model.design.trade_offs import TradeOff, trade_offs
-from coilset.model.design.wish import Wish, read_wish
 from coilset.model.results.files.folder import clear, making
 from coilset.model.runtime.threads import usual
 from coilset.model.sweep.journal import Journal, read_records
@@ -24,29 +27,29 @@ from coilset.scripts.terminal.target import results_folder
 WIDTH = 150  # width of printed lines without a terminal
 
 
-def design(wish_file: str, out: str | None, force: bool, resume: bool, threads: int | None = None) -> None:
-    """Find what a wish requires; see `coilset design --help`.
+def design(design_file: str, out: str | None, force: bool, resume: bool, threads: int | None = None) -> None:
+    """Find the unknowns of a design; see `coilset design --help`.
 
     Raises:
-        InputError: the wish is wrong or cannot be met; then nothing is written.
+        InputError: the file is wrong or its conditions cannot be met; then nothing is written.
         SolveError: the search does not converge; --resume continues it.
     """
     console = Console()
     if not console.is_terminal:
         console = Console(width=WIDTH)
-    wish = read_wish(wish_file)
-    with naming(wish_file):
-        make_search(wish)
-    folder = results_folder(out, Path(wish_file).stem)
+    wanted = read_design_file(design_file)
+    with naming(design_file):
+        make_search(wanted)
+    folder = results_folder(out, Path(design_file).stem)
     new = _prepare(folder, force, resume)
     try:
-        with naming(wish_file), run_log(folder) as log:
+        with naming(design_file), run_log(folder) as log:
             if not resume:
                 assert log.stream is not None  # it is opened in advance
                 log.stream.truncate(0)
                 clear(folder, output.FILES)
             with closing(Journal(folder / "evaluations.jsonl")) as journal:
-                _design(console, wish, folder, journal, threads or usual(1))
+                _design(console, wanted, folder, journal, threads or usual(1))
     except InputError as error:
         if error.place != "--out" and (new or not resume):  # with --out, another run uses the folder
             _forget(folder, new)
@@ -56,17 +59,17 @@ def design(wish_file: str, out: str | None, force: bool, resume: bool, threads: 
         raise
 
 
-def _design(console: Console, wish: Wish, folder: Path, journal: Journal, threads: int) -> None:
+def _design(console: Console, wanted: Design, folder: Path, journal: Journal, threads: int) -> None:
     began = time.perf_counter()
     known = {record["key"]: record for record in read_records(journal.path)}
     progress = Progress(console)
-    search = make_search(wish, known, journal.append, progress, threads)
+    search = make_search(wanted, known, journal.append, progress, threads)
     progress.search = search
-    console.say(f"{wish.file.name}: {len(search.width)} unknown(s), {len(search.conditions)} condition(s)")
-    found = find(search)
-    rows = list(trade_offs(search, found, wish.spec.trade_offs))
-    output.write(folder, wish, search, found, rows, time.perf_counter() - began)
-    _conclude(console, search, found, rows, folder, time.perf_counter() - began)
+    console.say(f"{wanted.file.name}: {len(search.width)} unknown(s), {len(search.conditions)} condition(s)")
+    solution = solve(search)
+    rows = list(trade_offs(solution.found.search, solution.found, wanted.spec.trade_offs))
+    output.write(folder, wanted, solution, rows, time.perf_counter() - began)
+    _conclude(console, solution, rows, folder, time.perf_counter() - began)
 
 
 class Progress:
@@ -80,8 +83,11 @@ class Progress:
         """An evaluation has ended."""
         assert self.search is not None
         self.number += 1
-        search, names = self.search, self.search.evaluator.names
-        unknowns = ", ".join(f"{name} {value:.7g}" for name, value in zip(names, found.x, strict=True))
+        search = self.search
+        unknowns = ", ".join(
+            f"{one.words} {value:.7g} {one.unit}".rstrip()
+            for one, value in zip(search.evaluator.named, found.x, strict=True)
+        )
         if found.failed:
             answer = f"fails: {found.reason}"
         else:
@@ -89,40 +95,72 @@ class Progress:
                 f"{one.words} {value:.7g} {one.unit}"
                 for one, value in zip(search.conditions, found.values, strict=True)
             )
-            answer = f"{', '.join(values)}, off by {abs(search.off(found.values)).max():.1e}"
+            answer = f"{', '.join(values)}, off by {abs(search.missed(search.off(found.values))).max():.1e}"
         seconds = "known" if known else f"{found.seconds:.1f} s"
         self.console.print(f"{self.number:3d}  {unknowns}: {answer} ({seconds})", soft_wrap=True)
 
 
-def _conclude(
-    console: Console, search: Search, found: Found, rows: list[TradeOff], folder: Path, seconds: float
-) -> None:
-    for name, value in zip(search.evaluator.names, found.x, strict=True):
-        console.print(f"[bold]{name} = {value:.7g}[/]")
+def _conclude(console: Console, solution: Solution, rows: list[TradeOff], folder: Path, seconds: float) -> None:
+    found, search = solution.found, solution.found.search
+    if solution.options is not None:
+        _list(console, solution.options)
+    for name, words, value in zip(search.evaluator.names, search.evaluator.named, found.x, strict=True):
+        entry = "" if words.words == name else f"  ({name})"
+        console.print(f"[bold]{words.words} = {value:.7g} {words.unit}".rstrip() + f"[/]{entry}", highlight=False)
+    for one, value, off in zip(search.conditions, found.best.values, found.off, strict=True):
+        if not found.met or one.sense:
+            missed = f", missed by {100.0 * abs(one.missed(off)):.2g} %" if abs(one.missed(off)) > TOLERANCE else ""
+            active = "" if not one.sense or missed else ", active" if one.is_active(off) else ", not active"
+            console.print(f"{one.words} {value:.6g} {one.unit} for {one.wanted}{missed}{active}")
     if not found.met:
-        parts = (
-            f"{one.words} {value:.6g} for {one.wish:g} {one.unit}"
-            for one, value in zip(search.conditions, found.best.values, strict=True)
-        )
-        console.print(f"as close as possible (least squares): {', '.join(parts)}")
-    console.print("estimates for other wishes and springs, by the uniform rod as the runs have corrected it:")
-    table = Table(box=None, padding=(0, 2))
-    table.add_column("", no_wrap=True)
-    for name in (*search.evaluator.names, "wire length, mm", "as wound, mm", "torque/yield"):
-        table.add_column(".".join(name.split(".")[-2:]), justify="right")
-    table.add_column("")
-    for row in rows:
-        value = f"{row.value:.6g}" if isinstance(row.value, float) else str(row.value)
-        numbers = [*row.unknowns.values(), row.wire_length_mm, row.free_length_before_mm, row.torque]
-        cells = ("–" if number is None else f"{number:.5g}" for number in numbers)
-        table.add_row(f"{row.of} {value}", *cells, "" if row.possible else "out of reach")
-    console.print(table)
+        console.print("the conditions are not met; this spring comes as close as possible (least squares)")
+    elif found.is_one_of_many:
+        console.print("several springs meet these conditions; this one is nearest to the entries of the case")
+    _estimates(console, search, rows)
     for warning in found.best.summary["warnings"]:
         console.warn(warning["message"])
     console.say(
         f"{search.evaluator.count} evaluations in {seconds:.1f} s; solve {folder}{os.sep}found.yaml for all "
         "results of this spring (also there: design.json, trade_offs.csv)"
     )
+
+
+def _list(console: Console, options: Options) -> None:
+    """The combinations that were evaluated, and how their best relates to all."""
+    tried = len(options.tried)
+    among = f"all {tried}" if tried == options.total else f"the {tried} evaluated of {options.total}"
+    table = Table(box=None, padding=(0, 2))
+    for name in options.best.chosen:
+        table.add_column(name, justify="right")
+    table.add_column("")
+    for one in options.tried:
+        result = one.reason or ("met" if one.found and one.found.met else f"off by {100.0 * one.off:.2g} %")
+        cells = [f"{value:.7g}" for value in one.chosen.values()]
+        table.add_row(*cells, result + (f" (the best of {among})" if one is options.best else ""))
+    console.print(table)
+
+
+def _estimates(console: Console, search: Search, rows: list[TradeOff]) -> None:
+    console.print("estimates for other targets (fast model, corrected by the runs):")
+    table = Table(box=None, padding=(0, 2))
+    table.add_column("", no_wrap=True)
+    heads = [one.head for one in search.evaluator.named]
+    for head in (*heads, "wire length, mm", "length as wound, mm", "torque/yield"):
+        table.add_column(head, justify="right")
+    table.add_column("")
+    targets = {one.name: one for one in search.conditions}
+    for row in rows:
+        value = f"{row.value:.6g}" if isinstance(row.value, float) else str(row.value)
+        numbers = [*row.unknowns.values(), row.wire_length_mm, row.free_length_before_mm, row.torque]
+        cells = ("–" if number is None else f"{number:.5g}" for number in numbers)
+        if row.of in targets:
+            what = replace(targets[row.of], target=row.value)
+            of = f"{what.words} {what.wanted}"
+        else:
+            entry = entry_name(row.of)
+            of = f"{entry.words} {value} {entry.unit}".rstrip()
+        table.add_row(of, *cells, "" if row.possible else "out of reach")
+    console.print(table)
 
 
 # ---- the folder ------------------------------------------------------------------------------------------------------
@@ -153,7 +191,7 @@ def _prepare(folder: Path, force: bool, resume: bool) -> bool:
 
 
 def _forget(folder: Path, new: bool) -> None:
-    """Remove all traces of a rejected wish."""
+    """Remove all traces of a rejected design."""
     clear(folder, (*output.FILES, "log.txt"))
     if new:
         folder.rmdir()

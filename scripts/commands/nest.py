@@ -39,7 +39,7 @@ def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool, 
     pressed = press(wanted, told, threads or usual(1))
     prepare(folder, force)
     for one in (folder, *(folder / name for name in NAMES)):  # of a spring that the seats no longer reach, too
-        clear(one, (*RESULTS, output.STEPS))
+        clear(one, (*RESULTS, output.STEPS, "report.html"))
     found = output.summary(pressed)
     for member in pressed.members:
         if member.result is not None:
@@ -67,7 +67,7 @@ def _conclude(console: Console, pressed: Pressed, found: dict[str, Any], folder:
     table.add_row("maximum force", *(quantity(one.get("force_max_N"), "N", 2) for one in columns))
     for name, key in (("maximum", "shear_inside_max_MPa"), ("residual", "residual_shear_inside_MPa")):
         table.add_row(f"shear inside, {name}", "", *(quantity(one.get(key), "MPa", 1) for one in columns[1:]))
-    table.add_row("least room between them", quantity(found["clearance_min_mm"], "mm"), "", "")
+    table.add_row("minimum clearance", quantity(found["clearance_min_mm"], "mm"), "", "")
     console.print(table)
     for warning in pressed.warnings:
         console.warn(warning.message)

@@ -1,13 +1,18 @@
-"""`coilset report`: one page of a run, a design or a sweep, to read and to pass on."""
+"""`coilset report`: one page of a run, a design, a nest or a sweep, to read and to pass on."""
 
+import contextlib
 import os
 from pathlib import Path
 
-from coilset.model.base.errors import InputError
-from coilset.model.report import design_page, sweep_page
+from mpi4py import MPI
+
+from coilset.model.base.errors import InputError, SolveError, reading
+from coilset.model.design.opened import read_design
+from coilset.model.report import design_page, nest_page, sweep_page
 from coilset.model.report.page import write_report
 from coilset.model.report.render import NAME
 from coilset.model.results.files.opened import open_run
+from coilset.scripts.commands.solve import solve
 from coilset.scripts.terminal.console import Console
 
 
@@ -22,11 +27,25 @@ def report(folder: str | Path) -> None:
     if (folder / sweep_page.FILE).is_file():
         path = sweep_page.write_sweep_report(folder)
     elif (folder / design_page.FILE).is_file():
+        _solve_found(folder)
         path = design_page.write_design_report(folder)
+    elif (folder / nest_page.FILE).is_file():
+        path = nest_page.write_nest_report(folder)
     else:
         path = write_report(open_run(folder))
     size = path.stat().st_size / 1e6
     Console().say(f"{path}: {size:.1f} MB; open it in a browser")
+
+
+def _solve_found(folder: Path) -> None:
+    """Solve the case that a design has found, for its characteristic and the spring in 3D, unless its results exist."""
+    design, _ = read_design(folder)
+    with reading(folder / design_page.FILE):
+        if design_page.found_run(folder, design) is not None:
+            return
+    Console().say(f"solving {folder / 'found.yaml'} for its characteristic")
+    with contextlib.suppress(SolveError):  # the page says so
+        solve(folder / "found.yaml", folder / design_page.FOUND, True, [], False, comm=MPI.COMM_SELF, voice="quiet")
 
 
 def _check(folder: Path) -> None:

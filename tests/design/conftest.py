@@ -1,10 +1,10 @@
-"""Wishes about small springs on coarse meshes."""
+"""Designs of small springs on coarse meshes."""
 
 import pytest
 import yaml
 
 from coilset.model.design.design import make_search
-from coilset.model.design.wish import read_wish
+from coilset.model.design.file import read_design_file
 
 COARSE = {
     "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 2.5, "pitch": 12.0},
@@ -15,11 +15,11 @@ COARSE = {
 
 
 @pytest.fixture
-def wish(tmp_path):
-    """Path of a wish about the coarse spring; keyword arguments replace entries of its file."""
+def design_file(tmp_path):
+    """Path of a design of the coarse spring; keyword arguments replace entries of its file."""
 
     def write(find, such_that, **entries):
-        path = tmp_path / "wish.yaml"
+        path = tmp_path / "design.yaml"
         path.write_text(yaml.safe_dump({**COARSE, **entries, "find": find, "such_that": such_that}), encoding="utf-8")
         return path
 
@@ -27,6 +27,6 @@ def wish(tmp_path):
 
 
 @pytest.fixture
-def search(wish):
-    """The search of such a wish."""
-    return lambda *args, **entries: make_search(read_wish(wish(*args, **entries)))
+def search(design_file):
+    """The search of such a design."""
+    return lambda *args, **entries: make_search(read_design_file(design_file(*args, **entries)))

@@ -1,4 +1,4 @@
-"""`coilset design` from the command line: its folder, and what is left of a wish that is refused."""
+"""`coilset design` from the command line: its folder, and what is left of a design that is refused."""
 
 import base64
 import gzip
@@ -13,12 +13,13 @@ from coilset.model.base.errors import InputError
 from coilset.model.report.design_page import write_design_report
 from coilset.model.sweep.journal import read_records
 from coilset.scripts.commands.design import design
+from coilset.scripts.commands.report import report
 
 FIND, SUCH = {"loading.0.to.height": [18, 34]}, {"free_length_after_mm": 25.0}
 
 
-def test_a_folder_is_not_overwritten_unasked_and_a_cut_journal_is_gone_on_from(wish, tmp_path, capsys):
-    path, out = str(wish(FIND, SUCH)), tmp_path / "out"
+def test_a_folder_is_not_overwritten_unasked_and_a_cut_journal_is_gone_on_from(design_file, tmp_path, capsys):
+    path, out = str(design_file(FIND, SUCH)), tmp_path / "out"
     design(path, str(out), False, False)
     said = json.loads((out / "design.json").read_text(encoding="utf-8"))
     assert said["met"]
@@ -61,7 +62,7 @@ def labelled(folder, said):
     name = "loading.0.to.height"
     assert data[name].attrs == {"units": "mm"}
     assert data[name].values.tolist() == [record["x"][0] for record in records]
-    assert data["free_length_after_mm"].attrs == {"units": "mm", "wish": 25.0}
+    assert data["free_length_after_mm"].attrs == {"units": "mm", "target": 25.0}
     assert data["free_length_after_mm"].values.tolist() == [record["values"][0] for record in records]
     assert data[f"found_{name}"].item() == said["found"][name]
     slope = data["slope"].sel(condition="free_length_after_mm", unknown=name)
@@ -76,15 +77,15 @@ def unpacked(page, name):
     return json.loads(gzip.decompress(base64.b64decode(kept)))
 
 
-def test_nothing_is_left_of_a_wish_that_is_refused(wish, tmp_path):
-    path = str(wish({"rates_at.0": [1, 2]}, SUCH, rates_at=[1.0]))
+def test_nothing_is_left_of_a_design_that_is_refused(design_file, tmp_path):
+    path = str(design_file({"rates_at.0": [1, 2]}, SUCH, rates_at=[1.0]))
     out = tmp_path / "out"
     with pytest.raises(InputError, match="no condition depends on it"):
         design(path, str(out), False, False)
     assert not out.exists()
 
 
-def test_a_journal_of_another_wish_is_kept_and_not_read_as_of_this_one(wish, tmp_path):
+def test_a_journal_of_another_design_is_kept_and_not_read_as_of_this_one(design_file, tmp_path):
     """The same springs, asked for the same two numbers in the other order, and then for what cannot be had."""
     out, heights = tmp_path / "out", [{"height": 24.0, "N": 100.0}, {"height": 20.0, "N": 160.0}]
     loading = [
@@ -94,7 +95,7 @@ def test_a_journal_of_another_wish_is_kept_and_not_read_as_of_this_one(wish, tmp
     ]
 
     def found(force_at, resume):
-        path = wish(
+        path = design_file(
             {"spring.wire_diameter": [4.9, 5.0]},
             {"force_at": force_at},
             loading=loading,
@@ -112,8 +113,27 @@ def test_a_journal_of_another_wish_is_kept_and_not_read_as_of_this_one(wish, tmp
     (out / "was.json").rename(out / "design.json")
     new = (out / "evaluations.jsonl").read_text()[len(journal) :]
     assert len(coilset.open(out)["evaluation"]) == len(new.splitlines())
-    path = wish({"spring.wire_diameter": [4.9, 5.0]}, {"free_length_after_mm": 200.0})
+    path = design_file({"spring.wire_diameter": [4.9, 5.0]}, {"free_length_after_mm": 200.0})
     with pytest.raises(InputError, match="out of reach"):
         design(str(path), str(out), False, True)
     assert (out / "evaluations.jsonl").read_text().startswith(journal)
     assert (out / "design.json").exists()
+
+
+def test_the_page_has_the_characteristic_of_the_spring_that_was_found(design_file, tmp_path, capsys):
+    """Which is solved for it, once; a page of another design does not take these results."""
+    out = tmp_path / "out"
+    design(str(design_file(FIND, SUCH)), str(out), False, False)
+    capsys.readouterr()
+    report(out)
+    assert "solving" in capsys.readouterr().out
+    figures = unpacked((out / "report.html").read_text(encoding="utf-8"), "data")["figures"]
+    assert list(figures) == ["characteristic", "spring", "search"]
+    said = json.loads((out / "design.json").read_text(encoding="utf-8"))
+    own = json.loads((out / "found" / "summary.json").read_text(encoding="utf-8"))
+    assert own["free_length_after_mm"] == pytest.approx(said["conditions"][0]["value"], rel=1e-9)
+    report(out)
+    assert "solving" not in capsys.readouterr().out
+    design(str(design_file(FIND, {"free_length_after_mm": 26.0})), str(out), True, False)
+    page = write_design_report(out).read_text(encoding="utf-8")
+    assert list(unpacked(page, "data")["figures"]) == ["search"]

@@ -1,4 +1,4 @@
-"""Searches on small springs: what was found is solved anew from its file, and meets the wish."""
+"""Searches on small springs: what was found is solved anew from its file, and meets the conditions."""
 
 import numpy as np
 import pytest
@@ -8,18 +8,18 @@ from mpi4py import MPI
 from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
 from coilset.model.design.design import find, make_search
+from coilset.model.design.file import read_design_file
 from coilset.model.design.output import found_data
-from coilset.model.design.wish import read_wish
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 
-CLOSE = 1e-6  # of the wish
+CLOSE = 1e-6  # of the target
 
 
 def solved(tmp_path, search, found):
     """Summary and last forces of phases, of the case that was found, read from a file."""
     path = tmp_path / "found.yaml"
-    path.write_text(yaml.safe_dump(found_data(search, found)), encoding="utf-8")
+    path.write_text(yaml.safe_dump(found_data(found)), encoding="utf-8")
     analysis = Analysis(read_case(path), MPI.COMM_SELF)
     steps = analysis.run().steps
     return summarise(analysis.setup, analysis.result), {step.phase: step.force_N for step in steps}
@@ -66,8 +66,8 @@ def test_more_conditions_than_unknowns_are_met_as_well_as_they_can_be(search):
     assert squares[1] < min(squares[0], squares[2])
 
 
-def test_an_evaluation_that_is_known_is_not_run(wish):
-    read = read_wish(wish({"loading.0.to.height": [18, 34]}, {"free_length_after_mm": 25.0}))
+def test_an_evaluation_that_is_known_is_not_run(design_file):
+    read = read_design_file(design_file({"loading.0.to.height": [18, 34]}, {"free_length_after_mm": 25.0}))
     records = []
     first = find(one := make_search(read, keep=records.append))
     assert (one.evaluator.solves, len(records)) == (one.evaluator.count, one.evaluator.count)
@@ -79,7 +79,7 @@ def test_an_evaluation_that_is_known_is_not_run(wish):
     assert part.evaluator.solves == one.evaluator.count - 2
 
 
-def test_a_wish_out_of_reach_is_refused_with_the_range(search):
+def test_a_target_out_of_reach_is_refused_with_the_range(search):
     one = search({"loading.0.to.height": [22, 26]}, {"free_length_after_mm": 33.0})
     with pytest.raises(
         InputError, match=r"33 mm is out of reach: between the bounds it goes from about 26\.\d+ to 30\.2\d+ mm"
@@ -87,10 +87,10 @@ def test_a_wish_out_of_reach_is_refused_with_the_range(search):
         find(one)
 
 
-def test_a_wish_out_of_reach_where_presetting_does_nothing_has_its_range_too(search):
+def test_a_target_out_of_reach_where_presetting_does_nothing_has_its_range_too(search):
     """The nearest springs to one of 40 mm do not yield: they keep the 35 mm that they are wound to."""
     one = search({"loading.0.to.height": [18, 34]}, {"free_length_after_mm": 40.0})
-    with pytest.raises(InputError, match=r"40 mm is out of reach: .* from about 2\d\.\d+ to 35 mm, the greatest with"):
+    with pytest.raises(InputError, match=r"40 mm is out of reach: .* from about 2\d\.\d+ to 35 mm, the maximum with"):
         find(one)
 
 

@@ -43,12 +43,12 @@ def test_a_fully_plastic_wire_bears_four_thirds_of_its_yield_torque():
 
 def test_tips_that_are_held_do_not_turn():
     """A steep spring on seats was 0.8 % too soft, as one whose ends turn about its axis."""
-    wish, steep = [Condition("such_that.force_max_N", 1.0)], {**SPRING, "pitch": 24.0}
+    targets, steep = [Condition("such_that.force_max_N", 1.0)], {**SPRING, "pitch": 24.0}
     loading, free = [{"to": {"travel": 60.0}}], {"hold": "groove", "top": {"turn": "free"}}
     clamped = check({"spring": steep, "material": "elastic", "ends": "clamped", "loading": loading})
-    held = guess(case(steep, loading=loading), wish).values[0]
-    assert held == guess(clamped, wish).values[0]
-    assert guess(case(steep, loading=loading, seats=free), wish).values[0] < 0.995 * held
+    held = guess(case(steep, loading=loading), targets).values[0]
+    assert held == guess(clamped, targets).values[0]
+    assert guess(case(steep, loading=loading, seats=free), targets).values[0] < 0.995 * held
 
 
 def test_a_warm_wire_yields_at_its_own_temperature():

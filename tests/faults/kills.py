@@ -38,7 +38,7 @@ case: case.yaml
 change: {contact: {}, loading.0.steps: 4, loading.1.steps: 3}
 vary: {spring.pitch: {from: 11, to: 13, count: 12}}
 """
-WISH = """
+DESIGN = """
 spring: {wire_diameter: 5.0, mean_diameter: 40.0, turns: 2.5, pitch: 12.0}
 mesh: {elements_per_turn: 8, section: {rule: abramowitz9}}
 loading:
@@ -56,7 +56,7 @@ COMMANDS = {
     "solve": ["solve", "case.yaml", "--no-pictures", "--out", "out"],
     "solve on 2 ranks": ["-n", "2", "solve", "case.yaml", "--no-pictures", "--out", "out"],
     "sweep": ["sweep", "sweep.yaml", "--no-pictures", "--jobs", "2", "--out", "out"],
-    "design": ["design", "wish.yaml", "--out", "out"],
+    "design": ["design", "design.yaml", "--out", "out"],
 }
 
 
@@ -169,7 +169,7 @@ def fresh(folder: Path) -> Path:
     folder.mkdir()
     (folder / "case.yaml").write_text(CASE)
     (folder / "sweep.yaml").write_text(SWEEP)
-    (folder / "wish.yaml").write_text(WISH)
+    (folder / "design.yaml").write_text(DESIGN)
     return folder
 
 

@@ -59,7 +59,7 @@ def test_no_command_works_for_a_folder_that_cannot_be_written_to(example, tmp_pa
     case = str(example)
     results, closed = tmp_path / "results", tmp_path / "closed"
     solve(example, results, False, SMALL, False)
-    (tmp_path / "wish.yaml").write_text(
+    (tmp_path / "design.yaml").write_text(
         f"case: {case}\nfind: {{loading.0.to.height: [18, 34]}}\nsuch_that: {{set_mm: 1}}\nchange: {{}}\n"
     )
     closed.mkdir()
@@ -76,12 +76,12 @@ def test_no_command_works_for_a_folder_that_cannot_be_written_to(example, tmp_pa
         "material show ck15",
         "material test ck15 PROGRAM",
         "examples ck15_presetting",
-        "design WISH",
+        "design DESIGN",
     ]
     files = {
         "CASE": case,
         "SWEEP": str(example.parent / "sweeps" / "tolerances.yaml"),
-        "WISH": "wish.yaml",
+        "DESIGN": "design.yaml",
         "PROGRAM": str(example.parent / "material" / "tension.yaml"),
     }
     lines = [

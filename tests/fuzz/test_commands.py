@@ -56,7 +56,7 @@ COMMANDS = {  # a right line each, and the options that it takes besides
     "material show ck15": ["--out", "there", "--overwrite"],
     "material test ck15 program.yaml": ["--integrator", "heun", "--no-spin", "--out", "there", "--overwrite"],
     "material fit test.csv --G 80000 --nu 0.3": ["--temperature", "300", "--no-saturation", "--name", "mine"],
-    "design wish.yaml": ["--overwrite", "--resume", "--out", "there"],
+    "design design.yaml": ["--overwrite", "--resume", "--out", "there"],
     "report run": ["--overwrite", "--out", "there"],
     "bench": ["--full", "--cold", "--against", "taken", "--out", "there"],
     "compile": ["--overwrite"],
@@ -64,7 +64,7 @@ COMMANDS = {  # a right line each, and the options that it takes besides
     "examples ck15_presetting": ["--overwrite", "--out", "there"],
     "-n 2 solve case.yaml": ["--overwrite"],
 }
-WISH = "case: case.yaml\nfind: {spring.pitch: [11.0, 13.0]}\nsuch_that: {set_mm: 13}\n"
+DESIGN = "case: case.yaml\nfind: {spring.pitch: [11.0, 13.0]}\nsuch_that: {set_mm: 13}\n"
 SETTINGS = [
     "spring.wire_diameter=4",
     "spring.pitch=5",
@@ -145,7 +145,7 @@ def place(tmp_path, monkeypatch):
     ):
         (tmp_path / name).write_bytes((EXAMPLES / source).read_bytes())
     (tmp_path / "sweep.yaml").write_text("case: case.yaml\nvary: {spring.pitch: [11.0, 12.0]}\n")
-    (tmp_path / "wish.yaml").write_text(WISH)
+    (tmp_path / "design.yaml").write_text(DESIGN)
     (tmp_path / "taken").write_text("mine")
     (tmp_path / "run").mkdir()
     monkeypatch.chdir(tmp_path)
@@ -158,7 +158,7 @@ def place(tmp_path, monkeypatch):
         (mesh, "make"),
         (build, "line_mesh"),
         (slices.SliceAnalysis, "run"),
-        (design, "find"),
+        (design, "solve"),
         (everyday, "timed"),
         (warm, "warm"),
         (report, "open_run"),

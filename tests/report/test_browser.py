@@ -4,6 +4,7 @@ A machine without Chromium skips these. COILSET_WEBDRIVER names the address of a
 of axe-core are asked for where COILSET_AXE names its file axe.min.js (npm install axe-core).
 """
 
+import csv
 import json
 import os
 from contextlib import closing
@@ -75,7 +76,7 @@ def design_page(tmp_path_factory):
     """The height to which a spring must be pressed for its length, and what else could be had."""
     folder = tmp_path_factory.mktemp("design")
     loading = [{"to": {"height": 16.0}, "steps": 3}, {"to": {"force": 0}, "steps": 2}]
-    wish = {
+    entries = {
         **CASE,
         "ends": "clamped",
         "mesh": {"elements_per_turn": 6, "section": {"radial": 2, "angular": 4}},
@@ -84,8 +85,8 @@ def design_page(tmp_path_factory):
         "such_that": {"free_length_after_mm": 18.0},
         "trade_offs": {"spring.pitch": [11.0, 13.0]},
     }
-    (folder / "wish.yaml").write_text(yaml.safe_dump(wish))
-    design(folder / "wish.yaml", str(folder / "out"), False, False)
+    (folder / "design.yaml").write_text(yaml.safe_dump(entries))
+    design(folder / "design.yaml", str(folder / "out"), False, False)
     return write_design_report(folder / "out")
 
 
@@ -183,3 +184,41 @@ def test_a_failed_case_says_why(browser, sweep_page):
     assert browser.run(COUNT) == "100 of 1000 cases"
     browser.run("document.querySelector('#cases .open').click()")
     assert browser.run("return document.getElementById('reason').textContent") == "too long"
+
+
+def test_the_first_printed_sheet_has_the_makers_data(browser, run_page):
+    """Data, verdict, drawing and characteristic fit on A4 with margins of 12 mm, 186 by 273 mm."""
+    browser.look(703)
+    browser.open(run_page)
+    try:
+        browser.command("Emulation.setEmulatedMedia", media="print")
+        browser.run("window.dispatchEvent(new Event('beforeprint'))")
+        until(browser, "return document.querySelector('.first #characteristic svg') !== null")
+        text = browser.run("return document.querySelector('.first').innerText")
+        for part in ("wire diameter d", "free length after release", "Not checked: permissible stress"):
+            assert part in text
+        assert 600 < browser.run("return document.querySelector('.first').getBoundingClientRect().bottom") < 1032
+    finally:
+        browser.command("Emulation.setEmulatedMedia", media="")
+        browser.run("window.dispatchEvent(new Event('afterprint'))")
+    assert browser.run("return document.querySelector('.first #characteristic')") is None
+    assert browser.run("return document.querySelector('.figures #characteristic') !== null")
+    assert browser.run("return getComputedStyle(document.querySelector('.first')).display") == "none"
+
+
+def test_the_cases_that_pass_the_filters_are_saved_as_csv(browser, sweep_page):
+    browser.look(1280)
+    browser.open(sweep_page)
+    browser.run(
+        f"const f = {FILTERS}.find((one) => one.ariaLabel === 'filter set, mm');"
+        "f.value = '731..733'; f.dispatchEvent(new Event('input'))"
+    )
+    browser.run(
+        "document.getElementById('table').addEventListener('click', (event) => event.preventDefault());"
+        "document.getElementById('table').click()"
+    )
+    text = browser.wait("fetch(document.getElementById('table').href).then((answer) => answer.text())")
+    head, *rows = csv.reader(text.splitlines())
+    assert [float(row[head.index("set_mm")]) for row in rows] == [731.0, 732.0, 733.0]
+    assert rows[0][head.index("status")] == "done"
+    assert len(head) == len(rows[0])

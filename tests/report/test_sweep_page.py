@@ -5,20 +5,24 @@ import gzip
 import json
 import re
 from contextlib import closing
+from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 import yaml
 from mpi4py import MPI
 
 from coilset.model.case.settings import put
 from coilset.model.report.packed import packed
 from coilset.model.report.sweep_page import write_sweep_report
+from coilset.model.report.warning_words import KINDS
 from coilset.model.sweep import dataset
 from coilset.model.sweep.evaluate import evaluate
 from coilset.model.sweep.journal import Journal, read_records
 from coilset.model.sweep.plan import Plan
 
+REPOSITORY = Path(__file__).resolve().parents[2]
 CASE = {
     "spring": {"wire_diameter": 5.0, "mean_diameter": 40.0, "turns": 1.5, "pitch": 12.0},
     "ends": "clamped",
@@ -103,3 +107,37 @@ def test_the_file_of_a_case_is_that_of_the_plan(plan, data):
             for entry in entries:
                 put(case, entry, files["choices"].get(name, {}).get(value, value), "")
         assert case == plan.data(plan.rows[row])
+
+
+def test_warnings_are_counted_in_words(folder):
+    """No internal name: every kind of warning that the program gives has its words."""
+    path = folder / "sweep.nc"
+    before = path.read_bytes()
+    data = xr.load_dataset(path, engine="h5netcdf")
+    data["warnings"] = ("case", np.array(["estimate"] * 5 + ["estimate, unknown error"], dtype=object))
+    dataset.write(path, data)
+    try:
+        page = write_sweep_report(folder).read_text(encoding="utf-8")
+    finally:
+        path.write_bytes(before)
+    assert "the hardening of the wire is an estimate from its tensile strength (in all 6 cases)" in page
+    assert "the error of the steps could not be estimated (in 1 of 6 cases)" in page
+    assert "estimate:" not in page
+    sources = [path.read_text(encoding="utf-8") for path in (REPOSITORY / "model").rglob("*.py")]
+    kinds = {kind for text in sources for kind in re.findall(r'Warning\(\s*"([a-z -]+)"', text)}
+    assert len(kinds) > 20
+    assert kinds <= KINDS.keys()
+
+
+def test_an_entry_of_a_table_is_named_by_its_turn(tmp_path):
+    spring = CASE["spring"] | {"pitch": {"turns": [0, 0.7, 1.5], "values": [9, 9, 12], "interpolation": "linear"}}
+    (tmp_path / "case.yaml").write_text(yaml.safe_dump(CASE | {"spring": spring}))
+    vary = {"spring.pitch.values.2": [11.0, 12.0], "loading.0.to.travel": [1.0, 2.0], "spring.pitch.values.1": [9.5]}
+    (tmp_path / "sweep.yaml").write_text(yaml.safe_dump({"case": "case.yaml", "vary": vary}))
+    data = dataset.collect(Plan(tmp_path / "sweep.yaml"), tmp_path / "none.jsonl")
+    named = {name: (data[name].attrs["long_name"], data[name].attrs["units"]) for name in vary}
+    assert named == {
+        "spring.pitch.values.2": ("pitch at turn 1.5", "mm"),
+        "loading.0.to.travel": ("travel of phase 1", "mm"),
+        "spring.pitch.values.1": ("pitch at turn 0.7", "mm"),
+    }

@@ -82,16 +82,22 @@ const page = (() => {
     for (const [plot, { layout }] of figures) if (plot.drawn) Plotly.relayout(plot, themed(layout));
   };
 
-  const PAPER = 640, LOW = 0.7; // pixels: the width of a figure on A4 and on Letter; so low that two fit below each other
-  let screenTheme, folded;
+  const PAPER = 640, LOW = 0.7, LOWEST = 0.48; // pixels: the width of a figure on A4 and on Letter; so low that two fit below each other
+  let screenTheme, folded, place;
   const onPaper = () => { // light, each figure as wide as the paper, what is folded open
     screenTheme = document.documentElement.dataset.theme;
     document.documentElement.dataset.theme = "light";
     folded = [...document.querySelectorAll("details:not([open])")];
     for (const one of folded) one.open = true;
+    const first = byId("first-figure"), own = byId("characteristic"); // the first sheet has the characteristic
+    if (first && own) {
+      place = document.createComment("characteristic");
+      own.replaceWith(place);
+      first.append(own);
+    }
     for (const [plot, { layout }] of figures) {
       if (!plot.drawn) draw(plot);
-      const height = LOW * Number.parseFloat(plot.style.height);
+      const height = (first?.contains(plot) ? LOWEST : LOW) * Number.parseFloat(plot.style.height);
       Plotly.relayout(plot, { ...themed(layout), autosize: false, width: PAPER, height });
     }
   };
@@ -99,6 +105,10 @@ const page = (() => {
     if (screenTheme) document.documentElement.dataset.theme = screenTheme;
     else delete document.documentElement.dataset.theme;
     for (const one of folded) one.open = false;
+    if (place) {
+      place.replaceWith(byId("characteristic"));
+      place = null;
+    }
     for (const [plot, { layout }] of figures) Plotly.relayout(plot, { ...themed(layout), width: null, height: null });
   };
 

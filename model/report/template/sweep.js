@@ -21,8 +21,8 @@
   };
 
   // ---- filters --------------------------------------------------------------------------------------------------------
-  const test = (column, wish) => { // what a filter asks of a value; null where it cannot be understood
-    const said = wish.trim().replace("−", "-");
+  const test = (column, filter) => { // whether a value passes a filter; null where the filter cannot be understood
+    const said = filter.trim().replace("−", "-");
     if (said === "") return () => true;
     if (!column.numeric) return (value) => String(value ?? "").toLowerCase().includes(said.toLowerCase());
     const number = "(-?[\\d.]+(?:e-?\\d+)?)";
@@ -37,10 +37,10 @@
   };
   const sieve = () => {
     const tests = [];
-    for (const [column, wish] of filters) {
-      const one = test(column, wish);
+    for (const [column, filter] of filters) {
+      const one = test(column, filter);
       byId(`filter-${columns.indexOf(column)}`)?.setAttribute("aria-invalid", String(one === null));
-      if (one && wish.trim()) tests.push((row) => column.values[row] !== null && one(column.values[row]));
+      if (one && filter.trim()) tests.push((row) => column.values[row] !== null && one(column.values[row]));
     }
     const { column, down } = order, sign = down ? -1 : 1;
     const rows = Array.from({ length: count }, (_, row) => row).filter((row) => tests.every((one) => one(row)));
@@ -92,6 +92,15 @@
     byId("back").disabled = start === 0;
     byId("on").disabled = start + each >= left.length;
   };
+  // A link to a blob of the cases that pass the filters, with all columns, made when it is used.
+  const quoted = (value) => /[",\n]/.test(value) ? `"${value.replaceAll('"', '""')}"` : value;
+  const csv = () => [columns.map((column) => column.name), ...left.map((row) => columns.map((column) => column.values[row] ?? ""))]
+    .map((cells) => cells.map((cell) => quoted(String(cell))).join(",")).join("\n") + "\n";
+  let blob = null;
+  byId("table").addEventListener("click", () => {
+    if (blob) URL.revokeObjectURL(blob);
+    byId("table").href = blob = URL.createObjectURL(new Blob([csv()], { type: "text/csv" }));
+  });
   byId("back").addEventListener("click", () => { start -= each; list(); });
   byId("on").addEventListener("click", () => { start += each; list(); });
   byId("clear").addEventListener("click", () => { for (const key of filters.keys()) filters.set(key, ""); heads(); sieve(); });

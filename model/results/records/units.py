@@ -28,3 +28,10 @@ def without_unit(name: str) -> tuple[str, str]:
     found = ((name.removesuffix(end), unit) for end, unit in UNITS.items() if name.endswith(end) and end[0] == "_")
     stem, unit = next(found, (name, "1"))
     return (name, "") if unit == "1" else (stem, unit)
+
+
+def quantity(name: str) -> tuple[str, str]:
+    """Words and unit of a number of results from its name, as in `set_mm`."""
+    stem, unit = without_unit(name)
+    words = stem.replace("_", " ")
+    return f"maximum {words.removesuffix(' max')}" if words.endswith(" max") else words, unit

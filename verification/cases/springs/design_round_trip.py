@@ -1,11 +1,11 @@
-"""Ten wishes for springs of different kinds: what `coilset design` finds, solved forward from its file
+"""Ten designs of springs of different kinds: what `coilset design` finds, solved forward from its file
 
 Cylinders with open, closed and clamped ends, a cone, a barrel, an hourglass, springs of variable pitch and wire, a wire
 of a standard, small meshes of eight rods per turn; one to three unknowns among pitch, free length, wire, turns, a value
 of a table and preset height; lengths, sets, forces, rates and stresses as conditions. The solution is not known
 beforehand: the check is the forward solve of the case that was written, read as a file.
 
-Tolerance: 1e-6 of each condition. The table says how many runs each wish took, and how long: by the clock, and by the
+Tolerance: 1e-6 of each condition. The table says how many runs each design took, and how long: by the clock, and by the
 processor, whatever else the machine does.
 """
 
@@ -23,9 +23,9 @@ from mpi4py import MPI
 from coilset.model.base.style import STYLE
 from coilset.model.case import read_case
 from coilset.model.design.design import find, make_search
+from coilset.model.design.file import read_design_file
 from coilset.model.design.output import found_data
 from coilset.model.design.search import Search
-from coilset.model.design.wish import read_wish
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 from coilset.verification.study import Study
@@ -43,7 +43,7 @@ CLOSED = {
 SHAPED = {"wire_diameter": 4.0, "mean_diameter": 36.0, "turns": 3.5, "pitch": 12.0}
 WIDE = {"wire_diameter": 4.0, "mean_diameter": 30.0, "turns": 3.5, "pitch": 11.0}
 RELEASE = {"to": {"force": 0}}
-WISHES: dict[str, dict[str, Any]] = {
+DESIGNS: dict[str, dict[str, Any]] = {
     "preset height": {
         "spring": OPEN,
         "loading": [{"to": {"height": 20.0}}, RELEASE],
@@ -114,34 +114,34 @@ CLOSE = 1e-6
 
 
 def run(study: Study) -> None:
-    """All wishes."""
+    """All designs."""
     rows, ways = [], {}
     for name in ("preset height", "closed and ground, force in use"):
-        wish(None, name, WISHES[name])  # loads what is compiled, so that the times are those of searches
-    for name, entries in WISHES.items():
-        found = wish(study, name, entries)
+        designed(None, name, DESIGNS[name])  # loads what is compiled, so that the times are those of searches
+    for name, entries in DESIGNS.items():
+        found = designed(study, name, entries)
         rows.append([name, *found[:4]])
         ways[name] = found[4]
-    columns = ["wish", "unknowns", "runs", "s", "s of the processor"]
-    study.table("Runs and time of each wish, trade-offs not counted", columns, rows)
+    columns = ["design", "unknowns", "runs", "s", "s of the processor"]
+    study.table("Runs and time of each design, trade-offs not counted", columns, rows)
     study.figure("design_round_trip", draw(ways))
 
 
-def wish(study: Study | None, name: str, entries: dict[str, Any]) -> tuple[int, int, float, float, list[float]]:
-    """One wish: number of unknowns and runs, seconds of the clock and of the processor, and how far off each run was;
+def designed(study: Study | None, name: str, entries: dict[str, Any]) -> tuple[int, int, float, float, list[float]]:
+    """One design: number of unknowns and runs, seconds of the clock and of the processor, and how far off each run was;
     judged if there is a study."""
     with tempfile.TemporaryDirectory() as folder:
-        path, written = Path(folder) / "wish.yaml", Path(folder) / "found.yaml"
+        path, written = Path(folder) / "design.yaml", Path(folder) / "found.yaml"
         path.write_text(yaml.safe_dump({"material": "ck15", "mesh": MESH, **entries}), encoding="utf-8")
         began, worked = time.perf_counter(), time.process_time()
-        search = make_search(read_wish(path))
+        search = make_search(read_design_file(path))
         found = find(search)
         seconds, worked = time.perf_counter() - began, time.process_time() - worked
-        written.write_text(yaml.safe_dump(found_data(search, found)), encoding="utf-8")
+        written.write_text(yaml.safe_dump(found_data(found)), encoding="utf-8")
         if study is not None:
             for condition, value in zip(search.conditions, forward(search, written), strict=True):
                 quantity = f"{name}: {condition.words}, {condition.unit}"
-                study.check(quantity, value, condition.wish, "the wish", CLOSE)
+                study.check(quantity, value, condition.target, "the target", CLOSE)
     off = [float(np.abs(search.off(one.values)).max()) for one in search.evaluations if not one.failed]
     return len(search.width), search.evaluator.count, round(seconds, 1), round(worked, 1), off
 
@@ -165,7 +165,7 @@ def draw(ways: dict[str, list[float]]) -> Figure:
                 range(1, len(off) + 1), np.maximum(off, 1e-13), f"C{number % 5}o{style}", ms=3, lw=1, label=name
             )
         axes.axhline(CLOSE, color="0.5", lw=0.8)
-        axes.set(xlabel="run", ylabel="largest relative deviation of a condition", title="Ten wishes")
+        axes.set(xlabel="run", ylabel="largest relative deviation of a condition", title="Ten designs")
         axes.grid(lw=0.3)
         axes.legend(fontsize=7, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
     return figure

@@ -1,4 +1,4 @@
-"""A wish is read strictly: what is wrong with it is said before anything is run."""
+"""A design file is read strictly: what is wrong with it is said before anything is run."""
 
 import numpy as np
 import pytest
@@ -7,14 +7,14 @@ import yaml
 from coilset.model.base.errors import InputError
 from coilset.model.design.conditions import conditions
 from coilset.model.design.design import make_search
-from coilset.model.design.wish import read_wish
+from coilset.model.design.file import read_design_file
 
 FIND, SUCH = {"spring.pitch": [9, 15]}, {"free_length_after_mm": 25.0}
 
 
 def build(path):
-    """Read a wish and guess at one of its corners."""
-    search = make_search(read_wish(path))
+    """Read a design and guess at one of its corners."""
+    search = make_search(read_design_file(path))
     search.evaluator.guess(search.low)
 
 
@@ -32,46 +32,52 @@ def build(path):
         ({"loading.7.to.height": [18, 20]}, SUCH, "find.loading.7.to.height: '7' is not an entry of this list"),
     ],
 )
-def test_what_is_wrong_is_said_in_one_line(wish, find, such_that, problem):
+def test_what_is_wrong_is_said_in_one_line(design_file, find, such_that, problem):
     with pytest.raises(InputError) as caught:
-        build(wish(find, such_that))
+        build(design_file(find, such_that))
     assert problem in str(caught.value)
     assert "\n" not in str(caught.value)
 
 
-def test_what_no_spring_between_the_bounds_can_be_is_refused_before_one_is_run(wish):
+def test_what_no_spring_between_the_bounds_can_be_is_refused_before_one_is_run(design_file):
     """A word as an unknown, and a height below block, 12.5 mm and 17.5 mm of these, are called by their own entries."""
     with pytest.raises(InputError, match=r"^find\.spring\.hand: 9\.0: must be 'right' or 'left'$"):
-        make_search(read_wish(wish({"spring.hand": [9, 15]}, SUCH)))
+        make_search(read_design_file(design_file({"spring.hand": [9, 15]}, SUCH)))
     low = {"force_at": [{"height": 18.0, "N": 50.0}, {"height": 12.0, "N": 100.0}]}
     turns = {"spring.turns": [1.5, 2.5]}
     below = r"^such_that\.force_at\.1\.height: is 12 mm, below the block height, which is 12\.5 mm or more between "
     with pytest.raises(InputError, match=below):
-        make_search(read_wish(wish(turns, low)))
-    make_search(read_wish(wish(turns, {"force_at": {"height": 13.0, "N": 100.0}})))  # a few of these can
+        make_search(read_design_file(design_file(turns, low)))
+    make_search(read_design_file(design_file(turns, {"force_at": {"height": 13.0, "N": 100.0}})))  # a few of these can
 
 
-def test_a_height_that_one_spring_does_not_reach_is_called_by_the_wishs_entry(wish):
-    search = make_search(read_wish(wish({"spring.turns": [1.5, 2.5]}, {"force_at": {"height": 13.0, "N": 100.0}})))
+def test_a_height_that_one_spring_does_not_reach_is_called_by_the_entry_of_the_file(design_file):
+    search = make_search(
+        read_design_file(design_file({"spring.turns": [1.5, 2.5]}, {"force_at": {"height": 13.0, "N": 100.0}}))
+    )
     reason = search.evaluator.run(np.array([2.5])).reason
     assert reason == "such_that.force_at.height: is 13 mm, below the block height of 17.5 mm; give block, or more"
 
 
-def test_a_case_stands_in_the_wish_or_beside_it(tmp_path, wish, example):
+def test_a_case_stands_in_the_file_or_beside_it(tmp_path, design_file, example):
     beside = tmp_path / "beside.yaml"
     beside.write_text(yaml.safe_dump({"case": str(example), "find": FIND, "such_that": SUCH}), encoding="utf-8")
-    assert read_wish(beside).base["spring"]["turns"] == 2.5
+    assert read_design_file(beside).base["spring"]["turns"] == 2.5
     with pytest.raises(InputError, match="loading: is an entry of a case, and case: names one already"):
-        read_wish(wish(FIND, SUCH, case=str(example)))
+        read_design_file(design_file(FIND, SUCH, case=str(example)))
 
 
-def test_paths_in_the_case_count_from_its_file(tmp_path, wish):
-    assert read_wish(wish(FIND, SUCH, material="voce")).base["material"] == "voce"
-    assert read_wish(wish(FIND, SUCH, material="mine.yaml")).base["material"] == str(tmp_path / "mine.yaml")
+def test_paths_in_the_case_count_from_its_file(tmp_path, design_file):
+    assert read_design_file(design_file(FIND, SUCH, material="voce")).base["material"] == "voce"
+    assert read_design_file(design_file(FIND, SUCH, material="mine.yaml")).base["material"] == str(
+        tmp_path / "mine.yaml"
+    )
 
 
-def test_a_force_is_read_where_the_program_goes_to_its_height(wish):
-    read = read_wish(wish(FIND, {"force_at": [{"height": 20.0, "N": 100.0}, {"height": 22.0, "N": 50.0}]}))
+def test_a_force_is_read_where_the_program_goes_to_its_height(design_file):
+    read = read_design_file(
+        design_file(FIND, {"force_at": [{"height": 20.0, "N": 100.0}, {"height": 22.0, "N": 50.0}]})
+    )
     found, data = conditions(read.spec, read.base)
     assert [(one.height, one.phase) for one in found] == [(20.0, 0), (22.0, 2)]
     assert [phase["to"] for phase in data["loading"]] == [
@@ -83,7 +89,7 @@ def test_a_force_is_read_where_the_program_goes_to_its_height(wish):
     assert len(read.base["loading"]) == 2
 
 
-def test_a_length_after_needs_a_release(wish):
-    read = read_wish(wish(FIND, SUCH, loading=[{"to": "block"}]))
+def test_a_length_after_needs_a_release(design_file):
+    read = read_design_file(design_file(FIND, SUCH, loading=[{"to": "block"}]))
     with pytest.raises(InputError, match="let the load program end with"):
         conditions(read.spec, read.base)

@@ -1,0 +1,186 @@
+"""The file of a design: a case, the unknowns in it, and the conditions that its run must meet."""
+
+import copy
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+from annotated_types import Unit
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
+
+from coilset.model.base.entry import Strict, check_entries, shortened
+from coilset.model.base.errors import InputError
+from coilset.model.base.yaml import read_data
+from coilset.model.case.case import Case, check, read_case_data
+from coilset.model.case.settings import located
+from coilset.model.design.unknowns import Choices, Name, Unknown, refuse_twice
+
+KIND = "a design file holds the entries find: and such_that:, and those of a case or case: with the name of its file"
+
+
+def _not_zero(value: float) -> float:
+    """Not 0."""
+    if value == 0.0:
+        raise ValueError("must not be 0: conditions are met relative to their size")
+    return value
+
+
+class Limits(Strict):
+    """Limits of a result in place of a value."""
+
+    at_least: Annotated[
+        float | None,
+        Unit("of the result"),
+        AfterValidator(_not_zero),
+        Field(description="minimum"),
+    ] = None
+    at_most: Annotated[
+        float | None,
+        Unit("of the result"),
+        AfterValidator(_not_zero),
+        Field(description="maximum"),
+    ] = None
+
+    @model_validator(mode="after")
+    def _order(self) -> Self:
+        if self.at_least is None and self.at_most is None:
+            raise ValueError("is empty; give at_least or at_most, or both, as in {at_least: 24, at_most: 26}")
+        if None not in (self.at_least, self.at_most) and self.at_least >= self.at_most:  # type: ignore[operator]
+            raise ValueError(
+                f"at_least {self.at_least:g} leaves nothing below at_most {self.at_most:g}; for one value "
+                "give the number alone"
+            )
+        return self
+
+
+OR_LIMITS = Discriminator(lambda value: "(limits)" if isinstance(value, dict | Limits) else "(value)")
+OrLimits = Annotated[Limits, Tag("(limits)")]
+Positive = Field(gt=0)
+Length = Annotated[Annotated[float, Unit("mm"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
+Force = Annotated[Annotated[float, Unit("N"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
+Rate = Annotated[Annotated[float, Unit("N/mm"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
+Work = Annotated[Annotated[float, Unit("N/mm²"), Positive, Tag("(value)")] | OrLimits, OR_LIMITS]
+Stress = Annotated[
+    Annotated[float, Unit("MPa"), AfterValidator(_not_zero), Tag("(value)")] | OrLimits,
+    OR_LIMITS,
+]
+
+
+class ForceAt(Strict):
+    """A force at a height.
+
+    It is read where the program's last phase to this height ends; without one, the spring goes there afterwards.
+    """
+
+    height: Annotated[float, Unit("mm"), Field(gt=0, description="distance between the seats, mm")]
+    N: Annotated[Force, Field(description="axial force at this height, N; a number or limits")]
+
+
+class Conditions(Strict):
+    """Conditions on the results at the end of the load program, as in `summary.json`: a number, or limits."""
+
+    free_length_after_mm: Annotated[Length | None, Field(description="free length after the program, mm")] = None
+    free_length_before_mm: Annotated[Length | None, Field(description="free length as wound, mm")] = None
+    set_mm: Annotated[Length | None, Field(description="loss of free length, mm")] = None
+    block_height_mm: Annotated[Length | None, Field(description="height at which all coils touch, mm")] = None
+    rate_N_per_mm: Annotated[Rate | None, Field(description="initial rate of the spring as wound, N/mm")] = None
+    force_max_N: Annotated[Force | None, Field(description="maximum force of the program, N")] = None
+    force_at: Annotated[
+        list[ForceAt],
+        BeforeValidator(lambda value: [value] if isinstance(value, dict | ForceAt) else value),
+        Field(default_factory=list, strict=False, description="a force at a height, or a list of them"),
+    ]
+    residual_shear_inside_MPa: Annotated[
+        Stress | None,
+        Field(description="residual shear stress at the inside of the coil, MPa; presetting makes it negative"),
+    ] = None
+    shear_inside_max_MPa: Annotated[
+        Stress | None, Field(description="maximum shear stress at the inside of the coil, MPa")
+    ] = None
+    plastic_work_max_N_per_mm2: Annotated[
+        Work | None, Field(description="maximum plastic work b* on the surface, N/mm²")
+    ] = None
+
+    @model_validator(mode="after")
+    def _some(self) -> Self:
+        if not any(value for _, value in self):
+            raise ValueError("there is no condition; give one, as in free_length_after_mm: 50")
+        return self
+
+
+class DesignFile(Strict):
+    """A design. Besides these entries it holds those of a case, or `case` names the file of one."""
+
+    case: Annotated[str | None, Field(description="file of the case, relative to the folder of this file")] = None
+    find: Annotated[
+        dict[Name, Unknown],
+        Field(
+            min_length=1,
+            description="the unknowns: entry of the case, or a name with `entries`, → range, factor or choices",
+        ),
+    ]
+    such_that: Annotated[Conditions, Field(description="the conditions: results that the run is to have")]
+    trade_offs: Annotated[
+        dict[Name, Annotated[list[Any], Field(min_length=1)]],
+        Field(default_factory=dict, description="entry of the case → other values for which the design is estimated"),
+    ]
+
+    @model_validator(mode="after")
+    def _enough(self) -> Self:
+        refuse_twice(self.find)
+        conditions = sum(len(value) if isinstance(value, list) else value is not None for _, value in self.such_that)
+        ranges = [name for name, one in self.find.items() if not isinstance(one, Choices)]
+        if conditions < len(ranges):
+            raise ValueError(
+                f"{len(ranges)} unknowns and {conditions} condition(s): give as many conditions as "
+                "unknowns, or more, which are met as well as they can be (least squares)"
+            )
+        driven = {entry: name for name, one in self.find.items() for entry in one.driven(name)}
+        for name in self.trade_offs:
+            if name in driven:
+                raise ValueError(f"trade_offs.{name}: is an unknown; give an entry that is not")
+        return self
+
+
+@dataclass(frozen=True)
+class Design:
+    """A design file, read and checked.
+
+    Attributes:
+        spec: its own entries.
+        base: raw data of the case; paths in it are absolute.
+        file: where it came from, for messages.
+    """
+
+    spec: DesignFile
+    base: dict[str, Any]
+    file: Path
+
+    def check(self, data: dict[str, Any]) -> Case:
+        """The Case of raw data; raises InputError."""
+        return check(data, self.file)
+
+
+def read_design_file(path: str | Path) -> Design:
+    """Read and check the file of a design.
+
+    Raises:
+        InputError: one line with file, place, value and what would be right.
+    """
+    data, path = read_data(path, KIND), Path(path)
+    own = {name: value for name, value in data.items() if name in DesignFile.model_fields}
+    base = {name: value for name, value in data.items() if name not in own}
+    if not {"find", "such_that"} & data.keys():
+        raise InputError(KIND, "", path)
+    spec, folder = check_entries(own, DesignFile, path), path.parent
+    if spec.case is not None:
+        if base:
+            raise InputError(
+                "is an entry of a case, and case: names one already; give it there, or leave case: out",
+                shortened(next(iter(base))),
+                path,
+            )
+        base, folder = read_case_data(folder / spec.case), (folder / spec.case).parent
+    base = copy.deepcopy({name: located(name, value, folder.absolute()) for name, value in base.items()})
+    check(base, path if spec.case is None else folder / Path(spec.case).name)
+    return Design(spec, base, path)

@@ -1,0 +1,115 @@
+"""The first sheet of a printed page: the maker's data, the drawing, the characteristic and the verdict, on one side."""
+
+import base64
+import io
+from dataclasses import dataclass
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+
+from coilset.meshes.drawing import drawing
+from coilset.meshes.springs.geometry import Spring
+from coilset.model.base.errors import InputError
+from coilset.model.base.style import STYLE
+from coilset.model.case import Case, check
+from coilset.model.report.answer import release_lengths
+from coilset.model.report.panel import said
+from coilset.model.report.verdict import Check, checks, verdict
+from coilset.model.results.files.opened import Run
+from coilset.model.results.records.labels import plain
+from coilset.model.standards.cylinder import Cylinder
+
+DPI = 110  # of the drawing
+
+
+@dataclass(frozen=True)
+class FirstSheet:
+    """Content of the sheet.
+
+    Attributes:
+        rows: name and value of each number.
+        drawing: PNG as base64; empty if the spring cannot be built any more.
+        checks, verdict: see `verdict`.
+    """
+
+    rows: list[tuple[str, str]]
+    drawing: str
+    checks: list[Check]
+    verdict: str
+
+
+def first_sheet(run: Run) -> FirstSheet:
+    """The sheet of a run."""
+    try:
+        case: Case = check(run.case)
+        spring = case.spring.build()
+    except InputError:  # a file of the case that has gone
+        spring = None
+    made = checks(run.summary, spring is not None and _is_cylinder(spring), isinstance(run.case["material"], dict))
+    rows = [] if spring is None else _geometry(spring)
+    return FirstSheet(rows + results(run.summary), "" if spring is None else _drawn(spring), made, verdict(made))
+
+
+def _is_cylinder(spring: Spring) -> bool:
+    try:
+        Cylinder.of(spring)
+    except InputError:
+        return False
+    return True
+
+
+def _geometry(spring: Spring) -> list[tuple[str, str]]:
+    t = np.linspace(0.0, spring.turns, 257)
+    wire, mean = spring.wire_diameter(t), 2.0 * spring.mean_radius(t)
+    return [
+        ("wire diameter d", _span(wire)),
+        ("mean diameter D", _span(mean)),
+        ("outer diameter De", _span(mean + wire)),
+        ("inner diameter Di", _span(mean - wire)),
+        ("turns, total and active", f"{spring.turns:g}, {spring.active_turns:.4g}"),
+        ("direction of winding", "right" if spring.hand > 0 else "left"),
+        ("length of the wire", f"{plain(spring.wire_length, 5)} mm"),
+    ]
+
+
+def _span(values: np.ndarray) -> str:
+    low, high = float(values.min()), float(values.max())
+    return f"{plain(low, 5)} mm" if high - low < 1e-6 * high else f"{plain(low, 4)} to {plain(high, 4)} mm"
+
+
+def results(summary: dict[str, Any]) -> list[tuple[str, str]]:
+    """Names and values of the results of a run, of summary.json."""
+    s = summary
+    rows = [
+        ("material", s["material"]),
+        ("free length as wound", _text(s["free_length_before_mm"], "mm", 2)),
+        *_releases(s),
+        ("set", _text(s["set_mm"], "mm", 2)),
+        ("block height", _text(s["block_height_mm"], "mm", 2)),
+        ("maximum force", f"{plain(s['force_max_N'], 5)} N"),
+        ("initial rate", _text(s["rate_N_per_mm"], "N/mm", 3)),
+        ("rate after release, 30 to 70 %", _text(s["rate_30_70_after_N_per_mm"], "N/mm", 3)),
+        ("maximum shear stress, inside", _text(s["shear_inside_max_MPa"], "MPa", 0)),
+        ("residual shear stress, inside", _text(s["residual_shear_inside_MPa"], "MPa", 1)),
+    ]
+    return [(name, text) for name, text in rows if text]
+
+
+def _releases(summary: dict[str, Any]) -> list[tuple[str, str]]:
+    """The free length after each release, where the summary lists them; else after the last one."""
+    lengths = release_lengths(summary)
+    if len(lengths) < 2:
+        return [("free length after release", _text(summary["free_length_after_mm"], "mm", 2))]
+    return [(f"free length after release {k}", _text(length, "mm", 2)) for k, length in enumerate(lengths, 1)]
+
+
+def _text(value: float | None, unit: str, digits: int) -> str:
+    return "" if value is None else said(value, unit, digits)
+
+
+def _drawn(spring: Spring) -> str:
+    with mpl.rc_context(STYLE):
+        file = io.BytesIO()
+        drawing(spring).savefig(file, format="png", dpi=DPI)
+    return base64.b64encode(file.getvalue()).decode("ascii")

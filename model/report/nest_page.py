@@ -1,0 +1,220 @@
+"""The page of a nest: what both springs bear together, what each has a share of, and the clearance between them."""
+
+import csv
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from coilset.model.base.errors import InputError, reading
+from coilset.model.base.style import round_end
+from coilset.model.figures.wire import closed, moments, tubes
+from coilset.model.nest.file import NAMES
+from coilset.model.nest.output import STEPS
+from coilset.model.report.answer import Number
+from coilset.model.report.page import made_with, write_report
+from coilset.model.report.panel import DIVERGING, Panel, Trace, axis, curve, said
+from coilset.model.report.render import NAME, write_page
+from coilset.model.results.files.opened import Run, open_run
+from coilset.model.results.records.labels import plain
+
+FILE = STEPS  # by which the folder of a nest is known
+TOTAL = "#808080"  # colour of both springs together, on light and dark backgrounds
+RINGS = 320  # of a spring, at each moment
+STATES = ("free", "pressed the most", "released")
+
+
+def write_nest_report(folder: str | Path) -> Path:
+    """Write report.html into the folder of a nest and into those of its springs.
+
+    Returns:
+        The file of the nest.
+
+    Raises:
+        InputError: if a file cannot be read. CoilsetError: if a page cannot be written.
+    """
+    folder = Path(folder)
+    with reading(folder / "summary.json"):
+        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+        springs = {name: summary[name] for name in NAMES}
+        summary["clearance_min_mm"], summary["warnings"]
+    with reading(folder / FILE):
+        with (folder / FILE).open(encoding="utf-8", newline="") as file:
+            rows = list(csv.DictReader(file))
+        columns = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+    runs = {name: open_run(folder / name) for name, one in springs.items() if one is not None}
+    if not runs:
+        raise InputError("neither spring was reached by the seats", "", folder)
+    for run in runs.values():
+        write_report(run)
+    top = int(np.argmax(np.abs(columns["force_N"])))
+    shares = {name: columns[f"{name}_force_N"][top] / (columns["force_N"][top] or 1.0) for name in NAMES}
+    warnings = [one["message"] for one in summary["warnings"]]
+    warnings += [f"{name} spring: {one['message']}" for name in runs for one in springs[name]["warnings"]]
+    return write_page(
+        folder,
+        "nest",
+        [
+            ("Force and travel", [characteristic(columns, summary), clearance(columns, summary)]),
+            ("The springs", [view(runs)]),
+        ],
+        {},
+        title=f"{folder.resolve().name}: set {_length(summary['set_mm'], 3)}",
+        subtitle=f"two springs between the same seats, pressed to {columns['seat_height_mm'].min():.4g} mm, released",
+        answer=[
+            Number("set", _length(summary["set_mm"], 3), "of the height at which the seats touch the first spring"),
+            Number(
+                "free length",
+                _length(summary["free_length_after_mm"], 3),
+                f"after; {summary['free_length_before_mm']:.3f} mm before",
+            ),
+            Number(
+                "maximum force",
+                f"{plain(summary['force_max_N'], 5)} N",
+                ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in shares.items()),
+            ),
+            Number("block height", _length(summary["block_height_mm"], 2), "of the spring that is solid first"),
+            Number(
+                "minimum clearance",
+                _length(summary["clearance_min_mm"], 3),
+                f"between the springs, at a height of {summary['clearance_min_height_mm']:.4g} mm",
+            ),
+        ],
+        springs=[_spring(name, one, shares[name], columns[f"{name}_force_N"][top]) for name, one in springs.items()],
+        warnings=warnings,
+        made_with=made_with(next(iter(runs.values())).summary["origin"]),
+    )
+
+
+def _length(value: float | None, digits: int) -> str:
+    return "not released" if value is None else said(value, "mm", digits)
+
+
+def _spring(name: str, summary: Mapping[str, Any] | None, share: float, force: float) -> dict[str, Any]:
+    """A row of the table of both springs, and the link to its page; of a spring that was not reached only its name."""
+    if summary is None:
+        return {"name": name, "link": "", "cells": ["not reached by the seats"] + [""] * 6}
+    inside = summary["residual_shear_inside_MPa"]
+    return {
+        "name": name,
+        "link": f"{name}/{NAME}",
+        "cells": [
+            summary["material"],
+            f"{plain(force, 5)} N",
+            f"{100.0 * share:.1f} %",
+            f"{summary['free_length_before_mm']:.3f} mm",
+            _length(summary["set_mm"], 3),
+            said(summary["shear_inside_max_MPa"], "MPa"),
+            "–" if inside is None else said(inside, "MPa", 1),
+        ],
+    }
+
+
+def characteristic(columns: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> Panel:
+    """Force over the travel of the common seats, of each spring and of both."""
+    travel = columns["seat_height_mm"][0] - columns["seat_height_mm"]
+    traces = [
+        curve(travel, columns[f"{name}_force_N"], number, marker=5, name=name) for number, name in enumerate(NAMES)
+    ]
+    both = curve(travel, columns["force_N"], 0, marker=5, name="both")
+    both["line"] = {"width": 3, "color": TOTAL}
+    block = summary["free_length_before_mm"] - summary["block_height_mm"]
+    finding = f"Both springs carry up to {plain(summary['force_max_N'], 4)} N"
+    line = {
+        "type": "line",
+        "x0": block,
+        "x1": block,
+        "yref": "paper",
+        "y0": 0,
+        "y1": 1,
+        "line": {"dash": "dash", "width": 1, "color": TOTAL},
+    }
+    return Panel(
+        "characteristic",
+        finding,
+        f"{finding}. Axial force of the outer spring, of the inner spring and of both over the travel of the seats. "
+        f"Block is at {block:.4g} mm of travel.",
+        [both, *traces],
+        {
+            "xaxis": axis("travel of the seats, mm"),
+            "yaxis": axis("axial force, N"),
+            "shapes": [line],
+            "annotations": [
+                {"x": block, "y": 1, "yref": "paper", "yanchor": "bottom", "text": "block", "showarrow": False}
+            ],
+        },
+        height=440,
+        note="Both springs are then released, each on its own; their pages show it.",
+    )
+
+
+def clearance(columns: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> Panel:
+    """Clearance between the springs over the travel of the seats."""
+    travel = columns["seat_height_mm"][0] - columns["seat_height_mm"]
+    finding = f"The clearance between the springs is {_length(summary['clearance_min_mm'], 2)} or more"
+    return Panel(
+        "clearance",
+        finding,
+        f"{finding}. Smallest radial clearance between outer and inner wire over the travel of the seats.",
+        [curve(travel, columns["clearance_mm"], 2, marker=5, showlegend=False)],
+        {"xaxis": axis("travel of the seats, mm"), "yaxis": axis("clearance, mm", rangemode="tozero")},
+        height=440,
+    )
+
+
+def view(runs: Mapping[str, Run]) -> Panel:
+    """Both springs in 3D, free, pressed the most and released, on one scale of stress."""
+    shapes = [_surfaces(run) for run in runs.values()]
+    greatest = max(float(np.abs(stress).max()) for _, stress in shapes)
+    end = round_end(greatest)
+    traces: list[Trace] = []
+    for places, stress in shapes:
+        for number in range(len(STATES)):
+            traces.append(
+                {
+                    "type": "surface",
+                    "cmin": -end,
+                    "cmax": end,
+                    "colorscale": DIVERGING,
+                    "showscale": not traces,
+                    "colorbar": {"title": {"text": "MPa"}, "thickness": 14, "len": 0.8},
+                    "lighting": {"ambient": 0.75, "diffuse": 0.5, "specular": 0.1},
+                    "hovertemplate": "%{surfacecolor:.0f} MPa<br>height %{z:.1f} mm<extra></extra>",
+                    "meta": {"choice": number},
+                    "surfacecolor": stress[number],
+                    **dict(zip("xyz", np.moveaxis(places[number], -1, 0), strict=True)),
+                }
+            )
+    for number in range(len(STATES)):  # one scale for each state, of the outer spring, or of the only one
+        traces[number]["showscale"] = True
+    corners = np.concatenate([places.reshape(-1, 3) for places, _ in shapes])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    scene = {f"{name}axis": axis(f"{name}, mm", range=[low[k], high[k]]) for k, name in enumerate("xyz")}
+    away = max(1.0, float(high[2] - low[2]) / float(np.ptp(corners[:, 0])))
+    eye = {"x": 1.3 * away, "y": -1.3 * away, "z": 0.5 * away}
+    return Panel(
+        "springs",
+        f"The shear stress on the wires' surfaces reaches {said(greatest, 'MPa')}",
+        f"Both springs in three dimensions, free, pressed the most and released, coloured by the shear stress about "
+        f"the wire's axis on the surface from {-end:g} to {end:g} MPa.",
+        traces,
+        {"scene": {**scene, "aspectmode": "data", "camera": {"eye": eye}}, "margin": {"l": 0, "r": 0, "t": 0, "b": 0}},
+        choices=STATES,
+        choice="state",
+        height=520,
+        note="Red is sheared with the load, blue against it. Drag to rotate, scroll or pinch to zoom.",
+    )
+
+
+def _surfaces(run: Run) -> tuple[np.ndarray, np.ndarray]:
+    """Surface and stress of a spring in the three states, its lowest point at height 0."""
+    shown = moments(run)
+    pressed = int(np.argmin([np.ptp(x[:, 2]) for x in shown.x]))
+    rings = min(2 * (run.data.sizes["station"] - 1), RINGS) + 1
+    places, stress = closed(*tubes(run, shown, rings))
+    kept = [0, pressed, len(shown.labels) - 1]
+    places = places[kept].copy()
+    places[..., 2] -= places[..., 2].min(axis=(1, 2))[:, None, None]
+    return places, stress[kept]

@@ -1,0 +1,5 @@
+"use strict";
+(async () => {
+  page.showNamed((await page.begin()).figures);
+  page.ready();
+})();
