@@ -1,6 +1,8 @@
 """Files of a search: found.yaml, design.json and trade_offs.csv."""
 
+import copy
 import json
+import os
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -32,6 +34,23 @@ HEAD = (
 def found_data(found: Found) -> dict[str, Any]:
     """Raw data of the case found; `coilset solve` accepts it as a file."""
     return found.search.evaluator.data(found.x, found.search.plan)
+
+
+def with_files(data: dict[str, Any], folder: Path) -> dict[str, Any]:
+    """The case with copies, in the folder, of the files that it names by absolute paths, so that it runs elsewhere.
+
+    Raises:
+        CoilsetError: if one cannot be copied.
+    """
+    data = copy.deepcopy(data)
+    for place, entry in ((data, "material"), (data.get("spring", {}), "file")):
+        named = place.get(entry)
+        if isinstance(named, str) and os.path.isabs(named):
+            source = Path(named)
+            with whole(folder / source.name) as path:
+                path.write_bytes(source.read_bytes())
+            place[entry] = source.name
+    return data
 
 
 def report(design: Design, solution: Solution, rows: Sequence[TradeOff], seconds: float) -> dict[str, Any]:
@@ -123,9 +142,8 @@ def write(folder: Path, design: Design, solution: Solution, rows: Sequence[Trade
     found, search = solution.found, solution.found.search
     words = ", ".join(f"{name} = {value:.9g}" for name, value in zip(search.evaluator.names, found.x, strict=True))
     with whole(folder / "found.yaml") as path:
-        data = yaml.safe_dump(
-            found_data(found), sort_keys=False, allow_unicode=True, default_flow_style=None, width=120
-        )
+        case = with_files(found_data(found), folder)
+        data = yaml.safe_dump(case, sort_keys=False, allow_unicode=True, default_flow_style=None, width=120)
         path.write_text(HEAD.format(file=design.file.name, found=words) + data, encoding="utf-8")
     names, rest = search.evaluator.names, ("off", "possible", "wire_length_mm", "free_length_before_mm", "torque")
     write_table(

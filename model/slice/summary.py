@@ -7,52 +7,11 @@ import numpy as np
 
 from coilset.model.base.warning import Warning
 from coilset.model.results.files.folder import write_table
+from coilset.model.results.records.summary_entries import UNSEEN
 from coilset.model.results.records.warnings import beyond_validity
 from coilset.model.slice.analysis import SliceAnalysis, SliceSnapshot, SliceStep
 from coilset.model.slice.watch import equivalent, shear
 from coilset.model.standards.case_warnings import case_warnings
-
-# Entries of a spring's summary that a single section, whose axis cannot bend, does not have or gives differently:
-# its stresses at the surface are in `loaded` and `released`.
-UNSEEN = (
-    "releases",
-    "residual_shear_inside_turn",
-    "unstable_steps",
-    "buckled",
-    "buckling_travel_mm",
-    "buckling_force_N",
-    "buckling_travel_EN_13906_1_mm",
-    "residual_shear_ends_max_MPa",
-    "residual_shear_ends_max_turn",
-    "residual_shear_ends_max_angle_deg",
-    "residual_shear_surface_max_MPa",
-    "residual_shear_surface_max_turn",
-    "residual_shear_surface_max_angle_deg",
-    "residual_equivalent_surface_max_MPa",
-    "residual_equivalent_surface_max_turn",
-    "residual_equivalent_surface_max_angle_deg",
-    "shear_surface_max_MPa",
-    "shear_surface_max_turn",
-    "shear_surface_max_angle_deg",
-    "equivalent_surface_max_MPa",
-    "equivalent_surface_max_turn",
-    "equivalent_surface_max_angle_deg",
-    "evaluations",
-    "failed_solves",
-    "section_kind",
-    "rate_30_70_N_per_mm",
-    "rate_30_70_after_N_per_mm",
-    "rates",
-    "plastic_work_max_turn",
-    "plastic_work_max_angle_deg",
-    "lift_off_max_mm",
-    "estimated_force_error_N",
-    "estimated_set_error_mm",
-    "load_loss_percent",
-    "coiling_diameter_mm",
-    "measured_axis_offset_mm",
-    "measured_axis_tilt_deg",
-)
 
 
 def summarise(analysis: SliceAnalysis) -> dict:

@@ -10,60 +10,10 @@ from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag,
 from scipy import stats
 
 from coilset.model.base.entry import Strict, Whole, shortened
+from coilset.model.results.records.summary_entries import NUMBERS
 
 LISTED = 8  # maximum number of names in a message
-# numbers of a case's summary, and its duration
-RESPONSES = (
-    "free_length_before_mm",
-    "free_length_after_mm",
-    "set_mm",
-    "rate_N_per_mm",
-    "rate_30_70_N_per_mm",
-    "rate_30_70_after_N_per_mm",
-    "force_max_N",
-    "block_height_mm",
-    "plastic_work_max_N_per_mm2",
-    "plastic_work_max_turn",
-    "plastic_work_max_angle_deg",
-    "plastic_work_known_to_N_per_mm2",
-    "lift_off_max_mm",
-    "residual_shear_max_MPa",
-    "shear_max_MPa",
-    "shear_inside_max_MPa",
-    "residual_shear_inside_MPa",
-    "residual_shear_ends_max_MPa",
-    "residual_shear_ends_max_turn",
-    "residual_shear_ends_max_angle_deg",
-    "shear_surface_max_MPa",
-    "shear_surface_max_turn",
-    "shear_surface_max_angle_deg",
-    "equivalent_surface_max_MPa",
-    "equivalent_surface_max_turn",
-    "equivalent_surface_max_angle_deg",
-    "residual_shear_surface_max_MPa",
-    "residual_shear_surface_max_turn",
-    "residual_shear_surface_max_angle_deg",
-    "residual_equivalent_surface_max_MPa",
-    "residual_equivalent_surface_max_turn",
-    "residual_equivalent_surface_max_angle_deg",
-    "estimated_force_error_N",
-    "estimated_set_error_mm",
-    "load_loss_percent",
-    "coiling_diameter_mm",
-    "residual_shear_inside_turn",
-    "measured_axis_offset_mm",
-    "measured_axis_tilt_deg",
-    "steps",
-    "iterations",
-    "evaluations",
-    "failed_solves",
-    "unstable_steps",
-    "buckling_travel_mm",
-    "buckling_force_N",
-    "buckling_travel_EN_13906_1_mm",
-    "elements",
-    "seconds",
-)
+RESPONSES = (*NUMBERS, "seconds")  # of a case's summary, and its duration
 
 
 def are_numbers(values: Sequence[Any]) -> bool:

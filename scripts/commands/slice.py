@@ -21,6 +21,11 @@ from coilset.scripts.terminal.console import Console
 from coilset.scripts.terminal.step_words import HEAD, quantity, step_row
 from coilset.scripts.terminal.target import results_folder
 
+NOTE = (
+    "a slice has no ends: seats, coils that close one after another and bending of the axis are not included, so near "
+    "block its force differs from that of solve (docs/slice.md)"
+)
+
 
 def slice_case(
     case_file: str | Path,
@@ -112,6 +117,7 @@ def _conclude(console: Console, summary: dict[str, Any], out: Path) -> None:
     table.add_row("maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2))
     table.add_row("residual shear stress, inside of coil", quantity(summary["residual_shear_inside_MPa"], "MPa", 2))
     console.print(table)
+    console.say(NOTE)
     console.say(f"  results in {out}{os.sep}", whole=True)
     for warning in summary["warnings"]:
         console.warn(warning["message"])

@@ -72,7 +72,8 @@ def show() -> None:
 
 def _run(case: registry.Case, folder: Path, console: Console) -> Study:
     """The Study of a case, written."""
-    console.rule(f"[bold]{case.name}[/]: {case.title}", align="left")
+    length = "" if case.fast else " (slow: up to several minutes)"
+    console.rule(f"[bold]{case.name}[/]: {case.title}{length}", align="left")
     study, began = Study(folder), time.perf_counter()
     try:
         case.run(study)

@@ -11,6 +11,7 @@ from coilset.model.case import read_case
 from coilset.model.results.files.dataset import point_state
 from coilset.model.results.records.record import SeatReaction, SeatReactions, Step
 from coilset.model.results.records.summary import summarise
+from coilset.model.results.records.summary_entries import Summary
 from coilset.model.run.analysis import Analysis
 
 PAGE = (Path(__file__).resolve().parents[2] / "docs/reference/results.md").read_text(encoding="utf-8")
@@ -44,7 +45,12 @@ def test_seats(run):
 
 
 def test_summary(run):
-    assert sorted(rows("summary.json")) == sorted(summarise(*run))
+    """Names, units and meanings are those of Summary; the page adds links only."""
+    section = re.split(r"^## ", PAGE.partition("\n## summary.json\n")[2], flags=re.MULTILINE)[0]
+    table = re.findall(r"^\| `(\w+)` \| (?:(\S+) )?\| (.*) \|$", section, re.MULTILINE)
+    page = [(name, unit, re.sub(r" \(\[[^]]*\]\([^)]*\)\)", "", text)) for name, unit, text in table]
+    assert page == [(item.name, item.metadata["unit"], item.metadata["text"]) for item in fields(Summary)]
+    assert list(summarise(*run)) == [item.name for item in fields(Summary)]
 
 
 def test_points(run):

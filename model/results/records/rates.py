@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import dropwhile
+from typing import Any
 
 import numpy as np
 
@@ -18,15 +19,18 @@ def first_compression(steps: Sequence[Step]) -> tuple[np.ndarray, np.ndarray]:
     return _ascending([(step.travel_mm, step.force_N) for step in pressed])
 
 
-def finished(steps: Sequence[Step], phase: int, height: float) -> tuple[np.ndarray, np.ndarray]:
+def finished(steps: Sequence[Step], phase: int, height: float, whole: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
     """Travel, mm, and force, N, of the finished spring, after a release that ended at a seat height, mm.
 
-    Those of the compression after the released phase where one follows, else those of the release, backwards.
+    Those of the compression after the released phase, if it covers what `makers_rate` needs of the travel `whole` to
+    block; else those of the release, backwards.
     """
     before = [step for step in steps if step.phase <= phase]
     later = [step for step in steps if step.phase > phase]
-    path = later if later else list(reversed(before[:-1]))
-    return _ascending([(height - step.seat_height_mm, step.force_N) for step in path])
+    compression, release = (
+        _ascending([(height - step.seat_height_mm, step.force_N) for step in path]) for path in (later, before[-2::-1])
+    )
+    return compression if later and compression[0][-1] >= MAKERS[1] * whole else release
 
 
 def _ascending(points: Sequence[tuple[float, float]]) -> tuple[np.ndarray, np.ndarray]:
@@ -65,7 +69,7 @@ def rate_at(travel: np.ndarray, force: np.ndarray, at: float) -> float | None:
     return float(np.polyval(np.polyder(np.polyfit(travel[near] - at, force[near], 2)), 0.0))
 
 
-def rates(setup: Setup, result: Result, release: Release | None) -> dict[str, object]:
+def rates(setup: Setup, result: Result, release: Release | None) -> dict[str, Any]:
     """Entries of the summary: the rate between 30 and 70 % of the travel to block, and the requested rates.
 
     Args:
@@ -77,16 +81,16 @@ def rates(setup: Setup, result: Result, release: Release | None) -> dict[str, ob
     block, after = setup.spring.block_height, None
     if release is not None:
         height = release.snapshot.height
-        after = makers_rate(*finished(result.steps, release.phase, height), height - block)
+        after = makers_rate(*finished(result.steps, release.phase, height, height - block), height - block)
     return {
         "rate_30_70_N_per_mm": makers_rate(travel, force, setup.spring.free_length - block),
         "rate_30_70_after_N_per_mm": after,
-        "rates": [
+        "rates": tuple(
             {
                 "travel_mm": at,
                 "force_N": float(np.interp(at, travel, force)) if at <= travel[-1] else None,
                 "rate_N_per_mm": rate_at(travel, force, at),
             }
             for at in setup.rates_at
-        ],
+        ),
     }

@@ -11,66 +11,73 @@ from coilset.model.results.records.buckling import buckling
 from coilset.model.results.records.rates import rates
 from coilset.model.results.records.record import Result, Setup, Snapshot
 from coilset.model.results.records.releases import Release, releases
+from coilset.model.results.records.summary_entries import Summary
 from coilset.model.results.records.warnings import run_warnings
 from coilset.model.section import surface
 
 
 def summarise(setup: Setup, result: Result) -> dict[str, Any]:
-    """Summary of a run as plain numbers, with units in the names; unknown values (no release, no block) are None.
+    """The Summary of a run as plain data, as in summary.json; see `summary`."""
+    plain = asdict(summary(setup, result))
+    return {name: list(value) if isinstance(value, tuple) else value for name, value in plain.items()}
 
-    Free length, set and residual stress are those after the last release, also if the spring is loaded again.
+
+def summary(setup: Setup, result: Result) -> Summary:
+    """The summary of a run; free length, set and residual stress are those after the last release.
 
     Args:
         setup: Setup.
         result: Result, complete or not; its snapshots are complete on rank 0 only.
     """
-    forces = [step.force_N for step in result.steps]
-    greatest = max(forces, default=0.0, key=abs)
     freed = releases(setup, result)
     release = freed[-1] if freed else None
-    last = None if release is None else release.snapshot
-    axis = setup.spring.measured_axis
-    before, buckled = setup.spring.free_length, buckling(result.steps, setup.mean_diameter)
-    return {
-        "complete": result.complete,
-        "free_length_before_mm": before,
-        "free_length_after_mm": None if release is None else release.free_length,
-        "set_mm": None if release is None else release.set,
-        "releases": [_release(one) for one in freed],
-        "rate_N_per_mm": result.rate if isfinite(result.rate) else None,
+    shot = release.snapshot if release else None
+    residual = shear_peak(setup, shot) if shot else None
+    inside, inside_turn = shear_inside(setup, shot) if shot else (None, None)
+    axis, buckled = setup.spring.measured_axis, buckling(result.steps, setup.mean_diameter)
+    return Summary(
+        complete=result.complete,
+        free_length_before_mm=setup.spring.free_length,
+        free_length_after_mm=release.free_length if release else None,
+        set_mm=release.set if release else None,
+        releases=tuple(_release(one) for one in freed),
+        rate_N_per_mm=result.rate if isfinite(result.rate) else None,
         **rates(setup, result, release),
-        "force_max_N": greatest,
-        "block_height_mm": setup.spring.block_height,
-        "residual_shear_max_MPa": None if last is None else shear_peak(setup, last).value,
-        "shear_max_MPa": max(shear_peak(setup, shot).value for shot in result.snapshots),
-        **ends_peak(setup, last),
-        **inside(setup, last),
-        "shear_inside_max_MPa": max(shear_inside(setup, shot)[0] for shot in result.snapshots),
-        **peaks(setup, "residual_", [] if last is None else [last]),
+        force_max_N=max((step.force_N for step in result.steps), default=0.0, key=abs),
+        block_height_mm=setup.spring.block_height,
+        residual_shear_max_MPa=residual.value if residual else None,
+        residual_shear_max_turn=residual.turn if residual else None,
+        residual_shear_max_angle_deg=residual.angle if residual else None,
+        shear_max_MPa=max(shear_peak(setup, one).value for one in result.snapshots),
+        **ends_peak(setup, shot),
+        residual_shear_inside_MPa=inside,
+        residual_shear_inside_turn=inside_turn,
+        shear_inside_max_MPa=max(shear_inside(setup, one)[0] for one in result.snapshots),
+        **peaks(setup, "residual_", [shot] if shot else []),
         **peaks(setup, "", result.snapshots),
         **plastic_work(setup, result),
         **step_errors(result, release),
-        "load_loss_percent": load_loss(result),
-        "coiling_diameter_mm": setup.coiling_diameter,
-        "measured_axis_offset_mm": axis.offset if axis else None,
-        "measured_axis_tilt_deg": axis.tilt if axis else None,
-        "steps": len(result.steps),
-        "iterations": sum(step.iterations for step in result.steps),
-        "evaluations": sum(step.evaluations for step in result.steps),
-        "failed_solves": sum(step.failed_solves for step in result.steps),
-        "material": setup.material,
-        "ends": setup.ends,
-        "unstable_steps": sum(step.negative_pivots > 0 for step in result.steps),
-        "buckled": buckled is not None,
-        "buckling_travel_mm": buckled and buckled.travel_mm,
-        "buckling_force_N": buckled and buckled.force_N,
-        "buckling_travel_EN_13906_1_mm": setup.buckling_travel if isfinite(setup.buckling_travel) else None,
-        "elements": len(setup.turns) - 1,
-        "section_kind": setup.section_kind,
-        "section_rule": setup.rule.name,
-        "lift_off_max_mm": max((step.lift_off_mm for step in result.steps), default=0.0),
-        "warnings": [asdict(warning) for warning in run_warnings(setup, result)],
-    }
+        load_loss_percent=load_loss(result),
+        coiling_diameter_mm=setup.coiling_diameter,
+        measured_axis_offset_mm=axis.offset if axis else None,
+        measured_axis_tilt_deg=axis.tilt if axis else None,
+        steps=len(result.steps),
+        iterations=sum(step.iterations for step in result.steps),
+        evaluations=sum(step.evaluations for step in result.steps),
+        failed_solves=sum(step.failed_solves for step in result.steps),
+        material=setup.material,
+        ends=setup.ends,
+        unstable_steps=sum(step.negative_pivots > 0 for step in result.steps),
+        buckled=buckled is not None,
+        buckling_travel_mm=buckled.travel_mm if buckled else None,
+        buckling_force_N=buckled.force_N if buckled else None,
+        buckling_travel_EN_13906_1_mm=setup.buckling_travel if isfinite(setup.buckling_travel) else None,
+        elements=len(setup.turns) - 1,
+        section_kind=setup.section_kind,
+        section_rule=setup.rule.name,
+        lift_off_max_mm=max((step.lift_off_mm for step in result.steps), default=0.0),
+        warnings=tuple(run_warnings(setup, result)),
+    )
 
 
 def load_loss(result: Result) -> float | None:
@@ -81,14 +88,14 @@ def load_loss(result: Result) -> float | None:
 
 def _release(release: Release) -> dict[str, Any]:
     return {
-        "phase": release.phase,
-        "name": release.snapshot.name,
+        "phase": release.phase + 1,
+        "step": release.step.number,
         "free_length_mm": release.free_length,
         "set_mm": release.set,
     }
 
 
-def step_errors(result: Result, release: Release | None) -> dict[str, float | None]:
+def step_errors(result: Result, release: Release | None) -> dict[str, Any]:
     """Errors due to the step size: of the maximum force, and of the set."""
     top = max(result.steps, key=lambda step: abs(step.force_N), default=None)
     return {
@@ -115,7 +122,7 @@ def shear_peak(setup: Setup, snapshot: Snapshot, ends: bool = False) -> surface.
     return surface.peak(stress[among], setup.section_turns[among], setup.inside)
 
 
-def ends_peak(setup: Setup, snapshot: Snapshot | None) -> dict[str, float | None]:
+def ends_peak(setup: Setup, snapshot: Snapshot | None) -> dict[str, Any]:
     """The maximum residual shear on the ends' surface, MPa, its turn and its angle from the coil's inside, degrees.
 
     None before the release, and of half a turn or less, all of which is its middle.
@@ -140,13 +147,7 @@ def shear_inside(setup: Setup, snapshot: Snapshot) -> tuple[float, float]:
     return float(middle[at]), float(setup.section_turns[among][at])
 
 
-def inside(setup: Setup, snapshot: Snapshot | None) -> dict[str, float | None]:
-    """Residual shear at the inside of the coil, MPa, and the turn where it is; None before a release."""
-    value, turn = (None, None) if snapshot is None else shear_inside(setup, snapshot)
-    return {"residual_shear_inside_MPa": value, "residual_shear_inside_turn": turn}
-
-
-def peaks(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, float | None]:
+def peaks(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str, Any]:
     """The maximum shear and equivalent stress on the surface in the snapshots, MPa, and where: turn, and angle from
     the inside of the coil, degrees; None without snapshots."""
     found = {}
@@ -161,7 +162,7 @@ def peaks(setup: Setup, prefix: str, snapshots: Sequence[Snapshot]) -> dict[str,
     return found
 
 
-def plastic_work(setup: Setup, result: Result) -> dict[str, float | None]:
+def plastic_work(setup: Setup, result: Result) -> dict[str, Any]:
     """The maximum plastic work b* on the surface, where it is, and up to which the material's constants are valid."""
     tops = [
         surface.peak(surface.component(shot.surface_state, shot.components, "b"), setup.section_turns, setup.inside)

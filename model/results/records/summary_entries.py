@@ -1,0 +1,166 @@
+"""The entries of a run's summary: name, unit and meaning, from which responses of sweeps and tables derive."""
+
+from dataclasses import dataclass, field, fields
+from types import UnionType
+from typing import Any, get_args
+
+from coilset.model.base.warning import Warning
+
+
+def entry(unit: str, text: str, of_slice: bool = True) -> Any:
+    """A field of the summary.
+
+    Args:
+        unit: its unit; empty for counts, words and lists.
+        text: its meaning, in Markdown.
+        of_slice: whether the helical slice, a single section whose axis cannot bend, computes it too. Its stresses at
+            the surface are in `loaded` and `released`.
+    """
+    return field(metadata={"unit": unit, "text": text, "of_slice": of_slice})
+
+
+@dataclass(frozen=True)
+class Summary:
+    """The main numbers of a run, in the order of summary.json; what is unknown (no release, no block) is None."""
+
+    complete: bool = entry("", "whether the run went through its whole load program")
+    free_length_before_mm: float = entry("mm", "outer length of the unloaded spring")
+    free_length_after_mm: float | None = entry(
+        "mm", "outer length after the last release to zero force; `null` if there was none"
+    )
+    set_mm: float | None = entry("mm", "their difference")
+    releases: tuple[dict[str, Any], ...] = entry(
+        "",
+        "after each release to zero force: its `phase` (from 1 on) and `step`, `free_length_mm` and `set_mm`",
+        of_slice=False,
+    )
+    rate_N_per_mm: float | None = entry("N/mm", "initial rate, of the unloaded spring between its ends")
+    rate_30_70_N_per_mm: float | None = entry(
+        "N/mm",
+        "of the first compression, force over travel between 30 and 70 % of the travel to block, as manufacturers "
+        "measure it; `null` if the travel did not reach that far",
+        of_slice=False,
+    )
+    rate_30_70_after_N_per_mm: float | None = entry(
+        "N/mm",
+        "the same of the finished spring: for the compression after the last release if it reaches so far, else for "
+        "the release itself; "
+        "travel counts from the free length after it",
+        of_slice=False,
+    )
+    rates: tuple[dict[str, Any], ...] = entry(
+        "",
+        "at the travels of the case's `rates_at`: `travel_mm`, `force_N`, and `rate_N_per_mm`, the slope of the "
+        "first compression there by a parabola through three steps",
+        of_slice=False,
+    )
+    force_max_N: float = entry("N", "the force of largest magnitude in any step")
+    block_height_mm: float = entry("mm", "height at which each coil lies on the next, by geometry")
+    residual_shear_max_MPa: float | None = entry(
+        "MPa",
+        "maximum shear stress on the wire's surface after release, in the middle turns: a turn from the tips, or "
+        "from the end coils of closed ends",
+    )
+    residual_shear_max_turn: float | None = entry("turns", "at which turn from the bottom tip", of_slice=False)
+    residual_shear_max_angle_deg: float | None = entry(
+        "degrees", "at which angle from the inside of the coil", of_slice=False
+    )
+    shear_max_MPa: float = entry("MPa", "the same at any of the snapshots")
+    residual_shear_ends_max_MPa: float | None = entry(
+        "MPa",
+        "maximum shear stress on the surface of the ends, outside the middle turns, after release",
+        of_slice=False,
+    )
+    residual_shear_ends_max_turn: float | None = entry("turns", "at which turn from the bottom tip", of_slice=False)
+    residual_shear_ends_max_angle_deg: float | None = entry(
+        "degrees", "at which angle from the inside of the coil", of_slice=False
+    )
+    residual_shear_inside_MPa: float | None = entry(
+        "MPa",
+        "shear stress on the surface at the inside of the coil after release, in the middle turns; positive as in "
+        "a compressed spring",
+    )
+    residual_shear_inside_turn: float | None = entry("turns", "at which turn from the bottom tip", of_slice=False)
+    shear_inside_max_MPa: float = entry("MPa", "maximum shear stress at the inside over the snapshots")
+    residual_shear_surface_max_MPa: float | None = entry(
+        "MPa", "maximum shear stress on the whole surface of the wire after release", of_slice=False
+    )
+    residual_shear_surface_max_turn: float | None = entry("turns", "at which turn from the bottom tip", of_slice=False)
+    residual_shear_surface_max_angle_deg: float | None = entry(
+        "degrees", "at which angle from the inside of the coil", of_slice=False
+    )
+    residual_equivalent_surface_max_MPa: float | None = entry("MPa", "maximum von Mises stress there", of_slice=False)
+    residual_equivalent_surface_max_turn: float | None = entry("turns", "its turn", of_slice=False)
+    residual_equivalent_surface_max_angle_deg: float | None = entry("degrees", "its angle", of_slice=False)
+    shear_surface_max_MPa: float | None = entry(
+        "MPa", "maximum shear stress on the surface at any of the snapshots", of_slice=False
+    )
+    shear_surface_max_turn: float | None = entry("turns", "its turn", of_slice=False)
+    shear_surface_max_angle_deg: float | None = entry("degrees", "its angle", of_slice=False)
+    equivalent_surface_max_MPa: float | None = entry(
+        "MPa", "maximum von Mises stress on the surface at any of the snapshots", of_slice=False
+    )
+    equivalent_surface_max_turn: float | None = entry("turns", "its turn", of_slice=False)
+    equivalent_surface_max_angle_deg: float | None = entry("degrees", "its angle", of_slice=False)
+    plastic_work_max_N_per_mm2: float = entry("N/mm²", "maximum plastic work b* on the surface")
+    plastic_work_max_turn: float | None = entry("turns", "its turn", of_slice=False)
+    plastic_work_max_angle_deg: float | None = entry("degrees", "its angle", of_slice=False)
+    plastic_work_known_to_N_per_mm2: float = entry("N/mm²", "limit up to which the constants of the material are valid")
+    estimated_force_error_N: float | None = entry(
+        "N",
+        "error of the maximum force due to the step size: true value minus result; empty with `accuracy: none`",
+        of_slice=False,
+    )
+    estimated_set_error_mm: float | None = entry("mm", "the same in the set", of_slice=False)
+    load_loss_percent: float | None = entry(
+        "%",
+        "part of its force that the spring had lost when time last passed at constant height; `null` if none did",
+        of_slice=False,
+    )
+    coiling_diameter_mm: float | None = entry(
+        "mm",
+        "mean diameter to which the wire was coiled at mid-wire, before it sprang back to the drawing; `null` "
+        "without `spring.made_by: coiling`",
+        of_slice=False,
+    )
+    measured_axis_offset_mm: float | None = entry(
+        "mm",
+        "distance of a measured spring's fitted axis from the z axis of its file, at half height; `null` for a drawn "
+        "spring",
+        of_slice=False,
+    )
+    measured_axis_tilt_deg: float | None = entry("degrees", "angle between the two", of_slice=False)
+    steps: int = entry("", "converged steps")
+    iterations: int = entry("", "iterations of the solves that found them")
+    evaluations: int = entry("", "states evaluated, including those of line searches and failed solves", of_slice=False)
+    failed_solves: int = entry("", "solves without an equilibrium, which were followed by others", of_slice=False)
+    material: str = entry("", "name of the law")
+    ends: str = entry("", "`seats` or `clamped`")
+    unstable_steps: int = entry("", "steps that ended in an unstable state", of_slice=False)
+    buckled: bool = entry("", "whether the spring left its axis", of_slice=False)
+    buckling_travel_mm: float | None = entry("mm", "travel at which it did", of_slice=False)
+    buckling_force_N: float | None = entry("N", "force at which it did", of_slice=False)
+    buckling_travel_EN_13906_1_mm: float | None = entry(
+        "mm", "travel at which it should by EN 13906-1; `null` if never", of_slice=False
+    )
+    elements: int = entry("", "rods along the wire")
+    section_kind: str = entry("", "`plane`, `curved` or `warping`", of_slice=False)
+    section_rule: str = entry("", "quadrature of the section")
+    lift_off_max_mm: float = entry(
+        "mm", "maximum distance between the wire and a seat it has lifted off", of_slice=False
+    )
+    warnings: tuple[Warning, ...] = entry(
+        "",
+        "a list: each has a `name`, the `place` that it is about, a `message`, and `value`, `limit` and `unit` "
+        "where there are numbers",
+    )
+
+
+def _is_number(kind: Any) -> bool:
+    """Whether a field holds a number, or one that may be missing."""
+    return kind in (int, float) or (isinstance(kind, UnionType) and float in get_args(kind))
+
+
+NUMBERS = tuple(item.name for item in fields(Summary) if _is_number(item.type))
+UNSEEN = tuple(item.name for item in fields(Summary) if not item.metadata["of_slice"])
+"""Entries that a slice does not compute."""
