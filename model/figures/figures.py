@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from coilset.model.base.style import DIVERGING, STYLE, levels
+from coilset.model.figures.curve import compressed, element_at, smooth
 from coilset.model.figures.rings import ROUND, FilledSection
 from coilset.model.results.files.folder import whole
 from coilset.model.results.records.labels import in_legend, named_phases, plain, unnamed
@@ -65,13 +66,14 @@ def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapp
             travel = [travel[-1]] + [step.travel_mm for step in steps]
             force = [force[-1]] + [step.force_N for step in steps]
             colour = f"C{number}" if number < NAMED else REST
-            axes.plot(travel, force, "o-", ms=3, lw=1.3, color=colour, label=name and in_legend(name))
+            axes.plot(*smooth(travel, force), lw=1.3, color=colour, label=name and in_legend(name))
+            axes.plot(travel, force, "o", ms=2, color=colour)
         if more := unnamed(setup.phases, NAMED):
             axes.plot([], [], "o-", ms=3, lw=1.3, color=REST, label=more)
         greatest = max(abs(summary["force_max_N"]), 1e-300)
         block = summary["free_length_before_mm"] - summary["block_height_mm"]
         if (rate := summary["rate_N_per_mm"]) is not None:
-            end = min(greatest / rate, max([block, *(abs(step.travel_mm) for step in result.steps)]))
+            end = min(greatest / rate, max(abs(step.travel_mm) for step in result.steps) if result.steps else block)
             end = np.copysign(end, summary["force_max_N"])
             axes.plot([0, end], [0, rate * end], "k:", lw=0.9, label=f"initial rate {rate:.4g} N/mm")
         axes.axvline(block, color="0.6", lw=0.8, ls="--", label=f"block, {summary['block_height_mm']:.4g} mm high")
@@ -80,9 +82,9 @@ def characteristic(path: str | Path, setup: Setup, result: Result, summary: Mapp
             axes.annotate("", (0, 0), (set_mm, 0), arrowprops={"arrowstyle": "<->", "lw": 0.9, "color": "0.3"})
             axes.annotate(
                 _changed(set_mm, "set"),
-                (0.5 * set_mm, 0.02 * greatest),
-                va="bottom",
-                ha="right" if summary["force_max_N"] < 0.0 else "center",
+                (0.5 * set_mm, -0.025 * greatest if summary["force_max_N"] > 0.0 else 0.025 * greatest),
+                va="top" if summary["force_max_N"] > 0.0 else "bottom",
+                ha="center",
                 bbox={"fc": "w", "ec": "none", "pad": 0.5, "alpha": 0.8},
             )
         axes.set(xlabel="travel in mm", ylabel="axial force in N", title=broken(figure, _found(summary), LARGE))
@@ -102,8 +104,8 @@ def _found(summary: Mapping[str, Any]) -> str:
         sets = f", the spring {_changed(set_mm, 'sets', 'stays ')}"
     elif lost is not None:
         sets = f", the spring loses {plain(lost)} % of its load"
-    way = "Pulled" if summary["force_max_N"] < 0.0 else "Pressed"
-    return f"{way} with up to {plain(abs(summary['force_max_N']))} N{sets} ({summary['material']})"
+    force = summary["force_max_N"]
+    return f"{compressed(force)} with up to {plain(abs(force))} N{sets} ({summary['material']})"
 
 
 def _changed(set_mm: float, word: str, longer: str = "") -> str:
@@ -112,17 +114,24 @@ def _changed(set_mm: float, word: str, longer: str = "") -> str:
     return f"{longer}{said[1:]} mm longer" if said.startswith("-") else f"{word} {said} mm"
 
 
-def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
-    """Stress over the cross-section at mid height, to the wire's surface: circumferential shear and normal stress."""
-    n = len(setup.turns) - 1
-    section, radius = FilledSection(setup.rule.points), setup.wire_radius[n // 2]
+def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot, turn: float | None) -> None:
+    """Stress over the cross-section at a turn, to the wire's surface: circumferential shear and normal stress.
+
+    Args:
+        path: PNG to write.
+        setup: Setup.
+        snapshot: Snapshot.
+        turn: that of the residual shear in the summary; None: the middle of the wire.
+    """
+    element = element_at(setup.turns, turn)
+    section, radius = FilledSection(setup.rule.points), setup.wire_radius[element]
     y, z = radius * section.places.T
     edge = np.concatenate([rim(ROUND), rim(1)])
 
     def stress(name: str) -> np.ndarray:
         column = snapshot.components.index(name)
         states = snapshot.point_state, snapshot.surface_state
-        return section.values(*(state[n // 2, ..., column].mean(axis=0) for state in states))
+        return section.values(*(state[element, ..., column].mean(axis=0) for state in states))
 
     around = section.shear_around(stress("t12"), stress("t13"), setup.inside)
     with mpl.rc_context(STYLE):
@@ -139,6 +148,7 @@ def cross_section(path: str | Path, setup: Setup, snapshot: Snapshot) -> None:
             figure.colorbar(shown, ax=axes, label="MPa", shrink=0.85)
         low, high = (plain(value, 2).replace("-", "−") for value in (around.min(), around.max()))
         figure.suptitle(
-            f"At {snapshot.name} the shear at mid height runs from {low} to {high} MPa; dots: section points"
+            f"At {snapshot.name} the shear at turn {0.5 * float(setup.turns[element : element + 2].sum()):.2f} runs "
+            f"from {low} to {high} MPa; dots: section points"
         )
         save(figure, path)

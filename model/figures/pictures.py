@@ -1,11 +1,11 @@
 """All pictures of a run, in parts that can be drawn in parallel; their libraries are loaded when they are needed."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from coilset.model.results.records.record import Result, Setup
+from coilset.model.results.records.record import Result, Setup, Snapshot
 
 MOST_SPRINGS = 4  # side by side in springs.png
 
@@ -38,7 +38,8 @@ def load_figures() -> tuple[Draw, ...]:
 
     def others(out: Path, run: Pictured) -> list[str]:
         figures.characteristic(out / "characteristic.png", run.setup, run.result, run.summary)
-        figures.cross_section(out / "cross_section.png", run.setup, run.result.snapshots[-1])
+        turn = run.summary["residual_shear_inside_turn"]
+        figures.cross_section(out / "cross_section.png", run.setup, run.result.snapshots[-1], turn)
         if run.result.steps:
             seat_figures.force_centre(out / "force_centre.png", run.setup, run.result)
         if run.result.mode is not None:
@@ -50,6 +51,18 @@ def load_figures() -> tuple[Draw, ...]:
     return others, pressure
 
 
+def shown(snapshots: Sequence[Snapshot]) -> list[Snapshot]:
+    """The snapshots of springs.png: the start, that of the greatest load, and the last ones, in their order."""
+    if len(snapshots) <= MOST_SPRINGS:
+        return list(snapshots)
+    loaded = max(range(len(snapshots)), key=lambda number: abs(snapshots[number].force))
+    chosen = {0, loaded}
+    for number in reversed(range(len(snapshots))):
+        if len(chosen) < MOST_SPRINGS:
+            chosen.add(number)
+    return [snapshots[number] for number in sorted(chosen)]
+
+
 def load_scene() -> tuple[Draw, ...]:
     """Load the libraries for springs.png, and start a virtual display if it needs one."""
     from coilset.model.figures import display, scene
@@ -59,10 +72,7 @@ def load_scene() -> tuple[Draw, ...]:
     def draw(out: Path, run: Pictured) -> list[str]:
         if not there:
             return ["springs.png is not drawn: there is no display and no Xvfb"]
-        shots = run.result.snapshots
-        if len(shots) > MOST_SPRINGS:
-            shots = (shots[0], *shots[1 - MOST_SPRINGS :])
-        scene.springs(out / "springs.png", shots, run.setup.wire_radius)
+        scene.springs(out / "springs.png", shown(run.result.snapshots), run.setup)
         return []
 
     return (draw,)

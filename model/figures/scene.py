@@ -9,12 +9,13 @@ import numpy as np
 import pyvista as pv
 import pyvista.plotting
 
-from coilset.model.base.style import QUARTERED, round_end
+from coilset.model.base.style import DIVERGING, ROUND, round_end
+from coilset.model.figures.wire import closed, surface
 from coilset.model.results.files.folder import whole
 from coilset.model.results.records.labels import plain
-from coilset.model.results.records.record import Snapshot
+from coilset.model.results.records.record import Setup, Snapshot
 
-POINTS_PER_ELEMENT = 6
+RINGS_PER_ELEMENT = 4
 WIDTH, LEAST_HEIGHT, MOST_HEIGHT = 1500, 620, 1500  # of the picture, pixels
 LABELS, BAR = 100, 130  # pixels above the springs and below them
 COLUMN = 320  # pixels per label
@@ -44,45 +45,41 @@ class Arrangement:
         return cls(max(LEAST_HEIGHT, round(seen * scale) + LABELS + BAR), scale, column)
 
 
-def tube(x: np.ndarray, radius: np.ndarray, values: np.ndarray, name: str) -> pv.PolyData:
-    """A smooth tube through the stations; `radius` and `values` per station, shape (n + 1,)."""
-    line = pv.Spline(x, POINTS_PER_ELEMENT * (len(x) - 1) + 1)
-    along = np.linspace(0.0, 1.0, line.n_points)
-    length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(x, axis=0), axis=1))])
-    line["radius"] = np.interp(along, length / length[-1], radius)
-    line[name] = np.interp(along, length / length[-1], values)
-    return line.tube(scalars="radius", absolute=True, n_sides=24)
-
-
-def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.ndarray) -> None:
-    """Draw the snapshots side by side, coloured by the maximum shear stress in each cross-section, surface included.
+def springs(path: str | Path, snapshots: Sequence[Snapshot], setup: Setup) -> None:
+    """Draw the snapshots side by side, coloured by the shear stress about the wire's axis on its surface.
 
     Args:
         path: PNG to write.
         snapshots: Snapshots from left to right.
-        wire_radius: of the elements, shape (n,), mm.
+        setup: Setup.
     """
-    name = "maximum shear stress in the section in MPa"
-    radius = 0.5 * (np.append(wire_radius, wire_radius[-1]) + np.append(wire_radius[0], wire_radius))
+    name = "shear stress on the surface in MPa, red with the load of compression"
+    radius = setup.wire_radius
+    rings = RINGS_PER_ELEMENT * len(radius) + 1
+    shears = [surface_shear(setup, shot) for shot in snapshots]
+    wires = [
+        surface(setup.turns, shot.x, radius, shear, setup.inside, rings)
+        for shot, shear in zip(snapshots, shears, strict=True)
+    ]
     x = np.concatenate([shot.x for shot in snapshots])
     low, high = float(x[:, 2].min() - radius.max()), float(x[:, 2].max() + radius.max())
     across = float(np.ptp(x[:, :2], axis=0).max()) + 2.0 * float(radius.max())
     aside = 0.5 * float(x[:, 0].min() + x[:, 0].max())  # a buckled spring deflects to one side
     view = Arrangement.of(across, high - low, len(snapshots))
-    end = round_end(max(float(s.shear.max()) for s in snapshots), QUARTERED)
+    end = round_end(max(float(np.abs(stress).max()) for _, stress in wires), ROUND)
     force = max(abs(shot.force) for shot in snapshots)
     middle = aside + 0.5 * view.column * (len(snapshots) - 1)
     plotter = pv.Plotter(off_screen=True, window_size=(WIDTH, view.height))
     plotter.set_background("white")
     for place, shot in enumerate(snapshots):
-        stress = shot.shear.max(axis=(1, 2))
-        values = 0.5 * (np.append(stress, stress[-1]) + np.append(stress[0], stress))
-        mesh = tube(shot.x + np.array([place * view.column, 0.0, 0.0]), radius, values, name)
+        places, stress = closed(*(one[None] for one in wires[place]))
+        mesh = pv.StructuredGrid(*np.moveaxis(places[0] + np.array([place * view.column, 0.0, 0.0]), -1, 0))
+        mesh[name] = stress[0].ravel(order="F")
         plotter.add_mesh(
             mesh,
             scalars=name,
-            clim=(0.0, end),
-            cmap="viridis",
+            clim=(-end, end),
+            cmap=DIVERGING,
             smooth_shading=True,
             scalar_bar_args=_bar(view, name),
         )
@@ -106,6 +103,11 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], wire_radius: np.nda
             plotter.screenshot(str(partial))
     finally:
         plotter.close()
+
+
+def surface_shear(setup: Setup, shot: Snapshot) -> np.ndarray:
+    """Shear stress about the wire's axis on its surface, mean of an element's sections, shape (n, angles), MPa."""
+    return setup.inside.shear_around(shot.surface_state, shot.components).mean(axis=1)
 
 
 def caption(shot: Snapshot, greatest: float) -> str:

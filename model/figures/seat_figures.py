@@ -25,12 +25,14 @@ DRAWN = {  # both curves of a symmetric spring stay visible
 LINES = ("-", "--", ":", "-.")  # of the phases' targets
 TURNS = (  # what is drawn of them: name in the records, words, line
     ("active_turns", "active", {"color": "C2", "lw": 1.0, "ms": 2.5}),
-    ("free_turns", "touching nothing", {"color": "0.5", "lw": 1.0, "ms": 2.5}),
+    ("free_turns", "without contact", {"color": "0.5", "lw": 1.0, "ms": 2.5}),
 )
 OVER_LINES: dict[str, Any] = {"frameon": True, "framealpha": 0.8, "edgecolor": "none"}  # legends where there is no room
 NAMED_STEPS = 12  # at most; of more, the places of nine are named
 FAINT = 0.02  # part of the maximum force below which a force centre says little and is not drawn
 REACH = 1.3  # of the picture, in coil radii
+CENTRED = 0.002  # of the coil radius: a force that passes nearer to the axis is centred
+NEAREST = 0.05  # of the coil radius: what a picture of force centres near the axis shows at least
 DECADES = 3  # of the pressure's colours
 LEAST_TURNS = 0.2  # shown from the tip on, even without contact
 
@@ -93,7 +95,7 @@ def force_centre(path: str | Path, setup: Setup, result: Result) -> None:
             aspect="equal",
             xlabel="x in mm",
             ylabel="y in mm",
-            title=_at_greatest(result, force),
+            title=_at_greatest(result, force, radius),
             xlim=(-REACH * radius, REACH * radius),
             ylim=(-REACH * radius, REACH * radius),
         )
@@ -101,11 +103,12 @@ def force_centre(path: str | Path, setup: Setup, result: Result) -> None:
         for end in ENDS:
             over.plot([], [], "-", marker="o", **DRAWN[end], label=f"{end} seat")
         name_styles(over, setup)
-        over.axhline(radius, color="0.6", lw=0.8, ls="--", label="coil radius at the tip")
+        if _reach(result, strong, radius) > radius:
+            over.axhline(radius, color="0.6", lw=0.8, ls="--", label="coil radius at the tip")
         over.set(
             xlabel="travel in mm",
             ylabel="distance of the force centre from the axis in mm",
-            ylim=(0.0, REACH * radius),
+            ylim=(0.0, _reach(result, strong, radius)),
             title=_farthest(result, strong),
         )
         over.legend(fontsize=7, **OVER_LINES)
@@ -114,12 +117,14 @@ def force_centre(path: str | Path, setup: Setup, result: Result) -> None:
         save(figure, path)
 
 
-def _at_greatest(result: Result, force: np.ndarray) -> str:
-    """Where the greatest force passes."""
+def _at_greatest(result: Result, force: np.ndarray, setup_radius: float) -> str:
+    """Where the greatest force passes; the coil's radius, mm, says what is centred."""
     step = int(np.argmax(force))
     if not force[step]:
         return "No force acts on the seats"
     away = max(getattr(result.seats[step], end).eccentricity_mm for end in ENDS)
+    if away < CENTRED * setup_radius:
+        return f"At {plain(float(force[step]))} N the force is centred within {_roughly(max(away, 0.001))} mm"
     return f"At {plain(float(force[step]))} N the force passes {_roughly(away)} mm beside the axis"
 
 
@@ -128,7 +133,13 @@ def _farthest(result: Result, strong: np.ndarray) -> str:
     if not strong.any():
         return ""
     away = max((column(result, end, "eccentricity_mm")[strong].max(initial=0.0) for end in ENDS), default=0.0)
-    return f"With {100 * FAINT:g} % of that or more, up to {_roughly(away)} mm"
+    return f"It passes up to {_roughly(away)} mm beside the axis"
+
+
+def _reach(result: Result, strong: np.ndarray, radius: float) -> float:
+    """How far from the axis the curves are shown, mm: as far as they go, up to REACH coil radii."""
+    away = max((column(result, end, "eccentricity_mm")[strong].max(initial=0.0) for end in ENDS), default=0.0)
+    return float(np.clip(1.15 * away, NEAREST * radius, REACH * radius))
 
 
 def _roughly(distance: float) -> str:
@@ -160,19 +171,19 @@ def seat_pressure(path: str | Path, setup: Setup, result: Result) -> None:
         for axes, (end, (kind, contact)) in zip(maps, seats.items(), strict=False):
             shown = draw_pressure(axes, result, kind, contact, greatest) or shown
             there = rows[rows[:, 0] == kind, 2].max(initial=0.0)
-            pressed = f"Up to {plain(there, 3)} N/mm press" if there else "Nothing presses"
-            axes.set_title(f"{pressed} the {end} seat")
+            pressure = f"up to {plain(there, 3)} N/mm" if there else "no contact"
+            axes.set_title(f"Pressure on the {end} seat: {pressure}")
         if shown is not None:
             figure.colorbar(shown, ax=maps, label="force per length of wire in N/mm", format="{x:g}")
         most = result.seats[int(np.argmax(np.abs([step.force_N for step in result.steps])))]
         _over_travel(
             lengths, setup, result, [(column(result, end, "length_mm"), f"{end} seat", DRAWN[end]) for end in seats]
         )
-        bearing = " and ".join(f"{getattr(most, end).length_mm:.3g}" for end in seats)
+        bearing = " and ".join(plain(getattr(most, end).length_mm, 3) for end in seats)
         lengths.set(
             xlabel="travel in mm",
             ylabel="wire in contact with the seat in mm",
-            title=f"{bearing} mm bear at the greatest force",
+            title=f"Maximum force: {bearing} mm in contact",
         )
         _over_travel(
             turns,
@@ -209,7 +220,7 @@ def _over_travel(
 
 def _active(turns: float, most: float) -> str:
     """How many turns bear the greatest force; where these are beyond what is shown, or NaN, they say nothing."""
-    return f"At the greatest force {turns:.3g} turns are active" if turns <= most else "Turns over travel"
+    return f"Maximum force: {turns:.3g} active turns" if turns <= most else "Turns over travel"
 
 
 def _beyond(setup: Setup, result: Result, name: str) -> str:

@@ -99,15 +99,32 @@ def tubes(run: Run, shown: Moments, rings: int) -> tuple[np.ndarray, np.ndarray]
     Returns:
         Places, shape (moments, rings, angles + 1, 3), mm, and `shear_around` there.
     """
-    turn = run.data["turn"].values
+    turn, radius = run.data["turn"].values, run.data["wire_radius"].values
+    both = [surface(turn, x, radius, shear, inside(run), rings) for x, shear in zip(shown.x, shown.shear, strict=True)]
+    places, stress = (np.stack(one) for one in zip(*both, strict=True))
+    return places, stress
+
+
+def surface(
+    turn: np.ndarray, x: np.ndarray, wire_radius: np.ndarray, shear: np.ndarray, side: Inside, rings: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Surface of the wire at one moment, and the stress there, as `tubes` gives them for several.
+
+    Args:
+        turn: of the stations, shape (n + 1,).
+        x: stations, shape (n + 1, 3), mm.
+        wire_radius: of the elements, shape (n,), mm.
+        shear: about the wire's axis, mean of an element's sections, at evenly spaced angles, shape (n, angles), MPa.
+        side: where the inside of the coil is.
+        rings: along the wire.
+    """
     at = np.linspace(turn[0], turn[-1], rings)
     middle = 0.5 * (turn[1:] + turn[:-1])
-    radius = np.interp(at, middle, run.data["wire_radius"].values)
-    angle = np.radians(np.append(run.data["angle"].values, 360.0)) + inside(run).angle
-    places = np.stack([_tube(CubicSpline(turn, x, axis=0), at, radius, angle) for x in shown.x])
+    angle = np.linspace(0.0, 2.0 * np.pi, shear.shape[-1] + 1) + side.angle
+    places = _tube(CubicSpline(turn, x, axis=0), at, np.interp(at, middle, wire_radius), angle)
     along = np.clip(np.searchsorted(middle, at) - 1, 0, len(middle) - 2)
     part = np.clip((at - middle[along]) / (middle[along + 1] - middle[along]), 0.0, 1.0)[:, None]
-    stress = (1.0 - part) * shown.shear[:, along] + part * shown.shear[:, along + 1]
+    stress = (1.0 - part) * shear[along] + part * shear[along + 1]
     return places, np.concatenate([stress, stress[..., :1]], axis=-1)
 
 

@@ -5,6 +5,7 @@ import numpy as np
 from coilset.model.figures.wire import inside, section_turns, shear_around
 from coilset.model.report.panel import Panel, axis, curve, said
 from coilset.model.results.files.opened import Run
+from coilset.model.results.records.labels import plain
 
 SIDES = (("inside of the coil", 0.0, "solid"), ("outside", np.pi, "dash"))
 SHOWN = {"Mt": "torque Mt", "M2": "bending moment M2", "M3": "bending moment M3"}
@@ -19,11 +20,11 @@ def stress_along_wire(run: Run) -> Panel:
             values = shear[number, ..., place].ravel()
             traces.append(curve(turns, values, number - 1, dash=dash, name=f"{name}, {side}"))
     stays = run.summary["residual_shear_inside_MPa"]
-    finding = (
-        "Shear stress along the wire"
-        if stays is None
-        else f"{said(stays, 'MPa')} of shear remain at the inside of the middle coils"
-    )
+    turn = run.summary.get("residual_shear_inside_turn")
+    at = "" if turn is None else f" at turn {turn:.2f}"
+    finding = "Shear stress along the wire"
+    if stays is not None:
+        finding = f"{said(stays, 'MPa')} of shear remain at the inside of the coil{at}"
     return Panel(
         "along_wire",
         finding,
@@ -38,18 +39,19 @@ def stress_along_wire(run: Run) -> Panel:
 def moments_along_wire(run: Run) -> Panel:
     """Torque and bending moments of the sections over the turns, one snapshot at a time."""
     turns, traces = section_turns(run).ravel(), []
-    for number, _ in enumerate(run.snapshots):
-        for place, (key, name) in enumerate(SHOWN.items()):
-            values = run.data["resultants"].sel(resultant=key).values[number].ravel()
-            traces.append(curve(turns, values, place, dash="solid", name=name, meta={"choice": number}))
     torque = np.abs(run.data["resultants"].sel(resultant="Mt").values).reshape(len(run.snapshots), -1).max(axis=1)
     most = int(torque.argmax())
-    finding = f"At {run.snapshots[most]} the wire carries a torque of up to {torque[most]:.4g} N mm"
+    order = [*(number for number in range(len(run.snapshots)) if number != most), most]  # the last is shown first
+    for choice, number in enumerate(order):
+        for place, (key, name) in enumerate(SHOWN.items()):
+            values = run.data["resultants"].sel(resultant=key).values[number].ravel()
+            traces.append(curve(turns, values, place, dash="solid", name=name, meta={"choice": choice}))
+    finding = f"The wire carries up to {plain(torque[most])} N mm of torque, at {run.snapshots[most]}"
     return Panel(
         "moments",
         finding,
         f"{finding}. Torque and bending moments of the wire's sections over the turns.",
         traces,
         {"xaxis": axis("turn from the bottom tip"), "yaxis": axis("moment, N mm")},
-        tuple(run.snapshots),
+        tuple(run.snapshots[number] for number in order),
     )

@@ -4,9 +4,10 @@ from typing import Any
 
 import numpy as np
 
+from coilset.model.figures.curve import compressed, smooth
 from coilset.model.report.panel import Panel, axis, curve
 from coilset.model.results.files.opened import Run
-from coilset.model.results.records.labels import in_legend
+from coilset.model.results.records.labels import in_legend, plain
 
 GREY = {"width": 1, "color": "#808080"}
 HEIGHT = 440  # pixels, the same for both, which stand side by side
@@ -43,15 +44,23 @@ def _times(number: int) -> str:
 def characteristic(run: Run) -> Panel:
     """Force over travel, one line per phase, with the initial rate, block and set."""
     summary, parts = run.summary, phases(run)
-    traces = [curve(travel, force, number, marker=5, name=label) for number, (label, travel, force) in enumerate(parts)]
+    traces = []
+    for number, (label, travel, force) in enumerate(parts):
+        traces.append(curve(*smooth(travel, force), number, name=label, legendgroup=label, hoverinfo="skip"))
+        steps = curve(travel, force, number, marker=5, name=label, legendgroup=label, showlegend=False)
+        traces.append(steps | {"mode": "markers"})
     greatest, rate, set_mm = summary["force_max_N"], summary["rate_N_per_mm"], summary["set_mm"]
     if rate:
-        x, dots = np.array([0.0, greatest / rate]), {"dash": "dot", **GREY}
+        travels = np.abs(run.data["travel_mm"].values)
+        end = min(abs(greatest) / rate, float(np.nanmax(travels, initial=0.0)) or 1.0)
+        x, dots = np.array([0.0, np.copysign(end, greatest)]), {"dash": "dot", **GREY}
         name = f"initial rate {rate:.4g} N/mm"
         traces.append({"type": "scatter", "mode": "lines", "name": name, "x": x, "y": rate * x, "line": dots})
     block = summary["free_length_before_mm"] - summary["block_height_mm"]
-    sets = f", the spring sets {set_mm:.4g} mm" if set_mm is not None else ""
-    finding = f"Compressed with up to {greatest:.4g} N{sets}"
+    longer = set_mm is not None and set_mm < 0.0
+    sets = "" if set_mm is None else f", the spring {'stays' if longer else 'sets'} {plain(abs(set_mm))} mm"
+    sets += " longer" if longer else ""
+    finding = f"{compressed(greatest)} with up to {plain(abs(greatest))} N{sets}"
     return Panel(
         "characteristic",
         finding,

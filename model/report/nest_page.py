@@ -17,6 +17,7 @@ from coilset.model.report.answer import Number
 from coilset.model.report.page import made_with, write_report
 from coilset.model.report.panel import DIVERGING, Panel, Trace, axis, curve, said
 from coilset.model.report.render import NAME, write_page
+from coilset.model.report.spring_view import scene_of
 from coilset.model.results.files.opened import Run, open_run
 from coilset.model.results.records.labels import plain
 
@@ -191,16 +192,13 @@ def view(runs: Mapping[str, Run]) -> Panel:
         traces[number]["showscale"] = True
     corners = np.concatenate([places.reshape(-1, 3) for places, _ in shapes])
     low, high = corners.min(axis=0), corners.max(axis=0)
-    scene = {f"{name}axis": axis(f"{name}, mm", range=[low[k], high[k]]) for k, name in enumerate("xyz")}
-    away = max(1.0, float(high[2] - low[2]) / float(np.ptp(corners[:, 0])))
-    eye = {"x": 1.3 * away, "y": -1.3 * away, "z": 0.5 * away}
     return Panel(
         "springs",
         f"The shear stress on the wires' surfaces reaches {said(greatest, 'MPa')}",
         f"Both springs in three dimensions, free, pressed the most and released, coloured by the shear stress about "
         f"the wire's axis on the surface from {-end:g} to {end:g} MPa.",
         traces,
-        {"scene": {**scene, "aspectmode": "data", "camera": {"eye": eye}}, "margin": {"l": 0, "r": 0, "t": 0, "b": 0}},
+        scene_of(np.stack([low, high])),
         choices=STATES,
         choice="state",
         height=520,

@@ -1,4 +1,4 @@
-"""Stress over the wire's section at mid height, up to its edge."""
+"""Stress over the wire's section where the residual shear at the inside of the coil is largest, up to its edge."""
 
 from typing import Any
 
@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.tri import LinearTriInterpolator, Triangulation
 
 from coilset.model.base.style import round_end
+from coilset.model.figures.curve import element_at
 from coilset.model.figures.rings import FilledSection
 from coilset.model.figures.wire import inside
 from coilset.model.report.panel import DIVERGING, Panel, Trace, axis, said
@@ -27,7 +28,9 @@ def normal_map(run: Run) -> Panel:
 
 
 def _panel(run: Run, name: str, quantity: str, which: int, sign: str) -> Panel:
-    element = len(run.data["turn"]) // 2
+    turns = run.data["turn"].values
+    element = element_at(turns, run.summary.get("residual_shear_inside_turn"))
+    turn = 0.5 * float(turns[element : element + 2].sum())
     radius = float(run.data["wire_radius"].values[element])
     y, z = (run.data[axis_name].values[element, 0] for axis_name in "yz")
     section = FilledSection(np.stack([y, z], axis=-1) / radius)
@@ -39,11 +42,12 @@ def _panel(run: Run, name: str, quantity: str, which: int, sign: str) -> Panel:
     dots = {"type": "scatter", "mode": "markers", "x": y, "y": z, "marker": {"size": 2, "color": "#404040"}}
     traces.append({**dots, "hoverinfo": "skip", "showlegend": False})
     low, high = (said(float(f(fields[-1][which])), "MPa") for f in (np.min, np.max))
-    finding = f"At {run.snapshots[-1]} the {quantity} at mid height runs from {low} to {high}"
+    finding = f"At {run.snapshots[-1]} the {quantity} at turn {turn:.2f} runs from {low} to {high}"
     return Panel(
         name,
         finding,
-        f"Map of the wire's section at mid height. {finding}{sign}.",
+        f"Map of the wire's section at turn {turn:.2f}, where the residual shear at the inside of the coil is largest. "
+        f"{finding}{sign}.",
         traces,
         _layout(radius, np.cos(inside(run).angle) > 0),
         tuple(run.snapshots),

@@ -1,5 +1,7 @@
 """The spring in 3D, to rotate and to step through its load program, coloured by the stress on its surface."""
 
+from typing import Any
+
 import numpy as np
 
 from coilset.model.base.style import round_end
@@ -11,6 +13,26 @@ RINGS = 6000  # of all moments of a page together
 MOST = 60  # moments
 PER_TURN = 24  # rings, for which moments are left out
 PER_ELEMENT = 4
+DIAGONAL = 1.75  # of the box of a 3D view, in units of its camera's distance: that of a cube is √3
+
+
+def scene_of(corners: np.ndarray) -> dict[str, Any]:
+    """Layout of a 3D view in which a box fits, however slender.
+
+    Args:
+        corners: lowest and highest corner of the box, shape (2, 3), mm.
+    """
+    size = np.ptp(corners, axis=0)
+    ratio = DIAGONAL * size / np.linalg.norm(size)
+    return {
+        "scene": {
+            **{f"{name}axis": axis(f"{name}, mm", range=corners[:, k].tolist()) for k, name in enumerate("xyz")},
+            "aspectmode": "manual",
+            "aspectratio": dict(zip("xyz", ratio.tolist(), strict=True)),
+            "camera": {"eye": {"x": 1.3, "y": -1.3, "z": 0.5}},
+        },
+        "margin": {"l": 0, "r": 0, "t": 0, "b": 0},
+    }
 
 
 def spring_view(run: Run) -> Panel:
@@ -35,8 +57,6 @@ def spring_view(run: Run) -> Panel:
     }
     corners = np.stack([places.reshape(-1, 3).min(axis=0), places.reshape(-1, 3).max(axis=0)])
     low, high = (said(value, "MPa") for value in (stress[-1].min(), stress[-1].max()))
-    scene = {f"{name}axis": axis(f"{name}, mm", range=corners[:, k].tolist()) for k, name in enumerate("xyz")}
-    eye = {"x": 1.3, "y": -1.3, "z": 0.5}
     return Panel(
         "spring",
         f"At {run.snapshots[-1]} the shear on the surface runs from {low} to {high}",
@@ -44,7 +64,7 @@ def spring_view(run: Run) -> Panel:
         f"stress about the wire's axis on its surface from {-end:g} to {end:g} MPa. "
         f"At the end it is {low} to {high}.",
         [trace],
-        {"scene": {**scene, "aspectmode": "data", "camera": {"eye": eye}}, "margin": {"l": 0, "r": 0, "t": 0, "b": 0}},
+        scene_of(corners),
         frames=frames,
         moments=shown.labels,
         height=520,

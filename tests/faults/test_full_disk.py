@@ -60,7 +60,7 @@ def drawn():
 
 
 def springs(out, analysis):
-    scene.springs(out / "springs.png", analysis.result.snapshots, analysis.setup.wire_radius)
+    scene.springs(out / "springs.png", analysis.result.snapshots, analysis.setup)
 
 
 def characteristic(out, analysis):
@@ -85,7 +85,7 @@ WRITERS = {
     "fields": lambda out, one: fields.write_fields(out, one.setup, one.result.snapshots),
     "checkpoint": save,
     "characteristic": characteristic,
-    "cross-section": lambda out, one: figures.cross_section(out / "a.png", one.setup, one.result.snapshots[-1]),
+    "cross-section": lambda out, one: figures.cross_section(out / "a.png", one.setup, one.result.snapshots[-1], None),
     "force centre": lambda out, one: seat_figures.force_centre(out / "a.png", one.setup, one.result),
     "pressure": lambda out, one: seat_figures.seat_pressure(out / "a.png", one.setup, one.result),
     "springs": springs,

@@ -83,7 +83,7 @@ def test_a_buckled_spring_is_whole_in_its_picture(analysis, tmp_path, aside):
     for shot in analysis.result.snapshots:
         z = shot.x[:, 2] / shot.x[-1, 2]
         shots.append(replace(shot, x=shot.x + np.stack([aside * z * (1.0 - z) * 4.0, 0.0 * z, 0.0 * z], axis=-1)))
-    springs(tmp_path / "springs.png", shots, analysis.setup.wire_radius)
+    springs(tmp_path / "springs.png", shots, analysis.setup)
     picture = imread(tmp_path / "springs.png")[LABELS:-BAR, :, :3]
     drawn = np.flatnonzero((picture < 0.99).any(axis=(0, 2)))
     assert drawn[0] > 10
@@ -99,7 +99,7 @@ def test_the_cross_section_is_round_and_reaches_the_surface(analysis, tmp_path, 
         return drawn(axes, y, z, values, **style)
 
     monkeypatch.setattr(matplotlib.axes.Axes, "tricontourf", keep)
-    figures.cross_section(tmp_path / "a.png", analysis.setup, analysis.result.snapshots[-1])
+    figures.cross_section(tmp_path / "a.png", analysis.setup, analysis.result.snapshots[-1], None)
     assert len(distances) == 2
     for distance in distances:
         assert np.isclose(distance, analysis.setup.wire_radius[0], rtol=1e-12).sum() >= ROUND
@@ -129,7 +129,7 @@ def test_cycles_make_no_legend_of_their_own(analysis, monkeypatch):
     assert max(len(one) for figure in legends for one in figure) <= 10
 
 
-@pytest.mark.parametrize(("force", "way"), [(9.0, "Pressed"), (-9.0, "Pulled")])
+@pytest.mark.parametrize(("force", "way"), [(9.0, "Compressed"), (-9.0, "Pulled")])
 def test_a_pulled_spring_is_not_called_pressed(analysis, monkeypatch, force, way):
     """And the line of its initial rate goes where its force goes."""
     steps = (Step(1, 0, 1.0, 35.0 - force / 9.0, force / 9.0, force, 1, 1, 0, 0, 0, 0.0),)
@@ -164,7 +164,7 @@ def test_each_of_a_few_steps_is_named_beside_the_pressure(analysis, monkeypatch)
     assert [len(axes.get_yticks()) for axes in drawn] == [12, 9]
 
 
-@pytest.mark.parametrize(("beyond", "title"), [(3, "At the greatest force 2.4 turns"), (8, "Turns over travel")])
+@pytest.mark.parametrize(("beyond", "title"), [(3, "Maximum force: 2.4 active turns"), (8, "Turns over travel")])
 def test_active_turns_that_mean_nothing_are_told_and_not_drawn(analysis, monkeypatch, beyond, title):
     """Where the force hardly changes the quotient is any number; lines to it would cover the others."""
     steps = tuple(Step(k, 0, 1.0, 35.0 - k, float(k), 9.0 * k, 1, 1, 0, 0, 0, 0.0) for k in range(1, 9))
@@ -181,7 +181,7 @@ def test_active_turns_that_mean_nothing_are_told_and_not_drawn(analysis, monkeyp
     assert np.nanmax(active) == 2.4
     words = [text.get_text() for text in axes.get_legend().get_texts()]
     most = 1.5 * analysis.setup.spring.turns
-    assert words[:2] == [f"active (beyond {most:g} turns: 1 of the steps)", "touching nothing"]
+    assert words[:2] == [f"active (beyond {most:g} turns: 1 of the steps)", "without contact"]
 
 
 @pytest.mark.parametrize(("force", "told"), [(-300.0, "-300 N"), (300.0, "300 N"), (-1e-5, "0 N")])
@@ -252,7 +252,9 @@ def test_more_phases_than_colours_are_grey(analysis, monkeypatch):
         figures,
         lambda: figures.characteristic("", setup, result, summarise(setup, result) | {"load_loss_percent": 12.34}),
     )
-    colours = [line.get_color() for line in figure.axes[0].get_lines()[:9]]
+    colours = [
+        line.get_color() for line in figure.axes[0].get_lines()[:17:2]
+    ]  # curves; the dots of their steps between them
     assert len(set(colours[:6])) == 6
     assert set(colours[6:]) == {figures.REST}
     texts = [text.get_text() for text in figure.legends[0].get_texts()]

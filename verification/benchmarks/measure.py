@@ -166,9 +166,9 @@ def write(watch: Stopwatch, analysis: "Analysis") -> None:
             write_summary(folder, summary)
         with watch.stage("pictures"):
             figures.characteristic(folder / "characteristic.png", analysis.setup, result, summary)
-            figures.cross_section(folder / "cross_section.png", analysis.setup, result.snapshots[-1])
+            figures.cross_section(folder / "cross_section.png", analysis.setup, result.snapshots[-1], None)
             if display.ensure():
-                scene.springs(folder / "springs.png", result.snapshots, analysis.setup.wire_radius)
+                scene.springs(folder / "springs.png", result.snapshots, analysis.setup)
 
 
 def pressed(elements: int, touching: bool) -> list[str]:

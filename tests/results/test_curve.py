@@ -1,0 +1,43 @@
+"""The characteristic between its steps, and what pictures show of a run."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from coilset.model.figures.curve import compressed, element_at, smooth
+from coilset.model.figures.pictures import shown
+from coilset.model.results.records.record import Snapshot
+
+
+def test_the_curve_passes_its_steps_and_never_beyond_their_neighbours():
+    travel = np.array([0.0, 2.0, 4.0, 6.0, 7.0, 7.5])
+    force = np.array([0.0, 20.0, 40.0, 60.0, 90.0, 300.0])  # coils close
+    for x, y in ((travel, force), (travel[::-1], force[::-1])):
+        fine, values = smooth(x, y)
+        assert np.interp(x, np.sort(fine), values[np.argsort(fine)]) == pytest.approx(y)
+        assert np.all(np.diff(values[np.argsort(fine)]) >= 0.0)
+        assert fine[[0, -1]].tolist() == x[[0, -1]].tolist()
+
+
+@pytest.mark.parametrize("travel", [[0.0, 1.0, 2.0], [0.0, 2.0, 1.0, 3.0]])
+def test_few_steps_and_a_travel_that_turns_back_keep_their_lines(travel):
+    assert smooth(travel, travel)[0].tolist() == travel
+
+
+def test_a_pulled_spring_is_not_called_compressed():
+    assert [compressed(force) for force in (192.0, -192.0)] == ["Compressed", "Pulled"]
+
+
+@pytest.mark.parametrize(("turn", "element"), [(None, 4), (0.0, 0), (1.3, 2), (4.0, 7), (9.0, 7)])
+def test_the_section_is_drawn_where_the_stress_is(turn, element):
+    assert element_at(np.linspace(0.0, 4.0, 9), turn) == element
+
+
+def test_the_greatest_load_is_among_the_pictured_springs():
+    """Of many phases the start and the last three were drawn, and block was not."""
+    none = np.empty(0)
+    shot = Snapshot("", 0.0, 0.0, none, none, none, none, none, ())
+    shots = [replace(shot, name=str(k), force=force) for k, force in enumerate((0.0, 900.0, 0.0, 100.0, 200.0, 0.0))]
+    assert [one.name for one in shown(shots)] == ["0", "1", "4", "5"]
+    assert [one.name for one in shown(shots[:3])] == ["0", "1", "2"]
