@@ -6,6 +6,9 @@ from typing import Any
 
 from coilset.model.report.panel import said
 from coilset.model.results.files.opened import Run
+from coilset.model.results.records.labels import plain
+
+NOTICED = 0.01  # N: smaller errors are not told apart
 
 
 @dataclass(frozen=True)
@@ -52,7 +55,9 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
     turn = s.get("residual_shear_inside_turn")
     at = "" if turn is None else f" at turn {turn:.2f}"
     against = ""
-    if inside:  # positive as in a compressed spring, so that it is the load's sign of a spring that is pulled
+    if inside and round(
+        inside, 1
+    ):  # positive as in a compressed spring, so that it is the load's sign of a spring that is pulled
         against = "against the load" if inside * s["force_max_N"] < 0.0 else "with the load"
     return [
         Number("set", _said(s["set_mm"], "mm", 3), share),
@@ -88,7 +93,8 @@ def _said(value: float | None, unit: str, digits: int) -> str:
 def _error(value: float | None) -> str:
     if value is None:
         return "error due to the step size not estimated"
-    return f"{abs(value):.2g} N estimated error due to the step size"
+    size = f"{plain(abs(value), 2)} N" if abs(value) >= NOTICED else f"less than {NOTICED:g} N"
+    return f"{size} estimated error due to the step size"
 
 
 def _after(summary: Mapping[str, Any]) -> str:

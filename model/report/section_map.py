@@ -14,6 +14,7 @@ from coilset.model.results.files.opened import Run
 
 PIXELS = 121  # of a map, across the wire
 BEYOND = 1.04  # wire radii up to which colours go: the rim is drawn over them
+LEAST_SCALE = 1.0  # MPa: the scale of a section without stress
 WITHIN = 0.999  # of the wire radius: inside the chords of the rim's polygon, cos(π/96) = 0.99946
 
 
@@ -37,7 +38,7 @@ def _panel(run: Run, name: str, quantity: str, which: int, sign: str) -> Panel:
     fields = [_stresses(run, number, element, section) for number in range(len(run.snapshots))]
     traces = []
     for number, both in enumerate(fields):
-        end = round_end(max(float(np.abs(field).max()) for field in both))
+        end = round_end(max(LEAST_SCALE, *(float(np.abs(field).max()) for field in both)))
         traces.append(_map(section.places * radius, both[which], radius, end, number))
     dots = {"type": "scatter", "mode": "markers", "x": y, "y": z, "marker": {"size": 2, "color": "#404040"}}
     traces.append({**dots, "hoverinfo": "skip", "showlegend": False})

@@ -13,7 +13,7 @@ RINGS = 6000  # of all moments of a page together
 MOST = 60  # moments
 PER_TURN = 24  # rings, for which moments are left out
 PER_ELEMENT = 4
-DIAGONAL = 1.75  # of the box of a 3D view, in units of its camera's distance: that of a cube is √3
+DIAGONAL, TALLEST = 1.75, 1.3  # of the box of a 3D view, in plotly's units of a scene: a cube has √3 and 1
 
 
 def scene_of(corners: np.ndarray) -> dict[str, Any]:
@@ -23,7 +23,7 @@ def scene_of(corners: np.ndarray) -> dict[str, Any]:
         corners: lowest and highest corner of the box, shape (2, 3), mm.
     """
     size = np.ptp(corners, axis=0)
-    ratio = DIAGONAL * size / np.linalg.norm(size)
+    ratio = size * min(DIAGONAL / np.linalg.norm(size), TALLEST / size[2])
     return {
         "scene": {
             **{f"{name}axis": axis(f"{name}, mm", range=corners[:, k].tolist()) for k, name in enumerate("xyz")},

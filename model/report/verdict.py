@@ -4,6 +4,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+REMARKS = {"estimate", "earlier name", "presetting", "measured axis"}
+"""Warnings that are no failed check."""
 LOAD, FORMULAS, WIRE = "load program", "gaps between the coils", "permissible stress"
 
 
@@ -64,7 +66,7 @@ def checks(summary: Mapping[str, Any], has_formulas: bool, is_standard_wire: boo
         "unknown error",
         "penetration",
     }
-    others = [one for name, one in messages.items() if name not in named]
+    others = [one for name, one in messages.items() if name not in named | REMARKS]
     return [*found, Check("other warnings", not others, "; ".join(others))]
 
 
