@@ -35,20 +35,13 @@ suppress_warnings = ["ref.python"]  # two classes of one name, such as the Rod o
 
 globals().update(formulas.configuration())
 
-html_theme = "alabaster"
+html_theme = "furo"  # page contents, dark mode, narrow screens
 html_title = f"coilset {__version__}"
+html_search_scorer = str(DOCS / "_static" / "scorer.js")
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_show_copyright = False
-html_theme_options = {
-    "description": "How far does a coil spring set, and what stress remains in it?",
-    "page_width": "1180px",
-    "sidebar_width": "250px",
-    "fixed_sidebar": True,
-    "font_family": "Georgia, 'Times New Roman', serif",
-    "sidebar_collapse": True,
-}
-html_sidebars = {"**": ["about.html", "searchfield.html", "navigation.html"]}
+html_theme_options = {"top_of_page_buttons": []}  # no links to a repository that the pages do not have
 
 
 def _own_environments(app: Sphinx, doctree: nodes.document) -> None:

@@ -57,6 +57,17 @@ def _to_stderr(line: str) -> None:
         print(line, file=sys.stderr, flush=True)
 
 
+def show(line: str) -> None:
+    """A line of progress: on a terminal the next one takes its place."""
+    if first_rank():
+        print(
+            f"\r\033[K{line}" if sys.stderr.isatty() else line,
+            end="" if sys.stderr.isatty() else "\n",
+            file=sys.stderr,
+            flush=True,
+        )
+
+
 def compile_first(check: Callable[[], object] = bool, say: Callable[[str], None] = _to_stderr) -> None:
     """Have another process compile all kernels of this version, if that has not been done; others that need it wait.
 
@@ -83,16 +94,21 @@ def compile_first(check: Callable[[], object] = bool, say: Callable[[str], None]
         with open(done.with_suffix(".lock"), "w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             if not done.exists():
-                subprocess.run(
+                with subprocess.Popen(
                     COMPILE,
                     env=environment,
                     stdin=subprocess.DEVNULL,
-                    stdout=subprocess.DEVNULL,
+                    stdout=subprocess.PIPE,
                     stderr=subprocess.DEVNULL,
-                    check=False,
+                    text=True,
                     preexec_fn=end_with_parent,
-                )
+                ) as process:
+                    assert process.stdout is not None
+                    for line in process.stdout:  # its stages
+                        show(line.rstrip())
     if done.exists():
+        if sys.stderr.isatty():
+            show("")
         say(f"coilset: compiled in {time.monotonic() - begun:.0f} s")
 
 

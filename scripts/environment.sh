@@ -131,14 +131,25 @@ install_here() {
     quietly apt-get install -y --no-install-recommends $(packages)
 }
 
-quietly() { # run with the output in the file $log, a dot every five seconds, and the log's end if it fails
+progress() { # of an installation, in per cent by its log: each package is unpacked and set up; nothing before that
+    local total steps
+    total=$(grep -oE '[0-9]+ newly installed' "$log" | awk '{ sum += $1 } END { print sum + 0 }')
+    steps=$(grep -cE '^(Unpacking|Setting up) ' "$log" || true)
+    [ "$total" -eq 0 ] || printf '%s %%' "$((steps < 2 * total ? 50 * steps / total : 100))"
+}
+
+quietly() { # run with the output in the file $log, the progress every five seconds, and the log's end if it fails
     "$@" > "$log" 2>&1 &
     local job=$! ticks=0
     trap 'kill "$job" 2> /dev/null' INT TERM
     while kill -0 "$job" 2> /dev/null; do
         sleep 1
         ticks=$((ticks + 1))
-        [ $((ticks % 5)) -eq 0 ] && printf '.' >&2
+        [ $((ticks % 5)) -ne 0 ] || if [ -t 2 ]; then
+            printf '\rcoilset: %s s %s ' "$ticks" "$(progress)" >&2
+        else
+            [ $((ticks % 20)) -eq 0 ] && printf ' %s' "$(progress)" >&2 || printf '.' >&2
+        fi
     done
     hear_interrupts
     trap - TERM

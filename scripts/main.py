@@ -308,7 +308,7 @@ def compile_() -> None:
     announce_compiling(notice=NOTICE)
     from coilset.scripts.warm import warm, warm_ranks
 
-    warm()
+    warm(lambda line: print(line, flush=True))
     warm_ranks()
     compiled().touch()
 

@@ -36,7 +36,7 @@ make_it_anew() {
     say "making a private Debian ($release) with DOLFINx and the rest in"
     say "$private_root (once, some minutes, 3.5 GB; delete the folder to be rid of it) ..."
     discard "$partial"
-    quietly mmdebstrap --variant=minbase --aptopt="$may_be_old" --include="$(packages | tr ' ' ',')" "$release" "$partial"
+    quietly mmdebstrap --verbose --variant=minbase --aptopt="$may_be_old" --include="$(packages | tr ' ' ',')" "$release" "$partial"
     cp "$scripts/packages.txt" "$partial$record"
     rm -rf "$private_root"
     mv "$partial" "$private_root"

@@ -3,6 +3,8 @@
 import contextlib
 import subprocess
 import sys
+from collections.abc import Callable
+from functools import partial
 
 from mpi4py import MPI
 
@@ -24,20 +26,33 @@ def short_case(example: str, loading: str) -> Case:
     return read_case(EXAMPLES / example, ("mesh.elements_per_turn=16", loading))
 
 
-def warm() -> None:
+def warm(report: Callable[[str], object] = lambda line: None) -> None:
     """Compress an example until coils touch and yield, release it, let one creep, press a uniform rod; keep nothing.
 
     One point of steel is twisted, too, as for the page of a run.
 
     What several threads do is compiled beside what one does: there are points enough for two, on the surface too.
+
+    Args:
+        report: called with a line before each stage: what is compiled, and how many stages there are.
     """
-    cases = [short_case(*PRESSED), short_case(*HELD)]
-    for case in cases:
-        for threads in (1, 2):
-            Analysis(case, MPI.COMM_SELF, threads=threads).run()
-    guess(cases[0], [])
+    cases = {"a spring that yields": short_case(*PRESSED), "a spring that creeps": short_case(*HELD)}
     law = library.load("ck15")
-    there_and_back(law, law.reference_temperature)
+    stages: dict[str, Callable[[], object]] = {
+        f"{name}, {threads} thread{'s' * (threads > 1)}": partial(_run, case, threads)
+        for name, case in cases.items()
+        for threads in (1, 2)
+    }
+    stages["the uniform rod"] = partial(guess, next(iter(cases.values())), [])
+    stages["a point of material"] = partial(there_and_back, law, law.reference_temperature)
+    for number, (name, stage) in enumerate(stages.items(), 1):
+        report(f"coilset: compiling {number} of {len(stages) + 1}: {name}")
+        stage()
+    report(f"coilset: compiling {len(stages) + 1} of {len(stages) + 1}: two ranks")
+
+
+def _run(case: Case, threads: int) -> None:
+    Analysis(case, MPI.COMM_SELF, threads=threads).run()
 
 
 def warm_ranks() -> None:

@@ -29,5 +29,9 @@ def process(app: Sphinx, what: str, name: str, thing: object, options: object, l
 
 
 def skip(app: Sphinx, what: str, name: str, thing: object, is_skipped: bool, options: object) -> bool | None:
-    """Leave out types of entries: the pages of the files have them in words."""
-    return True if get_origin(thing) is Annotated else None
+    """Leave out types of entries, which the pages of the files have in words, and fields of named tuples.
+
+    Python describes such a field as "Alias for field number 0"; the class describes what it is.
+    """
+    alias = (getattr(thing, "__doc__", None) or "").startswith("Alias for field number")
+    return True if alias or get_origin(thing) is Annotated else None

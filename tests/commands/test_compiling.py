@@ -205,3 +205,26 @@ def test_a_warm_solve_does_not_say_it(example, tmp_path):
     )
     assert first.stderr.splitlines()[:1] in ([], [NOTICE])
     assert second.stderr == ""
+
+
+def test_the_stages_of_compiling_are_shown(monkeypatch, tmp_path, capfd):
+    """What is compiled, and how many stages there are, while the command waits for it."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    said = "for k in 1 2 3; do echo coilset: compiling $k of 3: kernels; done; touch " + str(compiled())
+    monkeypatch.setattr(compiling, "COMPILE", ["sh", "-c", said])
+    lines = []
+    compile_first(say=lines.append)
+    assert capfd.readouterr().err.splitlines() == [f"coilset: compiling {k} of 3: kernels" for k in (1, 2, 3)]
+    assert lines[0] == NOTICE
+    assert lines[-1].startswith("coilset: compiled in ")
+
+
+def test_the_warming_names_each_stage_once():
+    command = "from coilset.scripts.warm import warm; warm(print)"
+    done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, check=True)
+    lines = done.stdout.splitlines()
+    numbers = [f" compiling {k} of {len(lines)}" for k in range(1, len(lines) + 1)]
+    assert [line.split(":")[1] for line in lines] == numbers
+        f" compiling {k} of {len(lines)}" for k in range(1, len(lines) + 1)
+    ]
+    assert len(lines) == 7
