@@ -225,6 +225,4 @@ def test_the_warming_names_each_stage_once():
     lines = done.stdout.splitlines()
     numbers = [f" compiling {k} of {len(lines)}" for k in range(1, len(lines) + 1)]
     assert [line.split(":")[1] for line in lines] == numbers
-        f" compiling {k} of {len(lines)}" for k in range(1, len(lines) + 1)
-    ]
     assert len(lines) == 7
