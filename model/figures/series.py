@@ -64,7 +64,7 @@ def _sections(run: Run) -> Iterator[tuple[float, meshio.Mesh]]:
     times = [0.0, *run.data["step"].values[ends].astype(float)]
     for snapshot, time in enumerate(times[: run.data.sizes["snapshot"]]):
         places = section_points(run, snapshot).reshape(-1, 3)
-        state = run.data["history"].values[snapshot].reshape(-1, len(names))
+        state = run.data["point_state"].values[snapshot].reshape(-1, len(names))
         cells = [("vertex", np.arange(len(places))[:, None])]
         yield time, meshio.Mesh(places, cells, point_data=dict(zip(names, state.T, strict=True)))
 

@@ -41,7 +41,7 @@ def write_report(run: Run) -> Path:
         InputError: if plotly is missing. CoilsetError: if the file cannot be written.
     """
     chapters = [(title, [panel for draw in figures if (panel := draw(run)) is not None]) for title, figures in CHAPTERS]
-    found = answer(run.summary)
+    found, (case, files) = answer(run.summary), complete(run)
     return write_page(
         run.folder,
         "run",
@@ -53,9 +53,30 @@ def write_report(run: Run) -> Path:
         answer=found,
         sheet=maker_sheet(run),
         first=first_sheet(run),
-        case=yaml.safe_dump(given(run.case), sort_keys=False, allow_unicode=True),
+        case=_text(case),
+        files=files,
         made_with=made_with(run.summary["origin"]),
     )
+
+
+def complete(run: Run) -> tuple[dict[str, Any], dict[str, str]]:
+    """The case without its author's folders, and the texts of the files beside it by their names.
+
+    A material file is written from the constants that the results hold; a measured spring's file is named without its
+    folder.
+    """
+    case, files = given(run.case), {}
+    material, scan = case["material"], case["spring"].get("file")
+    if isinstance(material, str) and material.endswith((".yaml", ".yml")):
+        case["material"] = Path(material).name
+        files[case["material"]] = _text(given(run.summary["origin"]["material"]))
+    if scan is not None:
+        case["spring"] = {**case["spring"], "file": Path(scan).name}
+    return case, files
+
+
+def _text(entries: dict[str, Any]) -> str:
+    return yaml.safe_dump(entries, sort_keys=False, allow_unicode=True)
 
 
 def made_with(origin: dict[str, Any]) -> str:

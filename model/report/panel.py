@@ -37,7 +37,7 @@ class Panel:
     traces: list[Trace]
     layout: dict[str, Any] = field(default_factory=dict)
     choices: tuple[str, ...] = ()
-    choice: str = "moment"
+    choice: str = "state"
     frames: Sequence[Trace] = ()
     moments: Sequence[str] = ()
     height: int = 380

@@ -62,7 +62,10 @@ def _stresses(run: Run, snapshot: int, element: int, section: FilledSection) -> 
 
     def stress(name: str) -> np.ndarray:
         return section.values(
-            *(run.data[of].sel(component=name).values[snapshot, element].mean(axis=0) for of in ("history", "surface"))
+            *(
+                run.data[of].sel(component=name).values[snapshot, element].mean(axis=0)
+                for of in ("point_state", "surface")
+            )
         )
 
     return section.shear_around(stress("t12"), stress("t13"), inside(run)), stress("s11")

@@ -79,7 +79,7 @@ def at_surface(analysis: SliceAnalysis, shot: SliceSnapshot) -> dict:
     places = np.concatenate([analysis.lattice.places[surface], analysis.line.places[ends]])
     stress = np.concatenate([shot.stress[surface], shot.line[ends]])
     out = {
-        "moment": shot.name,
+        "snapshot": shot.name,
         "force_N": shot.force,
         "shear_inside_MPa": float(shot.line[0, 4]),
         "shear_outside_MPa": float(shot.line[-1, 4]),

@@ -129,7 +129,8 @@ def _residual(data: "Dataset") -> tuple[float | None, float | None]:
     distance = np.hypot(y, z)
     round_one = distance[len(distance) // 2, 0]  # of mid height, which no grinding has touched
     outer = round_one > (1 - 1e-6) * round_one.max()
-    t12, t13 = (data["history"].sel(component=name).values[[loaded, -1]] for name in ("t12", "t13"))
+    points = data["point_state" if "point_state" in data else "history"]  # its earlier name
+    t12, t13 = (points.sel(component=name).values[[loaded, -1]] for name in ("t12", "t13"))
     weight = data["weight"].values[len(distance) // 2, 0]
     across = (t13 * y - t12 * z) / np.maximum(distance, 1e-300)
     at_load, released = across[:, body][..., outer].mean(axis=(1, 2, 3))

@@ -52,7 +52,7 @@ def read_netcdf(path: Path) -> dict[str, Column]:
     found = {}
     with xr.open_dataset(path, engine="h5netcdf") as data:
         for name, variable in data.variables.items():
-            last = {"history": "component", "resultants": "resultant"}.get(name)
+            last = {"point_state": "component", "resultants": "resultant"}.get(name)
             parts = {f"{name} {one}": data[name].sel({last: one}) for one in data[last].values} if last else {}
             found |= {label: column(part.values) for label, part in (parts or {name: variable}).items()}
     return found

@@ -78,10 +78,10 @@ def test_the_tube_is_closed_and_has_the_wires_volume(run, read):
 
 
 def test_section_points_lie_in_the_wire_and_bring_their_state(run, read):
-    shape = run.data["history"].shape[1:4]
+    shape = run.data["point_state"].shape[1:4]
     for time, snapshot in ((0, 0), (4, 1), (6, 2)):
         cloud = mesh(read[2], time)
-        assert np.array_equal(cloud["t13"], run.data["history"].sel(component="t13").values[snapshot].ravel())
+        assert np.array_equal(cloud["t13"], run.data["point_state"].sel(component="t13").values[snapshot].ravel())
         points = cloud.points.reshape(*shape, 3)
         weight = run.data["weight"].values[..., None]
         centre = (points * weight).sum(axis=2, keepdims=True)

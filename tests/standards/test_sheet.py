@@ -81,7 +81,7 @@ def run_folder(folder, residual=-60.0, components=FIBRES):
     position = np.stack([moved + radius * np.cos(2 * np.pi * turn), radius * np.sin(2 * np.pi * turn), 0 * radius], -1)
     xr.Dataset(
         {
-            "history": (("snapshot", "element", "gauss", "point", "component"), state),
+            "point_state": (("snapshot", "element", "gauss", "point", "component"), state),
             "y": (of_points, y),
             "z": (of_points, z),
             "force": ("snapshot", [700.0, 0.0]),

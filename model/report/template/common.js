@@ -130,7 +130,11 @@ const page = (() => {
     select?.addEventListener("change", update);
     slider?.addEventListener("input", update);
   });
-  const offer = (text) => { byId("save").href = "data:text/yaml;charset=utf-8," + encodeURIComponent(text); };
+  const link = (text) => "data:text/yaml;charset=utf-8," + encodeURIComponent(text);
+  const offer = (text) => { byId("save").href = link(text); };
+  document.querySelectorAll("a.save").forEach((one) => {
+    one.href = link(one.parentElement.nextElementSibling.textContent);
+  });
 
   const begin = async () => {
     label();

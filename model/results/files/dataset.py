@@ -33,7 +33,7 @@ def point_state(setup: Setup, result: Result) -> LabelledData:
     resultants = {"units": "N, N mm", "about": "chord axis and triad of each element"}
     data = LabelledData(
         {
-            "history": Variable((*of_sections, "point", "component"), shots("point_state"), {"units": "MPa"}),
+            "point_state": Variable((*of_sections, "point", "component"), shots("point_state"), {"units": "MPa"}),
             "surface": Variable((*of_sections, "angle", "component"), shots("surface_state"), surface),
             "resultants": Variable((*of_sections, "resultant"), shots("resultants"), resultants),
             "position": Variable(("snapshot", "station", "axis"), shots("x"), mm),

@@ -55,7 +55,7 @@ def open_run(folder: str | Path) -> Run:
         summary = json.loads(path.read_text(encoding="utf-8"))
         path = folder / "points.nc"
         with xr.open_dataset(path, engine="h5netcdf") as file:
-            data = file.load()
+            data = current_names(file.load())
         for name in ("history", "seats"):
             path = folder / f"{name}.csv"
             data = data.merge(table(path), compat="override", join="outer")
@@ -64,6 +64,15 @@ def open_run(folder: str | Path) -> Run:
     if "origin" not in summary:
         raise InputError("is of a version without the case in it; solve it again", "", folder / "summary.json")
     return Run(folder, summary, data)
+
+
+EARLIER = {"history": "point_state"}
+"""Earlier names of variables in points.nc; `history` are the columns of history.csv, over the steps."""
+
+
+def current_names(data: xr.Dataset) -> xr.Dataset:
+    """points.nc with the names of today."""
+    return data.rename({old: new for old, new in EARLIER.items() if old in data})
 
 
 def table(path: Path) -> xr.Dataset:

@@ -1,0 +1,30 @@
+"""The case on a page is complete without its author's folders."""
+
+import yaml
+from mpi4py import MPI
+
+from coilset.model.case import check, read_case
+from coilset.model.material import library
+from coilset.model.report.page import complete
+from coilset.model.results.files.opened import open_run
+from coilset.scripts.commands.solve import solve
+
+SHORT = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", "loading=[{to: {travel: 2}, steps: 1}]"]
+
+
+def test_the_material_stands_beside_the_case(example, tmp_path):
+    """It was named by the absolute path of its author."""
+    steel = tmp_path / "author" / "steel.yaml"
+    steel.parent.mkdir()
+    steel.write_bytes((library.FOLDER / "ck15.yaml").read_bytes())
+    solve(example, tmp_path / "run", False, [*SHORT, f"material={steel}"], False, comm=MPI.COMM_SELF)
+    case, files = complete(open_run(tmp_path / "run"))
+    assert str(tmp_path) not in yaml.safe_dump(case) + "".join(files.values())
+    (tmp_path / "again.yaml").write_text(yaml.safe_dump(case))
+    for name, text in files.items():
+        (tmp_path / name).write_text(text)
+    steel.unlink()
+    again = read_case(tmp_path / "again.yaml")
+    assert again.material == str(tmp_path / "steel.yaml")
+    assert library.load(again.material).content() == library.load("ck15").content()
+    assert check(again.model_dump()).spring == again.spring
