@@ -109,7 +109,7 @@ def certificate(
 @app.command()
 def fit(
     data: list[str] = DATA,
-    shear_modulus: float = typer.Option(..., "--G", min=0.0, help="shear modulus, N/mm²"),
+    shear_modulus: float = typer.Option(..., "--G", min=0.0, help="shear modulus, MPa"),
     poisson: float = typer.Option(..., "--nu", min=-1.0, max=0.5, help="Poisson's ratio"),
     temperature: float = typer.Option(293.15, min=0.0, help="temperature of the tests, K"),
     saturation: bool | None = typer.Option(
@@ -152,7 +152,7 @@ def fit(
     if isinstance(result, cyclic.CyclicFit):
         _say_what_is_told(result, console)
     for test, scatter in zip(result.tests, result.scatter, strict=True):
-        console.print(f"{test.name} ({test.kind}): rms residual {scatter:.3g} N/mm²")
+        console.print(f"{test.name} ({test.kind}): rms residual {scatter:.3g} MPa")
     _write_material(file, result.material(name), console)
     _save(figures.fit(result, name), picture, console)
 
@@ -198,7 +198,7 @@ def creep(
         table.add_row(key, f"{result.constants[key]:.4g}", f"{low:.4g}", f"{high:.4g}", UNITS[key])
     console.print(table)
     console.print(
-        f"at {result.constants['temperature']:g} K and, of strain, {result.constants['stress']:g} N/mm²; "
+        f"at {result.constants['temperature']:g} K and, of strain, {result.constants['stress']:g} MPa; "
         f"residual {result.scatter:.2g} % of the load"
     )
     source = "coilset material creep, " + ", ".join(Path(one).name for one in data)

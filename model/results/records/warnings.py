@@ -179,8 +179,8 @@ def _strength(setup: Setup, result: Result) -> Iterator[Warning]:
     greatest, shot = max(((_equivalent(shot), shot) for shot in result.snapshots), key=lambda pair: pair[0])
     if greatest > strength:
         message = (
-            f"the equivalent stress is {greatest:.4g} N/mm² at {shot.name}, above the wire's minimum "
-            f"tensile strength Rm of {strength:.4g} N/mm²"
+            f"the equivalent stress is {greatest:.4g} MPa at {shot.name}, above the wire's minimum "
+            f"tensile strength Rm of {strength:.4g} MPa"
         )
         yield Warning("strength", shot.name, message, greatest, strength, "MPa")
 
