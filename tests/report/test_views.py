@@ -11,10 +11,6 @@ from coilset.scripts.commands.solve import solve
 
 PROGRAM = "loading=[{to: {travel: 8}, steps: 3}, {to: {force: 0}}]"
 PRESSED = ["mesh.elements_per_turn=8", "mesh.section.rule=abramowitz9", PROGRAM]
-    "mesh.elements_per_turn=8",
-    "mesh.section.rule=abramowitz9",
-    "loading=[{to: {travel: 8}, steps: 3}, {to: {force: 0}}]",
-]
 
 
 @pytest.mark.parametrize("tall", [10.0, 35.0, 200.0, 2000.0])
