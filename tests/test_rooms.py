@@ -1,4 +1,4 @@
-"""Rooms of the program: their imports run in one direction."""
+"""Rooms of the program: their imports run in one direction, and each stays small enough to be read."""
 
 import ast
 from graphlib import CycleError, TopologicalSorter
@@ -41,3 +41,66 @@ def test_no_rooms_import_each_other_in_a_circle():
 
 def test_meshes_import_only_the_base_of_the_model():
     assert {one for one in imports()["meshes"] if one.startswith("model")} == {"model.base"}
+
+
+MOST_FILES, MOST_PARAMETERS = 14, 10
+TOPS = ("meshes", "model", "verification", "scripts")
+# What is larger still, with its size: it may become smaller, and nothing may be added.
+FOLDERS = {"model/equilibrium": 33}
+PARAMETERS = {
+    "model/contact/elements.py": 2,
+    "model/contact/search.py": 1,
+    "model/equilibrium/multifrontal.py": 1,
+    "model/material/point/back_stresses.py": 1,
+    "model/material/point/rod_plastic.py": 1,
+    "model/rod/forms.py": 1,
+    "model/rod/kinematics.py": 2,
+    "model/rod/prediction.py": 1,
+    "model/section/condensation.py": 1,
+    "model/section/fibres.py": 2,
+    "model/section/integration.py": 1,
+    "model/section/warping.py": 2,
+    "model/slice/gap.py": 2,
+    "model/uniform/rod.py": 1,
+    "scripts/commands/sheet.py": 1,
+    "scripts/commands/solve.py": 1,
+    "scripts/main.py": 2,  # options of commands
+}
+CTYPES = {"model/equilibrium/aij.py", "model/results/files/two_files.py", "model/runtime/processes.py"}
+
+
+def sources():
+    """Each file of the program with its syntax tree."""
+    for top in TOPS:
+        for file in sorted((ROOT / top).rglob("*.py")):
+            yield file.relative_to(ROOT), ast.parse(file.read_text(encoding="utf-8"))
+
+
+def test_a_folder_has_at_most_fourteen_files():
+    sizes = {}
+    for file, _ in sources():
+        if file.name != "__init__.py":
+            folder = file.parent.as_posix()
+            sizes[folder] = sizes.get(folder, 0) + 1
+    assert {folder: size for folder, size in sizes.items() if size > FOLDERS.get(folder, MOST_FILES)} == {}
+
+
+def test_a_function_has_at_most_ten_parameters():
+    many = {}
+    for file, tree in sources():
+        for function in (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)):
+            of = function.args
+            names = [one.arg for one in (*of.posonlyargs, *of.args, *of.kwonlyargs) if one.arg not in ("self", "cls")]
+            if len(names) > MOST_PARAMETERS:
+                many[file.as_posix()] = many.get(file.as_posix(), 0) + 1
+    assert {file: count for file, count in many.items() if count > PARAMETERS.get(file, 0)} == {}
+
+
+def test_ctypes_are_used_where_they_are_known_to_be():
+    users = {
+        file.as_posix()
+        for file, tree in sources()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Import) and any(one.name == "ctypes" for one in node.names)
+    }
+    assert {file for file in users if not file.startswith("model/runtime/")} <= CTYPES

@@ -12,11 +12,11 @@ from coilset.model.design.conditions import GROUP, SENSES
 from coilset.model.design.opened import FILE, read_design
 from coilset.model.design.output import LIMITS
 from coilset.model.report.answer import Number, answer
-from coilset.model.report.characteristic import characteristic
 from coilset.model.report.page import made_with
-from coilset.model.report.panel import Panel, axis, curve
+from coilset.model.report.panels.characteristic import characteristic
+from coilset.model.report.panels.panel import Panel, axis, curve
+from coilset.model.report.panels.spring_view import spring_view
 from coilset.model.report.render import write_page
-from coilset.model.report.spring_view import spring_view
 from coilset.model.results.files.opened import Run, open_run
 from coilset.model.results.records.labels import plain
 

@@ -15,9 +15,9 @@ from coilset.model.nest.file import NAMES
 from coilset.model.nest.output import STEPS
 from coilset.model.report.answer import Number
 from coilset.model.report.page import made_with, write_report
-from coilset.model.report.panel import DIVERGING, Panel, Trace, axis, curve, said
+from coilset.model.report.panels.panel import DIVERGING, Panel, Trace, axis, curve, said
+from coilset.model.report.panels.spring_view import scene_of
 from coilset.model.report.render import NAME, write_page
-from coilset.model.report.spring_view import scene_of
 from coilset.model.results.files.opened import Run, open_run
 from coilset.model.results.records.labels import plain
 

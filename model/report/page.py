@@ -6,18 +6,18 @@ from typing import Any
 
 import yaml
 
-from coilset.model.report.along_wire import moments_along_wire, stress_along_wire
 from coilset.model.report.answer import answer, subtitle
-from coilset.model.report.bearing import contact, force_centre
-from coilset.model.report.characteristic import characteristic, rate_curve
-from coilset.model.report.cost import cost, step_error
 from coilset.model.report.first_sheet import first_sheet
 from coilset.model.report.maker_sheet import maker_sheet
-from coilset.model.report.material_curves import material_curve
-from coilset.model.report.panel import Panel
+from coilset.model.report.panels.along_wire import moments_along_wire, stress_along_wire
+from coilset.model.report.panels.bearing import contact, force_centre
+from coilset.model.report.panels.characteristic import characteristic, rate_curve
+from coilset.model.report.panels.cost import cost, step_error
+from coilset.model.report.panels.material_curves import material_curve
+from coilset.model.report.panels.panel import Panel
+from coilset.model.report.panels.section_map import normal_map, shear_map
+from coilset.model.report.panels.spring_view import spring_view
 from coilset.model.report.render import write_page
-from coilset.model.report.section_map import normal_map, shear_map
-from coilset.model.report.spring_view import spring_view
 from coilset.model.results.files.opened import Run
 
 CHAPTERS: tuple[tuple[str, tuple[Callable[[Run], Panel | None], ...]], ...] = (

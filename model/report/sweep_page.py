@@ -9,12 +9,12 @@ import xarray as xr
 
 from coilset.model.base.errors import reading
 from coilset.model.report.answer import Number
-from coilset.model.report.panel import COLOURS, Panel, axis
+from coilset.model.report.panels.panel import COLOURS, Panel, axis
 from coilset.model.report.render import write_page
 from coilset.model.report.warning_words import in_words
 from coilset.model.results.files.labelled import labelled
-from coilset.model.sweep import findings
-from coilset.model.sweep.sensitivity import rank_correlation
+from coilset.model.sweep.figures import findings
+from coilset.model.sweep.figures.sensitivity import rank_correlation
 
 FILE = "sweep.nc"
 SHOWN = ("set_mm", "force_max_N", "rate_N_per_mm", "residual_shear_inside_MPa", "status", "warnings")  # at first

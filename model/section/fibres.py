@@ -11,11 +11,11 @@ from numba import njit, prange
 from coilset.meshes.springs.placement import Placement
 from coilset.model.base.kernel import KERNEL, PARALLEL
 from coilset.model.material.law.law import Law
+from coilset.model.material.law_over_time import LawOverTime
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.ground import ground_sections, rim_rule
 from coilset.model.section.integration import FIBRES, section, update_points
-from coilset.model.section.law_over_time import LawOverTime
 from coilset.model.section.rules import DiskRule, rim
 from coilset.model.section.shape import SHAPE, curved_shape, straight_shape
 from coilset.model.section.wire import BEND

@@ -26,12 +26,12 @@ from numba import njit, prange
 from coilset.meshes.springs.placement import Placement
 from coilset.model.base.kernel import PARALLEL
 from coilset.model.material.law.law import Law
+from coilset.model.material.law_over_time import LawOverTime
 from coilset.model.material.point_law import solid_point
 from coilset.model.runtime.threads import Threads
 from coilset.model.section.chord import to_chord, to_section
 from coilset.model.section.condensation import condense, find_warping, strain_operator
 from coilset.model.section.ground import segments
-from coilset.model.section.law_over_time import LawOverTime
 from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import DiskRule, rim
 

@@ -8,7 +8,7 @@ from coilset.meshes.springs.axis import Axis
 from coilset.meshes.springs.geometry import Spring
 from coilset.model.standards.buckling import buckling_travel
 from coilset.model.standards.rate import torsion_rate
-from coilset.model.standards.steel import STEEL, Elastic
+from coilset.model.standards.wires.steel import STEEL, Elastic
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from coilset.model.case.phases import Phase
 from coilset.model.standards import en13906, en15800, goodman
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.found import Found
-from coilset.model.standards.steel import Elastic
+from coilset.model.standards.wires.steel import Elastic
 from coilset.model.standards.wires.wire import Wire
 
 AT_BLOCK = 0.01  # of the wire diameter: a run closer than this to the block length of the geometry reached block

@@ -149,7 +149,7 @@ class Bar:
 def _conclude(plan: Plan, out: Path, pictures: bool, console: Console) -> int:
     """Data set, figures and a summary in words; returns the number of failed cases."""
     from coilset.model.sweep import dataset  # not before the cases run: xarray and matplotlib take half a second
-    from coilset.model.sweep.figures import FILES, draw
+    from coilset.model.sweep.figures.figures import FILES, draw
 
     data = dataset.collect(plan, out / "journal.jsonl")
     clear(out, ("report.html", *FILES))  # of other cases

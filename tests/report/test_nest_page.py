@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from coilset.model.nest.output import headline
-from coilset.model.report.panel import said
+from coilset.model.report.panels.panel import said
 from coilset.scripts.commands.nest import nest
 from coilset.scripts.commands.report import report
 

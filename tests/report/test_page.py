@@ -15,11 +15,11 @@ import pytest
 from coilset.model.base.errors import InputError
 from coilset.model.figures.wire import closed, inside, moments, shear_around, tubes
 from coilset.model.material import library
-from coilset.model.report.bearing import force_centre
-from coilset.model.report.characteristic import characteristic, phases
 from coilset.model.report.glossary import GLOSSARY
-from coilset.model.report.material_curves import material_curve
 from coilset.model.report.page import CHAPTERS, write_report
+from coilset.model.report.panels.bearing import force_centre
+from coilset.model.report.panels.characteristic import characteristic, phases
+from coilset.model.report.panels.material_curves import material_curve
 from coilset.model.results.files.opened import open_run
 from coilset.scripts.commands.report import report
 from coilset.scripts.commands.sheet import sheet

@@ -12,8 +12,8 @@ from coilset.model.standards import en13906
 from coilset.model.standards.cylinder import Cylinder
 from coilset.model.standards.found import Found
 from coilset.model.standards.sheet import Sheet
-from coilset.model.standards.steel import STEEL, Elastic
 from coilset.model.standards.wires import wire
+from coilset.model.standards.wires.steel import STEEL, Elastic
 from coilset.model.standards.working import gap_warnings, presetting_warning, stress_warnings
 
 SPEC = {

@@ -7,7 +7,7 @@ from scipy import stats
 from coilset.model.base.errors import InputError
 from coilset.model.case import check
 from coilset.model.sweep.design import rows, unit_cube
-from coilset.model.sweep.sensitivity import rank_correlation, sobol_indices
+from coilset.model.sweep.figures.sensitivity import rank_correlation, sobol_indices
 from coilset.model.sweep.spec import Normal, SweepSpec
 
 

@@ -5,8 +5,8 @@ import pytest
 import xarray as xr
 
 from coilset.model.results.records.units import unit_of
-from coilset.model.sweep import findings
 from coilset.model.sweep.dataset import quantity
+from coilset.model.sweep.figures import findings
 
 
 def cases(values):

@@ -24,7 +24,7 @@ from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 from coilset.model.sweep import dataset, pools
 from coilset.model.sweep.evaluate import evaluate
-from coilset.model.sweep.figures import draw
+from coilset.model.sweep.figures.figures import draw
 from coilset.model.sweep.journal import Journal, read_records
 from coilset.model.sweep.plan import Plan
 from coilset.model.sweep.pools import Workers

@@ -7,10 +7,10 @@ from coilset.model.case.targets import check_known
 from coilset.model.material import library
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
-from coilset.model.standards.steel import STEEL, Elastic
 from coilset.model.standards.wires.certificate import saturating
 from coilset.model.standards.wires.hardening import Curve, curve
 from coilset.model.standards.wires.library import wire
+from coilset.model.standards.wires.steel import STEEL, Elastic
 from coilset.model.standards.wires.wire import ROOM_TEMPERATURE, Wire
 
 SAME = 0.02  # maximum relative change of the diameter along one wire

@@ -14,10 +14,10 @@ from matplotlib.ticker import NullLocator
 from coilset.model.base.errors import InputError
 from coilset.model.base.style import STYLE
 from coilset.model.figures.figures import add_title, save
-from coilset.model.sweep import findings
 from coilset.model.sweep import spec as sp
+from coilset.model.sweep.figures import findings
+from coilset.model.sweep.figures.sensitivity import rank_correlation, sobol_indices
 from coilset.model.sweep.plan import Plan
-from coilset.model.sweep.sensitivity import rank_correlation, sobol_indices
 
 LINE_LIMIT = 5000  # curves drawn in a family; of more, an even selection
 COLOURS = "viridis"

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from coilset.model.figures.curve import compressed, smooth
-from coilset.model.report.panel import Panel, axis, curve
+from coilset.model.report.panels.panel import Panel, axis, curve
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import in_legend, plain
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from coilset.model.base.style import round_end
-from coilset.model.report.panel import Panel, Trace, axis, curve
+from coilset.model.report.panels.panel import Panel, Trace, axis, curve
 from coilset.model.results.files.opened import Run
 
 FAINT = 0.02  # of the maximum force: a smaller one passes anywhere

@@ -9,7 +9,7 @@ from coilset.model.base.style import round_end
 from coilset.model.figures.curve import element_at
 from coilset.model.figures.rings import FilledSection
 from coilset.model.figures.wire import inside
-from coilset.model.report.panel import DIVERGING, Panel, Trace, axis, said
+from coilset.model.report.panels.panel import DIVERGING, Panel, Trace, axis, said
 from coilset.model.results.files.opened import Run
 
 PIXELS = 121  # of a map, across the wire
