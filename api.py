@@ -56,11 +56,13 @@ from coilset.model.runtime.threads import usual
 __all__ = [
     "Case",
     "CoilsetError",
+    "Design",
     "InputError",
     "Material",
     "Result",
     "SolveError",
     "Step",
+    "design",
     "material",
     "slice_",
     "solve",
@@ -371,6 +373,53 @@ def sweep(plan: str | Path, folder: str | Path, jobs: int | None = None, overwri
     data = dataset.collect(checked, path)
     dataset.write(folder / "sweep.nc", data)
     return data
+
+
+@dataclass(frozen=True)
+class Design:
+    """What a design has found.
+
+    Attributes:
+        case: the case found; `solve` computes all of its results.
+        found: each unknown by its entry, in the unit of the entry.
+        met: whether all conditions are met; otherwise the case is as close as possible.
+        summary: numbers of the found spring, as in summary.json.
+
+    >>> found = design("examples/design/length_and_force.yaml")
+    >>> found.met
+    True
+    """
+
+    case: Case
+    found: dict[str, float]
+    met: bool
+    summary: dict[str, Any] = field(repr=False)
+
+
+def design(file: str | Path, threads: int | None = None) -> Design:
+    """Find entries of a case for which its run meets conditions.
+
+    Args:
+        file: the design file.
+        threads: as for `solve`.
+
+    Raises:
+        InputError: the file is wrong, or its conditions cannot be met.
+        SolveError: the search does not converge.
+
+    >>> found = design("examples/design/length_and_force.yaml")
+    >>> sorted(found.found)
+    ['loading.0.to.height', 'spring.wire_diameter']
+    """
+    from coilset.model.design.design import make_search
+    from coilset.model.design.design import solve as search_for
+    from coilset.model.design.file import read_design_file
+    from coilset.model.design.output import found_data
+
+    wanted = read_design_file(file)
+    found = search_for(make_search(wanted, threads=threads or usual(1))).found
+    unknowns = dict(zip(found.search.evaluator.names, found.x.tolist(), strict=True))
+    return Design(Case._of(wanted.check(found_data(found))), unknowns, found.met, dict(found.best.summary))
 
 
 @dataclass(frozen=True)

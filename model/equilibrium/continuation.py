@@ -1,7 +1,7 @@
 """Continuation along a load path: predict, solve, accept or cut; one loop for rods, frames, probes and solids.
 
-A solve ends in one of two ways: its trial state becomes the equilibrium, or the last equilibrium is restored. This
-transaction is made only here.
+A solve ends in one of two ways: its trial state becomes the equilibrium, or the last equilibrium is restored. The steps
+of a load program are committed here, the states of a snap-through in `branch_switching`.
 """
 
 import logging

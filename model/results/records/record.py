@@ -1,4 +1,4 @@
-"""What a run has found, as frozen records: writers, figures and checkpoints take these and nothing else."""
+"""The results of a run as frozen records, which writers, figures and checkpoints take."""
 
 import math
 from dataclasses import asdict, dataclass, field, fields
