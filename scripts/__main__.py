@@ -1,10 +1,7 @@
 """`python -m coilset.scripts`, and the installed command."""
 
-import gc
 import os
 import signal
-
-GARBAGE = 100_000  # objects after which Python looks for circular ones: not for each 700 of the many that a run keeps
 
 
 def _leave(*_: object) -> None:
@@ -20,10 +17,6 @@ def main() -> None:
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:
         signal.signal(signal.SIGINT, _leave)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGINT])
-    from coilset.model.runtime.switches import enabled
-
-    if enabled("garbage"):
-        gc.set_threshold(GARBAGE)
     from coilset.scripts.running import run
 
     run()

@@ -1,25 +1,6 @@
 """What a solve loads, in an order in which two threads can load it."""
 
-import contextlib
-import gc
-from collections.abc import Iterator
-
 from coilset.model.runtime.libraries import link_beside
-from coilset.model.runtime.switches import enabled
-
-
-@contextlib.contextmanager
-def keeping() -> Iterator[None]:
-    """Look for no garbage while libraries are loaded, nor later among what they have made: it stays until the end."""
-    if not enabled("garbage"):
-        yield
-        return
-    gc.disable()
-    try:
-        yield
-    finally:
-        gc.freeze()
-        gc.enable()
 
 
 def load_for_solve() -> None:

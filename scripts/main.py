@@ -8,7 +8,7 @@ from coilset.model.runtime.processes import number_of_ranks, usable_cores
 from coilset.scripts.beginning import announce_begin
 from coilset.scripts.commands.material import app as material
 from coilset.scripts.compiling import NOTICE, announce_compiling, compile_first, compiled
-from coilset.scripts.loading import keeping, load_for_solve
+from coilset.scripts.loading import load_for_solve
 from coilset.scripts.plain import typer
 from coilset.scripts.terminal.target import OVERWRITE, file_targets, folder_target, page_target
 
@@ -87,9 +87,8 @@ def solve(
         if pictures and os.path.isfile(case):
             drawings.start_if_free()
         announce_compiling()
-        with keeping():
-            load_for_solve()
-            from coilset.scripts.commands.solve import solve as run_case
+        load_for_solve()
+        from coilset.scripts.commands.solve import solve as run_case
 
         voice = "quiet" if quiet else "json" if json else "lines"
         run_case(

@@ -40,7 +40,6 @@ def load_without_compiler() -> None:
 
     for name, change in (
         ("compiler", _set_up_when_compiling),
-        ("lookup", _sought_when_called),
         ("bitcode", _link_when_compiling),
         ("imports", _import_nothing),
     ):
@@ -66,31 +65,6 @@ def _set_up_when_compiling() -> None:
     ready: list[bool] = []
     if all(hasattr(Cache, name) for name in ("load_overload", "_load_overload")):
         Cache.load_overload = load_overload
-
-
-def _sought_when_called() -> None:
-    """The place of a compiled function on disk is sought when it is called, not when it is defined.
-
-    Most functions are only called by others, whose machine code holds theirs.
-    """
-    from numba.core.caching import FunctionCache
-    from numba.core.dispatcher import Dispatcher
-
-    class Sought:
-        """Stands for the FunctionCache of a dispatcher until something is asked of it."""
-
-        def __init__(self, dispatcher: Any) -> None:
-            self._dispatcher = dispatcher
-
-        def __getattr__(self, name: str) -> Any:
-            self._dispatcher._cache = FunctionCache(self._dispatcher.py_func)
-            return getattr(self._dispatcher._cache, name)
-
-    def enable_caching(dispatcher: Any) -> None:
-        dispatcher._cache = Sought(dispatcher)
-
-    if hasattr(Dispatcher, "enable_caching"):
-        Dispatcher.enable_caching = enable_caching
 
 
 def _link_when_compiling() -> None:

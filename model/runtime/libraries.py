@@ -55,12 +55,9 @@ class WhenUsed:
 
 
 def load_when_used() -> None:
-    """Put off what is in UNUSED; pydantic looks through no libraries for plug-ins, and does not check its own work."""
+    """Put off what is in UNUSED."""
     if enabled("modules"):
         sys.meta_path.insert(0, WhenUsed(UNUSED))
-    if enabled("checks"):
-        os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
-        os.environ.setdefault("PYDANTIC_SKIP_VALIDATING_CORE_SCHEMAS", "1")  # of what it compiles from our classes
 
 
 def link_beside(then: Callable[[], object]) -> None:

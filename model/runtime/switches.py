@@ -8,13 +8,10 @@ import os
 SAVINGS = {
     "compiler": "kernels are loaded without setting up numba's compiler",
     "bitcode": "the bitcode of a kernel is parsed only for a caller that is compiled",
-    "lookup": "a kernel is looked up on disk when Python calls it, not when it is defined",
     "imports": "the module of a kernel within another kernel is not imported",
     "modules": "modules that libraries import without using them are loaded when something of them is used",
-    "checks": "pydantic neither searches for plug-ins nor checks its own schemas",
     "linking": "MPI, PETSc and DOLFINx are linked by a second thread",
     "rich": "typer is loaded without rich",
-    "garbage": "garbage is collected rarely, and not among what the libraries have made",
     "ending": "the process ends without tearing Python down",
 }
 
