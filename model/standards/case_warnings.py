@@ -27,7 +27,7 @@ def case_warnings(case: Case, spring: Spring, law: Law) -> tuple[Warning, ...]:
     """
     elastic = case_elastic(case, law)
     own = [one for one in spring_warnings(spring, elastic) if not (one.name == "buckling" and pulls(case, spring))]
-    return (*_renamed(case), *_estimated(case), *own, *_working(case, spring, elastic))
+    return (*_renamed(case), *_estimated(case), *_supports(case, spring), *own, *_working(case, spring, elastic))
 
 
 def _renamed(case: Case) -> Iterator[Warning]:
@@ -44,6 +44,25 @@ def _estimated(case: Case) -> Iterator[Warning]:
             f"the hardening of {name} is an estimate from its minimum tensile "
             "strength; a test of the wire gives its own (coilset material fit)",
         )
+
+
+def _supports(case: Case, spring: Spring) -> Iterator[Warning]:
+    """Supports that no spring with these ends has; the ends of a measured wire have no form that could be checked."""
+    if spring.measured_axis is not None:
+        return
+    for end, name in ((spring.bottom, "bottom"), (spring.top, "top")):
+        if case.ends == "clamped" and end.is_closed:
+            message = (
+                f"the {name} end is {end.form}, but clamped ends fix the section at its tip, which no support of "
+                "such a spring does; give ends: seats, or open end_coils for a wire that is welded in"
+            )
+            yield Warning("support", "ends", message)
+        elif case.ends == "seats" and case.seats.hold == "groove" and not end.is_closed:
+            message = (
+                f"the {name} end is open, but a groove supports an end coil that lies on its seat; "
+                "give closed end_coils, or seats: {hold: tips}"
+            )
+            yield Warning("support", "seats.hold", message)
 
 
 def _working(case: Case, spring: Spring, elastic: Elastic) -> list[Warning]:

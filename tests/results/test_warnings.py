@@ -128,6 +128,27 @@ def test_a_warning_is_logged_after_the_first_step_that_shows_it(lifted, caplog, 
     assert len(expected) == 8
 
 
+def test_a_negative_set_after_compression_is_named(lifted):
+    """The released spring is moved apart: 0.99 and 1.01 of the limit; drawn or coiled springs may lengthen."""
+    setup, result, limit = lifted.setup, lifted.result, 1e-3 * lifted.setup.spring.free_length
+    steps, shots = result.steps[:6], result.snapshots[:3]
+    short = setup.spring.free_length - setup.outer_length(shots[-1].x)
+
+    def longer(by, steps=steps, setup=setup):
+        x = shots[-1].x.copy()
+        x[len(x) // 2 :, 2] += short + by  # from the middle of the wire on
+        released = replace(result, steps=steps, snapshots=(*shots[:2], replace(shots[-1], x=x)))
+        return [one for one in run_warnings(setup, released) if one.name == "negative set"]
+
+    assert longer(0.99 * limit) == []
+    (warning,) = longer(1.01 * limit)
+    assert warning.value == pytest.approx(-1.01 * limit)
+    assert "ends: seats" in warning.message
+    drawn = (replace(steps[0], force_N=-10.0), *steps[1:])
+    assert longer(1.01 * limit, steps=drawn) == []
+    assert longer(1.01 * limit, setup=replace(setup, coiling_diameter=30.0)) == []
+
+
 def test_a_force_on_a_wall_is_told(lifted):
     """From 100 N at 10 mm to 120 N at 10.1 mm: 200 N/mm are 16.8 % of it for 1 % of the travel, 400 N/mm 29 %."""
     first = Step(1, 0, 0.9, 25.0, 10.0, 100.0, 3, 4, 0, 0, 2, 0.0)

@@ -93,3 +93,23 @@ def test_a_measured_wire_in_metres_is_warned_of(tmp_path):
     np.savetxt(tmp_path / "scan.csv", points, delimiter=",", header="x,y,z,wire_diameter", comments="")
     found = spring_warnings(MeasuredSpec(file=str(tmp_path / "scan.csv")).build())
     assert [one.name for one in found] == ["wire", "index"]
+
+
+@pytest.mark.parametrize(
+    ("ends", "support", "place"),
+    [
+        ("closed and ground", "ends=clamped", "ends"),
+        ("closed", "ends=clamped", "ends"),
+        ("open", "ends=clamped", None),
+        ("open", "seats.hold=groove", "seats.hold"),
+        ("open", "seats.hold=tips", None),
+        ("closed", "seats.hold=groove", None),
+        ("closed and ground", "seats.hold=groove", None),
+    ],
+)
+def test_supports_that_no_spring_has_are_named(example, ends, support, place):
+    case = read_case(example, [f"spring.end_coils={ends}", "spring.turns=6", support])
+    spring = case.spring.build()
+    found = [one for one in case_warnings(case, spring, case_law(case, spring)) if one.name == "support"]
+    assert [one.place for one in found] == ([place, place] if place else [])
+    assert all(end in one.message and "give" in one.message for end, one in zip(("bottom", "top"), found, strict=False))

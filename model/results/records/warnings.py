@@ -16,6 +16,7 @@ SLIPPED = 0.7  # of the rise to touch: coils of one wire that lie so are shifted
 # spring of constant rate has 1, the example at block 1.1, the cone 160.
 WALL = 20.0
 WALL_FORCE = 0.002  # of the force, for which the warning tells the height where no accuracy is asked for
+LONGER = 1e-3  # of the free length: a negative set beyond it is not rounding
 NOTICED = 1e-5  # of the free length: a set uncertain by less, 0.3 µm of 30 mm, is known to whoever measures it
 Check = Callable[[Setup, Result], Iterator[Warning]]
 
@@ -218,6 +219,21 @@ def _step_error(setup: Setup, result: Result) -> Iterator[Warning]:
         yield warning
 
 
+def _longer(setup: Setup, result: Result) -> Iterator[Warning]:
+    """A spring that was only compressed and is longer afterwards; wire with stresses from coiling may lengthen."""
+    release, limit = last_release(setup, result), LONGER * setup.spring.free_length
+    if release is None or release.set >= -limit or setup.coiling_diameter is not None:
+        return
+    if any(step.force_N < -FREE * result.greatest_force or step.travel_mm < -limit for step in result.steps[:-1]):
+        return
+    message = (
+        f"the spring is {-release.set:.3g} mm longer after it was only compressed: either fixed ends yield in bending "
+        "(compare with ends: seats), or the mesh is too coarse where coils close (compare with more "
+        "mesh.elements_per_turn)"
+    )
+    yield Warning("negative set", "set", message, release.set, 0.0, "mm")
+
+
 def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
     """Of a program that goes to block and comes back, if the spring sets: an elastic spring is not preset."""
     release, spring = last_release(setup, result), setup.spring
@@ -229,4 +245,4 @@ def _presetting(setup: Setup, result: Result) -> Iterator[Warning]:
 
 
 SEEN: tuple[Check, ...] = (_plastic_work, _lift_off, _slipped, _wall, _penetration, _buckled, _unstable, _snapped)
-FOUND: tuple[Check, ...] = (_strength, _step_error, _presetting)
+FOUND: tuple[Check, ...] = (_strength, _step_error, _presetting, _longer)
