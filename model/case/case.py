@@ -13,8 +13,9 @@ from coilset.meshes.springs.spring import SpringEntry, SpringSpec
 from coilset.meshes.springs.stations import ElementsPerTurn
 from coilset.model.base.entry import Strict, Whole, check_entries
 from coilset.model.base.yaml import read_data
+from coilset.model.case.heads import FREEDOMS, HeadsSpec
 from coilset.model.case.heat import HeatSpec
-from coilset.model.case.phases import AnyPhase, Phase
+from coilset.model.case.phases import AnyPhase, Phase, heads_of
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.case.settings import assign, located
 from coilset.model.equilibrium.settings import MethodName, NewtonControl, StepControl
@@ -219,6 +220,7 @@ class Case(Strict):
         Field(description="seats: the spring stands between seats; clamped: both tips of the wire are clamped"),
     ] = "seats"
     seats: SeatsSpec = SeatsSpec()
+    heads: HeadsSpec = HeadsSpec()
     mesh: MeshSpec = MeshSpec()
     contact: ContactSpec = ContactSpec()
     solver: SolverSpec = SolverSpec()
@@ -275,6 +277,28 @@ class Case(Strict):
         return self
 
     @model_validator(mode="after")
+    def _heads_belong(self) -> Self:
+        if self.ends == "seats" and self.heads != HeadsSpec():
+            raise ValueError("heads are those of a clamped wire; give ends: clamped, or entries of seats")
+        holder: HeadsSpec | SeatsSpec = self.heads if self.ends == "clamped" else self.seats
+        given = {end: getattr(holder, end) for end in ("bottom", "top")}
+        loose = {(end, name) for end, spec in given.items() for name in FREEDOMS if getattr(spec, name) == "free"}
+        for number, phase in enumerate(self.loading):
+            for end, target in heads_of(phase).items():
+                place = f"loading.{number}.to.{end}"
+                if self.ends == "seats" and self.seats.hold == "tips":
+                    raise ValueError(f"{place}: tips are held in space; give seats.hold: groove, or ends: clamped")
+                for name in (*target.values, *target.loaded):
+                    if not isinstance(getattr(given[end], name), str):
+                        raise ValueError(f"{place}: {name} is on a spring; give it as held or free, or drive another")
+                loose |= {(end, name) for name in target.loaded}
+                loose -= {(end, name) for name in target.values}
+            for name in ("sideways", "turn"):
+                if {("bottom", name), ("top", name)} <= loose:
+                    raise ValueError(f"loading.{number}: {name} is free at both ends, so the spring floats; hold one")
+        return self
+
+    @model_validator(mode="after")
     def _past_of_fibres(self) -> Self:
         if self.past and self.mesh.section.kind == "warping":
             raise ValueError(f"spring.{self.past[0]} needs sections of fibres; give mesh.section.kind: curved or plane")
@@ -295,8 +319,8 @@ class Case(Strict):
 
     @property
     def targets(self) -> list[Phase]:
-        """The phases of `loading` that go to a target."""
-        return [phase for phase in self.loading if isinstance(phase, Phase)]
+        """The phases of `loading` that go to a travel, height or force."""
+        return [phase for phase in self.loading if isinstance(phase, Phase) and phase.drives_axially]
 
     @property
     def ends_turn(self) -> bool:

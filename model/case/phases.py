@@ -1,26 +1,47 @@
 """The `loading` section of a case: a list of targets and times, each reached in a number of steps."""
 
+from collections.abc import Sequence
 from typing import Annotated, Any, Literal, Self
 
 from annotated_types import Unit
 from pydantic import AfterValidator, Discriminator, Field, Tag, model_validator
 
 from coilset.model.base.entry import Strict, Whole
+from coilset.model.case.heads import HeadTarget
+from coilset.model.equilibrium.settings import Drive
 
 
 class Target(Strict):
-    """One of travel, height or force; compression is positive."""
+    """One of travel, height or force, compression positive, and targets of the heads' other freedoms."""
 
     travel: Annotated[float | None, Unit("mm"), Field(description="shortening of the spring since the start, mm")] = (
         None
     )
     height: Annotated[float | None, Unit("mm"), Field(gt=0, description="distance between the seats, mm")] = None
     force: Annotated[float | None, Unit("N"), Field(description="axial force, compression positive, N")] = None
+    bottom: Annotated[HeadTarget | None, Field(description="where the bottom head goes besides")] = None
+    top: Annotated[HeadTarget | None, Field(description="where the top head goes besides")] = None
+
+    @property
+    def heads(self) -> dict[str, HeadTarget]:
+        """Targets of the heads' other freedoms, by end."""
+        given = {"bottom": self.bottom, "top": self.top}
+        return {end: target for end, target in given.items() if target is not None}
+
+    @property
+    def axial(self) -> dict[str, float]:
+        """Travel, height or force, by its name; empty if none is given."""
+        given = {"travel": self.travel, "height": self.height, "force": self.force}
+        return {name: value for name, value in given.items() if value is not None}
 
     @model_validator(mode="after")
     def _one(self) -> Self:
-        if sum(value is not None for value in (self.travel, self.height, self.force)) != 1:
+        count = len(self.axial)
+        if count > 1 or (not count and not self.heads):
             raise ValueError("give exactly one of travel (mm), height (mm) or force (N), as in {force: 0}")
+        tables = any(target.tables for target in self.heads.values())
+        if tables and (not count or self.force is not None):
+            raise ValueError("a table over the travel needs a travel or height to go to, as in {travel: 80, top: ...}")
         return self
 
 
@@ -74,7 +95,10 @@ class Phase(Stepped):
     to: Annotated[
         Annotated[Literal["block"], Tag("(block)")] | Annotated[Target, Tag("(target)")],
         Discriminator(_kind),
-        Field(description="block, {travel: mm}, {height: mm} or {force: N}"),
+        Field(
+            description="block, {travel: mm}, {height: mm} or {force: N}; with it or alone `bottom` and `top`, targets "
+            "of the heads' other freedoms"
+        ),
     ]
 
     seconds: Annotated[
@@ -93,11 +117,25 @@ class Phase(Stepped):
         """The target in words, for progress and logs."""
         if self.to == "block":
             return "block"
-        name, value = next((name, value) for name, value in self.to.model_dump().items() if value is not None)
-        return f"{name} {value:g} {'N' if name == 'force' else 'mm'}"
+        words = [f"{name} {value:g} {'N' if name == 'force' else 'mm'}" for name, value in self.to.axial.items()]
+        words += [f"{end} {target.label}" for end, target in self.to.heads.items()]
+        return ", ".join(words)
+
+    @property
+    def heads(self) -> dict[str, HeadTarget]:
+        """Targets of the heads' freedoms other than the axial one, by end."""
+        return {} if isinstance(self.to, str) else self.to.heads
+
+    @property
+    def drives_axially(self) -> bool:
+        """Whether it has a travel, height or force to go to."""
+        return isinstance(self.to, str) or bool(self.to.axial)
 
     def goal(self, free_length: float, block_height: float) -> tuple[Literal["height", "force"], float]:
-        """What is driven, the height between the seats, mm, or the axial force, N, and its value at the end."""
+        """What is driven, the height between the seats, mm, or the axial force, N, and its value at the end.
+
+        Of a phase that drives other freedoms only, the free length; see `drives_axially`.
+        """
         if self.to == "block":
             return "height", block_height
         if self.to.force is not None:
@@ -186,3 +224,21 @@ AnyPhase = Annotated[
     Annotated[Phase, Tag("(target)")] | Annotated[TimePhase, Tag("(time)")], Discriminator(_passes_time)
 ]
 """A phase of a load program."""
+
+
+def heads_of(phase: AnyPhase) -> dict[str, HeadTarget]:
+    """What a phase does to the heads besides the axis, by end."""
+    return phase.heads if isinstance(phase, Phase) else {}
+
+
+def drives_at(loading: Sequence[AnyPhase], number: int) -> tuple[Drive, ...]:
+    """What drives the heads' freedoms in a phase, by its number.
+
+    A freedom that it does not name stays as an earlier phase left it: where it is, or under its force.
+    """
+    found: dict[int, Drive] = {}
+    for phase in loading[: number + 1]:
+        found = {freedom: Drive(freedom, drive.kind, None) for freedom, drive in found.items()}
+        for end, target in heads_of(phase).items():
+            found |= {drive.freedom: drive for drive in target.drives(6 * ("bottom", "top").index(end))}
+    return tuple(found.values())

@@ -4,19 +4,15 @@ import math
 from typing import Annotated, Literal, Self
 
 from annotated_types import Unit
-from pydantic import Field, Tag, model_validator
+from pydantic import Field, model_validator
 
-from coilset.model.base.entry import WORD_OR_NUMBER, Strict
+from coilset.model.base.entry import Strict
+from coilset.model.case.heads import HeadSpec
 
-Freedom = Annotated[
-    Annotated[Literal["held", "free"], Tag("(word)")] | Annotated[float, Field(gt=0), Tag("(number)")], WORD_OR_NUMBER
-]
-"""How a seat is held in one freedom: `held`, `free`, or on a spring of this stiffness."""
-FREEDOMS = {"sideways": (0, 1), "tilt": (3, 4), "turn": (5,)}  # degrees of freedom of a seat
 GROOVE = 0.75  # turns of the groove that are usual: what grinding makes flat
 
 
-class SeatSpec(Strict):
+class SeatSpec(HeadSpec):
     """One seat, and how it is held; along the spring's axis it moves as the load program says."""
 
     shape: Annotated[Literal["flat", "conical", "stepped"], Field(description="shape of its surface")] = "flat"
@@ -30,17 +26,6 @@ class SeatSpec(Strict):
         Unit("turns"),
         Field(gt=0, description="turns from the tip over which a stepped seat follows the wire"),
     ] = None
-    sideways: Annotated[
-        Freedom, Unit("N/mm"), Field(description="sideways motion: held, free, or a stiffness in N/mm")
-    ] = "held"
-    tilt: Annotated[
-        Freedom, Unit("N mm/rad"), Field(description="tilting: held, free (ball joint), or a stiffness in N mm/rad")
-    ] = "held"
-    turn: Annotated[
-        Freedom,
-        Unit("N mm/rad"),
-        Field(description="rotation about the spring's axis: held, free, or a stiffness in N mm/rad"),
-    ] = "held"
 
     @model_validator(mode="after")
     def _belongs(self) -> Self:
@@ -56,20 +41,6 @@ class SeatSpec(Strict):
     def slope(self) -> float:
         """tan β of a cone, else 0."""
         return math.tan(math.radians(self.angle or 0.0))
-
-    def held(self) -> list[int]:
-        """Degrees of freedom that are held, without the level; the others are free or on springs."""
-        return [dof for name, dofs in FREEDOMS.items() for dof in dofs if getattr(self, name) == "held"]
-
-    def springs(self) -> dict[int, float]:
-        """Stiffness by degree of freedom, a dict, N/mm and N mm/rad."""
-        given = {name: getattr(self, name) for name in FREEDOMS}
-        return {dof: k for name, k in given.items() if not isinstance(k, str) for dof in FREEDOMS[name]}
-
-    @property
-    def moves(self) -> bool:
-        """Whether it moves otherwise than along the axis."""
-        return any(getattr(self, name) != "held" for name in FREEDOMS)
 
 
 class SeatsSpec(Strict):

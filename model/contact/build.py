@@ -1,5 +1,6 @@
 """The contacts of a spring: coil on coil, and its seats."""
 
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,13 @@ ONSET_OF_DIAMETER = 1e-3  # distance over which contact sets in, in wire diamete
 
 
 def build_contacts(
-    contact: Any, seats: Any, spring: Spring, turns: np.ndarray, stations: np.ndarray, E: float
+    contact: Any,
+    seats: Any,
+    spring: Spring,
+    turns: np.ndarray,
+    stations: np.ndarray,
+    E: float,
+    moving: Collection[str] = (),
 ) -> list[Contact]:
     """Contacts of a spring.
 
@@ -32,6 +39,7 @@ def build_contacts(
         turns: of the stations, shape (n,).
         stations: positions, shape (n, 3), mm.
         E: Young's modulus, for the default bedding, MPa.
+        moving: ends whose seats a load program moves otherwise than along the axis.
 
     Returns:
         List of Contacts.
@@ -50,7 +58,7 @@ def build_contacts(
         contacts.append(gaps_one_turn_apart(turns, radius, lengths, bedding, onset))
     if seats is not None:
         for end in ENDS:
-            contacts += build_seat(end, seats, spring, points, stations, bedding, onset)
+            contacts += build_seat(end, seats, spring, points, stations, (bedding, onset), end in moving)
     return contacts + frictions(contact.friction, contacts, stations, seats_at(spring.free_length))
 
 
@@ -78,8 +86,8 @@ def build_seat(
     spring: Spring,
     points: WirePoints,
     stations: np.ndarray,
-    bedding: float,
-    onset: float,
+    stiffness: tuple[float, float],
+    driven: bool = False,
 ) -> list[Contact]:
     """The seat of an end, with its groove and the springs on which it stands.
 
@@ -89,29 +97,30 @@ def build_seat(
         spring: Spring.
         points: WirePoints.
         stations: positions, shape (n, 3), mm.
-        bedding: N/mm per mm.
-        onset: mm.
+        stiffness: of the bedding, N/mm per mm, and its onset, mm.
+        driven: whether a load program moves the seat otherwise than along the axis.
 
     Raises:
         InputError: if a seat's step is longer than the wire.
     """
     side, start = getattr(seats, end), seats_at(spring.free_length)
+    bedding, onset = stiffness
     for turns, entry in ((side.turns, f"seats.{end}.turns"), (seats.groove, "seats.groove")):
         if turns is not None and turns > spring.turns:
             raise InputError(f"{turns:g}: the spring has {spring.turns:g} turns only", entry)
     reach = spring.seat_distance(points.turns, end)
     contacts: list[Contact] = [
-        Seat(end, points, reach, stations, start, bedding, onset, side.slope, side.turns or 0.0, side.moves)
+        Seat(end, points, reach, stations, start, bedding, onset, side.slope, side.turns or 0.0, side.moves or driven)
     ]
     if seats.hold == "groove":
         contacts.append(Groove(end, points, seats.groove_turns, stations, bedding, start))
     if side.moves:
-        stiffness = np.zeros(SEAT_DOFS)
+        mount = np.zeros(SEAT_DOFS)
         if side.tilt == "free":
-            stiffness[3:5] = FREE_TILT_OF_BEDDING * bedding * float(spring.mean_radius(points.turns).mean()) ** 3
+            mount[3:5] = FREE_TILT_OF_BEDDING * bedding * float(spring.mean_radius(points.turns).mean()) ** 3
         for dof, k in side.springs().items():
-            stiffness[dof] = k
-        contacts.append(Mount(end, len(stations), stiffness, start))
+            mount[dof] = k
+        contacts.append(Mount(end, len(stations), mount, start))
     return contacts
 
 

@@ -87,7 +87,8 @@ def _press(case: Case, spring: Spring, law: Law) -> tuple[dict[str, float], floa
     state: UniformState | np.ndarray = one
     travel, force, greatest, torque = 0.0, 0.0, 0.0, 0.0
     for number, phase in enumerate(case.loading):
-        if not isinstance(phase, Phase):  # time passes: the uniform rod has no time
+        # time passes or a head moves sideways: the uniform rod knows neither
+        if not isinstance(phase, Phase) or not phase.drives_axially:
             continue
         kind, end = phase.goal(length, spring.block_height)
         begin, end = (force, end) if kind == "force" else (travel, length - end)

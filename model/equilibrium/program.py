@@ -1,4 +1,4 @@
-"""The load program of a spring: stages to a height or a force, one after the other."""
+"""The load program of a spring: stages to heights, forces and other values of its heads, one after the other."""
 
 import logging
 import math
@@ -10,10 +10,13 @@ import numpy as np
 
 from coilset.model.base.errors import SolveError
 from coilset.model.body.body import Moment, PassesTime
-from coilset.model.equilibrium.axial_control import AxialControl
+from coilset.model.contact.base import SEAT_DOFS
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.convergence import Outcome
+from coilset.model.equilibrium.heads import AXIAL, Heads
+from coilset.model.equilibrium.layout import SEATS
 from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.settings import Drive
 from coilset.model.equilibrium.step_control import Path, Position
 
 log = logging.getLogger("coilset.steps")
@@ -33,6 +36,7 @@ class Stage:
         hours: how long it takes; 0: no time.
         temperature: at the end, K; None: as at the start.
         even: whether equal parts take equal times although the temperature stays.
+        drives: of the heads' other freedoms that this or an earlier stage drives.
     """
 
     kind: Literal["height", "force"]
@@ -42,6 +46,7 @@ class Stage:
     hours: float = 0.0
     temperature: float | None = None
     even: bool = False
+    drives: tuple[Drive, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -54,6 +59,7 @@ class ProgramPosition:
         on_path: Position on the path of the stage.
         redirected: where it goes in place of the stage's own target; None: there.
         begun: Moment when the stage began.
+        heads: values of the heads' freedoms where it began, mm and rad, and their forces on the spring, N and N mm.
     """
 
     stage: int
@@ -62,6 +68,7 @@ class ProgramPosition:
     on_path: Position
     redirected: Stage | None = None
     begun: Moment = START
+    heads: tuple[float, ...] = (0.0,) * 24
 
 
 @dataclass(frozen=True)
@@ -87,11 +94,11 @@ class LoadProgram:
     """Drives a spring through stages.
 
     Args:
-        control: AxialControl.
+        control: Heads.
         continuation: Continuation.
     """
 
-    def __init__(self, control: AxialControl, continuation: Continuation) -> None:
+    def __init__(self, control: Heads, continuation: Continuation) -> None:
         self.control, self.continuation = control, continuation
         self.begin(0)
 
@@ -99,6 +106,7 @@ class LoadProgram:
         """Stand at the start of a stage."""
         self.redirected: Stage | None = None
         self.number, self._height, self._force = number, self.control.height, self.control.force
+        self._heads = (*self.control.freedoms("equilibrium"), *self.control.reactions("equilibrium"))
         self._begun = self.now
         self.continuation.begin()
 
@@ -112,13 +120,19 @@ class LoadProgram:
     def position(self) -> ProgramPosition:
         """Where the spring stands."""
         return ProgramPosition(
-            self.number, self._height, self._force, self.continuation.steps.position, self.redirected, self._begun
+            self.number,
+            self._height,
+            self._force,
+            self.continuation.steps.position,
+            self.redirected,
+            self._begun,
+            tuple(float(value) for value in self._heads),
         )
 
     @position.setter
     def position(self, position: ProgramPosition) -> None:
         self.number, self._height, self._force = position.stage, position.height, position.force
-        self._begun = position.begun
+        self._begun, self._heads = position.begun, position.heads
         self.continuation.steps.position, self.redirected = position.on_path, position.redirected
 
     def run(self, stage: Stage) -> Iterator[StepTaken]:
@@ -128,6 +142,7 @@ class LoadProgram:
             SolveError: as Continuation.advance.
         """
         self.stage, continuation = self.redirected or stage, self.continuation
+        self.control.measure = self._measure(self.stage)
         while continuation.steps.position.done < self._regular(self.stage):
             path = self._path(self.stage)
             before = path.progress(continuation.steps.position.done)
@@ -157,7 +172,8 @@ class LoadProgram:
             SolveError: if there is none near.
         """
         control = self.control
-        load = control.to_force(control.force) if self.stage.kind == "force" else control.to_height(control.height)
+        axial = control.force if self.stage.kind == "force" else control.height
+        load = self._load(self.stage, axial, 1.0)
         outcome = self.continuation.settle(load, taken.outcome)
         if not outcome.converged:
             raise SolveError(f"no equilibrium with the temperatures after step {taken.number}: {outcome.reason}")
@@ -182,8 +198,9 @@ class LoadProgram:
             return done / regular if marks is None else float(np.interp(done, np.arange(regular + 1), marks))
 
         def load(done: float) -> Load:
-            value = end if done >= regular else begin + part(done) * (end - begin)
-            return self.control.to_force(value) if stage.kind == "force" else self.control.to_height(value)
+            if done >= regular:
+                return self._load(stage, end, 1.0)
+            return self._load(stage, begin + part(done) * (end - begin), part(done))
 
         return Path(
             load,
@@ -194,6 +211,31 @@ class LoadProgram:
             None if marks is None else lambda done: regular * part(done),
             self._moments(stage, part) if stage.hours else None,
         )
+
+    def _load(self, stage: Stage, axial: float, part: float) -> Load:
+        """The load to a part of a stage, where the height or force is `axial`."""
+        control = self.control
+        by_force = stage.kind == "force"
+        values = {} if by_force else {AXIAL: control.freedom_at(axial)}
+        forces = {AXIAL: -axial} if by_force else {}
+        kept = [drive.freedom for drive in stage.drives if drive.kind == "value" and drive.end is None and not drive.table]
+        for drive in stage.drives:
+            if drive.freedom in kept:
+                continue
+            begin = self._heads[drive.freedom + (0 if drive.kind == "value" else SEATS)]
+            value = begin if drive.end is None else begin + part * (drive.end - begin)
+            if drive.table:
+                value = float(np.interp(control.free_length - axial, *drive.table))
+            (values if drive.kind == "value" else forces)[drive.freedom] = value
+        return control.load(values, forces, kept)
+
+    def _measure(self, stage: Stage) -> int:
+        """The freedom that a stage drives: the axial one, unless it stays and another is driven."""
+        stays = stage.value is None or stage.value == (self._force if stage.kind == "force" else self._height)
+        driven = [drive.freedom for drive in stage.drives if drive.end is not None]
+        if not stays or not driven:
+            return AXIAL
+        return max(driven, key=lambda freedom: freedom % SEAT_DOFS)
 
     def _moments(self, stage: Stage, part: Callable[[float], float]) -> Callable[[float], Moment]:
         """Time and temperature along a stage, by places on its path.

@@ -4,7 +4,7 @@ How much each of them matters is measured in docs/methods.md: each halved and do
 """
 
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal, NamedTuple
 
 from annotated_types import Unit
 from pydantic import ConfigDict, Field
@@ -121,3 +121,19 @@ class StepControl:
     snap_advance: Annotated[Positive, Unit("wire radii")] = 1.0
     snap_steps: Count = 200
     snap_failures: Count = 8
+
+
+class Drive(NamedTuple):
+    """What drives one freedom of a head.
+
+    Attributes:
+        freedom: its number, of the bottom head from 0, of the top head from 6 on.
+        kind: whether its value is prescribed or the force that is conjugate to it.
+        end: its value at the end of the phase, mm, rad, N or N mm; None: as at its start.
+        table: travels, mm, and values over them; empty if there are none.
+    """
+
+    freedom: int
+    kind: Literal["value", "force"]
+    end: float | None
+    table: tuple[tuple[float, ...], ...] = ()

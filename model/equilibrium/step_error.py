@@ -22,7 +22,7 @@ from mpi4py import MPI
 
 from coilset.model.body.body import EstimatesErrors
 from coilset.model.body.state import Where
-from coilset.model.equilibrium.axial_control import AxialControl
+from coilset.model.equilibrium.heads import Heads
 from coilset.model.equilibrium.settings import StepControl
 
 ORDER = 3
@@ -55,12 +55,12 @@ class StepError:
     """Estimates for a spring between its heads.
 
     Args:
-        control: AxialControl of a System whose body EstimatesErrors.
+        control: Heads of a System whose body EstimatesErrors.
         accuracy: error of force that is asked for, over the maximum force so far.
         steps: StepControl.
     """
 
-    def __init__(self, control: AxialControl, accuracy: float, steps: StepControl) -> None:
+    def __init__(self, control: Heads, accuracy: float, steps: StepControl) -> None:
         body = control.system.body
         assert isinstance(body, EstimatesErrors)
         self.control, self.accuracy, self.steps, self._body = control, accuracy, steps, body
@@ -82,8 +82,8 @@ class StepError:
         works = self._body.error_works(ratio, bool(kinked), stands=not controls)
         if comm.size > 1:
             works = tuple(comm.allreduce(np.array(works)).tolist())
-        before, force = control.force, control.trial_force
-        travel = control.height - control.trial_height
+        (start, before), (end, force) = control.measured("equilibrium"), control.measured("trial")
+        travel = end - start
         memory[GREATEST] = greatest = max(float(last[GREATEST]), abs(force))
         still, none = abs(travel) <= STILL * control.free_length, greatest <= ROUNDING * self._body.axial_force
         if still or none or (self._takes_time() and abs(force - before) <= STILL_FORCE * greatest):
@@ -127,7 +127,7 @@ class StepError:
     def _resolves_time(self, faint: float) -> bool:
         """Can the error of the step be told from its works? Forces up to `faint`, N, do not fall; collective."""
         comm = self.control.system.comm
-        before, after = (max(abs(force), faint) for force in (self.control.force, self.control.trial_force))
+        before, after = (max(abs(self.control.measured(when)[1]), faint) for when in ("equilibrium", "trial"))
         resolves = self._body.resolves_time(max(math.log(before / after), 0.0))
         return comm.allreduce(resolves, MPI.LAND) if comm.size > 1 else resolves
 

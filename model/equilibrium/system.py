@@ -9,13 +9,15 @@ from dolfinx import la
 from petsc4py import PETSc
 
 from coilset.model.body.body import Body, HasRotations, Moment, PassesTime
+from coilset.model.body.lever import Swing
 from coilset.model.body.state import Where
-from coilset.model.contact.base import BearsOnWire, Contact, Contribution, HasMemory
-from coilset.model.equilibrium.contact_parts import ContactParts
+from coilset.model.contact.base import SEAT_DOFS, BearsOnWire, Contact, Contribution, HasMemory
+from coilset.model.equilibrium.contact_parts import ContactParts, carried
 from coilset.model.equilibrium.joined import add_vectors
 from coilset.model.equilibrium.layout import Layout, LineLayout
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import TangentMatrix
+from coilset.model.rotations.vectors import nearest_vector, rotation_matrix
 
 EXPIRED = b""  # in the place of the increments of an evaluation
 
@@ -80,6 +82,8 @@ class System:
         self.bearing = [isinstance(contact, BearsOnWire) for contact in self.contacts]
         if self.contacts:
             self.touching = ContactParts(self.line, self.contacts)
+        self._arms = layout.rod.arms if isinstance(layout, LineLayout) else {}
+        self._swings: dict[int, Swing] = {}
         self._is_rotation = np.zeros(layout.size_local, dtype=bool)
         if self._rotating is not None:
             body = self._rotating
@@ -130,6 +134,8 @@ class System:
         has_stress = self.body.update()
         if self.comm.size > 1:
             has_stress = self.comm.allreduce(int(has_stress)) == self.comm.size
+        if self._arms:
+            self._follow_heads()
         if not has_stress:
             self.last = Evaluation(values, False, [])
         elif not self.contacts:
@@ -138,6 +144,26 @@ class System:
             self.last = Evaluation(values, True, *self._touch())
         if has_stress:
             self._assemble_internal(self.body.internal_forces)
+
+    def _follow_heads(self) -> None:
+        """The pose of heads to which stations are fixed, and how these go with them; collective."""
+        assert self._seats is not None
+        rod, line = self.line.rod, self.line
+        for station, arm in self._arms.items():
+            own = slice(0, SEAT_DOFS) if station == 0 else slice(SEAT_DOFS, 2 * SEAT_DOFS)
+            x, ψ = (line.at_station(values, station) for values in (rod.x, self._body_increments[rod.rotation_dofs]))
+            R = line.at_station(self.state["R"].equilibrium, station)
+            self._swings[station] = swing = Swing.of(ψ, R @ arm)
+            θ = nearest_vector(rotation_matrix(ψ) @ R, self._seats.equilibrium[own][3:])
+            self._seats.trial[own] = np.concatenate([x - R @ arm - swing.shift, θ])
+
+    @property
+    def acting(self) -> list[Contribution]:
+        """Contributions of the last evaluation to the unknowns: forces on a station of a head act on the head."""
+        parts = self.last.contributions
+        for station, swing in self._swings.items():
+            parts = [one for part in parts for one in carried(part, station, len(self.line.station_dofs), swing)]
+        return parts
 
     def _touch(self) -> tuple[list[Contribution], float, int]:
         """Contributions, penetration and number of closed elements of an Evaluation."""
@@ -158,7 +184,7 @@ class System:
             add(local.array)
             local.scatter_reverse(la.InsertMode.add)
             values[: self.layout.owned] = local.array[: self.layout.owned]
-        for part in self.last.contributions:
+        for part in self.acting if self._arms else self.last.contributions:
             if len(part.dofs):
                 add_vectors(self.line.contact_dofs, part.dofs, part.forces, self.layout.start, values)
         self.internal.stateIncrease()  # its entries have changed behind PETSc's back
@@ -291,7 +317,7 @@ class System:
 
     def last_tangent(self, load: Load, matrix: TangentMatrix, at_step_start: bool = False) -> None:
         """As `tangent`, with the moduli of the last evaluation, at the state as it is now; collective."""
-        matrix.fill(self.last.contributions, at_step_start)
+        matrix.fill(self.acting if self._arms else self.last.contributions, at_step_start)
         if load.drag is not None:
             matrix.mat.setDiagonal(self.layout.vector(load.drag.stiffness.copy()), addv=PETSc.InsertMode.ADD_VALUES)
         matrix.hold(load.held)

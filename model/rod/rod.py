@@ -14,6 +14,7 @@ from coilset.model.base.agreement import max_of_ranks, sum_of_ranks
 from coilset.model.base.compat import geometry_dofs
 from coilset.model.base.extremes import largest
 from coilset.model.body.body import Moment
+from coilset.model.body.lever import Lever
 from coilset.model.body.state import Field, State, Where
 from coilset.model.material.creep.law import CreepLaw
 from coilset.model.material.law.law import Law
@@ -61,6 +62,8 @@ class Rod:
         numbering: Numbering of the unknowns.
         coefficients: Coefficients of the forms, with the section strains and forces on trial.
         chart: tangents of the nodes' rotation charts on trial, shape (nodes, 3, 3).
+        arms: stations whose unknowns are those of a rigid head, and where they are from its point in the stress-free
+            state, shape (3,), mm; `levers`: Levers of those among the local nodes.
     """
 
     def __init__(
@@ -104,6 +107,8 @@ class Rod:
         self.correction = fem.Function(self.V)
         self._increment, self._correction = self.increment.x.array, self.correction.x.array
         self._finer: FinerPath | None = None
+        self.levers: list[Lever] = []
+        self.arms: dict[int, np.ndarray] = {}
         self._residual, self._tangent = compiled_forms(self.comm).on(vars(self.coefficients), x, self._nodes)
         self.largest_radius = max_of_ranks(self.comm, self.radius.max(initial=0.0))
         self.axial_force = law.E * np.pi * self.largest_radius**2  # E A
@@ -221,9 +226,26 @@ class Rod:
             np.copyto(field.trial, field.equilibrium)
         return bool(self._forces)
 
+    def fix_to_head(self, station: int, point: np.ndarray) -> None:
+        """Let the unknowns of a station be those of a rigid head, about a point of it, shape (3,), mm.
+
+        Every rank calls it, before the first step.
+        """
+        numbering, arm = self.numbering, self.line.stations[station] - point
+        self.arms[station] = arm
+        for node in np.flatnonzero(self.line.node == station):
+            unknowns = numbering.u[node], numbering.rotations[node]
+            self.levers.append(Lever(int(node), arm, *unknowns, self.cells, numbering.elements))
+
     def _move(self) -> None:
         """Bring nodes, frames and strains to the increments."""
-        displace_nodes(*self._of_nodes)
+        if not self.levers:
+            displace_nodes(*self._of_nodes)
+        else:
+            increments = self._increment.copy()
+            for lever in self.levers:
+                lever.carry(increments, self._R.equilibrium[lever.node])
+            displace_nodes(increments, *self._of_nodes[1:])
         section_strains(*self._of_cells)
 
     def follow(self) -> None:
@@ -266,7 +288,12 @@ class Rod:
 
     def predict(self) -> None:
         """Predict the section forces after `correction`, from the trial state; see Foresees."""
-        self._prediction.begin(self._correction)
+        correction = self._correction
+        if self.levers:
+            correction = correction.copy()
+            for lever in self.levers:
+                lever.carry_correction(correction)
+        self._prediction.begin(correction)
 
     def foresee(self, length: float) -> None:
         """Build the frame stiffness of the next tangents with the predicted section forces; see Foresees."""
@@ -278,14 +305,18 @@ class Rod:
 
     def forces_without_second_order(self, vector: np.ndarray, length: float) -> None:
         """As `internal_forces`, without the contribution of strains of second order in the correction; see Foresees."""
-        actual = self.coefficients.s.copy()
+        actual, on_levers = self.coefficients.s.copy(), [lever.force for lever in self.levers]
         self._prediction.take_second_order_off(length)
         self.internal_forces(vector)
         self.coefficients.s[:] = actual
+        for lever, force in zip(self.levers, on_levers, strict=True):
+            lever.force = force
 
     def internal_forces(self, vector: np.ndarray) -> None:
         """Add ∫ ¹σ : δΔE_l of the owned cells; see Body."""
         for cells, forces in self._residual():
+            for lever in self.levers:
+                lever.carry_forces(cells, forces)
             add_element_vectors(forces, self.element_dofs[cells], vector)
 
     def to_charts(self, values: np.ndarray) -> None:
@@ -303,7 +334,13 @@ class Rod:
 
     def element_tangents(self) -> Iterator[tuple[slice, np.ndarray]]:
         """The elements' K_l and stiffness of the rotating frame, shape (elements, 14, 14); see OfElements."""
-        return self._tangent()
+        return self._tangent() if not self.levers else self._carried_tangents()
+
+    def _carried_tangents(self) -> Iterator[tuple[slice, np.ndarray]]:
+        for cells, tangents in self._tangent():
+            for lever in self.levers:
+                lever.carry_tangents(cells, tangents)
+            yield cells, tangents
 
     @property
     def constraint_weight(self) -> float:

@@ -15,7 +15,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from coilset.model.rotations.kernels import exponential
+from coilset.model.rotations.kernels import exponential, logarithm
 
 ORDER = 6  # the highest of Stumpff's functions here; second derivatives of R reach up to it
 TERMS = 19  # of the series of c5 and c6: what follows is below 1e-20 of them for rotations up to 2π
@@ -62,6 +62,16 @@ def rotation_matrix(θ: ArrayLike) -> np.ndarray:
     R = np.empty((3, 3))
     exponential(np.asarray(θ, dtype=float), R)
     return R
+
+
+def nearest_vector(R: np.ndarray, near: np.ndarray) -> np.ndarray:
+    """The rotation vector of a matrix that is nearest to another vector, of any number of turns, shape (3,), rad."""
+    v = np.empty(3)
+    logarithm(np.ascontiguousarray(R), v)
+    angle = float(np.linalg.norm(v))
+    axis = v / angle if angle > 1e-9 else near / (np.linalg.norm(near) or 1.0)
+    turns = np.round((near @ axis - angle) / (2.0 * np.pi))
+    return v + 2.0 * np.pi * turns * axis
 
 
 def rotation_derivatives(θ: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -3,7 +3,7 @@
 import logging
 import math
 from collections.abc import Callable
-from typing import Protocol
+from typing import Literal, Protocol
 
 import numpy as np
 from mpi4py import MPI
@@ -12,7 +12,7 @@ from coilset.model.base.entry import check_entries
 from coilset.model.base.errors import InputError, SolveError
 from coilset.model.body.state import State
 from coilset.model.case import Case
-from coilset.model.case.phases import AnyPhase, Phase, TimePhase
+from coilset.model.case.phases import Phase, TimePhase, drives_at, heads_of
 from coilset.model.case.targets import check_steps, check_targets, check_times
 from coilset.model.contact.build import build_contacts, seats_at
 from coilset.model.equilibrium.layout import LineLayout
@@ -61,7 +61,7 @@ class Analysis:
     Attributes:
         setup: Setup, what the records are about.
         result: Result up to now.
-        system, newton, control, program: the System of the Rod `rod`, its Newton, AxialControl and LoadProgram.
+        system, newton, control, program: the System of the Rod `rod`, its Newton, Heads and LoadProgram.
     """
 
     def __init__(self, case: Case, comm: MPI.Comm = MPI.COMM_WORLD, detailed: bool = True, threads: int = 1) -> None:
@@ -76,7 +76,8 @@ class Analysis:
         self.heat = build_heat(case, self.rod)
         coiling_diameter = give_past(self.rod, case.spring)
         seats = case.seats if case.ends == "seats" else None
-        contacts = build_contacts(case.contact, seats, spring, wire.turns, self.rod.line.stations, self.law.E)
+        moving = frozenset(end for phase in case.loading for end in heads_of(phase))
+        contacts = build_contacts(case.contact, seats, spring, wire.turns, self.rod.line.stations, self.law.E, moving)
         self.layout = LineLayout(self.rod)
         self.system = System(self.rod, self.layout, contacts, seats_at(spring.free_length))
         least_radius = float(wire.radius.min())
@@ -139,8 +140,7 @@ class Analysis:
                 self.recorder.begin(self.initial_rate())
             touched()
             for number in range(self.program.number, len(self.case.loading)):
-                phase = self.case.loading[number]
-                for taken in self.program.run(self.stage(phase)):
+                for taken in self.program.run(self.stage(number)):
                     settled = self._flow_of_heat(number, taken)
                     step = self.recorder.record(number, settled, self.case.loading)
                     self._keep(save)
@@ -178,7 +178,7 @@ class Analysis:
         check_steps(case)
         check_targets(case, self.spring, self.law.G)
         self.case = case
-        self.program.redirect(self.stage(phase))
+        self.program.redirect(self.stage(number))
 
     def resume(self, saved: Saved) -> None:
         """Restore the state of a checkpoint; collective.
@@ -225,16 +225,22 @@ class Analysis:
                 problem,
             )
 
-    def stage(self, phase: AnyPhase) -> Stage:
-        """A phase of the case in the form that the load program expects."""
+    def stage(self, number: int) -> Stage:
+        """A phase of the case, by its number, in the form that the load program expects."""
+        phase, drives = self.case.loading[number], drives_at(self.case.loading, number)
         steps = tuple(phase.steps) if isinstance(phase.steps, list) else phase.steps
         if isinstance(phase, TimePhase):
             time = phase.duration
-            return Stage(time.keep, None, steps, phase.label, time.length, phase.temperature)
+            return Stage(time.keep, None, steps, phase.label, time.length, phase.temperature, drives=drives)
         timeless = self.heat is not None and not self.heat.creeps  # heat flows after each step
         hours = 0.0 if timeless else (phase.seconds or 0.0) / 3600.0
-        kind, value = phase.goal(self.spring.free_length, self.spring.block_height)
-        return Stage(kind, value, steps, phase.label, hours, even=True)
+        kind: Literal["height", "force"] = "height"
+        value: float | None = None
+        if phase.drives_axially:
+            kind, value = phase.goal(self.spring.free_length, self.spring.block_height)
+        elif number:  # as the last phase left it
+            kind = self.stage(number - 1).kind
+        return Stage(kind, value, steps, phase.label, hours, even=True, drives=drives)
 
     def _keep(self, save: Save | None) -> None:
         if save is not None:

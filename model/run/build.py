@@ -11,10 +11,13 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.placement import Placement, chord_placement, refuse_sharp_bends, section_placement
 from coilset.model.base.warning import Warning
 from coilset.model.case import Case
+from coilset.model.case.heads import HeadsSpec
+from coilset.model.case.phases import heads_of
+from coilset.model.case.seats import SeatsSpec
 from coilset.model.contact.base import BearsOnWire, Contact
-from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
 from coilset.model.equilibrium.continuation import Continuation
+from coilset.model.equilibrium.heads import Heads, Holding
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.methods import Method, rod_method
 from coilset.model.equilibrium.newton import Newton
@@ -128,20 +131,18 @@ def build_method(case: Case, layout: LineLayout, name: str) -> Method:
     return rod_method(name, layout.comm.size, case.solver.options, arc)
 
 
-def build_control(case: Case, spring: Spring, system: System) -> AxialControl:
+def build_control(case: Case, spring: Spring, system: System) -> Heads:
     """The spring between its heads."""
-    seats = case.seats
-    return AxialControl(
-        system,
-        spring.free_length,
-        case.ends == "clamped",
-        seats.hold == "tips",
-        (seats.bottom.held(), seats.top.held()),
-    )
+    clamped = case.ends == "clamped"
+    holder: HeadsSpec | SeatsSpec = case.heads if clamped else case.seats
+    rotating = any(spec.tilt != "held" or spec.turn != "held" for spec in (holder.bottom, holder.top))
+    driven = any(target.rotates for phase in case.loading for target in heads_of(phase).values())
+    holding = Holding(clamped, case.seats.hold == "tips", (holder.bottom.held(), holder.top.held()), rotating or driven)
+    return Heads(system, spring.free_length, holding, float(spring.mean_radius(0.5 * spring.turns)))
 
 
 def build_continuation(
-    case: Case, newton: Newton, control: AxialControl, stability: Stability, least_radius: float
+    case: Case, newton: Newton, control: Heads, stability: Stability, least_radius: float
 ) -> Continuation:
     """The steps along the path, with an estimate of their error unless the case wants none.
 

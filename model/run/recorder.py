@@ -11,8 +11,8 @@ from coilset.model.base.agreement import max_of_ranks
 from coilset.model.base.warning import Warning
 from coilset.model.body.state import Where
 from coilset.model.case.phases import AnyPhase, TimePhase
-from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.convergence import Outcome
+from coilset.model.equilibrium.heads import Heads
 from coilset.model.equilibrium.program import StepTaken
 from coilset.model.equilibrium.stability import Stability, Weakest
 from coilset.model.equilibrium.system import System
@@ -40,7 +40,7 @@ class Recorder:
     """
 
     def __init__(
-        self, setup: Setup, rod: Rod, system: System, control: AxialControl, stability: Stability, detailed: bool
+        self, setup: Setup, rod: Rod, system: System, control: Heads, stability: Stability, detailed: bool
     ) -> None:
         self.setup, self.rod, self.system, self.control = setup, rod, system, control
         self.layout, self._stability, self._detailed = system.line, stability, detailed

@@ -18,8 +18,8 @@ from coilset.meshes.springs.placement import polygon_nodes, section_placement
 from coilset.meshes.springs.shapes import Barrel
 from coilset.meshes.springs.spring import Spring, SpringSpec
 from coilset.model.base.style import STYLE
-from coilset.model.equilibrium.axial_control import AxialControl
 from coilset.model.equilibrium.continuation import Continuation
+from coilset.model.equilibrium.heads import Heads, Holding
 from coilset.model.equilibrium.layout import SEATS, LineLayout
 from coilset.model.equilibrium.methods import rod_method
 from coilset.model.equilibrium.newton import Newton
@@ -65,7 +65,7 @@ def rate(spring: Spring, turns: np.ndarray, representation: str, law: Law) -> fl
     radius = 0.5 * spring.wire_diameter(0.5 * (turns[1:] + turns[:-1]))
     rod = Rod(line, radius, law, polar(2, 8), placement)
     system = System(rod, LineLayout(rod), (), np.zeros(SEATS))
-    control = AxialControl(system, spring.free_length, clamped=True)
+    control = Heads(system, spring.free_length, Holding(clamped=True))
     continuation = Continuation(Newton(system, rod_method("newton", 1), 1e-7))
     forces = []
     for travel in (TRAVEL * spring.free_length, -TRAVEL * spring.free_length):

@@ -19,6 +19,7 @@ from coilset.model.body.state import State
 from coilset.model.case import Case
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.program import ProgramPosition, Stage
+from coilset.model.equilibrium.settings import Drive
 from coilset.model.equilibrium.step_control import Position
 from coilset.model.results.files import state_file
 from coilset.model.results.files.folder import make, whole
@@ -28,7 +29,7 @@ from coilset.model.results.records.provenance import changed, provenance
 from coilset.model.results.records.record import BucklingMode, Result, Snapshot
 
 # what must be unchanged to resume
-SPRING_ENTRIES = ("spring", "material", "temperature", "ends", "seats", "mesh", "contact", "heat")
+SPRING_ENTRIES = ("spring", "material", "temperature", "ends", "seats", "heads", "mesh", "contact", "heat")
 ANEW = "use --overwrite instead of --resume to start again"
 
 
@@ -175,6 +176,8 @@ def _position(saved: Mapping[str, Any]) -> ProgramPosition:
     redirected = saved["redirected"] and Stage(**saved["redirected"])
     if redirected and isinstance(redirected.steps, list):  # JSON has no tuples
         redirected = replace(redirected, steps=tuple(redirected.steps))
+    if redirected:
+        redirected = replace(redirected, drives=tuple(Drive(*drive) for drive in redirected.drives))
     parts = {"on_path": Position(**saved["on_path"]), "redirected": redirected, "begun": Moment(*saved["begun"])}
     return ProgramPosition(**{**saved, **parts})
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from coilset.model.contact.resultants import station_forces, station_moments
-from coilset.model.equilibrium.axial_control import AxialControl
+from coilset.model.equilibrium.heads import Heads
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.system import System
 from coilset.model.results.records.record import Snapshot
@@ -30,13 +30,13 @@ def section_wrenches(x: np.ndarray, triads: np.ndarray, resultants: np.ndarray) 
     return force, moment + np.cross(x[:-1], force)
 
 
-def imbalance(shot: Snapshot, system: System, control: AxialControl) -> tuple[float, float]:
+def imbalance(shot: Snapshot, system: System, control: Heads) -> tuple[float, float]:
     """Imbalance of seats, contacts and section forces; collective, complete on rank 0.
 
     Args:
         shot: Snapshot of the equilibrium.
         system: System of a Rod at that equilibrium.
-        control: AxialControl.
+        control: Heads.
 
     Returns:
         Maximum imbalance of force over all cuts, N, and of moment about the origin, N mm. The last cut is behind the
@@ -47,9 +47,8 @@ def imbalance(shot: Snapshot, system: System, control: AxialControl) -> tuple[fl
     contacts = system.gathered_contacts()
     forces = station_forces(contacts, len(x))
     moments = station_moments(contacts, layout.gather(layout.rod.chart))
-    for station, components in control.tips.values():
-        reaction = np.zeros(6)
-        reaction[components] = layout.values(system.internal, layout.station_dofs[station, components])
+    for end, (station, _) in control.tips.items():
+        reaction = control.on_tip(end)
         forces[station] += reaction[:3]
         moments[station] += reaction[3:]
     if system.comm.rank:

@@ -11,7 +11,7 @@ from coilset.model.base.agreement import sum_of_ranks
 from coilset.model.contact.base import ENDS, SEAT_DOFS, Contact, Contribution
 from coilset.model.contact.bearing import bearing_on_seat, pressures_on, turns_without
 from coilset.model.contact.resultants import Wrench
-from coilset.model.equilibrium.axial_control import AxialControl
+from coilset.model.equilibrium.heads import Heads
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.system import System
 from coilset.model.results.records.record import SeatReaction, SeatReactions
@@ -28,7 +28,7 @@ OnWire = Sequence[tuple[int, Any, Contribution]]  # contacts that bear on the wi
 
 def seat_reactions(
     system: System,
-    control: AxialControl,
+    control: Heads,
     turns: np.ndarray,
     step: int,
     greatest_force: float,
@@ -39,7 +39,7 @@ def seat_reactions(
 
     Args:
         system: System of a Rod.
-        control: AxialControl.
+        control: Heads.
         turns: of the stations, shape (n + 1,).
         step: number of the step.
         greatest_force: magnitude of the largest axial force so far, this one's included, N.
@@ -68,7 +68,7 @@ def faint_force(rod: Rod, greatest_force: float) -> float:
 class _Observer:
     """Reads what acts at the ends of a spring."""
 
-    def __init__(self, system: System, control: AxialControl) -> None:
+    def __init__(self, system: System, control: Heads) -> None:
         assert isinstance(system.layout, LineLayout)
         self.layout, self.system, self.control = system.layout, system, control
         self.x = self.layout.gather(system.state["x"].trial)
@@ -79,10 +79,8 @@ class _Observer:
     def wrench(self, end: str) -> Wrench:
         """Resultant of all that an end's seat, or its prescribed unknowns, exert on the wire."""
         own = [part for contact, part in self.parts if contact.end == end]
-        station, components = self.control.tips[end]
-        held = np.zeros(6)
-        held[components] = self.layout.values(self.system.internal, self.layout.station_dofs[station, components])
-        return Wrench.of_contacts(own, self.x, self.chart, station, held)
+        station, _ = self.control.tips[end]
+        return Wrench.of_contacts(own, self.x, self.chart, station, self.control.on_tip(end))
 
     def reaction(self, end: str, faint: float) -> SeatReaction:
         """The SeatReaction of an end."""

@@ -1,0 +1,102 @@
+"""A node that is fixed to a rigid head: its unknowns are the head's, the motion of a point of it and its rotation.
+
+A head with its point at c carries the node at the arm r = x − c. With the increments (d, ψ) of the head since the last
+equilibrium the node is at
+
+    x = x₀ + d + (exp[ψ] − 1) r₀,    δx = δd + X δψ,    X = ∂(exp[ψ] r₀)/∂ψ,
+
+and has the head's rotation. A force f on the node therefore acts on ψ by Xᵀ f, the moment r × f in the chart, and the
+tangent of the node's unknowns becomes Gᵀ K G + f · ∂²x/∂ψ², with G = (1, X; 0, 1): it stays symmetric.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from coilset.model.rotations.vectors import rotation_derivatives, rotation_matrix
+
+
+class Swing(NamedTuple):
+    """How a node goes with the rotation of its head on trial.
+
+    Attributes:
+        shift: (exp[ψ] − 1) r₀, shape (3,), mm.
+        first: X, by component and rotation, shape (3, 3), mm.
+        second: ∂²x/∂ψ∂ψ, by rotations and component, shape (3, 3, 3), mm.
+    """
+
+    shift: np.ndarray
+    first: np.ndarray
+    second: np.ndarray
+
+    @classmethod
+    def of(cls, ψ: np.ndarray, arm: np.ndarray) -> "Swing":
+        """By the rotation vector ψ since the last equilibrium, rad, where the arm was r₀, mm; shape (3,) each."""
+        _, dR, ddR = rotation_derivatives(ψ)
+        return cls((rotation_matrix(ψ) - np.eye(3)) @ arm, (dR @ arm).T, ddR @ arm)
+
+    def of_force(self, force: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Xᵀ f and f · ∂²x/∂ψ², shapes (3,) and (3, 3), of a force on the node, shape (3,), N."""
+        return self.first.T @ force, self.second @ force
+
+
+class Lever:
+    """A local node of a rod, and the cells of this rank that end in it.
+
+    Args:
+        node: number of the local node.
+        arm: from the head's point to the node in the stress-free state, shape (3,), mm.
+        u, rotations: the node's unknowns, shape (3,) each.
+        cells: nodes of this rank's cells, shape (cells, 2); elements: their unknowns, shape (cells, 14).
+
+    Attributes:
+        swing: Swing on trial.
+        force: force of the cells on the node when it was last replaced, shape (3,), N.
+    """
+
+    def __init__(
+        self,
+        node: int,
+        arm: np.ndarray,
+        u: np.ndarray,
+        rotations: np.ndarray,
+        cells: np.ndarray,
+        elements: np.ndarray,
+    ) -> None:
+        self.node, self.arm, self.u, self.rotations = node, arm, u, rotations
+        self._cells = [
+            (int(cell), _places(elements[cell], u), _places(elements[cell], rotations))
+            for cell in np.flatnonzero((cells == node).any(axis=1))
+        ]
+        self.swing, self.force = Swing.of(np.zeros(3), arm), np.zeros(3)
+
+    def carry(self, increments: np.ndarray, R: np.ndarray) -> None:
+        """Replace the head's increments by the node's; `R`: rotation of the node at the last equilibrium."""
+        self.swing = Swing.of(increments[self.rotations], R @ self.arm)
+        increments[self.u] += self.swing.shift
+
+    def carry_correction(self, correction: np.ndarray) -> None:
+        """Replace a small correction of the head's unknowns by that of the node's."""
+        correction[self.u] += self.swing.first @ correction[self.rotations]
+
+    def carry_forces(self, cells: slice, forces: np.ndarray) -> None:
+        """Replace forces of cells on the node by those on the head, shape (cells, 14), N and N mm."""
+        for cell, u, rotations in self._within(cells):
+            self.force = forces[cell, u].copy()
+            forces[cell, rotations] += self.swing.of_force(self.force)[0]
+
+    def carry_tangents(self, cells: slice, K: np.ndarray) -> None:
+        """Replace tangents of cells by the node's unknowns by those by the head's, shape (cells, 14, 14)."""
+        for cell, u, rotations in self._within(cells):
+            X, one = self.swing.first, K[cell]
+            one[rotations] += X.T @ one[u]
+            one[:, rotations] += one[:, u] @ X
+            one[np.ix_(rotations, rotations)] += self.swing.of_force(self.force)[1]
+
+    def _within(self, cells: slice) -> list[tuple[int, np.ndarray, np.ndarray]]:
+        return [(cell - cells.start, u, r) for cell, u, r in self._cells if cells.start <= cell < cells.stop]
+
+
+def _places(unknowns: np.ndarray, of: np.ndarray) -> np.ndarray:
+    """Places of some unknowns among those of a cell."""
+    return np.array([int(np.flatnonzero(unknowns == dof)[0]) for dof in of])

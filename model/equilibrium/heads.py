@@ -1,0 +1,220 @@
+"""What holds and drives a spring: its two heads, each a rigid body of six freedoms.
+
+The head of an end is its seat, or the clamp of the wire's tip. Each freedom is held, free, or on a spring (a Mount),
+and a load program may prescribe any of them, by its value or by the force or moment that is conjugate to it.
+Displacements are those of the head's point on the spring's axis, rotations the components of a rotation vector since
+the start.
+"""
+
+from collections.abc import Collection, Mapping, Sequence
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from coilset.model.base.agreement import sum_of_ranks
+from coilset.model.contact.base import ENDS, LEVEL, SEAT_DOFS
+from coilset.model.equilibrium.layout import SEATS, LineLayout
+from coilset.model.equilibrium.load import Load
+from coilset.model.equilibrium.system import System
+from coilset.model.rotations.kernels import logarithm
+from coilset.model.rotations.vectors import rotation_matrix
+
+AXIAL = SEAT_DOFS + LEVEL  # the freedom that height and force drive: the top head along the axis
+When = Literal["equilibrium", "trial"]
+
+
+class Holding(NamedTuple):
+    """What holds the ends of a spring.
+
+    Attributes:
+        clamped: whether the end nodes belong to rigid heads; else they stand on seats.
+        tips: on seats: whether the wire's tips are held sideways and against rotation, as in pockets; else contacts
+            alone hold the wire.
+        heads: held freedoms of the bottom and of the top head, without the axial ones.
+        turning: of clamped ends: whether a head ever rotates.
+    """
+
+    clamped: bool
+    tips: bool = True
+    heads: Sequence[Sequence[int]] = ((0, 1, 3, 4, 5), (0, 1, 3, 4, 5))
+    turning: bool = False
+
+
+class Heads:
+    """The spring between its heads: the held unknowns, the driven ones, and the definition of force and height.
+
+    Args:
+        system: System of a rod with its LineLayout.
+        free_length: height of the unloaded spring, mm.
+        holding: Holding.
+        radius: mean radius of the coil, by which rotations and moments become displacements and forces in `travel`.
+
+    Attributes:
+        tips: station of each end and its components that are held or driven and therefore have reactions.
+        measure: the freedom by which steps are measured, the one that the load program drives most.
+    """
+
+    def __init__(self, system: System, free_length: float, holding: Holding, radius: float = 1.0) -> None:
+        layout = system.layout
+        assert isinstance(layout, LineLayout)
+        self.system, self.layout, self.free_length, self.radius = system, layout, free_length, radius
+        self.clamped, self.measure, self._turning = holding.clamped, AXIAL, holding.turning
+        last = len(layout.station_dofs) - 1
+        bottom, top = layout.station_dofs[0], layout.station_dofs[-1]
+        held = [LEVEL, *holding.heads[0], *(SEAT_DOFS + freedom for freedom in holding.heads[1])]
+        if holding.clamped:
+            self.dofs = np.concatenate([bottom, top])
+            components, others = np.arange(6), layout.seat_dofs
+            for station, point in ((0, self._centre(0)), (last, self._centre(last))):
+                if holding.turning:
+                    layout.rod.fix_to_head(station, point)
+        else:
+            self.dofs = layout.seat_dofs
+            components = np.delete(np.arange(6), LEVEL) if holding.tips else np.arange(0)
+            others = np.concatenate([bottom[components], top[components]])
+        self.held = {int(dof): 0.0 for dof in (*others, *self.dofs[held])}
+        self.tips = {"bottom": (0, components), "top": (last, components)}
+        if holding.clamped and holding.turning:
+            seats = system.state["seats"]
+            seats.trial[:] = seats.equilibrium[:] = [
+                *self._centre(0),
+                0.0,
+                0.0,
+                0.0,
+                *self._centre(last),
+                0.0,
+                0.0,
+                0.0,
+            ]
+        self._start = self._level("equilibrium")
+
+    def _centre(self, station: int) -> np.ndarray:
+        """Point of the axis at the level of a station in the stress-free state, shape (3,), mm."""
+        return self.layout.rod.line.stations[station] * [0.0, 0.0, 1.0]
+
+    # ---- loads -----------------------------------------------------------------------------------------------------
+
+    def load(self, values: Mapping[int, float], forces: Mapping[int, float], kept: Collection[int] = ()) -> Load:
+        """The load from the last equilibrium to values, mm and rad, and forces, N and N mm, of freedoms, by number.
+
+        Freedoms that are held or `kept` and have neither stay where they are. If all rotations of a head are prescribed
+        or stay, it goes to the rotation vector of their values; if one is free, the others are about fixed axes.
+        """
+        now = self.freedoms("equilibrium")
+        fixed = self.held | {int(self.dofs[freedom]): 0.0 for freedom in kept}
+        for freedom in forces:
+            fixed.pop(int(self.dofs[freedom]), None)
+        fixed |= {int(self.dofs[freedom]): value - now[freedom] for freedom, value in values.items()}
+        if self.clamped:
+            for first in (3, SEAT_DOFS + 3):
+                dofs = [int(dof) for dof in self.dofs[first : first + 3]]
+                if all(dof in fixed for dof in dofs):
+                    change = self._between(now[first : first + 3], np.array([fixed[dof] for dof in dofs]))
+                    fixed |= dict(zip(dofs, change.tolist(), strict=True))
+        return Load.of(self.layout, fixed, {int(self.dofs[freedom]): force for freedom, force in forces.items()})
+
+    def _between(self, now: np.ndarray, change: np.ndarray) -> np.ndarray:
+        """The rotation vector from one to another that differs by `change`; the same as this where both are parallel."""
+        if not np.cross(now, change).any():
+            return change
+        between = np.empty(3)
+        logarithm(rotation_matrix(now + change) @ rotation_matrix(now).T, between)
+        return between
+
+    def to_height(self, height: float) -> Load:
+        """The load that brings the spring from the last equilibrium to a height, mm, all else held as it is."""
+        return self.load({AXIAL: self.freedom_at(height)}, {})
+
+    def to_force(self, force: float) -> Load:
+        """The load that brings the spring to an axial force, compression positive, N."""
+        return self.load({}, {AXIAL: -force})
+
+    def freedom_at(self, height: float) -> float:
+        """Value of the axial freedom at a height, mm."""
+        return self._level("equilibrium") + (height - self.height)
+
+    # ---- values and reactions --------------------------------------------------------------------------------------
+
+    def freedoms(self, when: When) -> np.ndarray:
+        """Values of all freedoms, shape (12,): x, y, z, mm, and rotation vector, rad, of bottom and top; collective."""
+        values: np.ndarray = getattr(self.system.state["seats"], when).copy()
+        if self.clamped and not self._turning:
+            for end, station in enumerate((0, len(self.layout.station_dofs) - 1)):
+                x = self.layout.at_station(getattr(self.system.state["x"], when), station)
+                values[SEAT_DOFS * end : SEAT_DOFS * end + 3] = x - self.layout.rod.line.stations[station] * [1, 1, 0]
+        return values
+
+    def reactions(self, when: When) -> np.ndarray:
+        """Forces of the heads on the spring that are conjugate to the freedoms, shape (12,), N and N mm; collective.
+
+        Those of held tips in their pockets act on the wire and are not among them.
+        """
+        mine, forces = np.zeros(SEATS), getattr(self.system.state["reactions"], when)
+        here = self.dofs - self.layout.start
+        own = (here >= 0) & (here < len(forces))
+        mine[own] = forces[here[own]]
+        return mine if self.layout.comm.size == 1 else self.layout.comm.allreduce(mine)
+
+    @property
+    def height(self) -> float:
+        """At the last equilibrium, mm."""
+        return self.free_length + (self._level("equilibrium") - self._start)
+
+    @property
+    def trial_height(self) -> float:
+        """In the trial state, mm; collective."""
+        return self.free_length + (self._level("trial") - self._start)
+
+    @property
+    def force(self) -> float:
+        """Axial force at the last equilibrium, compression positive, N; collective."""
+        return self._force("equilibrium", AXIAL)
+
+    @property
+    def trial_force(self) -> float:
+        """Axial force in the trial state, compression positive, N; collective."""
+        return self._force("trial", AXIAL)
+
+    def measured(self, when: When) -> tuple[float, float]:
+        """Value and force by which steps are measured, mm and N; of a rotation at the mean radius; collective.
+
+        The signs are those of travel and force.
+        """
+        if self.measure == AXIAL:
+            return -self._level(when), self._force(when, AXIAL)
+        size = self.radius if self.measure % SEAT_DOFS >= 3 else 1.0
+        return -size * float(self.freedoms(when)[self.measure]), self._force(when, self.measure) / size
+
+    def _level(self, when: When) -> float:
+        """Axial position of the driven head, mm; collective."""
+        state = self.system.state
+        if self.clamped and not self._turning:
+            return float(self.layout.at_station(getattr(state["x"], when), len(self.layout.station_dofs) - 1)[2])
+        return float(getattr(state["seats"], when)[AXIAL])
+
+    def _force(self, when: When, freedom: int) -> float:
+        reactions = getattr(self.system.state["reactions"], when)
+        here = int(self.dofs[freedom]) - self.layout.start
+        mine = float(reactions[here]) if 0 <= here < len(reactions) else 0.0
+        return -sum_of_ranks(self.layout.comm, mine)
+
+    def on_tip(self, end: str) -> np.ndarray:
+        """Force and moment on the wire at the tip of an end, N and N mm, shape (6,), by what holds it there; collective.
+
+        On the rotations of a tip that is held the moment m acts by Tᵀ m, and on those of a head by Tᵀ (m + r × f).
+        """
+        station, components = self.tips[end]
+        held = np.zeros(6)
+        held[components] = self.layout.values(self.system.internal, self.layout.station_dofs[station, components])
+        if self.clamped and self._turning:
+            chart = self.layout.at_station(self.layout.rod.chart, station)
+            x = self.layout.at_station(self.layout.rod.x, station)
+            held[3:] = np.linalg.solve(chart.T, held[3:]) - np.cross(x - self.centre(end, x[None]), held[:3])
+        return held
+
+    def centre(self, end: str, x: np.ndarray) -> np.ndarray:
+        """Centre of the seat, or where the axis meets the head, at station positions `x`, shape (3,), mm."""
+        if self.clamped and not self._turning:
+            return np.array([0.0, 0.0, x[self.tips[end][0], 2]])
+        first = SEAT_DOFS * ENDS.index(end)
+        return self.system.seats[first : first + 3]
