@@ -13,7 +13,7 @@ from coilset.meshes.springs.spring import SpringEntry, SpringSpec
 from coilset.meshes.springs.stations import ElementsPerTurn
 from coilset.model.base.entry import Strict, Whole, check_entries
 from coilset.model.base.yaml import read_data
-from coilset.model.case.heads import FREEDOMS, HeadsSpec
+from coilset.model.case.heads import FREEDOMS, ForceLineSpec, HeadsSpec
 from coilset.model.case.heat import HeatSpec
 from coilset.model.case.phases import AnyPhase, Phase, heads_of
 from coilset.model.case.seats import SeatsSpec
@@ -246,6 +246,11 @@ class Case(Strict):
             default_factory=list, description="travels, mm, at which the rate during the first compression is reported"
         ),
     ]
+
+    force_line: Annotated[
+        ForceLineSpec | None,
+        Field(description="planes that the force line crosses, and a damper; left out: seats.csv has no such numbers"),
+    ] = None
 
     @model_validator(mode="before")
     @classmethod

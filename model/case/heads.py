@@ -65,6 +65,32 @@ class HeadsSpec(Strict):
         return self
 
 
+Point = Annotated[list[Annotated[float, Unit("mm")]], Field(strict=False, min_length=3, max_length=3)]
+
+
+class DamperSpec(Strict):
+    """The axis of a damper inside or beside the spring."""
+
+    point: Annotated[Point, Field(description="a point of it, mm: that about which its moment is reported")]
+    direction: Annotated[Point, Field(default_factory=lambda: [0.0, 0.0, 1.0], description="along it, of any length")]
+
+    @model_validator(mode="after")
+    def _leads_somewhere(self) -> Self:
+        if not any(self.direction):
+            raise ValueError("direction is zero; give one such as [0, 0, 1]")
+        return self
+
+
+class ForceLineSpec(Strict):
+    """Where the line of action of the spring's force is reported, in seats.csv."""
+
+    lower: Annotated[
+        float | None, Unit("mm"), Field(description="height of a plane above the bottom seat that the line crosses, mm")
+    ] = None
+    upper: Annotated[float | None, Unit("mm"), Field(description="height of a second plane, mm")] = None
+    damper: Annotated[DamperSpec | None, Field(description="a damper that the force bends and turns")] = None
+
+
 class OverTravel(Strict):
     """Values over the travel, linear between them."""
 

@@ -68,6 +68,8 @@ class Guess:
         if self.probed is None or not load.prescribed:
             return None
         guess, probe = self.probed
+        if not np.array_equal(load.held, probe.held):
+            return None
         guess = guess.copy()
         guess.scale(load.multiple_of(probe))
         return guess

@@ -114,7 +114,7 @@ class Heads:
         return Load.of(self.layout, fixed, {int(self.dofs[freedom]): force for freedom, force in forces.items()})
 
     def _between(self, now: np.ndarray, change: np.ndarray) -> np.ndarray:
-        """The rotation vector from one to another that differs by `change`; the same as this where both are parallel."""
+        """The rotation vector from one to another that differs by `change`: the same where both are parallel."""
         if not np.cross(now, change).any():
             return change
         between = np.empty(3)
@@ -175,6 +175,25 @@ class Heads:
         """Axial force in the trial state, compression positive, N; collective."""
         return self._force("trial", AXIAL)
 
+    @property
+    def turn(self) -> float:
+        """Rotation of the top head about the axis less that of the bottom one, rad."""
+        values = self.system.state["seats"].equilibrium
+        return float(values[AXIAL + 3] - values[LEVEL + 3])
+
+    @property
+    def torque(self) -> float:
+        """What turns the spring about the top head's axis at the last equilibrium, N mm; collective.
+
+        Of a seat in whose groove the wire lies, the moment that is conjugate to its turn.
+        """
+        if not self.clamped and not len(self.tips["top"][1]):
+            return float(self.reactions("equilibrium")[AXIAL + 3])
+        held = self.on_tip("top")
+        x = self.layout.at_station(self.layout.rod.x, self.tips["top"][0])
+        arm = x - self.centre("top", x[None])
+        return float(held[5] + arm[0] * held[1] - arm[1] * held[0])
+
     def measured(self, when: When) -> tuple[float, float]:
         """Value and force by which steps are measured, mm and N; of a rotation at the mean radius; collective.
 
@@ -199,7 +218,7 @@ class Heads:
         return -sum_of_ranks(self.layout.comm, mine)
 
     def on_tip(self, end: str) -> np.ndarray:
-        """Force and moment on the wire at the tip of an end, N and N mm, shape (6,), by what holds it there; collective.
+        """Force and moment on the wire by what holds its tip at an end, N and N mm, shape (6,); collective.
 
         On the rotations of a tip that is held the moment m acts by Tᵀ m, and on those of a head by Tᵀ (m + r × f).
         """
@@ -215,6 +234,6 @@ class Heads:
     def centre(self, end: str, x: np.ndarray) -> np.ndarray:
         """Centre of the seat, or where the axis meets the head, at station positions `x`, shape (3,), mm."""
         if self.clamped and not self._turning:
-            return np.array([0.0, 0.0, x[self.tips[end][0], 2]])
+            return np.array([0.0, 0.0, x[self.tips[end][0] if len(x) > 1 else 0, 2]])
         first = SEAT_DOFS * ENDS.index(end)
         return self.system.seats[first : first + 3]

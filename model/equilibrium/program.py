@@ -218,16 +218,16 @@ class LoadProgram:
         by_force = stage.kind == "force"
         values = {} if by_force else {AXIAL: control.freedom_at(axial)}
         forces = {AXIAL: -axial} if by_force else {}
-        kept = [drive.freedom for drive in stage.drives if drive.kind == "value" and drive.end is None and not drive.table]
+        staying = [drive for drive in stage.drives if drive.kind == "value" and drive.end is None and not drive.table]
         for drive in stage.drives:
-            if drive.freedom in kept:
+            if drive in staying:
                 continue
             begin = self._heads[drive.freedom + (0 if drive.kind == "value" else SEATS)]
             value = begin if drive.end is None else begin + part * (drive.end - begin)
             if drive.table:
-                value = float(np.interp(control.free_length - axial, *drive.table))
+                value = float(np.interp(control.free_length - axial, drive.table[0], drive.table[1]))
             (values if drive.kind == "value" else forces)[drive.freedom] = value
-        return control.load(values, forces, kept)
+        return control.load(values, forces, [drive.freedom for drive in staying])
 
     def _measure(self, stage: Stage) -> int:
         """The freedom that a stage drives: the axial one, unless it stays and another is driven."""

@@ -11,7 +11,7 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.placement import Placement, chord_placement, refuse_sharp_bends, section_placement
 from coilset.model.base.warning import Warning
 from coilset.model.case import Case
-from coilset.model.case.heads import HeadsSpec
+from coilset.model.case.heads import DamperSpec, HeadsSpec
 from coilset.model.case.phases import heads_of
 from coilset.model.case.seats import SeatsSpec
 from coilset.model.contact.base import BearsOnWire, Contact
@@ -26,7 +26,7 @@ from coilset.model.equilibrium.step_error import StepError
 from coilset.model.equilibrium.system import System
 from coilset.model.manufacture.initial_state import past_warnings
 from coilset.model.material.law.law import Law
-from coilset.model.results.records.record import ContactRecord, Limits, Setup
+from coilset.model.results.records.record import ContactRecord, ForceLine, Limits, Setup
 from coilset.model.rod.heat import WireHeat, heat_constants
 from coilset.model.rod.kinematics import GAUSS, chord_triads
 from coilset.model.rod.rod import Rod
@@ -185,4 +185,14 @@ def build_setup(
         rates_at=tuple(case.rates_at),
         warnings=warnings,
         coiling_diameter=coiling_diameter,
+        force_line=build_force_line(case),
     )
+
+
+def build_force_line(case: Case) -> ForceLine | None:
+    """Where the case reports the force line; without a damper its moments are about the axis, at the bottom seat."""
+    spec = case.force_line
+    if spec is None:
+        return None
+    damper = spec.damper or DamperSpec(point=[0.0, 0.0, 0.0], direction=[0.0, 0.0, 1.0])
+    return ForceLine(spec.lower, spec.upper, tuple(damper.point), tuple(damper.direction))

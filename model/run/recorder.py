@@ -127,6 +127,8 @@ class Recorder:
             hours=float(self.rod.clock[0]),
             temperature_K=self.rod.hottest,
             load_loss_percent=self._load_loss(phase, force, loading),
+            turn_deg=math.degrees(self.control.turn),
+            torque_Nmm=self.control.torque,
         )
 
     def _announce(self, before: Result) -> None:
@@ -152,7 +154,10 @@ class Recorder:
         """The seats' reactions at the last equilibrium; keeps its torque and force for the next step's active turns."""
         before = float(self.torque_force.equilibrium[0]), self.torque.equilibrium
         force, torque = now = self.control.force, mean_torque(self.rod)
-        reactions = seat_reactions(self.system, self.control, self.setup.turns, step, greatest_force, before, now)
+        setup = self.setup
+        reactions = seat_reactions(
+            self.system, self.control, setup.turns, step, greatest_force, before, now, setup.force_line
+        )
         self.torque.trial[:] = self.torque.equilibrium[:] = torque
         self.torque_force.trial[0] = self.torque_force.equilibrium[0] = force
         return reactions

@@ -129,7 +129,8 @@ class SliceAnalysis:
             if phase.seconds is not None:
                 raise InputError(timeless, f"loading.{index}.seconds")
             if phase.heads:
-                raise InputError("a slice has no heads; leave bottom and top out, or use coilset solve", f"loading.{index}.to")
+                problem = "a slice has no heads; leave bottom and top out, or use coilset solve"
+                raise InputError(problem, f"loading.{index}.to")
             kind, value = phase.goal(self.spring.free_length, block)
             if kind == "height" and value < block * (1.0 - SAME):
                 raise InputError(

@@ -214,7 +214,7 @@ def press(elements: int, repeats: int = 1, touching: int = 0, estimated: int = 1
         watch.cpu.clear()
         analysis = build(watch, case, comm)
         with watch.stage("other"):
-            taken = list(analysis.program.run(analysis.stage(analysis.case.loading[0])))
+            taken = list(analysis.program.run(analysis.stage(0)))
         logged.charge()
         ranks = comm.allgather({stage: pair(watch, stage) for stage in STAGES})
         runs.append({stage: [max(rank[stage][kind] for rank in ranks) for kind in range(2)] for stage in STAGES})

@@ -44,6 +44,8 @@ class Step:
         hours: since the start, of a material that creeps.
         temperature_K: of the spring; at its start where plastic work heats it.
         load_loss_percent: of the force with which time began to pass, at constant height; None where no time passes.
+        turn_deg: rotation of the top head about the spring's axis, less that of the bottom one.
+        torque_Nmm: moment of the top head on the spring about its axis.
     """
 
     number: int
@@ -71,6 +73,8 @@ class Step:
     hours: float = 0.0
     temperature_K: float = 0.0
     load_loss_percent: float | None = None
+    turn_deg: float = 0.0
+    torque_Nmm: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -105,6 +109,21 @@ class Snapshot:
 
 
 @dataclass(frozen=True)
+class ForceLine:
+    """Where a spring's force line is looked at.
+
+    Attributes:
+        lower, upper: heights of two planes above the bottom seat of the unloaded spring, mm; None: not asked for.
+        point, direction: of the damper's axis, mm, in the spring's coordinates; the direction of any length.
+    """
+
+    lower: float | None
+    upper: float | None
+    point: tuple[float, ...]
+    direction: tuple[float, ...]
+
+
+@dataclass(frozen=True)
 class SeatReaction:
     """What one seat, or clamped head, does to the spring.
 
@@ -119,6 +138,8 @@ class SeatReaction:
         length_mm: length of wire in contact with the seat, to the spacing of its points.
         down_turns: extent of the contact, turns from the wire's tip to the farthest place where it touches the seat.
         tilt_rad: angle between the seat's axis and the spring's.
+        shift_x_mm, shift_y_mm: displacement of the seat across the axis.
+        tilt_x_deg, tilt_y_deg, turn_deg: its rotation vector, about the axis last.
     """
 
     force_N: float
@@ -135,6 +156,11 @@ class SeatReaction:
     length_mm: float
     down_turns: float
     tilt_rad: float
+    shift_x_mm: float
+    shift_y_mm: float
+    tilt_x_deg: float
+    tilt_y_deg: float
+    turn_deg: float
 
 
 @dataclass(frozen=True)
@@ -147,6 +173,11 @@ class SeatReactions:
             that would hold as much torsional energy, as in R = G d⁴/(64 r³ n). On release, and up to the maximum force
             so far, of the step's changes of Mt and F: a spring that has set keeps a torque that goes with no force.
         free_turns: turns of wire that touch neither seat nor coil.
+        side_force_N: what the top head pushes the spring across the axis with.
+        line_lower_x_mm, line_lower_y_mm, line_upper_x_mm, line_upper_y_mm: where the force line, the line of action of
+            the top head's force, crosses the two planes of the ForceLine; not numbers without one, or without a force.
+        damper_moment_Nmm, damper_torque_Nmm: moment of the top head's reaction on the body above it, about the point of
+            the damper: its size across the damper's axis, and its part about it.
         bottom, top: SeatReactions of the ends.
         pressure: one row for each point of the wire that bears: number of the kind of contact, number of the point,
             force per length of wire in N/mm; shape (m, 3). Between coils it is twice what the point itself has found,
@@ -156,13 +187,20 @@ class SeatReactions:
     step: int
     active_turns: float
     free_turns: float
+    side_force_N: float
+    line_lower_x_mm: float
+    line_lower_y_mm: float
+    line_upper_x_mm: float
+    line_upper_y_mm: float
+    damper_moment_Nmm: float
+    damper_torque_Nmm: float
     bottom: SeatReaction
     top: SeatReaction
     pressure: np.ndarray
 
     def row(self) -> dict[str, Any]:
         """As flat entries, without the pressure."""
-        flat: dict[str, Any] = {name: getattr(self, name) for name in ("step", "active_turns", "free_turns")}
+        flat: dict[str, Any] = {name: getattr(self, name) for name in WHOLE}
         for end in ENDS:
             flat |= {f"{end}_{name}": value for name, value in asdict(getattr(self, end)).items()}
         return flat
@@ -172,7 +210,11 @@ class SeatReactions:
         """The reverse of `row`."""
         names = [item.name for item in fields(SeatReaction)]
         bottom, top = (SeatReaction(**{name: row[f"{end}_{name}"] for name in names}) for end in ENDS)
-        return cls(row["step"], row["active_turns"], row["free_turns"], bottom, top, pressure)
+        return cls(**{name: row[name] for name in WHOLE}, bottom=bottom, top=top, pressure=pressure)
+
+
+WHOLE = tuple(item.name for item in fields(SeatReactions) if item.name not in (*ENDS, "pressure"))
+"""Entries of SeatReactions that are of the whole spring."""
 
 
 @dataclass(frozen=True)
@@ -233,6 +275,7 @@ class Setup:
         rates_at: travels, mm, at which the rate is asked for.
         warnings: Warnings about the case, before it ran.
         coiling_diameter: mean diameter to which the wire was coiled at mid-wire, mm; None: it was not coiled.
+        force_line: ForceLine, or None.
     """
 
     spring: Spring
@@ -250,6 +293,7 @@ class Setup:
     rates_at: tuple[float, ...] = ()
     warnings: tuple[Warning, ...] = ()
     coiling_diameter: float | None = None
+    force_line: ForceLine | None = None
 
     @property
     def slender(self) -> bool:

@@ -14,7 +14,7 @@ from coilset.model.contact.resultants import Wrench
 from coilset.model.equilibrium.heads import Heads
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.system import System
-from coilset.model.results.records.record import SeatReaction, SeatReactions
+from coilset.model.results.records.record import ForceLine, SeatReaction, SeatReactions
 from coilset.model.rod.rod import Rod
 from coilset.model.rotations.kernels import exponential
 
@@ -34,6 +34,7 @@ def seat_reactions(
     greatest_force: float,
     before: tuple[float, np.ndarray],
     now: tuple[float, np.ndarray],
+    line: ForceLine | None = None,
 ) -> SeatReactions:
     """Reactions at the equilibrium just reached; collective.
 
@@ -45,6 +46,7 @@ def seat_reactions(
         greatest_force: magnitude of the largest axial force so far, this one's included, N.
         before: axial force, N, and `mean_torque` of the last equilibrium but this.
         now: those of this one.
+        line: ForceLine, if it is asked for.
 
     Returns:
         SeatReactions, the same on every rank.
@@ -52,12 +54,37 @@ def seat_reactions(
     observer = _Observer(system, control)
     rod, pressure = observer.layout.rod, pressures(observer.on_wire)
     faint = faint_force(rod, greatest_force)
-    bottom, top = (observer.reaction(end, faint) for end in ENDS)
+    wrenches = {end: observer.wrench(end) for end in ENDS}
+    bottom, top = (observer.reaction(end, wrenches[end], faint) for end in ENDS)
     force, torque = change = now
     if abs(force) < greatest_force:  # it has borne more: only what has changed since counts
         change = force - before[0], torque - before[1]
     active = active_turns(rod, turns, *change) if min(abs(force), abs(change[0])) > faint else np.nan
-    return SeatReactions(step, active, free_turns(observer.on_wire, pressure), bottom, top, pressure)
+    side = math.hypot(top.lateral_x_N, top.lateral_y_N)
+    free = free_turns(observer.on_wire, pressure)
+    return SeatReactions(step, active, free, side, *on_line(wrenches["top"], line, faint), bottom, top, pressure)
+
+
+def on_line(wrench: Wrench, line: ForceLine | None, faint: float) -> tuple[float, float, float, float, float, float]:
+    """Where the line of a force crosses two planes, x and y of each, mm, and its moments for a damper, N mm.
+
+    Args:
+        wrench: of the top head on the spring; on the body above it acts its opposite.
+        line: ForceLine; None: nothing is asked for.
+        faint: force that counts as none, N.
+    """
+    if line is None:
+        return (math.nan,) * 6
+    lower, upper = (
+        (math.nan, math.nan)
+        if height is None or abs(wrench.force[2]) <= faint
+        else wrench.about(np.array([0.0, 0.0, height])).crossing()
+        for height in (line.lower, line.upper)
+    )
+    moment = -wrench.about(np.array(line.point)).moment
+    axis = np.array(line.direction) / np.linalg.norm(line.direction)
+    about = float(moment @ axis)
+    return *lower, *upper, float(np.linalg.norm(moment - about * axis)), about
 
 
 def faint_force(rod: Rod, greatest_force: float) -> float:
@@ -82,9 +109,9 @@ class _Observer:
         station, _ = self.control.tips[end]
         return Wrench.of_contacts(own, self.x, self.chart, station, self.control.on_tip(end))
 
-    def reaction(self, end: str, faint: float) -> SeatReaction:
-        """The SeatReaction of an end."""
-        wrench = self.wrench(end).about(self.control.centre(end, self.x))
+    def reaction(self, end: str, whole: Wrench, faint: float) -> SeatReaction:
+        """The SeatReaction of an end, from its `wrench`."""
+        wrench = whole.about(self.control.centre(end, self.x))
         side = 1.0 if end == "bottom" else -1.0  # the bottom pushes up
         lateral_x, lateral_y, along = wrench.force.tolist()
         crossing = wrench.crossing() if abs(along) > faint else (math.nan, math.nan)
@@ -123,14 +150,15 @@ class _Observer:
             *spot,
             length,
             down,
-            self.tilt(end),
+            *self.pose(end),
         )
 
-    def tilt(self, end: str) -> float:
-        """Angle between the axes of a seat and of the spring, rad."""
+    def pose(self, end: str) -> tuple[float, ...]:
+        """Angle between the axes of a seat and of the spring, rad; its shift, mm, and its rotation vector, degrees."""
         first, R = SEAT_DOFS * ENDS.index(end), np.empty((3, 3))
-        exponential(self.system.seats[first + 3 : first + SEAT_DOFS], R)
-        return math.atan2(math.hypot(R[0, 2], R[1, 2]), R[2, 2])
+        x, y, _, *rotation = self.system.seats[first : first + SEAT_DOFS].tolist()
+        exponential(np.array(rotation), R)
+        return math.atan2(math.hypot(R[0, 2], R[1, 2]), R[2, 2]), x, y, *(math.degrees(angle) for angle in rotation)
 
 
 def mean_torque(rod: Rod) -> np.ndarray:
