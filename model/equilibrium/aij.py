@@ -5,17 +5,13 @@ others. In both, entries lie row by row with ascending columns, as they do on on
 """
 
 import ctypes
-from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numba import njit
 from petsc4py import PETSc
 
 _PETSC = ctypes.PyDLL(PETSc.__file__)  # finds what this module is linked with, so that it is the same PETSc
-_WRITE = _PETSC.MatSeqAIJGetArray, _PETSC.MatSeqAIJRestoreArray
-_READ = _PETSC.MatSeqAIJGetArrayRead, _PETSC.MatSeqAIJRestoreArrayRead
-for _function in (*_WRITE, *_READ):
+for _function in (_PETSC.MatSeqAIJGetArray, _PETSC.MatSeqAIJRestoreArray):
     _function.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
 _INT = np.ctypeslib.as_ctypes_type(PETSc.IntType)
 for _function in (_PETSC.MatGetRowIJ, _PETSC.MatRestoreRowIJ):
@@ -46,20 +42,6 @@ class AijEntries:
             self.others = _pattern(others)
             self.columns = _numbers(columns, int(self.others[1].max(initial=-1)) + 1)
 
-    @cached_property
-    def _merged(self) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
-        """See `_side_by_side`."""
-        return _side_by_side(*self.own, *self.others, self.columns, self._range[0])
-
-    @property
-    def pattern(self) -> tuple[np.ndarray, np.ndarray]:
-        """Of this rank's rows, CSR with global, ascending columns: indptr and indices; on one rank PETSc's own."""
-        return self.own if self._one else self._merged[0]
-
-    def places(self) -> np.ndarray:
-        """Where each entry of the pattern lies in the first of the `arrays`, or behind it, in the second."""
-        return np.arange(len(self.own[1]), dtype=np.int32) if self._one else self._merged[1]
-
     def local(self, unknowns: np.ndarray) -> np.ndarray:
         """Numbers of unknowns by this rank's columns: its own from 0 on, behind them the others, and then the rest."""
         if self._one:
@@ -69,19 +51,18 @@ class AijEntries:
         mine = (unknowns >= start) & (unknowns < stop)
         return np.where(mine, unknowns - start, stop - start + np.where(known, at, len(self.columns)))
 
-    def arrays(self, only_read: bool = False) -> tuple[np.ndarray, np.ndarray]:
+    def arrays(self) -> tuple[np.ndarray, np.ndarray]:
         """Where PETSc keeps the entries now: those of the rank's own columns, and the others.
 
-        Unless they are `only_read`, PETSc takes them for changed.
+        PETSc regards them as changed.
         """
-        way = _READ if only_read else _WRITE
         if self._one:
-            if self._address != (address := _address(self._handle, self._found, way)):
-                self._address, self._values = address, _at(address, len(self.pattern[1]))
+            if self._address != (address := _address(self._handle, self._found)):
+                self._address, self._values = address, _at(address, len(self.own[1]))
             return self._values, NONE
         own, others, _ = self._parts()
-        values = _at(_address(own, self._found, way), len(self.own[1]))
-        return values, _at(_address(others, self._found, way), len(self.others[1]))
+        values = _at(_address(own, self._found), len(self.own[1]))
+        return values, _at(_address(others, self._found), len(self.others[1]))
 
     def _parts(self) -> tuple[ctypes.c_void_p, ctypes.c_void_p, Any]:
         """PETSc's matrices of the own columns and of the others, and where it keeps the numbers of these."""
@@ -90,49 +71,6 @@ class AijEntries:
             found = [ctypes.byref(part) for part in (own, others, columns)]
             _check(_PETSC.MatMPIAIJGetSeqAIJ(self._mat.handle, *found))
         return own, others, columns
-
-
-@njit(cache=True)
-def _side_by_side(
-    own_indptr: np.ndarray,
-    own_indices: np.ndarray,
-    indptr: np.ndarray,
-    indices: np.ndarray,
-    numbers: np.ndarray,
-    start: int,
-) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
-    """One pattern of both, and where each of its entries lies among those of the first, or behind them.
-
-    Args:
-        own_indptr, own_indices: of the own columns, numbered from `start` on.
-        indptr, indices: of the others, which have `numbers`, ascending.
-    """
-    count, size = 0, len(own_indices)
-    out, columns = np.zeros_like(own_indptr), np.empty(size + len(indices), own_indices.dtype)
-    places = np.empty(size + len(indices), np.int32)
-    for row in range(len(out) - 1):
-        e = indptr[row]
-        while e < indptr[row + 1] and numbers[indices[e]] < start:
-            columns[count], places[count] = numbers[indices[e]], size + e
-            e, count = e + 1, count + 1
-        for mine in range(own_indptr[row], own_indptr[row + 1]):
-            columns[count], places[count] = start + own_indices[mine], mine
-            count += 1
-        for above in range(e, indptr[row + 1]):
-            columns[count], places[count] = numbers[indices[above]], size + above
-            count += 1
-        out[row + 1] = count
-    return (out, columns), places
-
-
-@njit(cache=True)
-def take(places: np.ndarray, own: np.ndarray, others: np.ndarray) -> np.ndarray:
-    """Entries at some of the `AijEntries.places`."""
-    out = np.empty(len(places))
-    for e in range(len(places)):
-        place = places[e]
-        out[e] = own[place] if place < len(own) else others[place - len(own)]
-    return out
 
 
 def _numbers(columns: Any, size: int) -> np.ndarray:
@@ -150,12 +88,12 @@ def _pattern(part: ctypes.c_void_p) -> tuple[np.ndarray, np.ndarray]:
     return pattern
 
 
-def _address(part: ctypes.c_void_p, found: ctypes.c_void_p, way: tuple[Any, Any]) -> int:
+def _address(part: ctypes.c_void_p, found: ctypes.c_void_p) -> int:
     """Where a matrix of PETSc's type `seqaij` keeps its entries, by its functions that give and take them back."""
-    place, (give, take_back) = ctypes.byref(found), way
-    _check(give(part, place))
+    place = ctypes.byref(found)
+    _check(_PETSC.MatSeqAIJGetArray(part, place))
     address = found.value or 0
-    _check(take_back(part, place))
+    _check(_PETSC.MatSeqAIJRestoreArray(part, place))
     return address
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from coilset.model.base.compat import NOT_A_NUMBER
-from coilset.model.equilibrium.chain_lu import ChainPC
+from coilset.model.equilibrium import factors
 from coilset.model.equilibrium.contact_limit import ContactLimit
 from coilset.model.equilibrium.convergence import EquilibriumTest, Reason, imbalance
 from coilset.model.equilibrium.foreseeing import Foreseeing
@@ -158,11 +158,7 @@ class Iteration:
         pc = self.snes.getKSP().getPC()
         if not self.method.searches or not self.factorisations:  # a state that is in equilibrium asks for no factors
             return None
-        if pc.getType() == PETSc.PC.Type.PYTHON:
-            return pc.getPythonContext().factors.negative_pivots
-        if pc.getType() != PETSc.PC.Type.LU or pc.getFactorSolverType() != PETSc.Mat.SolverType.PETSC:
-            return None
-        return int(np.count_nonzero(pc.getFactorMatrix().getDiagonal().getArray(readonly=True) < 0.0))
+        return factors.negative_pivots(pc)
 
     def _set_arc_load(self) -> None:
         """What the step adds to loads and prescribed values: minus the residual at its start."""
@@ -200,19 +196,9 @@ class Iteration:
                     self._fit(each.ksp.pc)
 
     def _fit(self, pc: PETSc.PC) -> None:
-        """On one rank let PETSc's LU, or ChainPC in a large matrix, fit the contacts, unless the user has chosen."""
-        method = self.method
-        if self.system.comm.size > 1:
-            return
-        if not method.chooses_factors:
-            if self.matrix.is_large and pc.getType() == PETSc.PC.Type.LU:
-                pc.setType(PETSc.PC.Type.PYTHON)
-                pc.setPythonContext(ChainPC())
-            elif not self.matrix.is_large and pc.getType() == PETSc.PC.Type.PYTHON:
-                pc.setType(PETSc.PC.Type.LU)
-                pc.setFromOptions()
-        if pc.getType() == PETSc.PC.Type.LU and not any("mat_ordering_type" in key for key in method.of_the_user):
-            pc.setFactorOrdering(self.matrix.ordering)
+        """Let LU eliminate in an order that suits the contacts, unless the user has chosen one."""
+        if not any("mat_ordering_type" in key for key in self.method.of_the_user):
+            factors.order(pc, self.matrix.ordering)
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Before a line search of type `basic`: scale the correction −y."""

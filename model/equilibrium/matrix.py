@@ -14,16 +14,13 @@ from coilset.model.body.body import Body, FillsMatrix, OfElements
 from coilset.model.contact.base import Contribution
 from coilset.model.equilibrium.aij import AijEntries
 from coilset.model.equilibrium.element_entries import ElementEntries, set_rows
+from coilset.model.equilibrium.factors import FILL_REDUCING, NATURAL
 from coilset.model.equilibrium.joined import add_matrices, join_patterns, number_pairs
 from coilset.model.equilibrium.layout import Layout, LineLayout
-from coilset.model.equilibrium.ordering import ORDERING
 
 # Contacts add entries outside the band of a line. Up to SMALL unknowns the fill of the natural order costs less than
-# finding a better one; with 2,560 elements in 2.5 windings a factorisation takes 2.8 s in band order, else 11 ms. Up to
-# LARGE, the plan of a multifrontal elimination costs more than it saves: a tenth of the time with 320 elements in 20
-# windings, nothing with 2,560 in 160; with 20,000 in 253 it saves half of the time.
-SMALL, LARGE = 1500, 15_000
-NATURAL = "natural"
+# finding a better one; with 2,560 elements in 2.5 windings a factorisation takes 2.8 s in band order, else 11 ms.
+SMALL = 1500
 
 
 class TangentMatrix:
@@ -36,26 +33,17 @@ class TangentMatrix:
     Attributes:
         mat: PETSc's matrix.
         version: how often its rows were allocated; older factors are invalid.
+        ordering: PETSc's name of the order in which its LU should eliminate, the same on all ranks.
     """
 
     def __init__(self, body: Body, layout: Layout) -> None:
         self.body, self.layout = body, layout
-        self.mat, self.version = body.create_matrix(layout.size_local), 0
+        self.mat, self.version, self.ordering = body.create_matrix(layout.size_local), 0, NATURAL
         self._places, self._known = list[int](), set[int]()
         self._bare: tuple[np.ndarray, np.ndarray] | None = None  # the pattern without contacts, while there are some
         self._entries: AijEntries | None = None
         self._unknowns, self._stop = np.empty(0, PETSc.IntType), 0  # of contacts, in the entries' numbers, all below
         self._elements = ElementEntries(body, layout) if isinstance(body, OfElements) else None
-
-    @property
-    def ordering(self) -> str:
-        """PETSc's name of the order in which its LU should eliminate, on one rank."""
-        return ORDERING if self._places and self.layout.size > SMALL else NATURAL
-
-    @property
-    def is_large(self) -> bool:
-        """Whether the multifrontal method should eliminate, on one rank."""
-        return self.ordering != NATURAL and self.layout.size > LARGE
 
     def fill(self, contributions: Sequence[Contribution], exactly: bool = False) -> None:
         """Set it to the body's tangent and the stiffness of contacts; collective.
@@ -133,6 +121,8 @@ class TangentMatrix:
             self._unknowns = self._entries.local(layout.contact_dofs).astype(PETSc.IntType)  # as on one rank
             self._stop = int(self._unknowns.max()) + 1
         elements.find(self._entries)
+        touching = layout.size > SMALL and layout.comm.allreduce(len(tables)) > 0
+        self.ordering = FILL_REDUCING if touching else NATURAL
         self.version += 1
 
     def _bare_pattern(self, elements: ElementEntries) -> tuple[np.ndarray, np.ndarray]:

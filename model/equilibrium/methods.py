@@ -16,7 +16,7 @@ from coilset.model.base.compat import LONGEST_STEP
 from coilset.model.base.errors import InputError
 
 DIRECT = {"ksp_type": "preonly", "pc_type": "lu"}
-ON_RANKS = "coilset.model.equilibrium.chain_lu.ChainPC"
+ON_RANKS = "coilset.model.equilibrium.factors.GatheredLU"
 RENEWAL = 10
 # The zero of the out-of-balance work may lie beyond a whole correction: PETSc's searches may lengthen it at will.
 UNLIMITED = {LONGEST_STEP: 1e8}
@@ -157,11 +157,6 @@ class Method:
         return self.options.get("snes_type") not in FORGETFUL
 
     @property
-    def chooses_factors(self) -> bool:
-        """Whether the user has said how matrices are to be factorised."""
-        return any(key.removeprefix("npc_").startswith("pc_") for key in self.of_the_user)
-
-    @property
     def factorisation(self) -> dict[str, Any]:
         """Options of its linear solver, or of that of its preconditioning step."""
         bare = {key.removeprefix("npc_"): value for key, value in self.options.items()}
@@ -179,7 +174,7 @@ def check_method(method: str) -> None:
 
 
 def rod_method(name: str, ranks: int, extra: Mapping[str, Any] | None = None, arc: float | None = None) -> Method:
-    """A method for rods; ChainPC factorises where there is more than one rank.
+    """A method for rods; GatheredLU factorises where there is more than one rank.
 
     Args:
         name: a key of METHODS.

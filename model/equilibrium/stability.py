@@ -1,7 +1,7 @@
 """Is an equilibrium stable? The sign of the tangent and its weakest mode; `branch_switching` leaves what is unstable.
 
 A state of equilibrium is stable where the symmetric part of the tangent of the free unknowns is positive definite. By
-Sylvester's law it has as many negative eigenvalues as its factors L D Lᵀ have negative pivots. Newton's own factors L U
+Sylvester's law it has as many negative eigenvalues as its factors L U have negative pivots. Newton's own factors
 show the signs of the pivots at the last iterate for nothing; where one of them is negative, and with methods that keep
 a matrix, the symmetric part is factorised at the state itself.
 """
@@ -11,11 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 from petsc4py import PETSc
 
-from coilset.model.equilibrium.chain_lu import ChainPC
+from coilset.model.equilibrium.factors import lu, negative_pivots
 from coilset.model.equilibrium.iteration import Iteration
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.load import Load
-from coilset.model.equilibrium.matrix import NATURAL
 
 BLOCK = 4  # vectors of the inverse iteration: a double eigenvalue and its neighbours
 ITERATIONS = 12
@@ -50,7 +49,7 @@ class Stability:
         """Number of negative eigenvalues of the symmetric part of the tangent at the last evaluation; collective."""
         if self.iteration.negative_pivots() == 0:
             return 0
-        return negative_pivots(self._factors(load))
+        return _negative(self._factors(load))
 
     def weakest(self, load: Load) -> Weakest:
         """The weakest mode at the last evaluation; collective."""
@@ -66,7 +65,7 @@ class Stability:
             values, block = _rayleigh_ritz(matrix, scale, block)
         mode = block[int(values.argmin())]
         mode.scale(1.0 / self.greatest_displacement(mode))
-        return Weakest(negative_pivots(factors), float(values.min()), mode)
+        return Weakest(_negative(factors), float(values.min()), mode)
 
     # ---- matrix ----------------------------------------------------------------------------------------------------
 
@@ -82,14 +81,7 @@ class Stability:
         rows = (load.held + self.layout.start).astype(PETSc.IntType)
         matrix.zeroRowsColumns(rows, diag=self.system.body.constraint_weight)
         matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)
-        factors = PETSc.PC().create(self.system.comm)
-        factors.setOperators(matrix)
-        if self.system.comm.size > 1 or tangent.ordering != NATURAL:
-            factors.setType(PETSc.PC.Type.PYTHON)
-            factors.setPythonContext(ChainPC())
-        else:
-            factors.setType(PETSc.PC.Type.CHOLESKY)
-            factors.setFactorOrdering(NATURAL)
+        factors = lu(matrix, tangent.ordering)
         factors.setUp()
         return factors
 
@@ -121,11 +113,11 @@ class Stability:
         return float(np.linalg.norm(self.displacements(mode), axis=1).max())
 
 
-def negative_pivots(factors: PETSc.PC) -> int:
-    """Number of negative pivots of a symmetric matrix's factors."""
-    if factors.getType() == PETSc.PC.Type.PYTHON:
-        return factors.getPythonContext().factors.negative_pivots
-    return factors.getFactorMatrix().getInertia()[0]
+def _negative(factors: PETSc.PC) -> int:
+    """Number of negative pivots of the factors of `lu`."""
+    number = negative_pivots(factors)
+    assert number is not None  # they are PETSc's own
+    return number
 
 
 def _rayleigh_ritz(matrix: PETSc.Mat, scale: PETSc.Vec, block: list[PETSc.Vec]) -> tuple[np.ndarray, list[PETSc.Vec]]:

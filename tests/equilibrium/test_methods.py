@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from coilset.model.base.errors import InputError
 from coilset.model.case import read_case
-from coilset.model.equilibrium import matrix
+from coilset.model.equilibrium import factors, matrix
 from coilset.model.equilibrium.methods import METHODS, rod_method
 from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.settings import MethodName
@@ -48,25 +48,24 @@ def test_every_method_passes_the_reversal_to_the_same_state(example, newtons, me
 
 
 def pressed(example, method):
-    """Forces of a spring that is pressed to block and let go, and what has factorised its matrix in each step."""
+    """Forces of a spring that is pressed to block and released, and the order of elimination in each step."""
     program = "loading=[{to: block, steps: 8}, {to: {force: 0}, steps: 3}]"
     settings = [*COARSE, "ends=clamped", program, f"solver.method={method}"]
-    analysis, kinds = Analysis(read_case(example, settings), MPI.COMM_SELF), []
-    result = analysis.run(report=lambda step: kinds.append(analysis.newton.iteration.snes.getKSP().getPC().getType()))
-    return np.array([step.force_N for step in result.steps]), kinds
+    analysis, orders = Analysis(read_case(example, settings), MPI.COMM_SELF), []
+    result = analysis.run(report=lambda step: orders.append(analysis.newton.iteration.matrix.ordering))
+    return np.array([step.force_N for step in result.steps]), orders
 
 
 @pytest.mark.parametrize("method", ["newton", "modified-newton"])
-def test_what_contacts_join_in_long_springs_is_factorised_by_the_multifrontal_method(example, method, monkeypatch):
-    """As on ranks, with the same forces as PETSc's LU; that is used again when the coils have come apart."""
-    expected, kinds = pressed(example, method)
-    assert set(kinds) == {PETSc.PC.Type.LU}
+def test_contacts_of_long_springs_are_eliminated_in_another_order(example, method, monkeypatch):
+    """With the same forces; the natural order returns when the coils have come apart."""
+    expected, orders = pressed(example, method)
+    assert set(orders) == {factors.NATURAL}
     monkeypatch.setattr(matrix, "SMALL", 0)
-    monkeypatch.setattr(matrix, "LARGE", 0)
-    found, kinds = pressed(example, method)
-    assert PETSc.PC.Type.PYTHON in kinds
-    assert kinds[0] == kinds[-1] == PETSc.PC.Type.LU
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-8 * expected.max())
+    forces, orders = pressed(example, method)
+    assert factors.FILL_REDUCING in orders
+    assert orders[0] == orders[-1] == factors.NATURAL
+    np.testing.assert_allclose(forces, expected, rtol=0, atol=1e-8 * expected.max())
 
 
 ALL_METHODS = f"""
