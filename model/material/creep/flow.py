@@ -1,6 +1,7 @@
 """Creep rates of a point: the creep strain under constant stress, and its slopes; see `creep`."""
 
 import math
+from collections import namedtuple
 
 import numpy as np
 from numba import njit
@@ -98,3 +99,25 @@ def flow(q: np.ndarray, s: np.ndarray, u0: float, h: float, x: np.ndarray, A: np
     for i in range(1 if n == 3 else 3, n):
         A[i, i] += 3.0 * tangential
     return u
+
+
+# Equivalent creep strain of a stage and its derivatives in σ, in u at its start and in the logarithm of its time; u at
+# its end, and its derivatives in σ and in that logarithm.
+Creep = namedtuple("Creep", "strain by_stress by_start by_time u u_by_stress u_by_time")
+
+
+@njit(**KERNEL)
+def creep_strain(q: np.ndarray, sigma: float, u0: float, h: float) -> Creep:
+    """u^p − u₀^p under the constant equivalent stress σ, u = u₀ + h φ^(1/p)."""
+    if h == 0.0:
+        return Creep(0.0, 0.0, 0.0, 0.0, u0, 0.0, 0.0)
+    g, slope = rate(q, sigma)
+    power, u = q[POWER], u0 + h * g
+    if not u > 0.0:
+        return Creep(0.0, 0.0, 0.0, 0.0, u, 0.0, 0.0)
+    c = u**power
+    before = u0**power if u0 > 0.0 else 0.0
+    d_c = power * c / u
+    return Creep(
+        c - before, d_c * h * slope, d_c - (power * before / u0 if u0 > 0.0 else 0.0), d_c * h * g, u, h * slope, h * g
+    )

@@ -31,7 +31,7 @@ NOTHING = (0.0, 0.0, 0.0)
 
 
 @njit(**INLINE)
-def _crossing(s: Vector, B: Vector, k2: float, E: float, G: float, e: Vector) -> Crossing:
+def crossing_of_spin(s: Vector, B: Vector, k2: float, E: float, G: float, e: Vector) -> Crossing:
     """Where the elastic path leaves the yield surface; e is the increment of the active deviator."""
     n = active(s, B)
     nn, ne, ee = inner(n, n), inner(n, e), inner(e, e)
@@ -55,7 +55,7 @@ def _start(
     if p[SPIN] == 0.0:
         nothing = (NOTHING, NOTHING, NOTHING)
         return Point(s, B, nothing, nothing)
-    crossing = _crossing(s, B, k2, E, G, (E * de11 / 1.5, G * dg12, G * dg13))
+    crossing = crossing_of_spin(s, B, k2, E, G, (E * de11 / 1.5, G * dg12, G * dg13))
     turned = spun(s, B, E, G, de11, dg12, dg13, crossing)
     return Point(turned.stress, turned.back, turned.d_stress, turned.d_back)
 

@@ -1,0 +1,408 @@
+"""An increment of the point problem: two stages of an L-stable Runge-Kutta method of second order, with the tangent.
+
+The method is diagonally implicit, γ = 1 − 1/√2 (R. Alexander, SIAM J. Numer. Anal. 14, 1977). Its first stage ends at
+the part γ of the increment; where its rates lead in the next 1 − γ, the second one starts, again of length γ. Creep
+from there to the first stage's end is that of a constant stress, so that it is exact where the stress stays.
+
+An increment that leaves the yield surface is divided where the elastic path crosses it; the part before only creeps.
+Where Newton's method fails in a stage, the increment is divided in two, four and so on. Slopes by the strains of the
+increment are carried along from stage to stage, which makes the tangent that of the whole.
+"""
+
+import math
+from collections import namedtuple
+
+import numpy as np
+from numba import njit
+
+from coilset.model.base.kernel import INLINE, KERNEL
+from coilset.model.material.creep.flow import POWER, creep_strain, passes
+from coilset.model.material.law.functions import (
+    CHANGE,
+    HEATING,
+    RATE,
+    SPIN,
+    TEMPERATURE,
+    elasticity,
+    functions,
+    inside_table,
+)
+from coilset.model.material.law.parts import Parts
+from coilset.model.material.point.local import FAILED, TOO_HOT, yield_crossing
+from coilset.model.material.point.rod import crossing_of_spin
+from coilset.model.material.point.spin import spun
+from coilset.model.material.point.stage import BACK, CREEP, CREPT, WORK, Room, Span, finish, inner, solve
+
+# What an increment is made of. h: time of creep; reference: ṗ₀ Δt, 0 without overstress; temperature at its start, and
+# its change; heating, work: as in `Span`; expansion: α of it in the rod; follows: whether the stress follows C(T) at
+# once; strain: that of T, over c; unit: its slopes by the strains.
+Increment = namedtuple("Increment", "h reference temperature change heating work expansion follows deviates strain unit")
+# A part of it: where it begins, its length, and the slopes of the length by the strains.
+Piece = namedtuple("Piece", "begin length by")
+
+GAMMA = 1.0 - math.sqrt(0.5)
+AHEAD = (1.0 - GAMMA) / GAMMA
+ROD = 3  # components
+DIVISIONS = 6  # of an increment in halves
+
+
+@njit(**KERNEL)
+def advance(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray) -> int:
+    """One increment of strain and time.
+
+    Args:
+        law: Parts.
+        old: the point's state at the start, as `rod` or `solid` have it; behind b* the temperature, K, where the point
+            has its own, the equivalent creep strain, where the material creeps, and all back stresses but the last, of
+            which the columns of B have the sum. Not written.
+        de: strain increment, shape (3,) as in `rod` or (6,) as in `solid`, engineering shear strains, thermal strain
+            included where the material creeps.
+        new: the state at the end; written.
+        C: dσ/dε, shape (3, 3) or (6, 6), N/mm²; written.
+
+    Returns:
+        Number of local iterations, 0 for an elastic increment, -1 if there was no convergence, -2 if the point heated
+        itself out of the material's table (then `new` is `old`).
+    """
+    n, terms = de.shape[0], max(law.terms.shape[1], 1)
+    own = old.shape[0] - (2 * n + 1) - n * (terms - 1)  # columns of temperature and creep
+    p, q = law.plastic, law.viscous
+    start = old[2 * n + 1] if own > 0 else p[TEMPERATURE] - p[CHANGE]
+    h, end = passes(q, start) if own > 1 else (0.0, start + p[CHANGE])
+    heating, follows = p[HEATING] if own > 0 else 0.0, own > 1
+    E0, G0, alpha0 = elasticity(p, start if follows else 0.5 * (start + end))
+    E1, G1, alpha1 = elasticity(p, end) if follows else (E0, G0, alpha0)
+    alpha = 0.5 * (alpha0 + alpha1)
+    thermal = alpha * (end - start) if follows else 0.0
+    room = _room(n, terms)
+    _metric(n, E0, G0, room)
+    rows, slopes, unit, e = np.zeros((terms + 3, n)), np.zeros((terms + 3, n, n)), np.zeros((n, n)), np.empty(n)
+    _unit(n, unit)
+    for j in range(n):
+        e[j] = 0.0
+        for k in range(n):
+            e[j] += unit[j, k] * de[k]
+    if n == ROD:
+        e[0] -= thermal
+    _unpack(old, own, law.plastic, q, room.c, rows)
+    if p[SPIN] != 0.0 and n == ROD:
+        _spin(p, old, de, E0, G0, start, rows, slopes)
+    reference = 1.0 / p[RATE] if p[RATE] > 0.0 else 0.0
+    work = rows[-1, WORK]
+    expansion = alpha * heating if n == ROD else 0.0
+    of = Increment(
+        h, reference, start, end - start, heating, work, expansion, follows, functions(p, work, start)[4] > 0.0, e, unit
+    )
+    count = _through(law, of, rows, slopes, room)
+    new[:] = old
+    if count < 0:
+        return FAILED
+    temperature = end + heating * (rows[-1, WORK] - work)
+    if heating > 0.0 and not inside_table(p, temperature):
+        return TOO_HOT
+    _metric(n, E1, G1, room)
+    _pack(rows, slopes, own, q, room.c, new, C)
+    if n > ROD:
+        bulk0, bulk = E0 * G0 / (3.0 * (3.0 * G0 - E0)), E1 * G1 / (3.0 * (3.0 * G1 - E1))
+        mean = (old[0] + old[1] + old[2]) / 3.0 * (bulk / bulk0)
+        grown = 3.0 * (thermal + alpha * (temperature - end))
+        mean += bulk * (de[0] + de[1] + de[2] - grown)
+        for i in range(3):
+            new[i] += mean
+            for k in range(n):
+                C[i, k] += bulk * ((1.0 if k < 3 else 0.0) - 3.0 * alpha * heating * slopes[-1, WORK, k])
+    if own > 0:
+        new[2 * n + 1] = temperature
+    return count
+
+
+@njit(**KERNEL)
+def _room(n: int, terms: int) -> Room:
+    """Arrays of a stage."""
+    a, b = np.zeros((10, n)), np.zeros((6, terms))
+    return Room(
+        a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], np.empty(n), b[0], b[1], b[2], b[3], b[4], b[5],
+        np.empty((4, 4)), np.empty((4, max(n, 2))), np.zeros((3, n, n)),
+    )  # fmt: skip
+
+
+@njit(**INLINE)
+def _metric(n: int, E: float, G: float, room: Room) -> None:
+    """Write weights of the inner product, and moduli of the components of T."""
+    for j in range(n):
+        room.metric[j] = 2.0 if n == ROD or j > 2 else 1.0
+        room.c[j] = 2.0 * G
+    if n == ROD:
+        room.metric[0], room.c[0] = 1.5, E / 1.5
+
+
+@njit(**INLINE)
+def _unit(n: int, unit: np.ndarray) -> None:
+    """Strains of T over c, by the strains."""
+    if n == ROD:
+        unit[0, 0] = 1.0
+    else:
+        for i in range(3):
+            for j in range(3):
+                unit[i, j] = -1.0 / 3.0
+            unit[i, i] += 1.0
+    for i in range(n - (2 if n == ROD else 3), n):
+        unit[i, i] = 0.5
+
+
+@njit(**KERNEL)
+def _unpack(state: np.ndarray, own: int, p: np.ndarray, q: np.ndarray, c: np.ndarray, rows: np.ndarray) -> None:
+    """Write ē, the Bᵢ, b and u of a point's state."""
+    n, last = rows.shape[1], rows.shape[0] - 3
+    further = 2 * n + 1 + own
+    mean = state[0] / 3.0 if n == ROD else (state[0] + state[1] + state[2]) / 3.0
+    for j in range(n):
+        rows[0, j] = (state[j] - (mean if j < (1 if n == ROD else 3) else 0.0)) / c[j]
+        rows[last, j] = state[n + j]
+        for i in range(last - 1):
+            rows[BACK + i, j] = state[further + n * i + j]
+            rows[last, j] -= rows[BACK + i, j]
+    rows[-1, WORK] = state[2 * n]
+    if own > 1:
+        rows[-1, CREPT] = state[2 * n + 2] ** (1.0 / q[POWER])
+
+
+@njit(**KERNEL)
+def _pack(
+    rows: np.ndarray, slopes: np.ndarray, own: int, q: np.ndarray, c: np.ndarray, new: np.ndarray, C: np.ndarray
+) -> None:
+    """Write the state, with the deviator of stress in the place of stress, and its slopes."""
+    n, last = rows.shape[1], rows.shape[0] - 3
+    for j in range(n):
+        scale = c[j] * (1.5 if n == ROD and j == 0 else 1.0)
+        new[j] = scale * rows[0, j]
+        for k in range(n):
+            C[j, k] = scale * slopes[0, j, k]
+        new[n + j] = 0.0
+        for i in range(last):
+            new[n + j] += rows[BACK + i, j]
+            if i < last - 1:
+                new[2 * n + 1 + own + n * i + j] = rows[BACK + i, j]
+    new[2 * n] = rows[-1, WORK]
+    if own > 1:
+        new[2 * n + 2] = rows[-1, CREPT] ** q[POWER]
+
+
+@njit(**KERNEL)
+def _spin(
+    p: np.ndarray, old: np.ndarray, de: np.ndarray, E: float, G: float, temperature: float, rows: np.ndarray,
+    slopes: np.ndarray,
+) -> None:
+    """Replace ē and the Bᵢ by those from which Hooke's law leads to the elastic response, with the spin (5.2.33)."""
+    s, B = (old[0], old[1], old[2]), (old[3], old[4], old[5])
+    crossing = crossing_of_spin(s, B, functions(p, old[6], temperature)[0], E, G, (E * de[0] / 1.5, G * de[1], G * de[2]))
+    c = (E, 2.0 * G, 2.0 * G)
+    for i in range(rows.shape[0] - 3):
+        B = (rows[BACK + i, 0], rows[BACK + i, 1], rows[BACK + i, 2])
+        turned = spun(s, B, E, G, de[0], de[1], de[2], crossing)
+        for j in range(3):
+            rows[0, j], rows[BACK + i, j] = turned.stress[j] / c[j], turned.back[j]
+            slopes[0, j, 0], slopes[BACK + i, j, 0] = turned.d_stress[0][j] / c[j], turned.d_back[0][j]
+            slopes[0, j, 1], slopes[BACK + i, j, 1] = turned.d_stress[1][j] / c[j], turned.d_back[1][j]
+            slopes[0, j, 2], slopes[BACK + i, j, 2] = turned.d_stress[2][j] / c[j], turned.d_back[2][j]
+
+
+@njit(**KERNEL)
+def _through(law: Parts, of: Increment, rows: np.ndarray, slopes: np.ndarray, room: Room) -> int:
+    """Replace the rows and slopes at the start of an increment by those at its end; as `advance`."""
+    n = rows.shape[1]
+    by = np.zeros(n)  # slopes of the part before the yield surface
+    beta = _crossing(law, of, rows, slopes, by, room)
+    if of.h == 0.0 and (of.change == 0.0 or not of.follows):
+        for j in range(n):
+            rows[0, j] += beta * of.strain[j]
+            for k in range(n):
+                slopes[0, j, k] += beta * of.unit[j, k] + by[k] * of.strain[j]
+        return 0 if beta == 1.0 else _pieces(law, of, Piece(beta, 1.0 - beta, -by), rows, slopes, room)
+    if not 0.0 < beta < 1.0:
+        by[:] = 0.0
+        return _pieces(law, of, Piece(0.0, 1.0, by), rows, slopes, room)
+    count = _pieces(law, of, Piece(0.0, beta, by), rows, slopes, room)
+    if count < 0:
+        return count
+    more = _pieces(law, of, Piece(beta, 1.0 - beta, -by), rows, slopes, room)
+    return count + more if more >= 0 else more
+
+
+@njit(**INLINE)
+def _active(c: np.ndarray, rows: np.ndarray, j: int) -> float:
+    """A component of n."""
+    n = c[j] * rows[0, j]
+    for i in range(rows.shape[0] - 3):
+        n -= rows[BACK + i, j]
+    return n
+
+
+@njit(**KERNEL)
+def _crossing(law: Parts, of: Increment, rows: np.ndarray, slopes: np.ndarray, by: np.ndarray, room: Room) -> float:
+    """Part of the increment in which the elastic path stays within the yield surface; its slopes are written to `by`.
+
+    It is not divided where the stress follows a change of temperature at once, which no strain divides.
+    """
+    n, c = rows.shape[1], room.c
+    if of.follows and of.change != 0.0:
+        return 0.0
+    for j in range(n):
+        room.n[j], room.d_n[j] = _active(c, rows, j), c[j] * of.strain[j]
+    b = rows[-1, WORK]
+    k2 = functions(law.plastic, b, of.temperature)[0]
+    growth = functions(law.plastic, b, of.temperature + of.change)[0] - k2 if of.change != 0.0 else 0.0
+    nn, ne = inner(room.metric, room.n, room.n), inner(room.metric, room.n, room.d_n)
+    ee = inner(room.metric, room.d_n, room.d_n)
+    if nn + 2.0 * ne + ee <= (k2 + growth) * (1.0 + 1e-12):
+        return 1.0
+    if of.reference > 0.0 and nn > k2:
+        return 0.0
+    beta = yield_crossing(nn, ne - 0.5 * growth, ee, k2)
+    steep = ne + beta * ee - 0.5 * growth
+    if beta > 0.0 and steep > 0.0:
+        for k in range(n):
+            for j in range(n):
+                change = _active(c, slopes[:, :, k], j) + beta * c[j] * of.unit[j, k]
+                by[k] -= room.metric[j] * (room.n[j] + beta * room.d_n[j]) * change / steep
+    return beta
+
+
+@njit(**KERNEL)
+def _pieces(law: Parts, of: Increment, whole: Piece, rows: np.ndarray, slopes: np.ndarray, room: Room) -> int:
+    """A part of the increment, divided until all stages have an end."""
+    before, slopes_before = rows.copy(), slopes.copy()
+    for division in range(DIVISIONS):
+        number, count = 2**division, 0
+        for i in range(number):
+            length = whole.length / number
+            piece = Piece(whole.begin + i * length, length, whole.by / number)
+            more = _piece(law, of, piece, rows, slopes, room)
+            if more < 0:
+                count = FAILED
+                break
+            count += more
+        if count >= 0:
+            return count
+        rows[:], slopes[:] = before, slopes_before
+    return FAILED
+
+
+@njit(**KERNEL)
+def _piece(law: Parts, of: Increment, piece: Piece, rows: np.ndarray, slopes: np.ndarray, room: Room) -> int:
+    """Both stages."""
+    before, slopes_before = rows.copy(), slopes.copy()
+    flowed, count = _stage(law, of, piece, (GAMMA, GAMMA), False, rows, slopes, room)
+    if count < 0:
+        return count
+    _lead(law, of, piece, before, slopes_before, rows, slopes, room)
+    flows, more = _stage(law, of, piece, (GAMMA, 1.0), flowed, rows, slopes, room)
+    if flowed and not flows and of.h == 0.0:  # the second stage's start lies within the surface: backward Euler
+        rows[:], slopes[:] = before, slopes_before
+        flows, more = _stage(law, of, piece, (1.0, 1.0), False, rows, slopes, room)
+    return count + more if more >= 0 else FAILED
+
+
+@njit(**KERNEL)
+def _stage(
+    law: Parts,
+    of: Increment,
+    piece: Piece,
+    part: tuple[float, float],
+    flowed: bool,
+    rows: np.ndarray,
+    slopes: np.ndarray,
+    room: Room,
+) -> tuple[bool, int]:
+    """A stage as long as a part of the piece, and where in it it ends; whether it flows, and iterations."""
+    n, length = rows.shape[1], part[0] * piece.length
+    temperature = of.temperature + (piece.begin + part[1] * piece.length) * of.change
+    if of.follows and of.change != 0.0:
+        E, G, _ = elasticity(law.plastic, temperature)
+        _metric(n, E, G, room)
+    c, ways = room.c, room.ways
+    for j in range(n):
+        room.trial[j] = c[j] * (rows[0, j] + length * of.strain[j])
+        for k in range(n):
+            by = part[0] * piece.by[k]
+            ways[0, j, k] = c[j] * (slopes[0, j, k] + length * of.unit[j, k] + by * of.strain[j])
+            ways[2, j, k] = piece.by[k] / piece.length
+    if of.deviates:
+        _onset(law, temperature, flowed, rows, slopes, room)
+    span = Span(
+        length * of.h, length * of.reference, temperature, of.work, of.heating, of.expansion, of.deviates
+    )
+    values, active, count = solve(law, span, rows, slopes, room)
+    if count >= 0:
+        finish(law, span, rows, slopes, values, active, room)
+    return active.flow, count
+
+
+@njit(**KERNEL)
+def _onset(law: Parts, temperature: float, flowed: bool, rows: np.ndarray, slopes: np.ndarray, room: Room) -> None:
+    """Write n_β and its slopes: n at the start of the stage, or where the elastic path crosses the yield surface."""
+    n, c, ways, beta, steep = rows.shape[1], room.c, room.ways, 0.0, 0.0
+    for j in range(n):
+        room.n[j] = _active(c, rows, j)
+        room.d_n[j] = room.trial[j] - c[j] * rows[0, j]
+    if not flowed:
+        nn, ne = inner(room.metric, room.n, room.n), inner(room.metric, room.n, room.d_n)
+        ee, k2 = inner(room.metric, room.d_n, room.d_n), functions(law.plastic, rows[-1, WORK], temperature)[0]
+        beta = yield_crossing(nn, ne, ee, k2) if nn + 2.0 * ne + ee > k2 else 1.0 if nn < k2 else 0.0
+        steep = ne + beta * ee
+    for j in range(n):
+        room.onset[j] = room.n[j] + beta * room.d_n[j]
+    for k in range(n):
+        along = 0.0
+        for j in range(n):
+            elastic = c[j] * slopes[0, j, k]
+            ways[1, j, k] = _active(c, slopes[:, :, k], j) + beta * (ways[0, j, k] - elastic)
+            along += room.metric[j] * room.onset[j] * ways[1, j, k]
+        if 0.0 < beta < 1.0 and steep > 0.0:
+            for j in range(n):
+                ways[1, j, k] -= along / steep * room.d_n[j]
+
+
+@njit(**KERNEL)
+def _lead(
+    law: Parts,
+    of: Increment,
+    piece: Piece,
+    before: np.ndarray,
+    slopes_before: np.ndarray,
+    rows: np.ndarray,
+    slopes: np.ndarray,
+    room: Room,
+) -> None:
+    """Replace the first stage's end by where its rates lead in the time before the second one."""
+    n, last = rows.shape[1], rows.shape[0] - 1
+    h = (1.0 - GAMMA) * piece.length * of.h
+    for j in range(n):
+        room.T[j] = room.c[j] * rows[0, j]
+    sigma = math.sqrt(1.5 * inner(room.metric, room.T, room.T))
+    creep = creep_strain(law.viscous, sigma, before[last, CREPT], h)
+    chi = 1.5 * creep.strain / sigma if creep.strain > 0.0 else 0.0
+    for k in range(n if of.h > 0.0 else 0):
+        d_sigma = 0.0
+        for j in range(n):
+            room.d_T[j] = room.c[j] * slopes[0, j, k]
+            d_sigma += 1.5 * room.metric[j] * room.T[j] * room.d_T[j]
+        d_sigma = d_sigma / sigma if sigma > 0.0 else 0.0
+        d_chi = 0.0
+        if chi > 0.0:
+            d_creep = creep.by_stress * d_sigma + creep.by_start * slopes_before[last, CREPT, k]
+            d_creep += creep.by_time * piece.by[k] / piece.length
+            d_chi = chi * (d_creep / creep.strain - d_sigma / sigma)
+        for j in range(n):  # in the first stage's creep strain, times AHEAD, from here on stands that of its stress
+            crept = chi * room.d_T[j] + d_chi * room.T[j]
+            slopes[0, j, k] += slopes[CREEP, j, k] - crept / AHEAD
+            slopes[CREEP, j, k] = 0.0
+    for j in range(n if of.h > 0.0 else 0):
+        rows[0, j] += rows[CREEP, j] - chi * room.T[j] / AHEAD
+        rows[CREEP, j] = 0.0
+    a, b = before.reshape(-1), rows.reshape(-1)
+    for i in range(a.shape[0]):
+        b[i] = a[i] + AHEAD * (b[i] - a[i])
+    a, b = slopes_before.reshape(-1), slopes.reshape(-1)
+    for i in range(a.shape[0]):
+        b[i] = a[i] + AHEAD * (b[i] - a[i])

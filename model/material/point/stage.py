@@ -1,0 +1,510 @@
+"""One implicit stage of the point problem: all that a point can do beyond the exponential return map (`local`).
+
+T is the deviator of stress, Bᵢ are the back stresses, n = T − Σ Bᵢ, ē the elastic strain with T = c ē (c = 2G, in the
+rod's axial component ⅔E). A stage of backward Euler starts from ē*, Bᵢ*, b*, u* and ends, after the strain e, with
+
+    T = c (ē* + e − α ΔT − P − χ T),     Bᵢ = θᵢ (Bᵢ* + ζᵢ P),   θᵢ = 1/(1 + γᵢ q),     P = a n − κ n_β .
+
+P is the plastic strain by (3.1.6), a = 2λ + κ, n_β the n at which flow sets in; q = √⅔ |P|; χ T is the creep strain.
+In the scalars (b, a, q, χ) all this is linear and diagonal: with s = 1/(1 + c χ), Z = Σ θᵢ ζᵢ, H = s c + Z,
+
+    n (1 + H a) = A + H κ n_β,    A = s T_trial − Σ θᵢ Bᵢ*,
+
+so that the residual consists of the parts' scalar equations alone:
+
+    yield        |n| = v k(b)                     overstress   q = ρ (v − 1)^m, or v = 1     (`overstress`)
+    (3.1.7)      b − b* = n:P                     creep        χ σ = 1.5 Δc(σ, u*), σ = √1.5 |T|     (`creep.flow`)
+    length       q = √⅔ |P|
+
+With κ = 0 the second and third give a = D/(v k)² and q = √⅔ D/(v k), D = b − b*, and b alone is left. Temperature
+follows b where plastic work heats the point; k², ζ, κ (`functions`) and γᵢ follow both.
+
+`differential` has the derivatives of all of it, once: towards unknowns it gives Newton's matrix J, towards strains the
+tangent −J⁻¹ ∂R/∂ε and, with it, what the next stage starts from.
+"""
+
+import math
+from collections import namedtuple
+
+import numpy as np
+from numba import njit
+
+from coilset.model.base.kernel import INLINE, KERNEL
+from coilset.model.material.creep.flow import Creep, creep_strain
+from coilset.model.material.law.functions import EXPONENT, functions
+from coilset.model.material.law.parts import Parts, saturation
+from coilset.model.material.point.overstress import ROOT, of_strain, of_work
+
+# A stage's data. h: time of creep; reference: ρ, 0 without overstress; temperature, at b = work; heating: of
+# the temperature by b; expansion: of the rod's axial strain by b; deviates: κ ≠ 0.
+Span = namedtuple("Span", "h reference temperature work heating expansion deviates")
+# The unknowns, and which of them there are: those of flow, and that of creep.
+Unknowns = namedtuple("Unknowns", "b a q chi")
+Active = namedtuple("Active", "flow creep")
+# Arrays over the components (those of the metric, moduli, T_trial, n_β, results, and their derivatives), and over the
+# back stresses;
+# J and r, Newton's matrix and residuals; `ways`, the slopes of T_trial, n_β and the logarithm of the stage's time by
+# the strains, shape (3, components, strains).
+Room = namedtuple("Room", "metric c trial onset s T n P d_T d_n d_P theta zeta gamma d_zeta d_gamma d_theta J r ways")
+# Values at the unknowns: v, k and slopes in b; κ; |n|, n:P, |P|, σ and the creep strain; b, a, q, χ as they are used.
+Values = namedtuple("Values", "v dv k dk kappa dkappa norm work length sigma creep gain b a q chi")
+# What a direction changes: strain number `strain` (none: −1) and the unknowns; and by how much the residuals change.
+Change = namedtuple("Change", "strain b a q chi")
+Residual = namedtuple("Residual", "flow work length creep")
+# Rows of a point's numbers, as of their slopes: ē, the Bᵢ from BACK on, the stage's creep strain χ T in the row before
+# the last, and in the last b and u, in the places WORK and CREPT.
+BACK, CREEP, WORK, CREPT = 1, -2, 0, 1
+
+MAX_ITERATIONS = 60
+PRECISION, LAST = 1e-13, 1e-8  # of |n| over k; of the relative correction after which no other follows
+SMALL = 1e-7  # plastic work or creep strain, over that of elasticity, which needs no relative accuracy
+SHORTEST = 1e-4  # part of a correction
+
+
+@njit(**INLINE)
+def inner(metric: np.ndarray, a: np.ndarray, b: np.ndarray) -> float:
+    """a:b of two deviators."""
+    total = 0.0
+    for j in range(metric.shape[0]):
+        total += metric[j] * a[j] * b[j]
+    return total
+
+
+@njit(**KERNEL)
+def evaluate(law: Parts, span: Span, start: np.ndarray, at: Unknowns, flows: bool, room: Room) -> Values:
+    """T, n and P at the unknowns, and what the residuals consist of."""
+    p, size = law.plastic, room.theta.shape[0]
+    b0, b, chi = start[-1, WORK], at.b, at.chi
+    temperature = span.temperature + span.heating * (b - span.work)
+    k2, dk2, zeta, d_zeta, kappa, dkappa = functions(p, b, temperature)
+    k, gain = math.sqrt(k2), b - b0
+    dk = 0.5 * dk2 / k
+    if not span.deviates:
+        kappa = dkappa = 0.0
+    v, dv, a, q = 1.0, 0.0, at.a, at.q
+    if flows and not span.deviates:
+        if span.reference > 0.0:
+            v, dv = of_work(span.reference, p[EXPONENT], gain, k)
+        a, q = gain / (v * v * k2), ROOT * gain / (v * k)
+    elif flows and span.reference > 0.0:
+        v, dv = of_strain(span.reference, p[EXPONENT], q)
+    if not flows:
+        a = q = kappa = dkappa = 0.0
+    total = 0.0
+    for i in range(size):
+        if law.terms.shape[1] > 0:
+            zeta, room.gamma[i], d_zeta, room.d_gamma[i] = saturation(law, i, temperature)
+        room.zeta[i], room.d_zeta[i] = zeta, d_zeta
+        room.theta[i] = 1.0 / (1.0 + room.gamma[i] * q)
+        total += room.theta[i] * zeta
+    for j in range(room.c.shape[0]):
+        c = room.c[j]
+        s = room.s[j] = 1.0 / (1.0 + c * chi)
+        elastic = room.trial[j]
+        if j == 0:
+            elastic -= c * span.expansion * gain
+        n, H = s * elastic, s * c + total
+        for i in range(size):
+            n -= room.theta[i] * start[BACK + i, j]
+        n = (n + H * kappa * room.onset[j]) / (1.0 + H * a)
+        P = a * n - kappa * room.onset[j]
+        room.n[j], room.P[j], room.T[j] = n, P, s * (elastic - c * P)
+    norm, length = math.sqrt(inner(room.metric, room.n, room.n)), math.sqrt(inner(room.metric, room.P, room.P))
+    sigma = math.sqrt(1.5 * inner(room.metric, room.T, room.T))
+    creep = creep_strain(law.viscous, sigma, start[-1, CREPT], span.h)
+    work = inner(room.metric, room.n, room.P)
+    return Values(v, dv, k, dk, kappa, dkappa, norm, work, length, sigma, creep, gain, b, a, q, chi)
+
+
+@njit(**KERNEL)
+def differential(
+    law: Parts,
+    span: Span,
+    start: np.ndarray,
+    slopes: np.ndarray,
+    values: Values,
+    active: Active,
+    change: Change,
+    room: Room,
+) -> Residual:
+    """How n, P, T, θᵢ and the residuals change in a direction; see `Change`.
+
+    Args:
+        law, span, start, values, room: as in `evaluate`.
+        slopes: of the start by the strains, shape (rows, components, strains).
+        active: Active.
+        change: the direction.
+    """
+    x, size, k = values, room.theta.shape[0], values.k
+    way, db0, du0, d_time = change.strain, 0.0, 0.0, 0.0
+    if way >= 0:
+        db0, du0, d_time = slopes[-1, WORK, way], slopes[-1, CREPT, way], room.ways[2, 0, way]
+    gain, d_gain = x.gain, change.b - db0
+    dk, da, dq, dv = x.dk * change.b, change.a, change.q, 0.0
+    if active.flow and not span.deviates:
+        dw = d_gain / gain
+        if span.reference > 0.0:
+            dv = x.v * x.dv * (dw - dk / k - d_time)
+        dq = x.q * (dw - dv / x.v - dk / k)
+        da = x.a * (dw - 2.0 * dv / x.v - 2.0 * dk / k)
+    elif active.flow and span.reference > 0.0:
+        dv = x.dv * (dq / x.q - d_time)
+    if not active.flow:
+        d_gain = 0.0
+    dkappa, d_total = x.dkappa * change.b, 0.0
+    for i in range(size):
+        theta = room.theta[i]
+        room.d_theta[i] = -theta * theta * (room.gamma[i] * dq + x.q * room.d_gamma[i] * change.b)
+        d_total += room.d_theta[i] * room.zeta[i] + theta * room.d_zeta[i] * change.b
+    total = 0.0
+    for i in range(size):
+        total += room.theta[i] * room.zeta[i]
+    nn = pp = np_ = tt = 0.0
+    for j in range(room.c.shape[0]):
+        c, s = room.c[j], room.s[j]
+        ds, elastic, d_elastic = -c * s * s * change.chi, room.trial[j], 0.0
+        d_onset = 0.0
+        if way >= 0:
+            d_elastic, d_onset = room.ways[0, j, way], room.ways[1, j, way]
+        if j == 0:
+            elastic -= c * span.expansion * gain
+            d_elastic -= c * span.expansion * d_gain
+        dn, H, dH = s * d_elastic + ds * elastic, s * c + total, c * ds + d_total
+        for i in range(size):
+            dn -= room.d_theta[i] * start[BACK + i, j]
+            if way >= 0:
+                dn -= room.theta[i] * slopes[BACK + i, j, way]
+        n, P, onset = room.n[j], room.P[j], room.onset[j]
+        rest = n * da - onset * dkappa - x.kappa * d_onset
+        dn = (dn - P * dH - H * rest) / (1.0 + H * x.a)
+        dP = rest + x.a * dn
+        dT = s * (d_elastic - c * dP) + ds * (elastic - c * P)
+        room.d_n[j], room.d_P[j], room.d_T[j] = dn, dP, dT
+        w = room.metric[j]
+        nn += w * n * dn
+        np_ += w * (n * dP + P * dn)
+        pp += w * P * dP
+        tt += w * room.T[j] * dT
+    of = x.creep
+    d_sigma = 1.5 * tt / x.sigma if x.sigma > 0.0 else 0.0
+    d_creep = of.by_stress * d_sigma + of.by_start * du0 + of.by_time * d_time
+    return Residual(
+        nn / x.norm - dv * k - x.v * dk,
+        d_gain - np_,
+        dq - 2.0 / 3.0 * pp / x.q if x.q > 0.0 else dq,
+        change.chi / x.chi + d_sigma / x.sigma - d_creep / of.strain if active.creep else 0.0,
+    )
+
+
+@njit(**KERNEL)
+def residual(x: Values) -> Residual:
+    """The equations, each as it is differentiated in `differential`."""
+    of = x.creep
+    creep = math.log(x.chi * x.sigma / (1.5 * of.strain)) if x.chi > 0.0 and of.strain > 0.0 else 0.0
+    return Residual(x.norm - x.v * x.k, x.gain - x.work, x.q - ROOT * x.length, creep)
+
+
+@njit(**KERNEL)
+def creep_alone(law: Parts, span: Span, start: np.ndarray, room: Room) -> tuple[float, int]:
+    """χ of a stage that does not flow, and iterations, −1 if there is none.
+
+    In logarithms the difference of both sides of the creep equation increases with log χ, linearly where creep is
+    little and where it is much. Newton's method starts at the creep strain of the elastic stress, above the root.
+    """
+    metric, c, trial = room.metric, room.c, room.trial
+    first, other = 1.5 * metric[0] * trial[0] * trial[0], 0.0
+    for j in range(1, c.shape[0]):
+        other += 1.5 * metric[j] * trial[j] * trial[j]
+    u0, sigma = start[-1, CREPT], math.sqrt(first + other)
+    of = creep_strain(law.viscous, sigma, u0, span.h)
+    if not of.strain > 0.0:  # nothing, or less than rounding
+        return 0.0, 0 if of.strain == of.strain else -1
+    chi, strain = 1.5 * of.strain / sigma, 1.5 * sigma / c[0]
+    for iteration in range(1, MAX_ITERATIONS):
+        a, b = 1.0 / (1.0 + c[0] * chi), 1.0 / (1.0 + c[1] * chi)
+        sa, sb = first * a * a, other * b * b
+        sigma = math.sqrt(sa + sb)
+        of = creep_strain(law.viscous, sigma, u0, span.h)
+        if not of.strain > 0.0:
+            return 0.0, -1
+        falls = (c[0] * chi * a * sa + c[1] * chi * b * sb) / (sa + sb)  # −d log σ/d log χ
+        step = math.log(1.5 * of.strain / (chi * sigma)) / (1.0 + (of.by_stress * sigma / of.strain - 1.0) * falls)
+        if abs(step) * of.strain <= 1e-11 * (strain + of.strain) + 1e-16:
+            return chi * (1.0 + step), iteration
+        chi *= math.exp(step)
+    return 0.0, -1
+
+
+@njit(**KERNEL)
+def flow_alone(
+    law: Parts, span: Span, start: np.ndarray, slopes: np.ndarray, chi: float, room: Room
+) -> tuple[float, int]:
+    """b of a stage that flows without deviation from normality, at a given χ; iterations, 0 if it does not flow.
+
+    |n| − v k falls with b. Newton's method is kept in a bracket; with overstress it goes over r, b = b* + D r^m with
+    the static law's D, since v − 1 is nearly linear in r.
+    """
+    still = Span(span.h, 0.0, span.temperature, span.work, span.heating, span.expansion, False)
+    b0 = start[-1, WORK]
+    b, count = _root(law, still, start, slopes, chi, (0.0, 1.0), room)
+    if count <= 0 or span.reference == 0.0:
+        return b, count
+    moving = Span(span.h, span.reference, span.temperature, span.work, span.heating, span.expansion, False)
+    b, more = _root(law, moving, start, slopes, chi, (b - b0, law.plastic[EXPONENT]), room)
+    return b, count + more if more > 0 else -1
+
+
+@njit(**KERNEL)
+def _root(
+    law: Parts,
+    span: Span,
+    start: np.ndarray,
+    slopes: np.ndarray,
+    chi: float,
+    scale: tuple[float, float],
+    room: Room,
+) -> tuple[float, int]:
+    """b = b* + r, or b* + D r^m with (D, m) = `scale` if D > 0."""
+    whole, m = scale
+    b0, flows = start[-1, WORK], Active(True, False)
+    r, low, high = 0.0, 0.0, math.inf
+    if whole > 0.0:  # r = 1 is the static law; v − 1 there over that of the elastic response, were v linear in r
+        at = evaluate(law, span, start, Unknowns(b0, 0.0, 0.0, chi), False, room)
+        beyond = at.norm / at.k - 1.0
+        above = of_work(span.reference, m, whole, at.k)[0] - 1.0
+        r, high = beyond / (beyond + above), 1.0
+    for iteration in range(MAX_ITERATIONS):
+        gain = r if whole == 0.0 else whole * r**m
+        at = evaluate(law, span, start, Unknowns(b0 + gain, 0.0, 0.0, chi), gain > 0.0, room)
+        off = at.norm - at.v * at.k
+        if r == 0.0:
+            if off <= 1e-12 * at.k:
+                return b0, 0
+            stiffness = room.s[1] * room.c[1] + at.k * at.dk
+            for i in range(room.theta.shape[0]):
+                stiffness += room.zeta[i]
+            to = off * at.k / stiffness
+        else:
+            if abs(off) <= PRECISION * at.v * at.k:
+                return b0 + gain, iteration
+            change = Change(-1, 1.0, 0.0, 0.0, 0.0)
+            slope = differential(law, span, start, slopes, at, flows, change, room).flow
+            low, high = (r, high) if off > 0.0 else (low, r)
+            if whole > 0.0:
+                slope *= m * gain / r
+            to = r - off / slope if slope < 0.0 else math.inf
+        if not low < to < high:
+            to = 0.5 * (low + high) if high < math.inf else 2.0 * r + 1e-3 * at.k
+        if to == r or high - low <= 1e-15 * r:
+            return b0 + gain, iteration
+        r = to
+    return b0, -1
+
+
+@njit(**INLINE)
+def _unknowns(active: Active, deviates: bool) -> int:
+    """Their number: b, then a and q if flow deviates from normality, then log χ."""
+    return (0 if not active.flow else 3 if deviates else 1) + (1 if active.creep else 0)
+
+
+@njit(**INLINE)
+def _direction(x: Values, active: Active, deviates: bool, number: int) -> Change:
+    """Of an unknown, in its own size."""
+    if active.flow and number == 0:
+        return Change(-1, x.gain, 0.0, 0.0, 0.0)
+    if active.flow and deviates and number == 1:
+        return Change(-1, 0.0, x.a, 0.0, 0.0)
+    if active.flow and deviates and number == 2:
+        return Change(-1, 0.0, 0.0, x.q, 0.0)
+    return Change(-1, 0.0, 0.0, 0.0, x.chi)
+
+
+@njit(**INLINE)
+def _write(x: Values, of: Residual, active: Active, deviates: bool, into: np.ndarray, column: int) -> None:
+    """The residuals that there are, in the order of the unknowns and without units."""
+    i = 0
+    if active.flow:
+        into[0, column], i = of.flow / x.k, 1
+        if deviates:
+            into[1, column], into[2, column], i = of.work / x.gain, of.length / x.q, 3
+    if active.creep:
+        into[i, column] = of.creep
+
+
+@njit(**INLINE)
+def _matrix(
+    law: Parts,
+    span: Span,
+    start: np.ndarray,
+    slopes: np.ndarray,
+    x: Values,
+    active: Active,
+    room: Room,
+) -> None:
+    """Write J, the residuals' derivatives in the unknowns."""
+    for i in range(_unknowns(active, span.deviates)):
+        of = differential(
+            law, span, start, slopes, x, active, _direction(x, active, span.deviates, i), room
+        )
+        _write(x, of, active, span.deviates, room.J, i)
+
+
+@njit(**KERNEL)
+def _eliminate(J: np.ndarray, r: np.ndarray, n: int, columns: int) -> None:
+    """Replace r by J⁻¹ r; J is overwritten."""
+    for i in range(n):
+        top = i
+        for k in range(i + 1, n):
+            if abs(J[k, i]) > abs(J[top, i]):
+                top = k
+        if top != i:
+            for j in range(n):
+                J[i, j], J[top, j] = J[top, j], J[i, j]
+            for j in range(columns):
+                r[i, j], r[top, j] = r[top, j], r[i, j]
+        for k in range(i + 1, n):
+            f = J[k, i] / J[i, i]
+            for j in range(i, n):
+                J[k, j] -= f * J[i, j]
+            for j in range(columns):
+                r[k, j] -= f * r[i, j]
+    for j in range(columns):
+        for i in range(n - 1, -1, -1):
+            for k in range(i + 1, n):
+                r[i, j] -= J[i, k] * r[k, j]
+            r[i, j] /= J[i, i]
+
+
+@njit(**INLINE)
+def _grown(step: float) -> float:
+    """Factor of a positive unknown."""
+    return 1.0 + step if step > 0.0 else 1.0 / (1.0 - step)
+
+
+@njit(**KERNEL)
+def _together(
+    law: Parts,
+    span: Span,
+    start: np.ndarray,
+    slopes: np.ndarray,
+    x: Values,
+    room: Room,
+) -> tuple[Values, int]:
+    """Newton's method for all unknowns of a stage that flows, from the values x; iterations, −1 if it fails.
+
+    A correction that does not make the residual smaller is halved.
+    """
+    active, r = Active(True, x.chi > 0.0), room.r
+    n, b0 = _unknowns(active, span.deviates), start[-1, WORK]
+    at = Unknowns(x.b, x.a, x.q, x.chi)
+    x = evaluate(law, span, start, at, True, room)
+    for iteration in range(1, MAX_ITERATIONS):
+        _write(x, residual(x), active, span.deviates, r, 0)
+        _matrix(law, span, start, slopes, x, active, room)
+        off = 0.0
+        for i in range(n):
+            off += r[i, 0] * r[i, 0]
+        _eliminate(room.J, r, n, 1)
+        flow = x.gain / (x.gain + SMALL * x.k * x.k / room.c[0])
+        creep = x.creep.strain / (x.creep.strain + SMALL * x.sigma / room.c[0])
+        largest = 0.0
+        for i in range(n):
+            largest = max(largest, abs(r[i, 0]) * (creep if active.creep and i == n - 1 else flow))
+        if not math.isfinite(largest):
+            return x, -1
+        part = 1.0
+        while True:
+            gain, a, q, chi = x.gain * _grown(-part * r[0, 0]), x.a, x.q, x.chi
+            if span.deviates:
+                a, q = a * _grown(-part * r[1, 0]), q * _grown(-part * r[2, 0])
+            if active.creep:
+                chi *= _grown(-part * r[n - 1, 0])
+            new = evaluate(law, span, start, Unknowns(b0 + gain, a, q, chi), True, room)
+            if largest <= LAST:
+                return new, iteration
+            _write(new, residual(new), active, span.deviates, r, 1)
+            after = 0.0
+            for i in range(n):
+                after += r[i, 1] * r[i, 1]
+            if after < off:
+                break
+            part *= 0.5
+            if part < SHORTEST:
+                return x, -1
+        x = new
+    return x, -1
+
+
+@njit(**KERNEL)
+def solve(
+    law: Parts, span: Span, start: np.ndarray, slopes: np.ndarray, room: Room
+) -> tuple[Values, Active, int]:
+    """The end of a stage, and iterations, −1 if there is none."""
+    b0, chi, count = start[-1, WORK], 0.0, 0
+    if span.h > 0.0:
+        chi, count = creep_alone(law, span, start, room)
+    x = evaluate(law, span, start, Unknowns(b0, 0.0, 0.0, chi), False, room)
+    if count < 0 or x.norm <= x.k * (1.0 + 1e-12):
+        return x, Active(False, chi > 0.0), count
+    active = Active(True, chi > 0.0)
+    b, more = flow_alone(law, span, start, slopes, chi, room)
+    if more <= 0:
+        return x, active, -1
+    plain = Span(span.h, span.reference, span.temperature, span.work, span.heating, span.expansion, False)
+    x = evaluate(law, plain, start, Unknowns(b, 0.0, 0.0, chi), True, room)
+    if active.creep or span.deviates:
+        x, last = _together(law, span, start, slopes, x, room)
+        if last < 0:
+            return x, active, -1
+        more += last
+    return x, active, count + more
+
+
+@njit(**KERNEL)
+def finish(
+    law: Parts,
+    span: Span,
+    start: np.ndarray,
+    slopes: np.ndarray,
+    x: Values,
+    active: Active,
+    room: Room,
+) -> None:
+    """Replace the start of a stage and its slopes by those of its end."""
+    n, size, count = room.c.shape[0], room.theta.shape[0], _unknowns(active, span.deviates)
+    _matrix(law, span, start, slopes, x, active, room)
+    for k in range(n):
+        of = differential(law, span, start, slopes, x, active, Change(k, 0.0, 0.0, 0.0, 0.0), room)
+        _write(x, of, active, span.deviates, room.r, k)
+    _eliminate(room.J, room.r, count, n)
+    for k in range(n):
+        change = Change(k, slopes[-1, WORK, k], 0.0, 0.0, 0.0)
+        if active.flow:
+            more, a, q = -x.gain * room.r[0, k], 0.0, 0.0
+            if span.deviates:
+                a, q = -x.a * room.r[1, k], -x.q * room.r[2, k]
+            change = Change(k, more, a, q, 0.0)
+        if active.creep:
+            change = Change(k, change.b, change.a, change.q, -x.chi * room.r[count - 1, k])
+        differential(law, span, start, slopes, x, active, change, room)
+        d_sigma = 0.0
+        for j in range(n):
+            slopes[0, j, k] = room.d_T[j] / room.c[j]
+            slopes[CREEP, j, k] = change.chi * room.T[j] + x.chi * room.d_T[j]
+            d_sigma += room.metric[j] * room.T[j] * room.d_T[j]
+            for i in range(size):
+                theta, d_zeta = room.theta[i], room.d_zeta[i] * change.b
+                grown = slopes[BACK + i, j, k] + d_zeta * room.P[j] + room.zeta[i] * room.d_P[j]
+                before = start[BACK + i, j] + room.zeta[i] * room.P[j]
+                slopes[BACK + i, j, k] = theta * grown + room.d_theta[i] * before
+        slopes[-1, WORK, k] = change.b
+        if active.creep:
+            d_sigma *= 1.5 / x.sigma
+            slopes[-1, CREPT, k] += x.creep.u_by_stress * d_sigma + x.creep.u_by_time * room.ways[2, 0, k]
+    for j in range(n):
+        start[0, j], start[CREEP, j] = room.T[j] / room.c[j], x.chi * room.T[j]
+        for i in range(size):
+            start[BACK + i, j] = room.theta[i] * (start[BACK + i, j] + room.zeta[i] * room.P[j])
+    start[-1, WORK] = x.b
+    if active.creep:
+        start[-1, CREPT] = x.creep.u
