@@ -19,6 +19,7 @@ from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.creep.flow import POWER, creep_strain, passes
 from coilset.model.material.law.functions import (
     CHANGE,
+    EXPONENT,
     HEATING,
     RATE,
     SPIN,
@@ -27,7 +28,7 @@ from coilset.model.material.law.functions import (
     functions,
     inside_table,
 )
-from coilset.model.material.law.parts import Parts
+from coilset.model.material.law.parts import Parts, saturation
 from coilset.model.material.point.local import FAILED, TOO_HOT, yield_crossing
 from coilset.model.material.point.rod import crossing_of_spin
 from coilset.model.material.point.spin import spun
@@ -44,6 +45,7 @@ GAMMA = 1.0 - math.sqrt(0.5)
 AHEAD = (1.0 - GAMMA) / GAMMA
 ROD = 3  # components
 DIVISIONS = 6  # of an increment in halves
+FADED, LONGER = 0.2, 3.0  # share of overstress, see `_fading`; how much longer the next piece ends
 
 
 @njit(**KERNEL)
@@ -269,19 +271,46 @@ def _crossing(law: Parts, of: Increment, rows: np.ndarray, slopes: np.ndarray, b
 
 
 @njit(**KERNEL)
+def _fading(law: Parts, of: Increment, rows: np.ndarray, room: Room) -> float:
+    """Part of the increment in which its first stage takes off a fifth of the overstress at its start.
+
+    At constant strain v̇ = −R (v − 1)^m over the increment, with R = √1.5 ṗ₀ Δt (c + Σζᵢ + k k′)/k.
+    """
+    if of.reference == 0.0:
+        return 1.0
+    n, m = rows.shape[1], law.plastic[EXPONENT]
+    for j in range(n):
+        room.n[j] = _active(room.c, rows, j)
+    k2, dk2, zeta, _, _, _ = functions(law.plastic, rows[-1, WORK], of.temperature)
+    beyond = math.sqrt(inner(room.metric, room.n, room.n) / k2) - 1.0
+    if not beyond > 0.0:
+        return 1.0
+    for i in range(law.terms.shape[1]):
+        zeta += saturation(law, i, of.temperature).zeta
+    rate = math.sqrt(1.5 / k2) * of.reference * (room.c[1] + zeta + 0.5 * dk2) * beyond ** (m - 1.0)
+    return min(FADED / (1.0 - FADED) ** m / (GAMMA * rate), 1.0) if rate > 0.0 else 1.0
+
+
+@njit(**KERNEL)
 def _pieces(law: Parts, of: Increment, whole: Piece, rows: np.ndarray, slopes: np.ndarray, room: Room) -> int:
-    """A part of the increment, divided until all stages have an end."""
+    """A part of the increment: pieces that become longer as overstress fades, divided until all stages have an end."""
     before, slopes_before = rows.copy(), slopes.copy()
+    first = _fading(law, of, rows, room) / whole.length
     for division in range(DIVISIONS):
-        number, count = 2**division, 0
-        for i in range(number):
-            length = whole.length / number
-            piece = Piece(whole.begin + i * length, length, whole.by / number)
-            more = _piece(law, of, piece, rows, slopes, room)
-            if more < 0:
-                count = FAILED
+        count, begin, end = 0, 0.0, first
+        while begin < 1.0:
+            end = 1.0 if end * LONGER > 1.0 else end
+            number = 2**division
+            for i in range(number):
+                part = (end - begin) / number
+                piece = Piece(whole.begin + (begin + i * part) * whole.length, part * whole.length, part * whole.by)
+                more = _piece(law, of, piece, rows, slopes, room)
+                count = count + more if more >= 0 and count >= 0 else FAILED
+                if count < 0:
+                    break
+            if count < 0:
                 break
-            count += more
+            begin, end = end, end * LONGER
         if count >= 0:
             return count
         rows[:], slopes[:] = before, slopes_before

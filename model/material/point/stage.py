@@ -38,18 +38,20 @@ from coilset.model.material.point.overstress import ROOT, of_strain, of_work
 # A stage's data. h: time of creep; reference: ρ, 0 without overstress; temperature, at b = work; heating: of
 # the temperature by b; expansion: of the rod's axial strain by b; deviates: κ ≠ 0.
 Span = namedtuple("Span", "h reference temperature work heating expansion deviates")
-# The unknowns, and which of them there are: those of flow, and that of creep.
-Unknowns = namedtuple("Unknowns", "b a q chi")
-Active = namedtuple("Active", "flow creep")
+# The unknowns, with D in the place of b, and which of them there are: those of flow, and that of creep;
+# neutral: κ is one, in the place of λ = 0.
+Unknowns = namedtuple("Unknowns", "gain l q chi")
+Active = namedtuple("Active", "flow creep neutral")
+STILL, FLOWING = Active(False, False, False), Active(True, False, False)
 # Arrays over the components (those of the metric, moduli, T_trial, n_β, results, and their derivatives), and over the
 # back stresses;
 # J and r, Newton's matrix and residuals; `ways`, the slopes of T_trial, n_β and the logarithm of the stage's time by
 # the strains, shape (3, components, strains).
 Room = namedtuple("Room", "metric c trial onset s T n P d_T d_n d_P theta zeta gamma d_zeta d_gamma d_theta J r ways")
 # Values at the unknowns: v, k and slopes in b; κ; |n|, n:P, |P|, σ and the creep strain; b, a, q, χ as they are used.
-Values = namedtuple("Values", "v dv k dk kappa dkappa norm work length sigma creep gain b a q chi")
+Values = namedtuple("Values", "v dv k dk kappa dkappa norm work length sigma creep gain b l a q chi")
 # What a direction changes: strain number `strain` (none: −1) and the unknowns; and by how much the residuals change.
-Change = namedtuple("Change", "strain b a q chi")
+Change = namedtuple("Change", "strain b l q chi")
 Residual = namedtuple("Residual", "flow work length creep")
 # Rows of a point's numbers, as of their slopes: ē, the Bᵢ from BACK on, the stage's creep strain χ T in the row before
 # the last, and in the last b and u, in the places WORK and CREPT.
@@ -71,25 +73,30 @@ def inner(metric: np.ndarray, a: np.ndarray, b: np.ndarray) -> float:
 
 
 @njit(**KERNEL)
-def evaluate(law: Parts, span: Span, start: np.ndarray, at: Unknowns, flows: bool, room: Room) -> Values:
+def evaluate(law: Parts, span: Span, start: np.ndarray, at: Unknowns, active: Active, room: Room) -> Values:
     """T, n and P at the unknowns, and what the residuals consist of."""
     p, size = law.plastic, room.theta.shape[0]
-    b0, b, chi = start[-1, WORK], at.b, at.chi
+    gain, chi = at.gain, at.chi
+    b = start[-1, WORK] + gain
     temperature = span.temperature + span.heating * (b - span.work)
     k2, dk2, zeta, d_zeta, kappa, dkappa = functions(p, b, temperature)
-    k, gain = math.sqrt(k2), b - b0
+    k = math.sqrt(k2)
     dk = 0.5 * dk2 / k
     if not span.deviates:
         kappa = dkappa = 0.0
-    v, dv, a, q = 1.0, 0.0, at.a, at.q
-    if flows and not span.deviates:
+    if active.neutral:
+        kappa, dkappa = at.l, 0.0
+    v, dv, l, q = 1.0, 0.0, at.l, at.q
+    a = l if active.neutral else l + kappa
+    if active.flow and not span.deviates:
         if span.reference > 0.0:
             v, dv = of_work(span.reference, p[EXPONENT], gain, k)
-        a, q = gain / (v * v * k2), ROOT * gain / (v * k)
-    elif flows and span.reference > 0.0:
+        l, q = gain / (v * v * k2), ROOT * gain / (v * k)
+        a = l
+    elif active.flow and span.reference > 0.0:
         v, dv = of_strain(span.reference, p[EXPONENT], q)
-    if not flows:
-        a = q = kappa = dkappa = 0.0
+    if not active.flow:
+        a = l = q = kappa = dkappa = 0.0
     total = 0.0
     for i in range(size):
         if law.terms.shape[1] > 0:
@@ -113,7 +120,7 @@ def evaluate(law: Parts, span: Span, start: np.ndarray, at: Unknowns, flows: boo
     sigma = math.sqrt(1.5 * inner(room.metric, room.T, room.T))
     creep = creep_strain(law.viscous, sigma, start[-1, CREPT], span.h)
     work = inner(room.metric, room.n, room.P)
-    return Values(v, dv, k, dk, kappa, dkappa, norm, work, length, sigma, creep, gain, b, a, q, chi)
+    return Values(v, dv, k, dk, kappa, dkappa, norm, work, length, sigma, creep, gain, b, l, a, q, chi)
 
 
 @njit(**KERNEL)
@@ -140,7 +147,9 @@ def differential(
     if way >= 0:
         db0, du0, d_time = slopes[-1, WORK, way], slopes[-1, CREPT, way], room.ways[2, 0, way]
     gain, d_gain = x.gain, change.b - db0
-    dk, da, dq, dv = x.dk * change.b, change.a, change.q, 0.0
+    dk, dq, dv = x.dk * change.b, change.q, 0.0
+    dkappa = change.l if active.neutral else x.dkappa * change.b
+    da = change.l if active.neutral else change.l + dkappa
     if active.flow and not span.deviates:
         dw = d_gain / gain
         if span.reference > 0.0:
@@ -151,7 +160,7 @@ def differential(
         dv = x.dv * (dq / x.q - d_time)
     if not active.flow:
         d_gain = 0.0
-    dkappa, d_total = x.dkappa * change.b, 0.0
+    d_total = 0.0
     for i in range(size):
         theta = room.theta[i]
         room.d_theta[i] = -theta * theta * (room.gamma[i] * dq + x.q * room.d_gamma[i] * change.b)
@@ -235,23 +244,28 @@ def creep_alone(law: Parts, span: Span, start: np.ndarray, room: Room) -> tuple[
     return 0.0, -1
 
 
+@njit(**INLINE)
+def _normal(span: Span, reference: float) -> Span:
+    """Without deviation from normality, and with another overstress."""
+    return Span(span.h, reference, span.temperature, span.work, span.heating, span.expansion, False)
+
+
 @njit(**KERNEL)
 def flow_alone(
     law: Parts, span: Span, start: np.ndarray, slopes: np.ndarray, chi: float, room: Room
 ) -> tuple[float, int]:
-    """b of a stage that flows without deviation from normality, at a given χ; iterations, 0 if it does not flow.
+    """D of a stage that flows without deviation from normality, at a given χ; iterations, 0 if it does not flow.
 
     |n| − v k falls with b. Newton's method is kept in a bracket; with overstress it goes over r, b = b* + D r^m with
     the static law's D, since v − 1 is nearly linear in r.
     """
-    still = Span(span.h, 0.0, span.temperature, span.work, span.heating, span.expansion, False)
-    b0 = start[-1, WORK]
-    b, count = _root(law, still, start, slopes, chi, (0.0, 1.0), room)
+    still = _normal(span, 0.0)
+    gain, count = _root(law, still, start, slopes, chi, (0.0, 1.0), room)
     if count <= 0 or span.reference == 0.0:
-        return b, count
-    moving = Span(span.h, span.reference, span.temperature, span.work, span.heating, span.expansion, False)
-    b, more = _root(law, moving, start, slopes, chi, (b - b0, law.plastic[EXPONENT]), room)
-    return b, count + more if more > 0 else -1
+        return gain, count
+    moving = _normal(span, span.reference)
+    gain, more = _root(law, moving, start, slopes, chi, (gain, law.plastic[EXPONENT]), room)
+    return gain, count + more if more > 0 else -1
 
 
 @njit(**KERNEL)
@@ -264,31 +278,30 @@ def _root(
     scale: tuple[float, float],
     room: Room,
 ) -> tuple[float, int]:
-    """b = b* + r, or b* + D r^m with (D, m) = `scale` if D > 0."""
+    """D = r, or W r^m with (W, m) = `scale` if W > 0."""
     whole, m = scale
-    b0, flows = start[-1, WORK], Active(True, False)
     r, low, high = 0.0, 0.0, math.inf
     if whole > 0.0:  # r = 1 is the static law; v − 1 there over that of the elastic response, were v linear in r
-        at = evaluate(law, span, start, Unknowns(b0, 0.0, 0.0, chi), False, room)
+        at = evaluate(law, span, start, Unknowns(0.0, 0.0, 0.0, chi), STILL, room)
         beyond = at.norm / at.k - 1.0
         above = of_work(span.reference, m, whole, at.k)[0] - 1.0
         r, high = beyond / (beyond + above), 1.0
     for iteration in range(MAX_ITERATIONS):
         gain = r if whole == 0.0 else whole * r**m
-        at = evaluate(law, span, start, Unknowns(b0 + gain, 0.0, 0.0, chi), gain > 0.0, room)
+        at = evaluate(law, span, start, Unknowns(gain, 0.0, 0.0, chi), FLOWING if gain > 0.0 else STILL, room)
         off = at.norm - at.v * at.k
         if r == 0.0:
             if off <= 1e-12 * at.k:
-                return b0, 0
+                return 0.0, 0
             stiffness = room.s[1] * room.c[1] + at.k * at.dk
             for i in range(room.theta.shape[0]):
                 stiffness += room.zeta[i]
             to = off * at.k / stiffness
         else:
             if abs(off) <= PRECISION * at.v * at.k:
-                return b0 + gain, iteration
+                return gain, iteration
             change = Change(-1, 1.0, 0.0, 0.0, 0.0)
-            slope = differential(law, span, start, slopes, at, flows, change, room).flow
+            slope = differential(law, span, start, slopes, at, FLOWING, change, room).flow
             low, high = (r, high) if off > 0.0 else (low, r)
             if whole > 0.0:
                 slope *= m * gain / r
@@ -296,9 +309,9 @@ def _root(
         if not low < to < high:
             to = 0.5 * (low + high) if high < math.inf else 2.0 * r + 1e-3 * at.k
         if to == r or high - low <= 1e-15 * r:
-            return b0 + gain, iteration
+            return gain, iteration
         r = to
-    return b0, -1
+    return 0.0, -1
 
 
 @njit(**INLINE)
@@ -313,7 +326,7 @@ def _direction(x: Values, active: Active, deviates: bool, number: int) -> Change
     if active.flow and number == 0:
         return Change(-1, x.gain, 0.0, 0.0, 0.0)
     if active.flow and deviates and number == 1:
-        return Change(-1, 0.0, x.a, 0.0, 0.0)
+        return Change(-1, 0.0, x.l, 0.0, 0.0)
     if active.flow and deviates and number == 2:
         return Change(-1, 0.0, 0.0, x.q, 0.0)
     return Change(-1, 0.0, 0.0, 0.0, x.chi)
@@ -387,17 +400,20 @@ def _together(
     span: Span,
     start: np.ndarray,
     slopes: np.ndarray,
+    l: float,
     x: Values,
+    active: Active,
     room: Room,
 ) -> tuple[Values, int]:
-    """Newton's method for all unknowns of a stage that flows, from the values x; iterations, −1 if it fails.
+    """Newton's method for all unknowns of a stage that flows, from the values x and λ = l (κ, if
+    neutral); iterations, −1 if it fails.
 
     A correction that does not make the residual smaller is halved.
     """
-    active, r = Active(True, x.chi > 0.0), room.r
-    n, b0 = _unknowns(active, span.deviates), start[-1, WORK]
-    at = Unknowns(x.b, x.a, x.q, x.chi)
-    x = evaluate(law, span, start, at, True, room)
+    r = room.r
+    n = _unknowns(active, span.deviates)
+    at = Unknowns(x.gain, l, x.q, x.chi)
+    x = evaluate(law, span, start, at, active, room)
     for iteration in range(1, MAX_ITERATIONS):
         _write(x, residual(x), active, span.deviates, r, 0)
         _matrix(law, span, start, slopes, x, active, room)
@@ -414,12 +430,12 @@ def _together(
             return x, -1
         part = 1.0
         while True:
-            gain, a, q, chi = x.gain * _grown(-part * r[0, 0]), x.a, x.q, x.chi
+            gain, l, q, chi = x.gain * _grown(-part * r[0, 0]), x.l, x.q, x.chi
             if span.deviates:
-                a, q = a * _grown(-part * r[1, 0]), q * _grown(-part * r[2, 0])
+                l, q = l * _grown(-part * r[1, 0]), q * _grown(-part * r[2, 0])
             if active.creep:
                 chi *= _grown(-part * r[n - 1, 0])
-            new = evaluate(law, span, start, Unknowns(b0 + gain, a, q, chi), True, room)
+            new = evaluate(law, span, start, Unknowns(gain, l, q, chi), active, room)
             if largest <= LAST:
                 return new, iteration
             _write(new, residual(new), active, span.deviates, r, 1)
@@ -440,23 +456,26 @@ def solve(
     law: Parts, span: Span, start: np.ndarray, slopes: np.ndarray, room: Room
 ) -> tuple[Values, Active, int]:
     """The end of a stage, and iterations, −1 if there is none."""
-    b0, chi, count = start[-1, WORK], 0.0, 0
+    chi, count = 0.0, 0
     if span.h > 0.0:
         chi, count = creep_alone(law, span, start, room)
-    x = evaluate(law, span, start, Unknowns(b0, 0.0, 0.0, chi), False, room)
+    x = evaluate(law, span, start, Unknowns(0.0, 0.0, 0.0, chi), STILL, room)
     if count < 0 or x.norm <= x.k * (1.0 + 1e-12):
-        return x, Active(False, chi > 0.0), count
-    active = Active(True, chi > 0.0)
-    b, more = flow_alone(law, span, start, slopes, chi, room)
+        return x, Active(False, chi > 0.0, False), count
+    active = Active(True, chi > 0.0, False)
+    gain, more = flow_alone(law, span, start, slopes, chi, room)
     if more <= 0:
         return x, active, -1
-    plain = Span(span.h, span.reference, span.temperature, span.work, span.heating, span.expansion, False)
-    x = evaluate(law, plain, start, Unknowns(b, 0.0, 0.0, chi), True, room)
+    x = evaluate(law, _normal(span, span.reference), start, Unknowns(gain, 0.0, 0.0, chi), FLOWING, room)
     if active.creep or span.deviates:
-        x, last = _together(law, span, start, slopes, x, room)
+        end, last = _together(law, span, start, slopes, x.l, x, active, room)
+        if last < 0 and span.deviates:
+            kappa = functions(law.plastic, start[-1, WORK], span.temperature)[4]
+            active = Active(True, active.creep, True)
+            end, last = _together(law, span, start, slopes, 0.5 * kappa, x, active, room)
         if last < 0:
             return x, active, -1
-        more += last
+        x, more = end, more + last
     return x, active, count + more
 
 
@@ -480,12 +499,12 @@ def finish(
     for k in range(n):
         change = Change(k, slopes[-1, WORK, k], 0.0, 0.0, 0.0)
         if active.flow:
-            more, a, q = -x.gain * room.r[0, k], 0.0, 0.0
+            more, l, q = -x.gain * room.r[0, k], 0.0, 0.0
             if span.deviates:
-                a, q = -x.a * room.r[1, k], -x.q * room.r[2, k]
-            change = Change(k, more, a, q, 0.0)
+                l, q = -x.l * room.r[1, k], -x.q * room.r[2, k]
+            change = Change(k, more, l, q, 0.0)
         if active.creep:
-            change = Change(k, change.b, change.a, change.q, -x.chi * room.r[count - 1, k])
+            change = Change(k, change.b, change.l, change.q, -x.chi * room.r[count - 1, k])
         differential(law, span, start, slopes, x, active, change, room)
         d_sigma = 0.0
         for j in range(n):
