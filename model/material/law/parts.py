@@ -5,7 +5,7 @@ from collections import namedtuple
 import numpy as np
 from numba import njit
 
-from coilset.model.base.kernel import KERNEL
+from coilset.model.base.kernel import INLINE
 from coilset.model.material.law.functions import HEATING, N_ROWS, ROW_LENGTH, ROWS_START, table_place
 
 # What the law's kernels take in the place of the parameter array, where the exponential return map does not suffice:
@@ -21,16 +21,15 @@ def further_columns(components: int, terms: int) -> int:
     return components * max(terms - 1, 0)
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def saturation(law: Parts, term: int, temperature: float) -> Saturation:
     """Of one of several back stresses, interpolated between the temperatures of the table."""
-    first = law.terms[0, term]
+    of = law.terms
     if law.plastic[N_ROWS] == 1.0:
-        return Saturation(first[0], first[1], 0.0, 0.0)
+        return Saturation(of[0, term, 0], of[0, term, 1], 0.0, 0.0)
     o, weight = table_place(law.plastic, temperature)
-    low = (o - ROWS_START) // ROW_LENGTH
-    a, b = law.terms[low, term], law.terms[low + 1, term]
-    slope = law.plastic[HEATING] / (law.plastic[o + ROW_LENGTH] - law.plastic[o])
-    return Saturation(
-        a[0] + weight * (b[0] - a[0]), a[1] + weight * (b[1] - a[1]), slope * (b[0] - a[0]), slope * (b[1] - a[1])
-    )
+    low, width = (o - ROWS_START) // ROW_LENGTH, law.plastic[o + ROW_LENGTH] - law.plastic[o]
+    zeta, gamma = of[low, term, 0], of[low, term, 1]
+    more_zeta, more_gamma = of[low + 1, term, 0] - zeta, of[low + 1, term, 1] - gamma
+    slope = law.plastic[HEATING] / width
+    return Saturation(zeta + weight * more_zeta, gamma + weight * more_gamma, slope * more_zeta, slope * more_gamma)

@@ -31,15 +31,18 @@ from coilset.model.material.law.functions import (
 from coilset.model.material.law.parts import Parts, saturation
 from coilset.model.material.point.local import FAILED, TOO_HOT, yield_crossing
 from coilset.model.material.point.rod import crossing_of_spin
-from coilset.model.material.point.spin import spun
+from coilset.model.material.point.rod_plastic import active
+from coilset.model.material.point.rod_plastic import inner as inner_of_rod
+from coilset.model.material.point.spin import Crossing, spun
 from coilset.model.material.point.stage import BACK, CREEP, CREPT, WORK, Room, Span, finish, inner, solve
 
 # What an increment is made of. h: time of creep; reference: ṗ₀ Δt, 0 without overstress; temperature at its start, and
 # its change; heating, work: as in `Span`; expansion: α of it in the rod; follows: whether the stress follows C(T) at
 # once; strain: that of T, over c; unit: its slopes by the strains.
 Increment = namedtuple("Increment", "h reference temperature change heating work expansion follows deviates strain unit")
-# A part of it: where it begins, its length, and the slopes of the length by the strains.
-Piece = namedtuple("Piece", "begin length by")
+# A part of the rest that is left beyond the yield surface, or of all: where it begins and ends in that, its length in the
+# increment, and the slopes of this length by the strains.
+Piece = namedtuple("Piece", "begin end length by")
 
 GAMMA = 1.0 - math.sqrt(0.5)
 AHEAD = (1.0 - GAMMA) / GAMMA
@@ -197,7 +200,10 @@ def _spin(
 ) -> None:
     """Replace ē and the Bᵢ by those from which Hooke's law leads to the elastic response, with the spin (5.2.33)."""
     s, B = (old[0], old[1], old[2]), (old[3], old[4], old[5])
-    crossing = crossing_of_spin(s, B, functions(p, old[6], temperature)[0], E, G, (E * de[0] / 1.5, G * de[1], G * de[2]))
+    n, k2 = active(s, B), functions(p, old[6], temperature)[0]
+    crossing = Crossing(0.0, (0.0, 0.0, 0.0))
+    if p[RATE] == 0.0 or inner_of_rod(n, n) <= k2:
+        crossing = crossing_of_spin(s, B, k2, E, G, (E * de[0] / 1.5, G * de[1], G * de[2]))
     c = (E, 2.0 * G, 2.0 * G)
     for i in range(rows.shape[0] - 3):
         B = (rows[BACK + i, 0], rows[BACK + i, 1], rows[BACK + i, 2])
@@ -220,14 +226,14 @@ def _through(law: Parts, of: Increment, rows: np.ndarray, slopes: np.ndarray, ro
             rows[0, j] += beta * of.strain[j]
             for k in range(n):
                 slopes[0, j, k] += beta * of.unit[j, k] + by[k] * of.strain[j]
-        return 0 if beta == 1.0 else _pieces(law, of, Piece(beta, 1.0 - beta, -by), rows, slopes, room)
+        return 0 if beta == 1.0 else _pieces(law, of, Piece(0.0, 1.0, 1.0 - beta, -by), rows, slopes, room)
     if not 0.0 < beta < 1.0:
         by[:] = 0.0
-        return _pieces(law, of, Piece(0.0, 1.0, by), rows, slopes, room)
-    count = _pieces(law, of, Piece(0.0, beta, by), rows, slopes, room)
+        return _pieces(law, of, Piece(0.0, 1.0, 1.0, by), rows, slopes, room)
+    count = _pieces(law, of, Piece(0.0, 1.0, beta, by), rows, slopes, room)
     if count < 0:
         return count
-    more = _pieces(law, of, Piece(beta, 1.0 - beta, -by), rows, slopes, room)
+    more = _pieces(law, of, Piece(0.0, 1.0, 1.0 - beta, -by), rows, slopes, room)
     return count + more if more >= 0 else more
 
 
@@ -303,7 +309,8 @@ def _pieces(law: Parts, of: Increment, whole: Piece, rows: np.ndarray, slopes: n
             number = 2**division
             for i in range(number):
                 part = (end - begin) / number
-                piece = Piece(whole.begin + (begin + i * part) * whole.length, part * whole.length, part * whole.by)
+                at = begin + i * part
+                piece = Piece(at, at + part, part * whole.length, part * whole.by)
                 more = _piece(law, of, piece, rows, slopes, room)
                 count = count + more if more >= 0 and count >= 0 else FAILED
                 if count < 0:
@@ -345,7 +352,7 @@ def _stage(
 ) -> tuple[bool, int]:
     """A stage as long as a part of the piece, and where in it it ends; whether it flows, and iterations."""
     n, length = rows.shape[1], part[0] * piece.length
-    temperature = of.temperature + (piece.begin + part[1] * piece.length) * of.change
+    temperature = of.temperature + (piece.begin + part[1] * (piece.end - piece.begin)) * of.change
     if of.follows and of.change != 0.0:
         E, G, _ = elasticity(law.plastic, temperature)
         _metric(n, E, G, room)

@@ -72,7 +72,7 @@ def inner(metric: np.ndarray, a: np.ndarray, b: np.ndarray) -> float:
     return total
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def evaluate(law: Parts, span: Span, start: np.ndarray, at: Unknowns, active: Active, room: Room) -> Values:
     """T, n and P at the unknowns, and what the residuals consist of."""
     p, size = law.plastic, room.theta.shape[0]
@@ -123,7 +123,7 @@ def evaluate(law: Parts, span: Span, start: np.ndarray, at: Unknowns, active: Ac
     return Values(v, dv, k, dk, kappa, dkappa, norm, work, length, sigma, creep, gain, b, l, a, q, chi)
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def differential(
     law: Parts,
     span: Span,
@@ -205,7 +205,7 @@ def differential(
     )
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def residual(x: Values) -> Residual:
     """The equations, each as it is differentiated in `differential`."""
     of = x.creep
@@ -213,7 +213,7 @@ def residual(x: Values) -> Residual:
     return Residual(x.norm - x.v * x.k, x.gain - x.work, x.q - ROOT * x.length, creep)
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def creep_alone(law: Parts, span: Span, start: np.ndarray, room: Room) -> tuple[float, int]:
     """χ of a stage that does not flow, and iterations, −1 if there is none.
 
@@ -250,7 +250,7 @@ def _normal(span: Span, reference: float) -> Span:
     return Span(span.h, reference, span.temperature, span.work, span.heating, span.expansion, False)
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def flow_alone(
     law: Parts, span: Span, start: np.ndarray, slopes: np.ndarray, chi: float, room: Room
 ) -> tuple[float, int]:
@@ -268,7 +268,7 @@ def flow_alone(
     return gain, count + more if more > 0 else -1
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _root(
     law: Parts,
     span: Span,
@@ -362,7 +362,7 @@ def _matrix(
         _write(x, of, active, span.deviates, room.J, i)
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _eliminate(J: np.ndarray, r: np.ndarray, n: int, columns: int) -> None:
     """Replace r by J⁻¹ r; J is overwritten."""
     for i in range(n):
@@ -451,7 +451,7 @@ def _together(
     return x, -1
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def solve(
     law: Parts, span: Span, start: np.ndarray, slopes: np.ndarray, room: Room
 ) -> tuple[Values, Active, int]:
@@ -479,7 +479,7 @@ def solve(
     return x, active, count + more
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def finish(
     law: Parts,
     span: Span,
