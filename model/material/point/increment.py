@@ -30,11 +30,13 @@ from coilset.model.material.law.functions import (
 )
 from coilset.model.material.law.parts import Parts, saturation
 from coilset.model.material.point.local import FAILED, TOO_HOT, yield_crossing
-from coilset.model.material.point.rod import crossing_of_spin
-from coilset.model.material.point.rod_plastic import active
-from coilset.model.material.point.rod_plastic import inner as inner_of_rod
-from coilset.model.material.point.spin import Crossing, spun
-from coilset.model.material.point.stage import BACK, CREEP, CREPT, WORK, Room, Span, finish, inner, solve
+from coilset.model.material.point.rod import active
+from coilset.model.material.point.rod import inner as inner_of_rod
+from coilset.model.material.point.spin import Crossing, crossing_of_spin, spun
+from coilset.model.material.point.stage import (
+    ACTIVE, BACK, CREEP, CREPT, D_ACTIVE, D_STRESS, METRIC, MODULUS, MOST, ONSET, STRESS, TERMS, TRIAL, VECTORS, WORK, Room,
+    Span, finish, inner, solve,
+)
 
 # What an increment is made of. h: time of creep; reference: ṗ₀ Δt, 0 without overstress; temperature at its start, and
 # its change; heating, work: as in `Span`; expansion: α of it in the rod; follows: whether the stress follows C(T) at
@@ -73,7 +75,7 @@ def advance(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.
     own = old.shape[0] - (2 * n + 1) - n * (terms - 1)  # columns of temperature and creep
     p, q = law.plastic, law.viscous
     start = old[2 * n + 1] if own > 0 else p[TEMPERATURE] - p[CHANGE]
-    h, end = passes(q, start) if own > 1 else (0.0, start + p[CHANGE])
+    h, end = passes(q, start) if own > 1 and q[POWER] > 0.0 else (0.0, start + p[CHANGE])
     heating, follows = p[HEATING] if own > 0 else 0.0, own > 1
     E0, G0, alpha0 = elasticity(p, start if follows else 0.5 * (start + end))
     E1, G1, alpha1 = elasticity(p, end) if follows else (E0, G0, alpha0)
@@ -89,7 +91,7 @@ def advance(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.
             e[j] += unit[j, k] * de[k]
     if n == ROD:
         e[0] -= thermal
-    _unpack(old, own, law.plastic, q, room.c, rows)
+    _unpack(old, own, q, room.v, rows)
     if p[SPIN] != 0.0 and n == ROD:
         _spin(p, old, de, E0, G0, start, rows, slopes)
     reference = 1.0 / p[RATE] if p[RATE] > 0.0 else 0.0
@@ -106,7 +108,7 @@ def advance(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.
     if heating > 0.0 and not inside_table(p, temperature):
         return TOO_HOT
     _metric(n, E1, G1, room)
-    _pack(rows, slopes, own, q, room.c, new, C)
+    _pack(rows, slopes, own, q, room.v, new, C)
     if n > ROD:
         bulk0, bulk = E0 * G0 / (3.0 * (3.0 * G0 - E0)), E1 * G1 / (3.0 * (3.0 * G1 - E1))
         mean = (old[0] + old[1] + old[2]) / 3.0 * (bulk / bulk0)
@@ -121,24 +123,40 @@ def advance(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.
     return count
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _room(n: int, terms: int) -> Room:
     """Arrays of a stage."""
-    a, b = np.zeros((10, n)), np.zeros((6, terms))
     return Room(
-        a[0], a[1], a[2], a[3], a[4], a[5], a[6], a[7], a[8], a[9], np.empty(n), b[0], b[1], b[2], b[3], b[4], b[5],
-        np.empty((4, 4)), np.empty((4, max(n, 2))), np.zeros((3, n, n)),
-    )  # fmt: skip
+        np.zeros((VECTORS, n)), np.zeros((TERMS, terms)), np.empty((4, 4)), np.empty((4, max(n, 2))), np.zeros((3, n, n)),
+        np.empty((MOST + n, 2, n)), np.empty((MOST + n, terms)),
+    )
+
+
+@njit(**INLINE)
+def _copied(rows: np.ndarray, slopes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    a, b = np.empty(rows.shape), np.empty(slopes.shape)
+    _copy(rows, slopes, a, b)
+    return a, b
+
+
+@njit(**INLINE)
+def _copy(rows: np.ndarray, slopes: np.ndarray, to_rows: np.ndarray, to_slopes: np.ndarray) -> None:
+    a, b = rows.reshape(-1), to_rows.reshape(-1)
+    for i in range(a.shape[0]):
+        b[i] = a[i]
+    a, b = slopes.reshape(-1), to_slopes.reshape(-1)
+    for i in range(a.shape[0]):
+        b[i] = a[i]
 
 
 @njit(**INLINE)
 def _metric(n: int, E: float, G: float, room: Room) -> None:
     """Write weights of the inner product, and moduli of the components of T."""
     for j in range(n):
-        room.metric[j] = 2.0 if n == ROD or j > 2 else 1.0
-        room.c[j] = 2.0 * G
+        room.v[METRIC, j] = 2.0 if n == ROD or j > 2 else 1.0
+        room.v[MODULUS, j] = 2.0 * G
     if n == ROD:
-        room.metric[0], room.c[0] = 1.5, E / 1.5
+        room.v[METRIC, 0], room.v[MODULUS, 0] = 1.5, E / 1.5
 
 
 @njit(**INLINE)
@@ -155,31 +173,31 @@ def _unit(n: int, unit: np.ndarray) -> None:
         unit[i, i] = 0.5
 
 
-@njit(**KERNEL)
-def _unpack(state: np.ndarray, own: int, p: np.ndarray, q: np.ndarray, c: np.ndarray, rows: np.ndarray) -> None:
+@njit(**INLINE)
+def _unpack(state: np.ndarray, own: int, q: np.ndarray, v: np.ndarray, rows: np.ndarray) -> None:
     """Write ē, the Bᵢ, b and u of a point's state."""
     n, last = rows.shape[1], rows.shape[0] - 3
     further = 2 * n + 1 + own
     mean = state[0] / 3.0 if n == ROD else (state[0] + state[1] + state[2]) / 3.0
     for j in range(n):
-        rows[0, j] = (state[j] - (mean if j < (1 if n == ROD else 3) else 0.0)) / c[j]
+        rows[0, j] = (state[j] - (mean if j < (1 if n == ROD else 3) else 0.0)) / v[MODULUS, j]
         rows[last, j] = state[n + j]
         for i in range(last - 1):
             rows[BACK + i, j] = state[further + n * i + j]
             rows[last, j] -= rows[BACK + i, j]
     rows[-1, WORK] = state[2 * n]
-    if own > 1:
+    if own > 1 and q[POWER] > 0.0:
         rows[-1, CREPT] = state[2 * n + 2] ** (1.0 / q[POWER])
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _pack(
-    rows: np.ndarray, slopes: np.ndarray, own: int, q: np.ndarray, c: np.ndarray, new: np.ndarray, C: np.ndarray
+    rows: np.ndarray, slopes: np.ndarray, own: int, q: np.ndarray, v: np.ndarray, new: np.ndarray, C: np.ndarray
 ) -> None:
     """Write the state, with the deviator of stress in the place of stress, and its slopes."""
     n, last = rows.shape[1], rows.shape[0] - 3
     for j in range(n):
-        scale = c[j] * (1.5 if n == ROD and j == 0 else 1.0)
+        scale = v[MODULUS, j] * (1.5 if n == ROD and j == 0 else 1.0)
         new[j] = scale * rows[0, j]
         for k in range(n):
             C[j, k] = scale * slopes[0, j, k]
@@ -189,7 +207,7 @@ def _pack(
             if i < last - 1:
                 new[2 * n + 1 + own + n * i + j] = rows[BACK + i, j]
     new[2 * n] = rows[-1, WORK]
-    if own > 1:
+    if own > 1 and q[POWER] > 0.0:
         new[2 * n + 2] = rows[-1, CREPT] ** q[POWER]
 
 
@@ -202,7 +220,7 @@ def _spin(
     s, B = (old[0], old[1], old[2]), (old[3], old[4], old[5])
     n, k2 = active(s, B), functions(p, old[6], temperature)[0]
     crossing = Crossing(0.0, (0.0, 0.0, 0.0))
-    if p[RATE] == 0.0 or inner_of_rod(n, n) <= k2:
+    if p[EXPONENT] == 0.0 or inner_of_rod(n, n) <= k2:
         crossing = crossing_of_spin(s, B, k2, E, G, (E * de[0] / 1.5, G * de[1], G * de[2]))
     c = (E, 2.0 * G, 2.0 * G)
     for i in range(rows.shape[0] - 3):
@@ -215,7 +233,7 @@ def _spin(
             slopes[0, j, 2], slopes[BACK + i, j, 2] = turned.d_stress[2][j] / c[j], turned.d_back[2][j]
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _through(law: Parts, of: Increment, rows: np.ndarray, slopes: np.ndarray, room: Room) -> int:
     """Replace the rows and slopes at the start of an increment by those at its end; as `advance`."""
     n = rows.shape[1]
@@ -238,45 +256,45 @@ def _through(law: Parts, of: Increment, rows: np.ndarray, slopes: np.ndarray, ro
 
 
 @njit(**INLINE)
-def _active(c: np.ndarray, rows: np.ndarray, j: int) -> float:
+def _active(v: np.ndarray, rows: np.ndarray, j: int) -> float:
     """A component of n."""
-    n = c[j] * rows[0, j]
+    n = v[MODULUS, j] * rows[0, j]
     for i in range(rows.shape[0] - 3):
         n -= rows[BACK + i, j]
     return n
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _crossing(law: Parts, of: Increment, rows: np.ndarray, slopes: np.ndarray, by: np.ndarray, room: Room) -> float:
     """Part of the increment in which the elastic path stays within the yield surface; its slopes are written to `by`.
 
     It is not divided where the stress follows a change of temperature at once, which no strain divides.
     """
-    n, c = rows.shape[1], room.c
+    n, v = rows.shape[1], room.v
     if of.follows and of.change != 0.0:
         return 0.0
     for j in range(n):
-        room.n[j], room.d_n[j] = _active(c, rows, j), c[j] * of.strain[j]
+        room.v[ACTIVE, j], room.v[D_ACTIVE, j] = _active(v, rows, j), v[MODULUS, j] * of.strain[j]
     b = rows[-1, WORK]
     k2 = functions(law.plastic, b, of.temperature)[0]
     growth = functions(law.plastic, b, of.temperature + of.change)[0] - k2 if of.change != 0.0 else 0.0
-    nn, ne = inner(room.metric, room.n, room.n), inner(room.metric, room.n, room.d_n)
-    ee = inner(room.metric, room.d_n, room.d_n)
+    nn, ne = inner(room.v, ACTIVE, ACTIVE), inner(room.v, ACTIVE, D_ACTIVE)
+    ee = inner(room.v, D_ACTIVE, D_ACTIVE)
     if nn + 2.0 * ne + ee <= (k2 + growth) * (1.0 + 1e-12):
         return 1.0
-    if of.reference > 0.0 and nn > k2:
+    if law.plastic[EXPONENT] > 0.0 and nn > k2:  # overstress, which fades at once where no time passes
         return 0.0
     beta = yield_crossing(nn, ne - 0.5 * growth, ee, k2)
     steep = ne + beta * ee - 0.5 * growth
     if beta > 0.0 and steep > 0.0:
         for k in range(n):
             for j in range(n):
-                change = _active(c, slopes[:, :, k], j) + beta * c[j] * of.unit[j, k]
-                by[k] -= room.metric[j] * (room.n[j] + beta * room.d_n[j]) * change / steep
+                change = _active(v, slopes[:, :, k], j) + beta * v[MODULUS, j] * of.unit[j, k]
+                by[k] -= room.v[METRIC, j] * (room.v[ACTIVE, j] + beta * room.v[D_ACTIVE, j]) * change / steep
     return beta
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _fading(law: Parts, of: Increment, rows: np.ndarray, room: Room) -> float:
     """Part of the increment in which its first stage takes off a fifth of the overstress at its start.
 
@@ -286,21 +304,21 @@ def _fading(law: Parts, of: Increment, rows: np.ndarray, room: Room) -> float:
         return 1.0
     n, m = rows.shape[1], law.plastic[EXPONENT]
     for j in range(n):
-        room.n[j] = _active(room.c, rows, j)
+        room.v[ACTIVE, j] = _active(room.v, rows, j)
     k2, dk2, zeta, _, _, _ = functions(law.plastic, rows[-1, WORK], of.temperature)
-    beyond = math.sqrt(inner(room.metric, room.n, room.n) / k2) - 1.0
+    beyond = math.sqrt(inner(room.v, ACTIVE, ACTIVE) / k2) - 1.0
     if not beyond > 0.0:
         return 1.0
     for i in range(law.terms.shape[1]):
         zeta += saturation(law, i, of.temperature).zeta
-    rate = math.sqrt(1.5 / k2) * of.reference * (room.c[1] + zeta + 0.5 * dk2) * beyond ** (m - 1.0)
+    rate = math.sqrt(1.5 / k2) * of.reference * (room.v[MODULUS, 1] + zeta + 0.5 * dk2) * beyond ** (m - 1.0)
     return min(FADED / (1.0 - FADED) ** m / (GAMMA * rate), 1.0) if rate > 0.0 else 1.0
 
 
 @njit(**KERNEL)
 def _pieces(law: Parts, of: Increment, whole: Piece, rows: np.ndarray, slopes: np.ndarray, room: Room) -> int:
     """A part of the increment: pieces that become longer as overstress fades, divided until all stages have an end."""
-    before, slopes_before = rows.copy(), slopes.copy()
+    before, slopes_before = _copied(rows, slopes)
     first = _fading(law, of, rows, room) / whole.length
     for division in range(DIVISIONS):
         count, begin, end = 0, 0.0, first
@@ -320,21 +338,21 @@ def _pieces(law: Parts, of: Increment, whole: Piece, rows: np.ndarray, slopes: n
             begin, end = end, end * LONGER
         if count >= 0:
             return count
-        rows[:], slopes[:] = before, slopes_before
+        _copy(before, slopes_before, rows, slopes)
     return FAILED
 
 
 @njit(**KERNEL)
 def _piece(law: Parts, of: Increment, piece: Piece, rows: np.ndarray, slopes: np.ndarray, room: Room) -> int:
     """Both stages."""
-    before, slopes_before = rows.copy(), slopes.copy()
+    before, slopes_before = _copied(rows, slopes)
     flowed, count = _stage(law, of, piece, (GAMMA, GAMMA), False, rows, slopes, room)
     if count < 0:
         return count
     _lead(law, of, piece, before, slopes_before, rows, slopes, room)
     flows, more = _stage(law, of, piece, (GAMMA, 1.0), flowed, rows, slopes, room)
     if flowed and not flows and of.h == 0.0:  # the second stage's start lies within the surface: backward Euler
-        rows[:], slopes[:] = before, slopes_before
+        _copy(before, slopes_before, rows, slopes)
         flows, more = _stage(law, of, piece, (1.0, 1.0), False, rows, slopes, room)
     return count + more if more >= 0 else FAILED
 
@@ -356,12 +374,12 @@ def _stage(
     if of.follows and of.change != 0.0:
         E, G, _ = elasticity(law.plastic, temperature)
         _metric(n, E, G, room)
-    c, ways = room.c, room.ways
+    v, ways = room.v, room.ways
     for j in range(n):
-        room.trial[j] = c[j] * (rows[0, j] + length * of.strain[j])
+        room.v[TRIAL, j] = v[MODULUS, j] * (rows[0, j] + length * of.strain[j])
         for k in range(n):
             by = part[0] * piece.by[k]
-            ways[0, j, k] = c[j] * (slopes[0, j, k] + length * of.unit[j, k] + by * of.strain[j])
+            ways[0, j, k] = v[MODULUS, j] * (slopes[0, j, k] + length * of.unit[j, k] + by * of.strain[j])
             ways[2, j, k] = piece.by[k] / piece.length
     if of.deviates:
         _onset(law, temperature, flowed, rows, slopes, room)
@@ -377,26 +395,26 @@ def _stage(
 @njit(**KERNEL)
 def _onset(law: Parts, temperature: float, flowed: bool, rows: np.ndarray, slopes: np.ndarray, room: Room) -> None:
     """Write n_β and its slopes: n at the start of the stage, or where the elastic path crosses the yield surface."""
-    n, c, ways, beta, steep = rows.shape[1], room.c, room.ways, 0.0, 0.0
+    n, v, ways, beta, steep = rows.shape[1], room.v, room.ways, 0.0, 0.0
     for j in range(n):
-        room.n[j] = _active(c, rows, j)
-        room.d_n[j] = room.trial[j] - c[j] * rows[0, j]
+        room.v[ACTIVE, j] = _active(v, rows, j)
+        room.v[D_ACTIVE, j] = room.v[TRIAL, j] - v[MODULUS, j] * rows[0, j]
     if not flowed:
-        nn, ne = inner(room.metric, room.n, room.n), inner(room.metric, room.n, room.d_n)
-        ee, k2 = inner(room.metric, room.d_n, room.d_n), functions(law.plastic, rows[-1, WORK], temperature)[0]
+        nn, ne = inner(room.v, ACTIVE, ACTIVE), inner(room.v, ACTIVE, D_ACTIVE)
+        ee, k2 = inner(room.v, D_ACTIVE, D_ACTIVE), functions(law.plastic, rows[-1, WORK], temperature)[0]
         beta = yield_crossing(nn, ne, ee, k2) if nn + 2.0 * ne + ee > k2 else 1.0 if nn < k2 else 0.0
         steep = ne + beta * ee
     for j in range(n):
-        room.onset[j] = room.n[j] + beta * room.d_n[j]
+        room.v[ONSET, j] = room.v[ACTIVE, j] + beta * room.v[D_ACTIVE, j]
     for k in range(n):
         along = 0.0
         for j in range(n):
-            elastic = c[j] * slopes[0, j, k]
-            ways[1, j, k] = _active(c, slopes[:, :, k], j) + beta * (ways[0, j, k] - elastic)
-            along += room.metric[j] * room.onset[j] * ways[1, j, k]
+            elastic = v[MODULUS, j] * slopes[0, j, k]
+            ways[1, j, k] = _active(v, slopes[:, :, k], j) + beta * (ways[0, j, k] - elastic)
+            along += room.v[METRIC, j] * room.v[ONSET, j] * ways[1, j, k]
         if 0.0 < beta < 1.0 and steep > 0.0:
             for j in range(n):
-                ways[1, j, k] -= along / steep * room.d_n[j]
+                ways[1, j, k] -= along / steep * room.v[D_ACTIVE, j]
 
 
 @njit(**KERNEL)
@@ -414,15 +432,15 @@ def _lead(
     n, last = rows.shape[1], rows.shape[0] - 1
     h = (1.0 - GAMMA) * piece.length * of.h
     for j in range(n):
-        room.T[j] = room.c[j] * rows[0, j]
-    sigma = math.sqrt(1.5 * inner(room.metric, room.T, room.T))
+        room.v[STRESS, j] = room.v[MODULUS, j] * rows[0, j]
+    sigma = math.sqrt(1.5 * inner(room.v, STRESS, STRESS))
     creep = creep_strain(law.viscous, sigma, before[last, CREPT], h)
     chi = 1.5 * creep.strain / sigma if creep.strain > 0.0 else 0.0
     for k in range(n if of.h > 0.0 else 0):
         d_sigma = 0.0
         for j in range(n):
-            room.d_T[j] = room.c[j] * slopes[0, j, k]
-            d_sigma += 1.5 * room.metric[j] * room.T[j] * room.d_T[j]
+            room.v[D_STRESS, j] = room.v[MODULUS, j] * slopes[0, j, k]
+            d_sigma += 1.5 * room.v[METRIC, j] * room.v[STRESS, j] * room.v[D_STRESS, j]
         d_sigma = d_sigma / sigma if sigma > 0.0 else 0.0
         d_chi = 0.0
         if chi > 0.0:
@@ -430,11 +448,11 @@ def _lead(
             d_creep += creep.by_time * piece.by[k] / piece.length
             d_chi = chi * (d_creep / creep.strain - d_sigma / sigma)
         for j in range(n):  # in the first stage's creep strain, times AHEAD, from here on stands that of its stress
-            crept = chi * room.d_T[j] + d_chi * room.T[j]
+            crept = chi * room.v[D_STRESS, j] + d_chi * room.v[STRESS, j]
             slopes[0, j, k] += slopes[CREEP, j, k] - crept / AHEAD
             slopes[CREEP, j, k] = 0.0
     for j in range(n if of.h > 0.0 else 0):
-        rows[0, j] += rows[CREEP, j] - chi * room.T[j] / AHEAD
+        rows[0, j] += rows[CREEP, j] - chi * room.v[STRESS, j] / AHEAD
         rows[CREEP, j] = 0.0
     a, b = before.reshape(-1), rows.reshape(-1)
     for i in range(a.shape[0]):

@@ -12,7 +12,7 @@ import math
 
 from numba import njit
 
-from coilset.model.base.kernel import INLINE, KERNEL
+from coilset.model.base.kernel import KERNEL
 
 MAX_ITERATIONS = 40
 ROOT = math.sqrt(2.0 / 3.0)
@@ -38,10 +38,3 @@ def of_work(reference: float, m: float, work: float, k: float) -> tuple[float, f
             break
     above = math.exp(x)
     return 1.0 + above, 1.0 / (1.0 + m * (1.0 + above) / above)
-
-
-@njit(**INLINE)
-def of_strain(reference: float, m: float, strain: float) -> tuple[float, float]:
-    """v, and dv/d log(p/ρ), at the stage's plastic strain p."""
-    above = (strain / reference) ** (1.0 / m)
-    return 1.0 + above, above / m

@@ -33,7 +33,7 @@ from coilset.model.base.kernel import INLINE, KERNEL
 from coilset.model.material.creep.flow import Creep, creep_strain
 from coilset.model.material.law.functions import EXPONENT, functions
 from coilset.model.material.law.parts import Parts, saturation
-from coilset.model.material.point.overstress import ROOT, of_strain, of_work
+from coilset.model.material.point.overstress import ROOT, of_work
 
 # A stage's data. h: time of creep; reference: ρ, 0 without overstress; temperature, at b = work; heating: of
 # the temperature by b; expansion: of the rod's axial strain by b; deviates: κ ≠ 0.
@@ -43,11 +43,13 @@ Span = namedtuple("Span", "h reference temperature work heating expansion deviat
 Unknowns = namedtuple("Unknowns", "gain l q chi")
 Active = namedtuple("Active", "flow creep neutral")
 STILL, FLOWING = Active(False, False, False), Active(True, False, False)
-# Arrays over the components (those of the metric, moduli, T_trial, n_β, results, and their derivatives), and over the
-# back stresses;
-# J and r, Newton's matrix and residuals; `ways`, the slopes of T_trial, n_β and the logarithm of the stage's time by
-# the strains, shape (3, components, strains).
-Room = namedtuple("Room", "metric c trial onset s T n P d_T d_n d_P theta zeta gamma d_zeta d_gamma d_theta J r ways")
+# Room for a stage. v: rows over the components, by the names below; of: rows over the back stresses; J, r: Newton's matrix
+# and residuals; ways: slopes of T_trial, n_β and the logarithm of the stage's time by the strains, shape (3, components,
+# strains); kept, kept_of: D_STRESS and D_FLOW, and D_THETA, of each unknown and, behind MOST of them, of each strain.
+MOST = 4
+Room = namedtuple("Room", "v of J r ways kept kept_of")
+METRIC, MODULUS, TRIAL, ONSET, SHARE, STRESS, ACTIVE, FLOW, D_STRESS, D_ACTIVE, D_FLOW, VECTORS = range(12)  # w, c, …, s, T
+THETA, ZETA, FADING, D_ZETA, D_FADING, D_THETA, TERMS = range(7)  # FADING: γ
 # Values at the unknowns: v, k and slopes in b; κ; |n|, n:P, |P|, σ and the creep strain; b, a, q, χ as they are used.
 Values = namedtuple("Values", "v dv k dk kappa dkappa norm work length sigma creep gain b l a q chi")
 # What a direction changes: strain number `strain` (none: −1) and the unknowns; and by how much the residuals change.
@@ -64,18 +66,18 @@ SHORTEST = 1e-4  # part of a correction
 
 
 @njit(**INLINE)
-def inner(metric: np.ndarray, a: np.ndarray, b: np.ndarray) -> float:
-    """a:b of two deviators."""
+def inner(v: np.ndarray, a: int, b: int) -> float:
+    """a:b of two deviators in rows of `Room.v`."""
     total = 0.0
-    for j in range(metric.shape[0]):
-        total += metric[j] * a[j] * b[j]
+    for j in range(v.shape[1]):
+        total += v[METRIC, j] * v[a, j] * v[b, j]
     return total
 
 
 @njit(**INLINE)
 def evaluate(law: Parts, span: Span, start: np.ndarray, at: Unknowns, active: Active, room: Room) -> Values:
     """T, n and P at the unknowns, and what the residuals consist of."""
-    p, size = law.plastic, room.theta.shape[0]
+    p, size = law.plastic, room.of.shape[1]
     gain, chi = at.gain, at.chi
     b = start[-1, WORK] + gain
     temperature = span.temperature + span.heating * (b - span.work)
@@ -93,33 +95,31 @@ def evaluate(law: Parts, span: Span, start: np.ndarray, at: Unknowns, active: Ac
             v, dv = of_work(span.reference, p[EXPONENT], gain, k)
         l, q = gain / (v * v * k2), ROOT * gain / (v * k)
         a = l
-    elif active.flow and span.reference > 0.0:
-        v, dv = of_strain(span.reference, p[EXPONENT], q)
     if not active.flow:
         a = l = q = kappa = dkappa = 0.0
     total = 0.0
     for i in range(size):
         if law.terms.shape[1] > 0:
-            zeta, room.gamma[i], d_zeta, room.d_gamma[i] = saturation(law, i, temperature)
-        room.zeta[i], room.d_zeta[i] = zeta, d_zeta
-        room.theta[i] = 1.0 / (1.0 + room.gamma[i] * q)
-        total += room.theta[i] * zeta
-    for j in range(room.c.shape[0]):
-        c = room.c[j]
-        s = room.s[j] = 1.0 / (1.0 + c * chi)
-        elastic = room.trial[j]
+            zeta, room.of[FADING, i], d_zeta, room.of[D_FADING, i] = saturation(law, i, temperature)
+        room.of[ZETA, i], room.of[D_ZETA, i] = zeta, d_zeta
+        room.of[THETA, i] = 1.0 / (1.0 + room.of[FADING, i] * q)
+        total += room.of[THETA, i] * zeta
+    for j in range(room.v.shape[1]):
+        c = room.v[MODULUS, j]
+        s = room.v[SHARE, j] = 1.0 / (1.0 + c * chi)
+        elastic = room.v[TRIAL, j]
         if j == 0:
             elastic -= c * span.expansion * gain
         n, H = s * elastic, s * c + total
         for i in range(size):
-            n -= room.theta[i] * start[BACK + i, j]
-        n = (n + H * kappa * room.onset[j]) / (1.0 + H * a)
-        P = a * n - kappa * room.onset[j]
-        room.n[j], room.P[j], room.T[j] = n, P, s * (elastic - c * P)
-    norm, length = math.sqrt(inner(room.metric, room.n, room.n)), math.sqrt(inner(room.metric, room.P, room.P))
-    sigma = math.sqrt(1.5 * inner(room.metric, room.T, room.T))
+            n -= room.of[THETA, i] * start[BACK + i, j]
+        n = (n + H * kappa * room.v[ONSET, j]) / (1.0 + H * a)
+        P = a * n - kappa * room.v[ONSET, j]
+        room.v[ACTIVE, j], room.v[FLOW, j], room.v[STRESS, j] = n, P, s * (elastic - c * P)
+    norm, length = math.sqrt(inner(room.v, ACTIVE, ACTIVE)), math.sqrt(inner(room.v, FLOW, FLOW))
+    sigma = math.sqrt(1.5 * inner(room.v, STRESS, STRESS))
     creep = creep_strain(law.viscous, sigma, start[-1, CREPT], span.h)
-    work = inner(room.metric, room.n, room.P)
+    work = inner(room.v, ACTIVE, FLOW)
     return Values(v, dv, k, dk, kappa, dkappa, norm, work, length, sigma, creep, gain, b, l, a, q, chi)
 
 
@@ -142,7 +142,7 @@ def differential(
         active: Active.
         change: the direction.
     """
-    x, size, k = values, room.theta.shape[0], values.k
+    x, size, k = values, room.of.shape[1], values.k
     way, db0, du0, d_time = change.strain, 0.0, 0.0, 0.0
     if way >= 0:
         db0, du0, d_time = slopes[-1, WORK, way], slopes[-1, CREPT, way], room.ways[2, 0, way]
@@ -156,22 +156,20 @@ def differential(
             dv = x.v * x.dv * (dw - dk / k - d_time)
         dq = x.q * (dw - dv / x.v - dk / k)
         da = x.a * (dw - 2.0 * dv / x.v - 2.0 * dk / k)
-    elif active.flow and span.reference > 0.0:
-        dv = x.dv * (dq / x.q - d_time)
     if not active.flow:
         d_gain = 0.0
     d_total = 0.0
     for i in range(size):
-        theta = room.theta[i]
-        room.d_theta[i] = -theta * theta * (room.gamma[i] * dq + x.q * room.d_gamma[i] * change.b)
-        d_total += room.d_theta[i] * room.zeta[i] + theta * room.d_zeta[i] * change.b
+        theta = room.of[THETA, i]
+        room.of[D_THETA, i] = -theta * theta * (room.of[FADING, i] * dq + x.q * room.of[D_FADING, i] * change.b)
+        d_total += room.of[D_THETA, i] * room.of[ZETA, i] + theta * room.of[D_ZETA, i] * change.b
     total = 0.0
     for i in range(size):
-        total += room.theta[i] * room.zeta[i]
+        total += room.of[THETA, i] * room.of[ZETA, i]
     nn = pp = np_ = tt = 0.0
-    for j in range(room.c.shape[0]):
-        c, s = room.c[j], room.s[j]
-        ds, elastic, d_elastic = -c * s * s * change.chi, room.trial[j], 0.0
+    for j in range(room.v.shape[1]):
+        c, s = room.v[MODULUS, j], room.v[SHARE, j]
+        ds, elastic, d_elastic = -c * s * s * change.chi, room.v[TRIAL, j], 0.0
         d_onset = 0.0
         if way >= 0:
             d_elastic, d_onset = room.ways[0, j, way], room.ways[1, j, way]
@@ -180,20 +178,20 @@ def differential(
             d_elastic -= c * span.expansion * d_gain
         dn, H, dH = s * d_elastic + ds * elastic, s * c + total, c * ds + d_total
         for i in range(size):
-            dn -= room.d_theta[i] * start[BACK + i, j]
+            dn -= room.of[D_THETA, i] * start[BACK + i, j]
             if way >= 0:
-                dn -= room.theta[i] * slopes[BACK + i, j, way]
-        n, P, onset = room.n[j], room.P[j], room.onset[j]
+                dn -= room.of[THETA, i] * slopes[BACK + i, j, way]
+        n, P, onset = room.v[ACTIVE, j], room.v[FLOW, j], room.v[ONSET, j]
         rest = n * da - onset * dkappa - x.kappa * d_onset
         dn = (dn - P * dH - H * rest) / (1.0 + H * x.a)
         dP = rest + x.a * dn
         dT = s * (d_elastic - c * dP) + ds * (elastic - c * P)
-        room.d_n[j], room.d_P[j], room.d_T[j] = dn, dP, dT
-        w = room.metric[j]
+        room.v[D_ACTIVE, j], room.v[D_FLOW, j], room.v[D_STRESS, j] = dn, dP, dT
+        w = room.v[METRIC, j]
         nn += w * n * dn
         np_ += w * (n * dP + P * dn)
         pp += w * P * dP
-        tt += w * room.T[j] * dT
+        tt += w * room.v[STRESS, j] * dT
     of = x.creep
     d_sigma = 1.5 * tt / x.sigma if x.sigma > 0.0 else 0.0
     d_creep = of.by_stress * d_sigma + of.by_start * du0 + of.by_time * d_time
@@ -220,23 +218,24 @@ def creep_alone(law: Parts, span: Span, start: np.ndarray, room: Room) -> tuple[
     In logarithms the difference of both sides of the creep equation increases with log χ, linearly where creep is
     little and where it is much. Newton's method starts at the creep strain of the elastic stress, above the root.
     """
-    metric, c, trial = room.metric, room.c, room.trial
-    first, other = 1.5 * metric[0] * trial[0] * trial[0], 0.0
-    for j in range(1, c.shape[0]):
-        other += 1.5 * metric[j] * trial[j] * trial[j]
+    v = room.v
+    first_c, c = v[MODULUS, 0], v[MODULUS, 1]
+    first, other = 1.5 * v[METRIC, 0] * v[TRIAL, 0] * v[TRIAL, 0], 0.0
+    for j in range(1, v.shape[1]):
+        other += 1.5 * v[METRIC, j] * v[TRIAL, j] * v[TRIAL, j]
     u0, sigma = start[-1, CREPT], math.sqrt(first + other)
     of = creep_strain(law.viscous, sigma, u0, span.h)
     if not of.strain > 0.0:  # nothing, or less than rounding
         return 0.0, 0 if of.strain == of.strain else -1
-    chi, strain = 1.5 * of.strain / sigma, 1.5 * sigma / c[0]
+    chi, strain = 1.5 * of.strain / sigma, 1.5 * sigma / first_c
     for iteration in range(1, MAX_ITERATIONS):
-        a, b = 1.0 / (1.0 + c[0] * chi), 1.0 / (1.0 + c[1] * chi)
+        a, b = 1.0 / (1.0 + first_c * chi), 1.0 / (1.0 + c * chi)
         sa, sb = first * a * a, other * b * b
         sigma = math.sqrt(sa + sb)
         of = creep_strain(law.viscous, sigma, u0, span.h)
         if not of.strain > 0.0:
             return 0.0, -1
-        falls = (c[0] * chi * a * sa + c[1] * chi * b * sb) / (sa + sb)  # −d log σ/d log χ
+        falls = (first_c * chi * a * sa + c * chi * b * sb) / (sa + sb)  # −d log σ/d log χ
         step = math.log(1.5 * of.strain / (chi * sigma)) / (1.0 + (of.by_stress * sigma / of.strain - 1.0) * falls)
         if abs(step) * of.strain <= 1e-11 * (strain + of.strain) + 1e-16:
             return chi * (1.0 + step), iteration
@@ -293,9 +292,9 @@ def _root(
         if r == 0.0:
             if off <= 1e-12 * at.k:
                 return 0.0, 0
-            stiffness = room.s[1] * room.c[1] + at.k * at.dk
-            for i in range(room.theta.shape[0]):
-                stiffness += room.zeta[i]
+            stiffness = room.v[SHARE, 1] * room.v[MODULUS, 1] + at.k * at.dk
+            for i in range(room.of.shape[1]):
+                stiffness += room.of[ZETA, i]
             to = off * at.k / stiffness
         else:
             if abs(off) <= PRECISION * at.v * at.k:
@@ -345,6 +344,14 @@ def _write(x: Values, of: Residual, active: Active, deviates: bool, into: np.nda
 
 
 @njit(**INLINE)
+def _keep(room: Room, i: int) -> None:
+    for j in range(room.v.shape[1]):
+        room.kept[i, 0, j], room.kept[i, 1, j] = room.v[D_STRESS, j], room.v[D_FLOW, j]
+    for j in range(room.of.shape[1]):
+        room.kept_of[i, j] = room.of[D_THETA, j]
+
+
+@njit(**INLINE)
 def _matrix(
     law: Parts,
     span: Span,
@@ -360,6 +367,7 @@ def _matrix(
             law, span, start, slopes, x, active, _direction(x, active, span.deviates, i), room
         )
         _write(x, of, active, span.deviates, room.J, i)
+        _keep(room, i)
 
 
 @njit(**INLINE)
@@ -421,8 +429,8 @@ def _together(
         for i in range(n):
             off += r[i, 0] * r[i, 0]
         _eliminate(room.J, r, n, 1)
-        flow = x.gain / (x.gain + SMALL * x.k * x.k / room.c[0])
-        creep = x.creep.strain / (x.creep.strain + SMALL * x.sigma / room.c[0])
+        flow = x.gain / (x.gain + SMALL * x.k * x.k / room.v[MODULUS, 0])
+        creep = x.creep.strain / (x.creep.strain + SMALL * x.sigma / room.v[MODULUS, 0])
         largest = 0.0
         for i in range(n):
             largest = max(largest, abs(r[i, 0]) * (creep if active.creep and i == n - 1 else flow))
@@ -490,40 +498,43 @@ def finish(
     room: Room,
 ) -> None:
     """Replace the start of a stage and its slopes by those of its end."""
-    n, size, count = room.c.shape[0], room.theta.shape[0], _unknowns(active, span.deviates)
+    n, size, count = room.v.shape[1], room.of.shape[1], _unknowns(active, span.deviates)
     _matrix(law, span, start, slopes, x, active, room)
     for k in range(n):
         of = differential(law, span, start, slopes, x, active, Change(k, 0.0, 0.0, 0.0, 0.0), room)
         _write(x, of, active, span.deviates, room.r, k)
+        _keep(room, MOST + k)
     _eliminate(room.J, room.r, count, n)
+    v, of_terms = room.v, room.of
     for k in range(n):
-        change = Change(k, slopes[-1, WORK, k], 0.0, 0.0, 0.0)
-        if active.flow:
-            more, l, q = -x.gain * room.r[0, k], 0.0, 0.0
-            if span.deviates:
-                l, q = -x.l * room.r[1, k], -x.q * room.r[2, k]
-            change = Change(k, more, l, q, 0.0)
-        if active.creep:
-            change = Change(k, change.b, change.l, change.q, -x.chi * room.r[count - 1, k])
-        differential(law, span, start, slopes, x, active, change, room)
+        for i in range(count):
+            change = -room.r[i, k]
+            for j in range(n):
+                room.kept[MOST + k, 0, j] += change * room.kept[i, 0, j]
+                room.kept[MOST + k, 1, j] += change * room.kept[i, 1, j]
+            for j in range(size):
+                room.kept_of[MOST + k, j] += change * room.kept_of[i, j]
+        d_work = -x.gain * room.r[0, k] if active.flow else slopes[-1, WORK, k]
+        d_chi = -x.chi * room.r[count - 1, k] if active.creep else 0.0
         d_sigma = 0.0
         for j in range(n):
-            slopes[0, j, k] = room.d_T[j] / room.c[j]
-            slopes[CREEP, j, k] = change.chi * room.T[j] + x.chi * room.d_T[j]
-            d_sigma += room.metric[j] * room.T[j] * room.d_T[j]
+            d_stress, d_flow = room.kept[MOST + k, 0, j], room.kept[MOST + k, 1, j]
+            slopes[0, j, k] = d_stress / v[MODULUS, j]
+            slopes[CREEP, j, k] = d_chi * v[STRESS, j] + x.chi * d_stress
+            d_sigma += v[METRIC, j] * v[STRESS, j] * d_stress
             for i in range(size):
-                theta, d_zeta = room.theta[i], room.d_zeta[i] * change.b
-                grown = slopes[BACK + i, j, k] + d_zeta * room.P[j] + room.zeta[i] * room.d_P[j]
-                before = start[BACK + i, j] + room.zeta[i] * room.P[j]
-                slopes[BACK + i, j, k] = theta * grown + room.d_theta[i] * before
-        slopes[-1, WORK, k] = change.b
+                zeta, P = of_terms[ZETA, i], v[FLOW, j]
+                grown = slopes[BACK + i, j, k] + of_terms[D_ZETA, i] * d_work * P + zeta * d_flow
+                before = start[BACK + i, j] + zeta * P
+                slopes[BACK + i, j, k] = of_terms[THETA, i] * grown + room.kept_of[MOST + k, i] * before
+        slopes[-1, WORK, k] = d_work
         if active.creep:
             d_sigma *= 1.5 / x.sigma
             slopes[-1, CREPT, k] += x.creep.u_by_stress * d_sigma + x.creep.u_by_time * room.ways[2, 0, k]
     for j in range(n):
-        start[0, j], start[CREEP, j] = room.T[j] / room.c[j], x.chi * room.T[j]
+        start[0, j], start[CREEP, j] = room.v[STRESS, j] / room.v[MODULUS, j], x.chi * room.v[STRESS, j]
         for i in range(size):
-            start[BACK + i, j] = room.theta[i] * (start[BACK + i, j] + room.zeta[i] * room.P[j])
+            start[BACK + i, j] = room.of[THETA, i] * (start[BACK + i, j] + room.of[ZETA, i] * room.v[FLOW, j])
     start[-1, WORK] = x.b
     if active.creep:
         start[-1, CREPT] = x.creep.u
