@@ -43,9 +43,7 @@ class LawOverTime:
         own, more = 2 * components + 1, components * max(self._law.n_terms - 1, 0)
         return np.concatenate([row[:, :own], [[start, 0.0]], np.zeros((1, more))], axis=1)
 
-    def over(
-        self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]
-    ) -> np.ndarray | Parts:
+    def over(self, start: Mapping[str, np.ndarray], trial: Mapping[str, np.ndarray]) -> np.ndarray | Parts:
         """The law from one state to the next; without a `clock` between them it is the law without time.
 
         To the return mapping, a row with the columns of creep is one with a temperature of its own.

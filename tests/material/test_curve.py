@@ -7,7 +7,6 @@ from coilset.model.base.entry import check_entries
 from coilset.model.base.errors import InputError
 from coilset.model.material import programs
 from coilset.model.material.law.file import MaterialFile
-from coilset.model.material.law.functions import functions
 from coilset.model.material.law.law import Law
 
 G, NU = 80000.0, 0.3

@@ -5,8 +5,7 @@ import pytest
 
 from coilset.model.material import library
 from coilset.model.material.law.functions import functions
-from coilset.model.material.point.local import Group, Start, rough_turn, solve, turn
-from coilset.model.material.point.local import estimate
+from coilset.model.material.point.local import Group, Start, estimate, rough_turn, solve, turn
 
 COUNT = 30
 

@@ -172,7 +172,7 @@ def test_all_at_once():
 
 @pytest.mark.parametrize("names", PAIRS, ids="+".join)
 def test_tangent(names):
-    """The Taylor remainder σ(ε + h v) − σ(ε) − h C v falls as h², from states that have flowed, with time of any length."""
+    """The Taylor remainder σ(ε + h v) − σ(ε) − h C v falls as h², from states that have flowed, in any time."""
     law, steps = law_of(*names), 10.0 ** np.arange(-2, -4.01, -0.5)
     warming = 15.0 if "warmed" in names else 0.0
     for n in (3,) if "spin" in names else (3, 6):

@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from coilset.model.base.errors import InputError, SolveError
-from coilset.model.material import library, points, programs
+from coilset.model.material import library, programs
 from coilset.verification.references import heun
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "material"

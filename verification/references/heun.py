@@ -18,9 +18,12 @@ import numpy as np
 from numba import njit
 
 from coilset.model.base.kernel import KERNEL
+from coilset.model.material import programs
 from coilset.model.material.law.functions import (
     CHANGE,
     HEATING,
+    N_ROWS,
+    ROW_LENGTH,
     SPIN,
     TEMPERATURE,
     elasticity,
@@ -28,10 +31,7 @@ from coilset.model.material.law.functions import (
     inside_table,
     row_functions,
     table_place,
-    N_ROWS,
-    ROW_LENGTH,
 )
-from coilset.model.material import programs
 from coilset.model.material.law.law import Law
 from coilset.model.material.point.local import TOO_HOT, yield_crossing
 from coilset.model.material.points import refuse
@@ -287,9 +287,7 @@ def integrate(
 
 
 @njit(**KERNEL)
-def _rod(
-    p: np.ndarray, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray, tolerance: float
-) -> int:
+def _rod(p: np.ndarray, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.ndarray, tolerance: float) -> int:
     """The thesis's integrator for the rod: arguments as of `increment.advance`.
 
     The relative error of stress allowed in a sub-step is `tolerance`; if it is infinite, the plastic
@@ -323,9 +321,7 @@ def _rod(
 
 
 @njit(**KERNEL)
-def _solid(
-    p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, C: np.ndarray, tolerance: float
-) -> int:
+def _solid(p: np.ndarray, old: np.ndarray, dD: np.ndarray, new: np.ndarray, C: np.ndarray, tolerance: float) -> int:
     """The thesis's integrator for the full stress state: as `_rod`."""
     w = np.array(SOLID_METRIC)
     thermal = old.shape[0] > 13

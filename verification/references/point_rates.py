@@ -69,6 +69,7 @@ class PointRates:
         D[3:] /= 2.0
         t, flows = 0.0, self.rate is None and self._starts(D, segment)
         while t < 1.0:
+
             def rates(t: float, y: np.ndarray, flows: bool = flows) -> np.ndarray:
                 return self._rates(t, y, D, segment, flows)[0]
 
@@ -141,9 +142,7 @@ class PointRates:
 
     # ---- the rates -------------------------------------------------------------------------------------------------
 
-    def _rates(
-        self, t: float, y: np.ndarray, D: np.ndarray, segment: Segment, flows: bool
-    ) -> tuple[np.ndarray, float]:
+    def _rates(self, t: float, y: np.ndarray, D: np.ndarray, segment: Segment, flows: bool) -> tuple[np.ndarray, float]:
         """Rates of the state over the segment, and the multiplier of flow."""
         k2, _, _, _, kappa = self._at(y)
         n = self._n(y)
@@ -178,7 +177,7 @@ class PointRates:
     ) -> tuple[np.ndarray, float, float]:
         """Rates, multiplier, and √⅔ |D_pl|, where γᵢ Bᵢ take p; None: no flow, nan: by consistency."""
         T = y[-1]
-        k2, slope, softening, zeta, kappa = self._at(y)
+        _, slope, softening, zeta, kappa = self._at(y)
         n, C = self._n(y), self._moduli(T)
         back = y[6:-3].reshape(-1, 6)
         zetas, gammas = self._kinematic(T, zeta).T

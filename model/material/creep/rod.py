@@ -36,9 +36,7 @@ Inverse = namedtuple("Inverse", "D k v")
 
 
 @njit(**KERNEL)
-def rod_map(
-    law: Parts, old: np.ndarray, de11: float, dg12: float, dg13: float, new: np.ndarray, C: np.ndarray
-) -> int:
+def rod_map(law: Parts, old: np.ndarray, de11: float, dg12: float, dg13: float, new: np.ndarray, C: np.ndarray) -> int:
     """`increment.advance` with the arguments of the rod's return mapping."""
     count = -1
     if law.viscous[TIME] > 0.0 and law.plastic[SPIN] == 0.0:

@@ -40,8 +40,8 @@ def _check_rate(data: MaterialFile, refuse: Refuse) -> None:
     if any(at.non_normality != "none" for at in data.temperatures):
         refuse(
             "rate",
-            "cannot be combined with non_normality: overstress sets the rate of all plastic strain, κ ties a part of it "
-            "to the rate of stress; make non_normality 'none', or remove rate",
+            "cannot be combined with non_normality: overstress sets the rate of all plastic strain, κ ties a part "
+            "of it to the rate of stress; make non_normality 'none', or remove rate",
         )
 
 

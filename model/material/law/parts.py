@@ -2,7 +2,6 @@
 
 from collections import namedtuple
 
-import numpy as np
 from numba import njit
 
 from coilset.model.base.kernel import INLINE

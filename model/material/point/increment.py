@@ -34,16 +34,36 @@ from coilset.model.material.point.rod import active
 from coilset.model.material.point.rod import inner as inner_of_rod
 from coilset.model.material.point.spin import Crossing, crossing_of_spin, spun
 from coilset.model.material.point.stage import (
-    ACTIVE, BACK, CREEP, CREPT, D_ACTIVE, D_STRESS, METRIC, MODULUS, MOST, ONSET, STRESS, TERMS, TRIAL, VECTORS, WORK, Room,
-    Span, finish, inner, solve,
+    ACTIVE,
+    BACK,
+    CREEP,
+    CREPT,
+    D_ACTIVE,
+    D_STRESS,
+    METRIC,
+    MODULUS,
+    MOST,
+    ONSET,
+    STRESS,
+    TERMS,
+    TRIAL,
+    VECTORS,
+    WORK,
+    Room,
+    Span,
+    finish,
+    inner,
+    solve,
 )
 
 # What an increment is made of. h: time of creep; reference: ṗ₀ Δt, 0 without overstress; temperature at its start, and
 # its change; heating, work: as in `Span`; expansion: α of it in the rod; follows: whether the stress follows C(T) at
 # once; strain: that of T, over c; unit: its slopes by the strains.
-Increment = namedtuple("Increment", "h reference temperature change heating work expansion follows deviates strain unit")
-# A part of the rest that is left beyond the yield surface, or of all: where it begins and ends in that, its length in the
-# increment, and the slopes of this length by the strains.
+Increment = namedtuple(
+    "Increment", "h reference temperature change heating work expansion follows deviates strain unit"
+)
+# A part of what lies before or beyond the yield surface: where in that it begins and ends, its length in the increment,
+# and the slopes of this length by the strains.
 Piece = namedtuple("Piece", "begin end length by")
 
 GAMMA = 1.0 - math.sqrt(0.5)
@@ -127,8 +147,13 @@ def advance(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.
 def _room(n: int, terms: int) -> Room:
     """Arrays of a stage."""
     return Room(
-        np.zeros((VECTORS, n)), np.zeros((TERMS, terms)), np.empty((4, 4)), np.empty((4, max(n, 2))), np.zeros((3, n, n)),
-        np.empty((MOST + n, 2, n)), np.empty((MOST + n, terms)),
+        np.zeros((VECTORS, n)),
+        np.zeros((TERMS, terms)),
+        np.empty((4, 4)),
+        np.empty((4, max(n, 2))),
+        np.zeros((3, n, n)),
+        np.empty((MOST + n, 2, n)),
+        np.empty((MOST + n, terms)),
     )
 
 
@@ -213,7 +238,13 @@ def _pack(
 
 @njit(**KERNEL)
 def _spin(
-    p: np.ndarray, old: np.ndarray, de: np.ndarray, E: float, G: float, temperature: float, rows: np.ndarray,
+    p: np.ndarray,
+    old: np.ndarray,
+    de: np.ndarray,
+    E: float,
+    G: float,
+    temperature: float,
+    rows: np.ndarray,
     slopes: np.ndarray,
 ) -> None:
     """Replace ē and the Bᵢ by those from which Hooke's law leads to the elastic response, with the spin (5.2.33)."""
@@ -383,9 +414,7 @@ def _stage(
             ways[2, j, k] = piece.by[k] / piece.length
     if of.deviates:
         _onset(law, temperature, flowed, rows, slopes, room)
-    span = Span(
-        length * of.h, length * of.reference, temperature, of.work, of.heating, of.expansion, of.deviates
-    )
+    span = Span(length * of.h, length * of.reference, temperature, of.work, of.heating, of.expansion, of.deviates)
     values, active, count = solve(law, span, rows, slopes, room)
     if count >= 0:
         finish(law, span, rows, slopes, values, active, room)

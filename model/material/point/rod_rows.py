@@ -1,4 +1,4 @@
-"""The rod's law at many points, several at a time: the same functions as in `rod.return_map`, in loops without branches.
+"""The rod's law at many points, several at a time: the functions of `rod.return_map` in loops without branches.
 
 Points are processed in groups. All points of a group get an elastic trial; those that flow are collected, and their
 local problems are solved together. A row holds one quantity of all points of a group, so that vector registers take

@@ -30,7 +30,7 @@ import numpy as np
 from numba import njit
 
 from coilset.model.base.kernel import INLINE, KERNEL
-from coilset.model.material.creep.flow import Creep, creep_strain
+from coilset.model.material.creep.flow import creep_strain
 from coilset.model.material.law.functions import EXPONENT, functions
 from coilset.model.material.law.parts import Parts, saturation
 from coilset.model.material.point.overstress import ROOT, of_work
@@ -43,12 +43,13 @@ Span = namedtuple("Span", "h reference temperature work heating expansion deviat
 Unknowns = namedtuple("Unknowns", "gain l q chi")
 Active = namedtuple("Active", "flow creep neutral")
 STILL, FLOWING = Active(False, False, False), Active(True, False, False)
-# Room for a stage. v: rows over the components, by the names below; of: rows over the back stresses; J, r: Newton's matrix
-# and residuals; ways: slopes of T_trial, n_β and the logarithm of the stage's time by the strains, shape (3, components,
-# strains); kept, kept_of: D_STRESS and D_FLOW, and D_THETA, of each unknown and, behind MOST of them, of each strain.
+# Room for a stage. v: rows over the components, by the names below; of: rows over the back stresses; J, r: Newton's
+# matrix and residuals; ways: slopes of T_trial, n_β and the logarithm of the stage's time by the strains, shape (3,
+# components, strains); kept, kept_of: D_STRESS and D_FLOW, and D_THETA, of each unknown and, behind MOST of them, of
+# each strain.
 MOST = 4
 Room = namedtuple("Room", "v of J r ways kept kept_of")
-METRIC, MODULUS, TRIAL, ONSET, SHARE, STRESS, ACTIVE, FLOW, D_STRESS, D_ACTIVE, D_FLOW, VECTORS = range(12)  # w, c, …, s, T
+METRIC, MODULUS, TRIAL, ONSET, SHARE, STRESS, ACTIVE, FLOW, D_STRESS, D_ACTIVE, D_FLOW, VECTORS = range(12)
 THETA, ZETA, FADING, D_ZETA, D_FADING, D_THETA, TERMS = range(7)  # FADING: γ
 # Values at the unknowns: v, k and slopes in b; κ; |n|, n:P, |P|, σ and the creep strain; b, a, q, χ as they are used.
 Values = namedtuple("Values", "v dv k dk kappa dkappa norm work length sigma creep gain b l a q chi")
@@ -74,7 +75,7 @@ def inner(v: np.ndarray, a: int, b: int) -> float:
     return total
 
 
-@njit(**INLINE)
+@njit(**KERNEL)
 def evaluate(law: Parts, span: Span, start: np.ndarray, at: Unknowns, active: Active, room: Room) -> Values:
     """T, n and P at the unknowns, and what the residuals consist of."""
     p, size = law.plastic, room.of.shape[1]
@@ -123,7 +124,7 @@ def evaluate(law: Parts, span: Span, start: np.ndarray, at: Unknowns, active: Ac
     return Values(v, dv, k, dk, kappa, dkappa, norm, work, length, sigma, creep, gain, b, l, a, q, chi)
 
 
-@njit(**INLINE)
+@njit(**KERNEL)
 def differential(
     law: Parts,
     span: Span,
@@ -363,14 +364,12 @@ def _matrix(
 ) -> None:
     """Write J, the residuals' derivatives in the unknowns."""
     for i in range(_unknowns(active, span.deviates)):
-        of = differential(
-            law, span, start, slopes, x, active, _direction(x, active, span.deviates, i), room
-        )
+        of = differential(law, span, start, slopes, x, active, _direction(x, active, span.deviates, i), room)
         _write(x, of, active, span.deviates, room.J, i)
         _keep(room, i)
 
 
-@njit(**INLINE)
+@njit(**KERNEL)
 def _eliminate(J: np.ndarray, r: np.ndarray, n: int, columns: int) -> None:
     """Replace r by J⁻¹ r; J is overwritten."""
     for i in range(n):
@@ -460,9 +459,7 @@ def _together(
 
 
 @njit(**INLINE)
-def solve(
-    law: Parts, span: Span, start: np.ndarray, slopes: np.ndarray, room: Room
-) -> tuple[Values, Active, int]:
+def solve(law: Parts, span: Span, start: np.ndarray, slopes: np.ndarray, room: Room) -> tuple[Values, Active, int]:
     """The end of a stage, and iterations, −1 if there is none."""
     chi, count = 0.0, 0
     if span.h > 0.0:

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 
 from coilset.model.base.style import STYLE
 from coilset.model.material import library, points
-from coilset.verification.study import Study
 from coilset.verification.references import heun
+from coilset.verification.study import Study
 
 FAST = True
 INCREMENTS = np.array([1e-3, 5e-4, 2.5e-4, 1.25e-4])
