@@ -49,7 +49,8 @@ def add_title(figure: Figure, text: str) -> None:
 
 
 def broken(text: str, letters: int) -> str:
-    """Lines of a title that have no more letters than that."""
+    """Lines of a title that have no more letters than that; a number keeps its unit."""
+    text = re.sub(r"(\d) (N|mm|MPa|%)", "\\1\u00a0\\2", text)
     return "\n".join(part for line in text.split("\n") for part in textwrap.wrap(line, letters))
 
 
