@@ -170,7 +170,7 @@ def test_a_pulled_spring_is_not_called_pressed(analysis, force, word):
     run = opened(analysis, stepped(analysis, [a_step(1, travel=force / 9.0, force=force)]))
     figure, _ = laid_out(characteristic(run))
     axes = figure.axes[0]
-    assert axes.get_title().startswith(f"{word} with up to 9 N")
+    assert axes.get_title().replace("\u00a0", " ").startswith(f"{word} with up to 9 N")
     (rate,) = (line for line in axes.get_lines() if str(line.get_label()).startswith("initial rate"))
     assert rate.get_ydata()[1] == pytest.approx(force, rel=1e-12)
 
