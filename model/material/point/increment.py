@@ -269,21 +269,28 @@ def _through(law: Parts, of: Increment, rows: np.ndarray, slopes: np.ndarray, ro
     """Replace the rows and slopes at the start of an increment by those at its end; as `advance`."""
     n = rows.shape[1]
     by = np.zeros(n)  # slopes of the part before the yield surface
-    beta = _crossing(law, of, rows, slopes, by, room)
+    beta, count = _crossing(law, of, rows, slopes, by, room), 0
     if of.h == 0.0 and (of.change == 0.0 or not of.follows):
         for j in range(n):
             rows[0, j] += beta * of.strain[j]
             for k in range(n):
                 slopes[0, j, k] += beta * of.unit[j, k] + by[k] * of.strain[j]
-        return 0 if beta == 1.0 else _pieces(law, of, Piece(0.0, 1.0, 1.0 - beta, -by), rows, slopes, room)
-    if not 0.0 < beta < 1.0:
+        if beta == 1.0:
+            return 0
+        whole, last = Piece(0.0, 1.0, 1.0 - beta, -by), True
+    elif 0.0 < beta < 1.0:
+        whole, last = Piece(0.0, 1.0, beta, by), False
+    else:
         by[:] = 0.0
-        return _pieces(law, of, Piece(0.0, 1.0, 1.0, by), rows, slopes, room)
-    count = _pieces(law, of, Piece(0.0, 1.0, beta, by), rows, slopes, room)
-    if count < 0:
-        return count
-    more = _pieces(law, of, Piece(0.0, 1.0, 1.0 - beta, -by), rows, slopes, room)
-    return count + more if more >= 0 else more
+        whole, last = Piece(0.0, 1.0, 1.0, by), True
+    while True:
+        more = _pieces(law, of, whole, rows, slopes, room)
+        if more < 0:
+            return more
+        count += more
+        if last:
+            return count
+        whole, last = Piece(0.0, 1.0, 1.0 - beta, -by), True
 
 
 @njit(**INLINE)
@@ -346,7 +353,7 @@ def _fading(law: Parts, of: Increment, rows: np.ndarray, room: Room) -> float:
     return min(FADED / (1.0 - FADED) ** m / (GAMMA * rate), 1.0) if rate > 0.0 else 1.0
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _pieces(law: Parts, of: Increment, whole: Piece, rows: np.ndarray, slopes: np.ndarray, room: Room) -> int:
     """A part of the increment: pieces that become longer as overstress fades, divided until all stages have an end."""
     before, slopes_before = _copied(rows, slopes)
@@ -373,22 +380,29 @@ def _pieces(law: Parts, of: Increment, whole: Piece, rows: np.ndarray, slopes: n
     return FAILED
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _piece(law: Parts, of: Increment, piece: Piece, rows: np.ndarray, slopes: np.ndarray, room: Room) -> int:
     """Both stages."""
     before, slopes_before = _copied(rows, slopes)
-    flowed, count = _stage(law, of, piece, (GAMMA, GAMMA), False, rows, slopes, room)
-    if count < 0:
-        return count
-    _lead(law, of, piece, before, slopes_before, rows, slopes, room)
-    flows, more = _stage(law, of, piece, (GAMMA, 1.0), flowed, rows, slopes, room)
-    if flowed and not flows and of.h == 0.0:  # the second stage's start lies within the surface: backward Euler
-        _copy(before, slopes_before, rows, slopes)
-        flows, more = _stage(law, of, piece, (1.0, 1.0), False, rows, slopes, room)
-    return count + more if more >= 0 else FAILED
+    stage, flowed, count = 0, False, 0
+    while True:
+        part, at = (1.0 if stage == 2 else GAMMA), (GAMMA if stage == 0 else 1.0)
+        flows, more = _stage(law, of, piece, (part, at), flowed, rows, slopes, room)
+        if more < 0:
+            return FAILED
+        count += more
+        if stage == 0:
+            _lead(law, of, piece, before, slopes_before, rows, slopes, room)
+            stage, flowed = 1, flows
+        elif stage == 1 and flowed and not flows and of.h == 0.0:
+            # the second stage's start lies within the surface: backward Euler for all
+            _copy(before, slopes_before, rows, slopes)
+            stage, flowed = 2, False
+        else:
+            return count
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _stage(
     law: Parts,
     of: Increment,
@@ -421,7 +435,7 @@ def _stage(
     return active.flow, count
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _onset(law: Parts, temperature: float, flowed: bool, rows: np.ndarray, slopes: np.ndarray, room: Room) -> None:
     """Write n_β and its slopes: n at the start of the stage, or where the elastic path crosses the yield surface."""
     n, v, ways, beta, steep = rows.shape[1], room.v, room.ways, 0.0, 0.0
@@ -446,7 +460,7 @@ def _onset(law: Parts, temperature: float, flowed: bool, rows: np.ndarray, slope
                 ways[1, j, k] -= along / steep * room.v[D_ACTIVE, j]
 
 
-@njit(**KERNEL)
+@njit(**INLINE)
 def _lead(
     law: Parts,
     of: Increment,

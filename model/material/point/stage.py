@@ -212,7 +212,7 @@ def residual(x: Values) -> Residual:
     return Residual(x.norm - x.v * x.k, x.gain - x.work, x.q - ROOT * x.length, creep)
 
 
-@njit(**INLINE)
+@njit(**KERNEL)
 def creep_alone(law: Parts, span: Span, start: np.ndarray, room: Room) -> tuple[float, int]:
     """χ of a stage that does not flow, and iterations, −1 if there is none.
 
@@ -250,67 +250,42 @@ def _normal(span: Span, reference: float) -> Span:
     return Span(span.h, reference, span.temperature, span.work, span.heating, span.expansion, False)
 
 
-@njit(**INLINE)
+@njit(**KERNEL)
 def flow_alone(
     law: Parts, span: Span, start: np.ndarray, slopes: np.ndarray, chi: float, room: Room
 ) -> tuple[float, int]:
-    """D of a stage that flows without deviation from normality, at a given χ; iterations, 0 if it does not flow.
+    """D of a stage that flows without deviation from normality, at a given χ; iterations, −1 if there is none.
 
-    |n| − v k falls with b. Newton's method is kept in a bracket; with overstress it goes over r, b = b* + D r^m with
-    the static law's D, since v − 1 is nearly linear in r.
+    |n| − v k falls with D. Newton's method is kept in a bracket. With overstress it starts anew from the static law's D
+    and goes over r, D = D_static r^m, since v − 1 is nearly linear in r.
     """
-    still = _normal(span, 0.0)
-    gain, count = _root(law, still, start, slopes, chi, (0.0, 1.0), room)
-    if count <= 0 or span.reference == 0.0:
-        return gain, count
-    moving = _normal(span, span.reference)
-    gain, more = _root(law, moving, start, slopes, chi, (gain, law.plastic[EXPONENT]), room)
-    return gain, count + more if more > 0 else -1
-
-
-@njit(**INLINE)
-def _root(
-    law: Parts,
-    span: Span,
-    start: np.ndarray,
-    slopes: np.ndarray,
-    chi: float,
-    scale: tuple[float, float],
-    room: Room,
-) -> tuple[float, int]:
-    """D = r, or W r^m with (W, m) = `scale` if W > 0."""
-    whole, m = scale
-    r, low, high = 0.0, 0.0, math.inf
-    if whole > 0.0:  # r = 1 is the static law; v − 1 there over that of the elastic response, were v linear in r
-        at = evaluate(law, span, start, Unknowns(0.0, 0.0, 0.0, chi), STILL, room)
-        beyond = at.norm / at.k - 1.0
-        above = of_work(span.reference, m, whole, at.k)[0] - 1.0
-        r, high = beyond / (beyond + above), 1.0
-    for iteration in range(MAX_ITERATIONS):
-        gain = r if whole == 0.0 else whole * r**m
+    m = law.plastic[EXPONENT]
+    reference, span = span.reference, _normal(span, 0.0)
+    static, r, low, high, count, beyond, to = 0.0, 0.0, 0.0, math.inf, 0, 0.0, 0.0
+    for _ in range(2 * MAX_ITERATIONS):
+        gain = r if static == 0.0 else static * r**m
         at = evaluate(law, span, start, Unknowns(gain, 0.0, 0.0, chi), FLOWING if gain > 0.0 else STILL, room)
         off = at.norm - at.v * at.k
-        if r == 0.0:
-            if off <= 1e-12 * at.k:
-                return 0.0, 0
+        found = gain > 0.0 and abs(off) <= PRECISION * at.v * at.k
+        if gain == 0.0:
             stiffness = room.v[SHARE, 1] * room.v[MODULUS, 1] + at.k * at.dk
             for i in range(room.of.shape[1]):
                 stiffness += room.of[ZETA, i]
-            to = off * at.k / stiffness
-        else:
-            if abs(off) <= PRECISION * at.v * at.k:
-                return gain, iteration
-            change = Change(-1, 1.0, 0.0, 0.0, 0.0)
-            slope = differential(law, span, start, slopes, at, FLOWING, change, room).flow
+            beyond, to = at.norm / at.k - 1.0, off * at.k / stiffness
+        elif not found:
+            slope = differential(law, span, start, slopes, at, FLOWING, Change(-1, 1.0, 0.0, 0.0, 0.0), room).flow
+            slope *= 1.0 if static == 0.0 else m * gain / r
             low, high = (r, high) if off > 0.0 else (low, r)
-            if whole > 0.0:
-                slope *= m * gain / r
             to = r - off / slope if slope < 0.0 else math.inf
-        if not low < to < high:
+        if not found and not low < to < high:
             to = 0.5 * (low + high) if high < math.inf else 2.0 * r + 1e-3 * at.k
-        if to == r or high - low <= 1e-15 * r:
-            return gain, iteration
-        r = to
+        if found or to == r or high - low <= 1e-15 * r:
+            if reference == 0.0 or static > 0.0:
+                return gain, count
+            # r = 1 is the static law; v − 1 there, and over that of the elastic response, were v linear in r
+            static, span, low, high = gain, _normal(span, reference), 0.0, 1.0
+            to = beyond / (beyond + of_work(reference, m, gain, at.k)[0] - 1.0)
+        r, count = to, count + 1
     return 0.0, -1
 
 
@@ -352,7 +327,7 @@ def _keep(room: Room, i: int) -> None:
         room.kept_of[i, j] = room.of[D_THETA, j]
 
 
-@njit(**INLINE)
+@njit(**KERNEL)
 def _matrix(
     law: Parts,
     span: Span,
@@ -469,7 +444,7 @@ def solve(law: Parts, span: Span, start: np.ndarray, slopes: np.ndarray, room: R
         return x, Active(False, chi > 0.0, False), count
     active = Active(True, chi > 0.0, False)
     gain, more = flow_alone(law, span, start, slopes, chi, room)
-    if more <= 0:
+    if more < 0:
         return x, active, -1
     x = evaluate(law, _normal(span, span.reference), start, Unknowns(gain, 0.0, 0.0, chi), FLOWING, room)
     if active.creep or span.deviates:
