@@ -118,7 +118,7 @@ def _rates(
     E, G, alpha = elasticity(p, y[2 * m + 1])
     cc = 2.0 * G
     ca = E / 1.5 if rod else cc
-    heating, change = warming
+    heating, change, _ = warming
     _, dk2, zeta, _, kappa, _ = functions(p, y[2 * m], y[2 * m + 1])
     for i in range(2 * m + 2):
         rate[i] = 0.0

@@ -142,8 +142,10 @@ class PointRates:
 
     # ---- the rates -------------------------------------------------------------------------------------------------
 
-    def _rates(self, t: float, y: np.ndarray, D: np.ndarray, segment: Segment, flows: bool) -> tuple[np.ndarray, float]:
-        """Rates of the state over the segment, and the multiplier of flow."""
+    def _rates(
+        self, t: float, y: np.ndarray, D: np.ndarray, segment: Segment, flows: bool
+    ) -> tuple[np.ndarray, float, float]:
+        """As `_linear`, with the multiplier and the length that belong together."""
         k2, _, _, _, kappa = self._at(y)
         n = self._n(y)
         if self.rate:
