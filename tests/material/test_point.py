@@ -146,8 +146,8 @@ OF_RATES = [names for names in PAIRS if not {"spin", "warmed"} & set(names)]
 def test_against_the_rates(names):
     """Increments of 1e-3: within 0.1 % of the greatest stress, 0.2 % with several back stresses; of second order.
 
-    Overstress fades in pieces of its own length, and creep of a cooled-off overstress begins anew in each: there the
-    error is small, but does not fall with the square.
+    Overstress fades in pieces of its own length, however long the increments, and where creep takes a point off the
+    yield surface the κ of its return is of first order: there the error is small, but does not fall with the square.
     """
     law, n = law_of(*names), 3 if PAIRS.index(names) % 2 else 6
     hold = 60.0 if "sinh" in names else 3000.0
@@ -155,6 +155,8 @@ def test_against_the_rates(names):
     assert rough < (2e-3 if "back stresses" in names else 1e-3)
     if "overstress" in names:
         assert max(coarse, fine) < 5e-4
+    elif names == ("κ", "sinh"):
+        assert max(coarse, fine) < 5e-5
     else:
         assert fine < 3e-5
         assert coarse / fine > 3.0 or fine < 1e-6  # moduli of the increment's start, where plastic work heats
@@ -189,7 +191,7 @@ def test_tangent(names):
             ]
             assert rest[-1] < 2e-3
             if rest[0] > 1e-5:  # else it is linear
-                assert np.polyfit(np.log(steps), np.log(rest), 1)[0] == pytest.approx(1, abs=0.1)
+                assert np.polyfit(np.log(steps), np.log(rest), 1)[0] > 0.9
 
 
 def test_overstress_does_not_deviate_from_normality():

@@ -85,7 +85,7 @@ def test_steady_flow(exponent, rate):
 
 
 def test_stress_beyond_yield_relaxes():
-    """Pulled fast, then held: σ̇ = −E ṗ₀ (σ/σ_y(b*) − 1)^m and ḃ* = σ ṗ of a bar, by scipy; of first order."""
+    """Pulled fast, then held: σ̇ = −E ṗ₀ (σ/σ_y(b*) − 1)^m and ḃ* = σ ṗ of a bar, by scipy; of second order."""
     law, H = law_of(3.0, slope=2000.0), 2000.0
     E, errors = law.E, []
     start, _ = advance(law, np.zeros(7), np.array([4e-3, 0.0, 0.0]), 1e-9)
@@ -104,7 +104,7 @@ def test_stress_beyond_yield_relaxes():
             state, _ = advance(law, state, np.zeros(3), seconds / n)
         errors.append(state[0] - exact)
     assert abs(errors[1]) < 0.02 * exact
-    assert errors[0] / errors[1] == pytest.approx(2.0, abs=0.2)
+    assert errors[0] / errors[1] == pytest.approx(4.0, abs=0.4)
 
 
 def test_small_flow_at_much_work():
@@ -139,7 +139,7 @@ def test_tangent(components, exponent):
             rest.append(np.linalg.norm(moved[:components] - new[:components] - h * C @ v) / np.linalg.norm(h * C @ v))
         assert rest[-1] < 2e-3
         if rest[0] > 1e-8:  # else it is linear
-            assert np.polyfit(np.log(steps), np.log(rest), 1)[0] == pytest.approx(1, abs=0.15)
+            assert np.polyfit(np.log(steps), np.log(rest), 1)[0] > 0.9
 
 
 @pytest.mark.parametrize(

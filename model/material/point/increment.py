@@ -57,10 +57,11 @@ from coilset.model.material.point.stage import (
 )
 
 # What an increment is made of. h: time of creep; reference: ṗ₀ Δt, 0 without overstress; temperature at its start, and
-# its change; heating, work: as in `Span`; expansion: α of it in the rod; follows: whether the stress follows C(T) at
+# its change; heating, work: as in `Span`; expansion: α of it in the rod; fading: see
+# `_fading`; follows: whether the stress follows C(T) at
 # once; strain: that of T, over c; unit: its slopes by the strains.
 Increment = namedtuple(
-    "Increment", "h reference temperature change heating work expansion follows deviates strain unit"
+    "Increment", "h reference temperature change heating work expansion fading follows deviates strain unit"
 )
 # A part of what lies before or beyond the yield surface: where in that it begins and ends, its length in the increment,
 # and the slopes of this length by the strains.
@@ -70,6 +71,7 @@ GAMMA = 1.0 - math.sqrt(0.5)
 AHEAD = (1.0 - GAMMA) / GAMMA
 ROD = 3  # components
 DIVISIONS = 6  # of an increment in halves
+ROUNDING = 1e-9  # overstress, over the static surface, that is none
 FADED, LONGER = 0.2, 3.0  # share of overstress, see `_fading`; how much longer the next piece ends
 
 
@@ -112,9 +114,10 @@ def advance(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.
     if n == ROD:
         e[0] -= thermal
     _unpack(old, own, q, room.v, rows)
+    reference = 1.0 / p[RATE] if p[RATE] > 0.0 else 0.0
+    fading = _fading(law, start, reference, rows, room)
     if p[SPIN] != 0.0 and n == ROD:
         _spin(p, old, de, E0, G0, start, rows, slopes)
-    reference = 1.0 / p[RATE] if p[RATE] > 0.0 else 0.0
     work = rows[-1, WORK]
     expansion = alpha * heating if n == ROD else 0.0
     of = Increment(
@@ -333,23 +336,23 @@ def _crossing(law: Parts, of: Increment, rows: np.ndarray, slopes: np.ndarray, b
 
 
 @njit(**INLINE)
-def _fading(law: Parts, of: Increment, rows: np.ndarray, room: Room) -> float:
+def _fading(law: Parts, temperature: float, reference: float, rows: np.ndarray, room: Room) -> float:
     """Part of the increment in which its first stage takes off a fifth of the overstress at its start.
 
     At constant strain v̇ = −R (v − 1)^m over the increment, with R = √1.5 ṗ₀ Δt (c + Σζᵢ + k k′)/k.
     """
-    if of.reference == 0.0:
+    if reference == 0.0:
         return 1.0
     n, m = rows.shape[1], law.plastic[EXPONENT]
     for j in range(n):
         room.v[ACTIVE, j] = _active(room.v, rows, j)
-    k2, dk2, zeta, _, _, _ = functions(law.plastic, rows[-1, WORK], of.temperature)
+    k2, dk2, zeta, _, _, _ = functions(law.plastic, rows[-1, WORK], temperature)
     beyond = math.sqrt(inner(room.v, ACTIVE, ACTIVE) / k2) - 1.0
-    if not beyond > 0.0:
+    if not beyond > ROUNDING:
         return 1.0
     for i in range(law.terms.shape[1]):
-        zeta += saturation(law, i, of.temperature).zeta
-    rate = math.sqrt(1.5 / k2) * of.reference * (room.v[MODULUS, 1] + zeta + 0.5 * dk2) * beyond ** (m - 1.0)
+        zeta += saturation(law, i, temperature).zeta
+    rate = math.sqrt(1.5 / k2) * reference * (room.v[MODULUS, 1] + zeta + 0.5 * dk2) * beyond ** (m - 1.0)
     return min(FADED / (1.0 - FADED) ** m / (GAMMA * rate), 1.0) if rate > 0.0 else 1.0
 
 
@@ -357,7 +360,7 @@ def _fading(law: Parts, of: Increment, rows: np.ndarray, room: Room) -> float:
 def _pieces(law: Parts, of: Increment, whole: Piece, rows: np.ndarray, slopes: np.ndarray, room: Room) -> int:
     """A part of the increment: pieces that become longer as overstress fades, divided until all stages have an end."""
     before, slopes_before = _copied(rows, slopes)
-    first = _fading(law, of, rows, room) / whole.length
+    first = of.fading / whole.length
     for division in range(DIVISIONS):
         count, begin, end = 0, 0.0, first
         while begin < 1.0:
