@@ -120,9 +120,8 @@ def advance(law: Parts, old: np.ndarray, de: np.ndarray, new: np.ndarray, C: np.
         _spin(p, old, de, E0, G0, start, rows, slopes)
     work = rows[-1, WORK]
     expansion = alpha * heating if n == ROD else 0.0
-    of = Increment(
-        h, reference, start, end - start, heating, work, expansion, follows, functions(p, work, start)[4] > 0.0, e, unit
-    )
+    deviates = functions(p, work, start)[4] > 0.0
+    of = Increment(h, reference, start, end - start, heating, work, expansion, fading, follows, deviates, e, unit)
     count = _through(law, of, rows, slopes, room)
     new[:] = old
     if count < 0:
