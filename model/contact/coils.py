@@ -8,7 +8,7 @@ import numpy as np
 from numba import njit
 
 from coilset.model.base.extremes import greatest, relative_motion
-from coilset.model.contact.base import Contribution, TrialPositions
+from coilset.model.contact.base import Contact, Contribution, TrialPositions
 from coilset.model.contact.curve import WirePoints
 from coilset.model.contact.elements import PAIR, coil_elements
 from coilset.model.contact.memory import Memory
@@ -21,7 +21,7 @@ STATIONS_ASIDE, POSTS_ASIDE = 5, 2
 NO_PAIR = np.empty((0, 3), np.int64), np.empty((0, 2)), np.empty(0), np.empty((0, 3))
 
 
-class Coils:
+class Coils(Contact):
     """One-sided bedding between the coils.
 
     Coils that overlap in the stress-free state, as closed ends do because of rounding and the curve's small error,
@@ -37,7 +37,10 @@ class Coils:
         multiplier_offset: by which each point is pressed beyond its penetration at each place, shape (m, PLACES), mm.
     """
 
-    name, end, needs_rotations = "coils", None, False
+    name, limits_step = "coils", True
+    points: WirePoints
+    memory: Memory
+    multiplier_offset: np.ndarray
 
     def __init__(self, points: WirePoints, stations: np.ndarray, bedding: float, onset: float):
         self.points, self.onset, self._room = points, onset, max(FEW, len(points))
@@ -158,12 +161,8 @@ class Coils:
 
     @property
     def reach(self) -> float:
-        """Distance of the centre lines up to which pairs are sought; see ActsNearby."""
+        """Distance of the centre lines up to which pairs are sought; see Contact."""
         return 2.0 * self._widest + float(self.multiplier_offset.max()) + self._skin
-
-    def acts_on_seats(self, stations: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
-        """None; see ActsNearby."""
-        return np.zeros(len(stations), dtype=bool)
 
     def augment(self, trial: TrialPositions) -> None:
         """Increase each point's offset at each place by its penetration."""

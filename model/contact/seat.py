@@ -5,7 +5,7 @@ In the coordinates q of its plate (plate.py) a flat seat is the plane qz = 0; a 
 
 import numpy as np
 
-from coilset.model.contact.base import LEVEL, Contribution, TrialPositions, one_sided
+from coilset.model.contact.base import LEVEL, Contact, Contribution, TrialPositions, one_sided
 from coilset.model.contact.curve import POINTS_PER_ELEMENT, STENCIL, WirePoints
 from coilset.model.contact.elements import FLAT, flat_seat_elements
 from coilset.model.contact.memory import Memory
@@ -16,7 +16,7 @@ from coilset.model.contact.plate import Plate, radial
 TIP_SPRING_OF_BEDDING = 1e-5
 
 
-class Seat:
+class Seat(Contact):
     """The bottom or the top seat: it pushes the wire's underside out in proportion to the penetration.
 
     The wire's tip is in contact from first touch, and a soft spring holds it: if it lifts off farther than in the
@@ -39,8 +39,11 @@ class Seat:
         multiplier_offset: by which each point is pressed in addition to its penetration, shape (m,), mm.
     """
 
-    needs_rotations = False
-    aside, reach = STENCIL, 0.0  # no other part of the wire matters
+    limits_step = True
+    points: WirePoints
+    memory: Memory
+    multiplier_offset: np.ndarray
+    aside = STENCIL  # no other part of the wire matters
 
     def __init__(
         self,
@@ -119,7 +122,7 @@ class Seat:
         return -self.gaps(self.points.at(trial.x, points), trial.seats, points).min(initial=0.0)
 
     def acts_on_seats(self, stations: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
-        """Those of which a neighbour may be in contact, and those of the tip; see ActsNearby."""
+        """Those of which a neighbour may be in contact, and those of the tip; see Contact."""
         points = POINTS_PER_ELEMENT * stations
         along_wire = span[2] if self.linear else np.linalg.norm(span)
         near = self.gaps(x, seats, points) < self.multiplier_offset.max() + 2.0 * along_wire

@@ -8,7 +8,7 @@ from mpi4py import MPI
 
 from coilset.model.base.agreement import max_of_ranks
 from coilset.model.body.lever import Swing
-from coilset.model.contact.base import SEAT_DOFS, Augmented, Contact, Contribution, HasMemory, LimitsStep
+from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution
 from coilset.model.contact.memory import Memory
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.surroundings import Surroundings
@@ -30,14 +30,11 @@ class ContactParts:
         self.layout, self.comm, self.contacts = layout, layout.comm, contacts
         self.surroundings = Surroundings(layout, contacts)
         self.need_rotations = any(contact.needs_rotations for contact in contacts)
-        # asked once, for the test of a protocol takes longer than what it guards
-        self._limiting = [contact for contact in contacts if isinstance(contact, LimitsStep)]
-        self._limiting_numbers = [number for number, contact in enumerate(contacts) if contact in self._limiting]
-        self._augmented = [contact for contact in contacts if isinstance(contact, Augmented)]
+        self._limiting_numbers = [number for number, contact in enumerate(contacts) if contact.limits_step]
+        self._limiting = [contacts[number] for number in self._limiting_numbers]
+        self._augmented = [contact for contact in contacts if contact.multiplier_offset is not None]
         self._kept = [
-            contact.memory
-            for contact in contacts
-            if isinstance(contact, HasMemory) and not isinstance(contact, Augmented)
+            contact.memory for contact in contacts if contact.memory is not None and contact.multiplier_offset is None
         ]
 
     def evaluate(
@@ -85,7 +82,8 @@ class ContactParts:
         trial = self.surroundings.trial(x, seats)
         for contact in self._augmented:
             contact.augment(trial)
-            self.share(contact.memory)
+            if contact.memory is not None:
+                self.share(contact.memory)
 
     def share_memories(self) -> None:
         """Let all ranks know the memories, except what `augment` has shared already; collective."""

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from coilset.model.contact.base import ActsNearby, Contact, Known, TrialPositions
+from coilset.model.contact.base import Contact, Known, TrialPositions
 from coilset.model.contact.curve import STENCIL
 from coilset.model.equilibrium.layout import LineLayout
 
@@ -30,7 +30,7 @@ class Surroundings:
 
     def __init__(self, layout: LineLayout, contacts: Sequence[Contact]) -> None:
         self.layout, self.comm = layout, layout.comm
-        self._nearby = [contact for contact in contacts if isinstance(contact, ActsNearby)]
+        self._nearby = [contact for contact in contacts if contact.aside is not None]
         self._own, n = layout.own_stations, len(layout.station_dofs)
         self._all = layout.comm.size == 1 or len(self._nearby) < len(contacts) or n < STENCIL
         if self._all:
@@ -38,7 +38,7 @@ class Surroundings:
         self._is_own = np.zeros(n, dtype=bool)
         self._is_own[self._own] = True
         self._along = np.argsort(self._own)
-        self._aside = max((contact.aside for contact in self._nearby), default=0)
+        self._aside = max((contact.aside or 0 for contact in self._nearby), default=0)
         self._x, self._rotations = np.zeros((n, 3)), np.zeros((n, 3))
         self._last, self._way = np.zeros((len(self._own), 3)), 0.0  # own stations of the last call; see Known
 
