@@ -7,8 +7,8 @@ from mpi4py import MPI
 
 from coilset.model.case import Case, read_case
 from coilset.model.design.surrogate import guess
+from coilset.model.figures.panels.material_curves import there_and_back
 from coilset.model.material import library
-from coilset.model.report.panels.material_curves import there_and_back
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.examples import EXAMPLES
 
