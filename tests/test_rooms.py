@@ -48,8 +48,6 @@ TOPS = ("meshes", "model", "verification", "scripts")
 # What is larger still, with its size: it may become smaller, and nothing may be added.
 FOLDERS = {"model/equilibrium": 28}
 PARAMETERS = {
-    "model/contact/elements.py": 2,
-    "model/contact/search.py": 1,
     "model/material/point/back_stresses.py": 1,
     "model/material/point/rod_plastic.py": 1,
     "model/rod/forms.py": 1,

@@ -7,7 +7,7 @@ import numpy as np
 
 from coilset.model.contact.base import LEVEL, Contact, Contribution, TrialPositions, one_sided
 from coilset.model.contact.curve import POINTS_PER_ELEMENT, STENCIL, WirePoints
-from coilset.model.contact.elements import FLAT, flat_seat_elements
+from coilset.model.contact.elements import FLAT, FlatSeat, flat_seat_elements
 from coilset.model.contact.memory import Memory
 from coilset.model.contact.plate import Plate, radial
 
@@ -85,6 +85,19 @@ class Seat(Contact):
         if self.linear:
             levels = np.append(np.arange(2, 3 * STENCIL, 3), 3 * STENCIL + LEVEL)
             self.dofs = np.ascontiguousarray(self.dofs[:, levels])
+        self._flat_seat = FlatSeat(
+            points.stations,
+            points.weights,
+            self.dofs,
+            self.side,
+            self.distance,
+            self.multiplier_offset,
+            self.stiffness,
+            onset,
+            self.tip,
+            self.tip_spring,
+            self.slack,
+        )
 
     def gaps(self, p: np.ndarray, seats: np.ndarray, points: np.ndarray | slice = slice(None)) -> np.ndarray:
         """Gap of the underside at all points or the `points`, at `p`, shape (m, 3), negative for penetration, mm."""
@@ -134,25 +147,9 @@ class Seat(Contact):
 
     def _flat(self, trial: TrialPositions) -> Contribution:
         """On a flat seat that moves along the axis only."""
-        points, numbers = self.points, trial.points(self.points)
+        numbers = trial.points(self.points)
         room = Contribution.room(len(numbers), FLAT)  # for as many as could bear, most of them never touched
-        count = flat_seat_elements(
-            numbers,
-            trial.x,
-            points.stations,
-            points.weights,
-            self.dofs,
-            trial.seats[self._level],
-            self.side,
-            self.distance,
-            self.multiplier_offset,
-            self.stiffness,
-            self.onset,
-            self.tip,
-            self.tip_spring,
-            self.slack,
-            room,
-        )
+        count = flat_seat_elements(numbers, trial.x, trial.seats[self._level], self._flat_seat, room)
         return Contribution(*[part[:count] for part in room])
 
     def _curved(self, trial: TrialPositions) -> Contribution:
