@@ -7,22 +7,22 @@ With the height ζ = cos φ above the axis along the normal and the place η = v
 """
 
 from dataclasses import dataclass
-from functools import cache, cached_property, lru_cache
+from functools import cache, cached_property
 
 import numpy as np
 
+from coilset.model.section.outline import Section
 from coilset.model.section.polynomials import Basis
 from coilset.model.section.rules import DiskRule, rim
 
 WHOLE = 1.0  # a level from which on nothing is cut away
 DEEPEST = -0.999  # the wire that is left there is half a thousandth of its diameter thick
 FINE = 24  # points in each direction, for integrals of polynomials
-DEGREE = 6  # of the polynomials of the warping: the torsional stiffness is 2e-4 too high at half of a disk
 SLENDERNESS = 1.6  # points over the height for each of those across it
 
 
 @dataclass(frozen=True)
-class Segment:
+class Segment(Section):
     """The disk without what lies beyond a straight line.
 
     Args:
@@ -87,69 +87,7 @@ class Segment:
         axes = np.stack([np.array([n[1], -n[0]]) / across, n / half])
         return Basis.over(degree, *self.fine, (1.0 - half) * n, axes)
 
-    def warping(self, bend: float = 0.0) -> "Warping":
-        """How it warps in a wire of curvature `bend`, κ r."""
-        return _warping(self, bend)
-
-
-class Warping:
-    """Warping w(y, z) along the wire for unit transverse shear strains γ2, γ3 and for unit twist φ′ of a segment.
-
-    Of an elastic wire of constant curvature κ, by Ritz's method. With g = 1 − κ y and e = (1, 0), (0, 1), (−z, y) its
-    shear strains are (γ12, γ13) = (e + κ w (1, 0))/g + ∇w, see `coilset.model.section.shape`, and w minimises
-    ∫ ½ |(γ12, γ13)|² g dA among the polynomials with ∫ w dA = ∫ y w dA = ∫ z w dA = 0. These conditions only rename γ2,
-    γ3 and φ′. A straight wire, κ = 0, has Saint-Venant's warping; with it a thin segment would be some (κ r)² too stiff
-    in a coil. The twist is about the disk's own centre, not about the centre of shear: with it goes a transverse shear,
-    which the rod finds by itself.
-
-    Args:
-        segment: Segment.
-        bend: κ r.
-
-    Attributes:
-        stiffness: shear stiffness of (γ2, γ3, φ′) over G π r², with φ′ in 1/r, shape (3, 3).
-    """
-
-    def __init__(self, segment: Segment, bend: float) -> None:
-        self._basis, self._bend = segment.basis(DEGREE), bend
-        places, weights = segment.fine
-        weights = weights / (1.0 - bend * places[:, 0])
-        e, slopes = self._unwarped(places), self._slopes(places)
-        stiffness = np.einsum("ipk,p,ipl->kl", slopes, weights, slopes)
-        self._coefficients = -np.linalg.solve(stiffness, np.einsum("ipk,p,ijp->kj", slopes, weights, e))
-        strains = e + np.einsum("ipk,kj->ijp", slopes, self._coefficients)
-        self.stiffness = np.einsum("ikp,p,ilp->kl", strains, weights, strains)
-
-    @staticmethod
-    def _unwarped(places: np.ndarray) -> np.ndarray:
-        """(γ12, γ13) of plane sections for γ2, γ3 and φ′, shape (2, 3, points)."""
-        y, z = places.T
-        zero, one = np.zeros_like(y), np.ones_like(y)
-        return np.array([[one, zero, -z], [zero, one, y]])
-
-    def _slopes(self, places: np.ndarray) -> np.ndarray:
-        """g (γ12, γ13) of each polynomial as w, κ w (1, 0) + g ∇w, shape (2, points, polynomials)."""
-        value, of_y, of_z = self._basis(places)
-        g = 1.0 - self._bend * places[:, :1]
-        return np.array([self._bend * value + g * of_y, g * of_z])
-
-    @property
-    def torsion(self) -> float:
-        """Torsional stiffness over G r⁴ if no transverse force goes with it: of a straight wire, Saint-Venant's J."""
-        K = self.stiffness
-        return float(np.pi * (K[2, 2] - K[2, :2] @ np.linalg.solve(K[:2, :2], K[:2, 2])))
-
-    def shear(self, places: np.ndarray) -> np.ndarray:
-        """g (γ12, γ13) for unit γ2, γ3 and φ′ at points (y, z), shape (points, 2) → (2, 3, points), in wire radii."""
-        return self._unwarped(places) + np.einsum("ipk,kj->ijp", self._slopes(places), self._coefficients)
-
 
 @cache
 def _gauss(number: int) -> tuple[np.ndarray, np.ndarray]:
     return np.polynomial.legendre.leggauss(number)
-
-
-@lru_cache(maxsize=512)
-def _warping(segment: Segment, bend: float) -> Warping:
-    """Points of the section and those on its surface ask for the same, and so do runs of springs with the same ends."""
-    return Warping(segment, bend)
