@@ -3,8 +3,8 @@
 Degrees of freedom are numbered independently of the partition: 3 i + k is the displacement k of station i; after
 those of the n stations come x, y, z and rotations θx, θy, θz of the bottom and of the top seat, 3 n + j, and after
 these the stations' rotations since the last equilibrium, 3 n + 12 + 3 i + k. Every rank evaluates the contacts that act
-on its own degrees of freedom: those of its part of the wire, and those of other parts near it. It is told the positions
-that these depend on, see coilset.model.equilibrium.surroundings.
+on its own degrees of freedom: those of its part of the wire, and those of other parts near it. It gets the
+positions that these depend on, see coilset.model.equilibrium.halo.
 
 Every kind is a `Contact`.
 """
@@ -26,13 +26,13 @@ SEAT_DOFS = 6  # x, y, z, θx, θy, θz; see plate.py
 LEVEL = 2  # the one along the spring's axis
 # A point counts as closed from this part of c w on, the force of its stiffness c over the distance w of its onset: by
 # the law of the onset, c p²/(4 w), it has then sunk in by 4e-4 w, two millionths of a millimetre for a wire of 5 mm.
-# What presses by less does so by the tolerance of the iteration.
+# Smaller forces are within the tolerance of the iteration.
 CLOSED_OF_ONSET_FORCE = 4e-8
 
 
 @dataclass(frozen=True)
 class Known:
-    """The part of the wire whose positions a rank knows.
+    """The part of the wire whose positions a rank has.
 
     Attributes:
         elements: ranges of elements of which all stations of the centre line's cubics are known, ascending, shape
@@ -56,7 +56,7 @@ class TrialPositions(NamedTuple):
         x: station positions, shape (n, 3), mm.
         seats: x, y, z and rotation vector of the bottom seat, then of the top seat, shape (12,), mm and rad.
         rotations: rotation vectors of the stations since the last equilibrium, shape (n, 3), rad, or None if no contact
-            asked for them.
+            needs them.
         known: the part of the wire whose positions and rotations are known, or None if it is all of it. Rows of the
             other stations have no meaning.
     """

@@ -9,10 +9,10 @@ from coilset.model.contact.plate import Plate, radial
 
 
 class Groove(Contact):
-    """The end coil lies in a smooth round groove of its seat, its tip against the groove's end.
+    """The end coil is in a smooth round groove of its seat, its tip against the groove's end.
 
     Each point keeps its stress-free distance from the seat's axis by the potential ½ c (ρ − ρ0)², the tip its position
-    along the groove by ½ c (s − s0)². Both sides of the groove support the wire, whether it lies on the bottom or not.
+    along the groove by ½ c (s − s0)². Both sides of the groove support the wire, whether it is on the bottom or not.
     Along
     the groove and away from the seat the wire is free, and it may roll and tilt: the seat takes no moment except that
     of forces.

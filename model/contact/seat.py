@@ -65,7 +65,7 @@ class Seat(Contact):
         self.linear = not (moves or slope)
         self.tip = points.tip(end)
         self.stiffness = bedding * points.length
-        # a wire that stands on its tip is supported by its end face, whatever the mesh
+        # a wire on its tip is supported by its end face, whatever the mesh
         self.stiffness[self.tip] = bedding * 2.0 * points.radius[self.tip]
         self.lengths = self.stiffness / bedding
         self.tip_spring = TIP_SPRING_OF_BEDDING * self.stiffness[self.tip]
@@ -148,7 +148,7 @@ class Seat(Contact):
     def _flat(self, trial: TrialPositions) -> Contribution:
         """On a flat seat that moves along the axis only."""
         numbers = trial.points(self.points)
-        room = Contribution.room(len(numbers), FLAT)  # for as many as could bear, most of them never touched
+        room = Contribution.room(len(numbers), FLAT)  # for as many as could press, most of them never written
         count = flat_seat_elements(numbers, trial.x, trial.seats[self._level], self._flat_seat, room)
         return Contribution(*[part[:count] for part in room])
 

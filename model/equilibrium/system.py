@@ -1,4 +1,4 @@
-"""Residual and tangent of a body and what touches it, as functions of one vector of increments."""
+"""Residual and tangent of a body and its contacts, as functions of one vector of increments."""
 
 from collections.abc import Callable, Sequence
 from functools import cached_property, partial
@@ -95,7 +95,7 @@ class System:
     @property
     def seats(self) -> np.ndarray:
         """x, y, z and rotations of both seats on trial, shape (12,), mm and rad."""
-        assert self._seats is not None, "this body stands on no seats"
+        assert self._seats is not None, "this body has no seats"
         return self._seats.trial
 
     @property
@@ -212,7 +212,7 @@ class System:
 
     @property
     def touches(self) -> bool:
-        """Does any contact bear at the last evaluation, on any rank?"""
+        """Is any contact closed at the last evaluation, on any rank?"""
         return self.last.closed > 0
 
     def gathered_contacts(self) -> list[Contribution]:
@@ -237,13 +237,13 @@ class System:
         self.expire()
 
     def reset_contacts(self) -> None:
-        """Let contacts remember the last equilibrium and nothing of what was tried since."""
+        """Restore the contacts' memories to the last equilibrium."""
         for memory in self.memories:
             memory.state.restore()
         self.expire()
 
     def augment(self) -> None:
-        """Press contacts harder where they have sunk in (augmented Lagrange), from now on; collective."""
+        """Augment the contacts that have penetrated (augmented Lagrange), from now on; collective."""
         if self.contacts:
             self.touching.augment(self.state["x"].trial, self.seats)
         self.expire()

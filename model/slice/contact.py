@@ -23,7 +23,7 @@ class Pressure:
 
     Attributes:
         gap: smallest gap, also of corners, mm.
-        free: smallest gap of the points that can bear, mm.
+        free: smallest gap of the points that can be in contact, mm.
         bearing: number of points in contact.
         force: pressure times area of all points, per turn of wire, N.
         forces: on the displacements, shape (blocks, 3), N; numbers: on h̄ and λ, shape (2,), N and N mm.

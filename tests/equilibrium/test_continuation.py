@@ -114,7 +114,7 @@ def test_a_spring_that_is_solid_before_its_block_ends_there(make):
     shape = "{shape: double cone, ends: 42.41, middle: 61.42}"
     spring = f"spring={{wire_diameter: 7.06, mean_diameter: {shape}, turns: 2, pitch: 21.63}}"
     analysis = make("[{to: block}]", spring, "mesh.elements_per_turn=16")
-    with pytest.raises(SolveError, match=r"mm is left after 5 augmentations, as where the wire lies solid on itself"):
+    with pytest.raises(SolveError, match=r"mm is left after 5 augmentations, so the spring is probably solid"):
         analysis.run()
     assert analysis.result.steps[-1].travel_mm == pytest.approx(36.5, abs=0.5)
 
