@@ -9,8 +9,8 @@ P Legendre polynomials: those of first and second degree in ε, γ12, γ13 and �
 which are linear by themselves. With three sections these conditions leave N, Q and Mt constant and M2, M3 linear: the
 section forces are in equilibrium with those at the nodes, exactly, whatever the material does. This is the force-based
 element of E. Spacone, V. Ciampi and F. C. Filippou (Mixed formulation of nonlinear beam finite element, Comput. Struct.
-58, 1996) with strains as unknowns, so that it needs no iteration of its own. Its sections are those of Lobatto's rule: bending moments are greatest at nodes, where
-contact acts.
+58, 1996) with strains as unknowns, so that it needs no iteration of its own. Its sections are those of Lobatto's rule:
+bending moments are greatest at nodes, where contact acts.
 """
 
 from dataclasses import dataclass

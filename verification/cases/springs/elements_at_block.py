@@ -12,7 +12,7 @@ The mixed element, whose equations, sections and unknowns are others, must meet 
 """
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import matplotlib as mpl
@@ -21,7 +21,6 @@ from mpi4py import MPI
 
 from coilset.model.base.style import STYLE
 from coilset.model.case import check
-from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 from coilset.verification.study import Study
 
@@ -110,7 +109,7 @@ def run(study: Study) -> None:
     study.figure("elements_at_block", draw(errors))
 
 
-def draw(errors: dict[tuple[str, str], Sequence[float]]) -> Figure:
+def draw(errors: Mapping[tuple[str, str], Sequence[float]]) -> Figure:
     """Errors of the force at block over the number of elements."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(6.0, 4.0), layout="constrained")
