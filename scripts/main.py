@@ -292,13 +292,18 @@ def bench(
     out: str = typer.Option("results/bench", callback=folder_target, help="folder for record and figure, overwritten"),
     full: bool = typer.Option(False, "--full", help="up to 400,000 elements: 10 GiB, 15 minutes"),
     cold: bool = typer.Option(False, "--cold", help="also time compilation from scratch"),
-    against: str = typer.Option(None, metavar="CHECKOUT", help="also time the commands of another checkout"),
+    springs: bool = typer.Option(False, "--springs", help="run random springs instead; their costs by family"),
+    count: int = typer.Option(70, min=1, max=100_000, help="number of random springs"),
+    against: str = typer.Option(None, metavar="CHECKOUT", help="also time the commands or springs of another checkout"),
 ) -> None:
     """Measure run time by stage, number of elements and ranks, and cases per hour."""
     compile_first()
-    from coilset.scripts.commands.bench import bench as run_benchmarks
+    from coilset.scripts.commands import bench as benchmarks
 
-    run_benchmarks(out, full, cold, against)
+    if springs:
+        benchmarks.bench_springs(out, count, against)
+    else:
+        benchmarks.bench(out, full, cold, against)
 
 
 @app.command(name="compile")

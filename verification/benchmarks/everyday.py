@@ -79,7 +79,7 @@ def everyday(
     Returns:
         For each command its `name`, and `first_line` and `end`: seconds for each checkout.
     """
-    plain, rows = _of_a_new_command(environment), []
+    plain, rows = of_a_new_command(environment), []
     for name, arguments in COMMANDS.items():
         runs = [[timed([*start, *arguments], plain) for start in starts] for _ in range(repeats + 1)][1:]
         first, end = ([median(run[i][which] for run in runs) for i in range(len(starts))] for which in (0, 1))
@@ -103,7 +103,7 @@ def walks(
     Raises:
         CoilsetError: if one failed.
     """
-    plain, script = _of_a_new_command(environment), str(Path(walk.__file__).resolve())
+    plain, script = of_a_new_command(environment), str(Path(walk.__file__).resolve())
     runs = [
         [read_json([*start, "python", script], f"'{start[0]} python walk.py'", plain) for start in starts]
         for _ in range(repeats)
@@ -115,6 +115,6 @@ def walks(
     return rows
 
 
-def _of_a_new_command(environment: Mapping[str, str]) -> dict[str, str]:
+def of_a_new_command(environment: Mapping[str, str]) -> dict[str, str]:
     """Without the time at which this command started, from which that one would count."""
     return {name: value for name, value in environment.items() if name != "COILSET_STARTED"}
