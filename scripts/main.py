@@ -289,12 +289,12 @@ def verify(
 
 @app.command()
 def bench(
-    out: str = typer.Option("results/bench", callback=folder_target, help="folder for record and figure, overwritten"),
-    full: bool = typer.Option(False, "--full", help="up to 400,000 elements: 10 GiB, 15 minutes"),
+    out: str = typer.Option("results/bench", callback=folder_target, help="folder for the record, overwritten"),
+    full: bool = typer.Option(False, "--full", help="up to 100,000 elements: 3 GiB, some minutes"),
     cold: bool = typer.Option(False, "--cold", help="also time compilation from scratch"),
     against: str = typer.Option(None, metavar="CHECKOUT", help="also time the commands of another checkout"),
 ) -> None:
-    """Measure run time by stage, number of elements and ranks, and cases per hour."""
+    """Measure run time of commands, by stage, by number of elements and on two ranks."""
     compile_first()
     from coilset.scripts.commands.bench import bench as run_benchmarks
 
