@@ -2,14 +2,13 @@
 
 import os
 import sys
+from pathlib import Path
 
 from coilset.model.base.errors import InputError
 from coilset.model.runtime.processes import number_of_ranks, usable_cores
-from coilset.scripts.beginning import announce_begin
 from coilset.scripts.commands.material import app as material
 from coilset.scripts.compiling import NOTICE, announce_compiling, compile_first, compiled
-from coilset.scripts.loading import load_for_solve
-from coilset.scripts.plain import typer
+from coilset.scripts.startup import announce_begin, load_for_solve, typer
 from coilset.scripts.terminal.target import OVERWRITE, file_targets, folder_target, page_target
 
 HELP = """How far does a coil spring set, and what stress remains in it?
@@ -204,9 +203,11 @@ def fields(
     results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
 ) -> None:
     """Write time series of a run for ParaView: centre line, wire as a tube, section points."""
-    from coilset.scripts.commands.show import fields as write_fields
+    from coilset.model.figures.series import write_series
+    from coilset.model.results.files.opened import open_run
 
-    write_fields(results)
+    for path in write_series(open_run(results)):
+        print(path)
 
 
 @app.command()
@@ -214,9 +215,11 @@ def animate(
     results: str = typer.Argument(metavar="RESULTS", help="results folder of a run"),
 ) -> None:
     """Write an animation of a run: the spring through its load program, coloured by stress."""
-    from coilset.scripts.commands.show import animate as draw
+    from coilset.model.figures.animation import animate as draw
+    from coilset.model.results.files.opened import open_run
 
-    draw(results)
+    path = draw(open_run(results))
+    print(f"{path}: {path.stat().st_size / 1e6:.1f} MB")
 
 
 @app.command()
@@ -289,12 +292,12 @@ def verify(
 
 @app.command()
 def bench(
-    out: str = typer.Option("results/bench", callback=folder_target, help="folder for record and figure, overwritten"),
-    full: bool = typer.Option(False, "--full", help="up to 400,000 elements: 10 GiB, 15 minutes"),
+    out: str = typer.Option("results/bench", callback=folder_target, help="folder for the record, overwritten"),
+    full: bool = typer.Option(False, "--full", help="up to 100,000 elements: 3 GiB, some minutes"),
     cold: bool = typer.Option(False, "--cold", help="also time compilation from scratch"),
     against: str = typer.Option(None, metavar="CHECKOUT", help="also time the commands of another checkout"),
 ) -> None:
-    """Measure run time by stage, number of elements and ranks, and cases per hour."""
+    """Measure run time of commands, by stage, by number of elements and on two ranks."""
     compile_first()
     from coilset.scripts.commands.bench import bench as run_benchmarks
 
@@ -318,12 +321,16 @@ def examples(
     force: bool = typer.Option(False, *OVERWRITE, help="overwrite existing files"),
 ) -> None:
     """List the examples, or copy one as a starting point."""
-    from coilset.scripts.commands import examples as shipped
+    from coilset.model.run import examples as shipped
 
-    if name is None:
-        shipped.show()
-    else:
-        shipped.copy(name, out, force)
+    if name is not None:
+        for path in shipped.copy(shipped.find(name), Path(out), force):
+            print(path)
+        return
+    names = shipped.names()
+    for one in names:
+        print(f"{one:{max(map(len, names)) + 2}}{shipped.title(one)}")
+    print("\ncopy one with: coilset examples NAME")
 
 
 @app.command(context_settings={"allow_extra_args": True, "ignore_unknown_options": True})

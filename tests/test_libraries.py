@@ -23,7 +23,7 @@ print(waits, callable(plt.figure), type(plt) is Waiting)
 """
 LINK = """
 import sys, threading
-from coilset.scripts.loading import load_for_solve
+from coilset.scripts.startup import load_for_solve
 load_for_solve()
 for thread in threading.enumerate():
     if thread is not threading.current_thread():
@@ -33,7 +33,7 @@ with open("/proc/self/maps") as linked:
 """
 UNCHANGED = """
 import ctypes
-from coilset.scripts.loading import load_for_solve
+from coilset.scripts.startup import load_for_solve
 
 def beginnings():
     functions = (getattr(ctypes.CDLL(None), name) for name in ("mmap", "munmap", "mremap", "madvise", "brk"))

@@ -12,7 +12,6 @@ SAVINGS = {
     "modules": "modules that libraries import without using them are loaded when something of them is used",
     "linking": "MPI, PETSc and DOLFINx are linked by a second thread",
     "rich": "typer is loaded without rich",
-    "ending": "the process ends without tearing Python down",
 }
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from coilset.model.base.errors import InputError, naming
 from coilset.scripts.compiling import announce_compiling
-from coilset.scripts.plain import typer
+from coilset.scripts.startup import typer
 from coilset.scripts.terminal.target import OVERWRITE, folder_target, results_folder
 
 if TYPE_CHECKING:  # commands load what they need

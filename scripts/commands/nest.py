@@ -17,8 +17,8 @@ from coilset.model.results.records.summary import summarise
 from coilset.model.results.run_files import write_run
 from coilset.model.runtime.threads import usual
 from coilset.scripts.terminal.console import Console
-from coilset.scripts.terminal.step_words import quantity, without_minus
 from coilset.scripts.terminal.target import results_folder
+from coilset.scripts.terminal.telling import quantity, without_minus
 
 
 def nest(file: str | Path, out: str | Path | None, force: bool, pictures: bool, threads: int | None = None) -> None:
