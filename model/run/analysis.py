@@ -259,7 +259,7 @@ class Analysis:
             lambda: (self.control.trial_force, np.ptp(self.layout.gather(x.trial)[[0, -1], 2])),
         )
         if not outcome.converged:
-            log.warning("the initial rate is not known: no equilibrium at the first touch (%s)", outcome.reason)
+            log.warning("the initial rate is unknown: no equilibrium at the first touch (%s)", outcome.reason)
             return math.nan
         return float(force / (before - after))
 

@@ -53,7 +53,7 @@ class Recorder:
         """Record the unloaded spring and its initial rate, N/mm, NaN if unknown; collective."""
         warnings = self.result.warnings
         if math.isnan(rate):
-            problem = "the initial rate is not known: no equilibrium was found at the first touch"
+            problem = "the initial rate is unknown: no equilibrium was found at the first touch"
             warnings = (*warnings, Warning("initial rate", "start", problem))
         self.result = replace(self.result, rate=rate, snapshots=(self.snapshot("start"),), warnings=warnings)
 

@@ -55,7 +55,7 @@ class Summary:
         of_slice=False,
     )
     force_max_N: float = entry("N", "the force of largest magnitude in any step")
-    block_height_mm: float = entry("mm", "height at which each coil lies on the next, by geometry")
+    block_height_mm: float = entry("mm", "height at which each coil touches the next, by geometry")
     residual_shear_max_MPa: float | None = entry(
         "MPa",
         "maximum shear stress on the wire's surface after release, in the middle turns: a turn from the tips, or "
