@@ -1,4 +1,4 @@
-"""`coilset compile`: compile in advance what a first run would compile."""
+"""`coilset compile`: compile the kernels of a first run in advance."""
 
 import contextlib
 from collections.abc import Callable, Sequence
@@ -19,7 +19,7 @@ PRESSED, HELD = ("ck15_presetting.yaml", LOADING), ("time/relaxation.yaml", CREE
 
 
 def short_case(example: str, loading: str) -> Case:
-    """An example in few elements, and what it goes through."""
+    """An example in few elements with a load program."""
     return read_case(EXAMPLES / example, ("mesh.elements_per_turn=16", loading))
 
 
@@ -32,7 +32,7 @@ def warm(names: Sequence[str] = STAGES, report: Callable[[str], object] = lambda
 
     Args:
         names: of STAGES.
-        report: called with a line before each stage: what is compiled, and how many stages there are.
+        report: called with a line before each stage: the stage and the number of stages.
     """
     law = library.load("ck15")
     stages: dict[str, tuple[str, Callable[[], object]]] = {

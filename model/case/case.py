@@ -91,9 +91,7 @@ class MeshSpec(Strict):
     ] = None
     axis: Annotated[
         Literal["curved", "chords"],
-        Field(
-            description="curved: sections are on the true centre line; chords: on the polygon of the thesis"
-        ),
+        Field(description="curved: sections are on the true centre line; chords: on the polygon of the thesis"),
     ] = "curved"
     section: SectionSpec = SectionSpec()
 

@@ -158,7 +158,7 @@ def fit(
 
 
 def _say_what_is_told(fit: "CyclicFit", console: "Console") -> None:
-    """What the tests do not tell of back stresses."""
+    """Back stresses that the tests do not determine."""
     if fit.doubtful:
         console.print(f"the tests hardly determine {', '.join(fit.doubtful)}")
     if fit.enough < fit.terms:

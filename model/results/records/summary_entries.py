@@ -21,7 +21,7 @@ def entry(unit: str, text: str, of_slice: bool = True) -> Any:
 
 @dataclass(frozen=True)
 class Summary:
-    """The main numbers of a run, in the order of summary.json; what is unknown (no release, no block) is None."""
+    """The main numbers of a run, in the order of summary.json; unknown entries (no release, no block) are None."""
 
     complete: bool = entry("", "whether the run went through its whole load program")
     free_length_before_mm: float = entry("mm", "outer length of the unloaded spring")

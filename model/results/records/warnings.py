@@ -22,7 +22,7 @@ Check = Callable[[Setup, Result], Iterator[Warning]]
 
 
 def run_warnings(setup: Setup, result: Result) -> list[Warning]:
-    """All warnings of a run: those about its case, those of its steps, those about what it has found.
+    """All warnings of a run: about its case, its steps, and its results.
 
     Args:
         setup: Setup.
@@ -38,12 +38,12 @@ def step_warnings(setup: Setup, result: Result) -> list[Warning]:
 
 
 def accuracy_warning(error: float, asked: float, place: str, of: str = "the force", size: str = "") -> Warning | None:
-    """A step whose estimated error is above the accuracy that was asked for; both are relative.
+    """A step whose estimated error exceeds the requested accuracy; both are relative.
 
     Args:
         error, asked: parts of 1.
         place: where the error is.
-        of: what is wrong by it; size: how much that is, in words.
+        of: the quantity with this error; size: the error in words.
     """
     if error <= asked:
         return None
@@ -111,7 +111,8 @@ def _wall(setup: Setup, result: Result) -> Iterator[Warning]:
             height = accuracy * step.force_N / abs(rate)
             message = (
                 f"at {_place(step)} the force changes by {rate:.3g} N/mm: the characteristic is "
-                f"nearly vertical, as coils are closed or slip, and {100 * accuracy:.2g} % of the force correspond to {height:.2g} mm of height"
+                f"nearly vertical, as coils are closed or slip, and {100 * accuracy:.2g} % of the force correspond to "
+                f"{height:.2g} mm of height"
             )
             yield Warning("wall", _place(step), message, percent, WALL)
 
