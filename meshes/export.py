@@ -23,10 +23,10 @@ def check_format(path: str | Path) -> None:
     """
     suffix = Path(path).suffix.lower()
     if suffix != ".msh" and suffix not in meshio.extension_to_filetypes:
-        named = f"'{suffix}' is no format of a mesh" if suffix else "has no suffix to say its format"
+        named = f"'{suffix}' is no format of a mesh" if suffix else "has no suffix that gives its format"
         raise InputError(f"{named}; use .vtu, .msh, .inp or .xdmf", "--write", path)
     if suffix == ".msh" != Path(path).suffix:
-        raise InputError("gmsh knows its format by small letters; give .msh", "--write", path)
+        raise InputError("gmsh accepts lower-case suffixes only; give .msh", "--write", path)
     if suffix in SURFACES:
         raise InputError(f"{suffix} files hold no line elements; use .vtu, .msh, .inp or .xdmf", "--write", path)
 

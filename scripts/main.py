@@ -7,7 +7,7 @@ from pathlib import Path
 from coilset.model.base.errors import InputError
 from coilset.model.runtime.processes import number_of_ranks, usable_cores
 from coilset.scripts.commands.material import app as material
-from coilset.scripts.compiling import NOTICE, announce_compiling, compile_first, compiled
+from coilset.scripts.compiling import NOTICE, STAGES, announce_compiling, compile_first
 from coilset.scripts.startup import announce_begin, load_for_solve, typer
 from coilset.scripts.terminal.target import OVERWRITE, file_targets, folder_target, page_target
 
@@ -81,7 +81,7 @@ def solve(
     if not (quiet or json):
         announce_begin(case, out)
     settings = [*settings, f"solver.method={method}"] if method else settings
-    compile_first(lambda: _check_case(case, settings))
+    compile_first(lambda: _check_case(case, settings), stages=("rod",))
     with Drawings(os.environ) as drawings:
         if pictures and os.path.isfile(case):
             drawings.start_if_free()
@@ -192,6 +192,7 @@ def report(
     results: str = typer.Argument(metavar="RESULTS", help="results folder of a run, a design, a nest or a sweep"),
 ) -> None:
     """Write a page of a run, a design, a nest or a sweep; it opens from disk without a network."""
+    compile_first(stages=("point",))
     announce_compiling()
     from coilset.scripts.commands.report import report as write_page
 
@@ -305,13 +306,16 @@ def bench(
 
 
 @app.command(name="compile")
-def compile_() -> None:
-    """Compile forms and kernels now, which takes some minutes, so that the first run need not wait."""
+def compile_(
+    stages: list[str] = typer.Argument(None, metavar="[STAGE]...", help=f"{', '.join(STAGES)} [default: all]"),
+) -> None:
+    """Compile forms and kernels now, which takes a minute or two, so that the first run need not wait."""
+    if unknown := set(stages or ()).difference(STAGES):
+        raise InputError(f"'{min(unknown)}' is no stage; give {', '.join(STAGES)}", "coilset compile")
     announce_compiling(notice=NOTICE)
     from coilset.scripts.warm import warm
 
-    warm(lambda line: print(line, flush=True))
-    compiled().touch()
+    warm(stages or STAGES, lambda line: print(line, flush=True))
 
 
 @app.command()

@@ -158,9 +158,9 @@ def _crash() -> None:
 
 
 def _interrupted() -> int:
-    """An interruption, told in one line; its exit code.
+    """Report an interruption in one line; returns its exit code.
 
-    A rank that waits for another one inside MPI hears of no signal: if it does not come within SOON_TOGETHER, all end.
+    A rank that waits for another one inside MPI receives no signal: if it does not come within SOON_TOGETHER, all end.
     """
     closed = output_closed()  # like any program whose reader has gone
     status = 128 + signal.SIGPIPE if closed else INTERRUPTED
@@ -179,7 +179,7 @@ def _leave_together(exit_code: int, seconds: float, line: str = "") -> None:
     Args:
         exit_code: of ranks that end without the others.
         seconds: that a rank waits for the others.
-        line: that it reports then; empty: it has been told.
+        line: that it reports then; empty: it has been reported.
     """
     if (world := _several_ranks()) is None:
         return

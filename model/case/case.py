@@ -91,7 +91,7 @@ class MeshSpec(Strict):
     ] = None
     axis: Annotated[
         Literal["curved", "chords"],
-        Field(description="curved: the rods' sections lie on the true centre line; chords: the thesis's polygon"),
+        Field(description="curved: sections are on the true centre line; chords: on the polygon of the thesis"),
     ] = "curved"
     section: SectionSpec = SectionSpec()
 
@@ -230,7 +230,7 @@ class Case(Strict):
     ] = None
     ends: Annotated[
         Literal["seats", "clamped"],
-        Field(description="seats: the spring stands between seats; clamped: both tips of the wire are clamped"),
+        Field(description="seats: the spring is compressed between seats; clamped: both tips of the wire are clamped"),
     ] = "seats"
     seats: SeatsSpec = SeatsSpec()
     heads: HeadsSpec = HeadsSpec()

@@ -19,8 +19,8 @@ class Target(Strict):
     )
     height: Annotated[float | None, Unit("mm"), Field(gt=0, description="distance between the seats, mm")] = None
     force: Annotated[float | None, Unit("N"), Field(description="axial force, compression positive, N")] = None
-    bottom: Annotated[HeadTarget | None, Field(description="where the bottom head goes besides")] = None
-    top: Annotated[HeadTarget | None, Field(description="where the top head goes besides")] = None
+    bottom: Annotated[HeadTarget | None, Field(description="other freedoms of the bottom head")] = None
+    top: Annotated[HeadTarget | None, Field(description="other freedoms of the top head")] = None
 
     @property
     def heads(self) -> dict[str, HeadTarget]:

@@ -35,7 +35,7 @@ def check_targets(case: Case, spring: Spring, shear_modulus: float) -> None:
             _not_below(phase.to, spring.free_length, lowest, place)
             if phase.to.force is not None and phase.to.force > greatest:
                 raise InputError(
-                    f"is {phase.to.force:g} N, but all coils of this spring lie on each other at about "
+                    f"is {phase.to.force:g} N, but all coils of this spring are in contact at about "
                     f"{greatest / BORNE:.4g} N, or less if it yields; give block, or a smaller force",
                     f"{place}.force",
                 )

@@ -169,7 +169,7 @@ class Evaluator:
         phases = range(len(setup.phases))
         plan = tuple(tuple(step.progress for step in result.steps if step.phase == phase) for phase in phases)
         missing = [one.name for one, value in zip(self.conditions, values, strict=True) if value is None]
-        reason = f"{missing[0]} is not known of this run" if missing else ""
+        reason = f"{missing[0]} is not a result of this run" if missing else ""
         return Evaluation(x, np.array(values, float), reason, plan, summary, time.perf_counter() - began)
 
 

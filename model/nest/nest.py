@@ -159,7 +159,7 @@ def _refuse_touching(heights: Plan, clearance: np.ndarray) -> None:
         at = int(touching[0])
         raise SolveError(
             f"at the height of {heights.heights[at]:.6g} mm the springs touch each other: they overlap by "
-            f"{-clearance[at]:.3g} mm; their contact is not known, and forces do not add up from "
+            f"{-clearance[at]:.3g} mm; their contact is not modelled, and their forces cannot be added from "
             "there"
         )
 

@@ -1,4 +1,4 @@
-"""The page of a nest: what both springs bear together, what each has a share of, and the clearance between them."""
+"""The page of a nest: total force, share of each spring, and the clearance between them."""
 
 import csv
 import json

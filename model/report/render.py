@@ -28,8 +28,8 @@ def write_page(folder: Path, kind: str, chapters: Chapters, data: dict[str, Any]
         folder: to write to.
         kind: of the page, `run`, `design`, `nest` or `sweep`: its template.
         chapters: titles with their figures.
-        data: what the scripts of the page take besides; arrays are packed.
-        parts: what the template asks for.
+        data: further data for the scripts of the page; arrays are packed.
+        parts: variables of the template.
 
     Returns:
         The file.

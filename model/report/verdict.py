@@ -14,7 +14,7 @@ class Check:
     """One check.
 
     Attributes:
-        name: what is checked.
+        name: of the check.
         met: None where it could not be made.
         reason: why it is not met or could not be made; empty if it is met.
     """

@@ -1,6 +1,6 @@
-"""Switches of what makes a command start faster; the results are the same without it.
+"""Switches of the savings at the start of a command; the results are the same without them.
 
-`COILSET_WITHOUT` names what is left out, separated by commas, or `all`. docs/scaling.md lists what each saves.
+`COILSET_WITHOUT` names the savings to leave out, separated by commas, or `all`. docs/scaling.md lists the time of each.
 """
 
 import os

@@ -140,8 +140,8 @@ def _why_block(sheet: Sheet) -> str:
         return ""
     first = sheet.yield_stress / sqrt(3)
     if sheet.stress(sheet.spring.solid) <= first:
-        return "coils that lie down before block raise it"
-    return f"plastic flow lowers it, τc is above the first yield of {first:.4g} MPa; coils that lie down raise it"
+        return "coils that close before block raise it"
+    return f"plastic flow lowers it, τc is above the first yield of {first:.4g} MPa; coils that close raise it"
 
 
 def _stresses(sheet: Sheet) -> Iterator[Row]:

@@ -101,7 +101,7 @@ def one_and_two(environment: dict[str, str], elements: int, touching: int) -> di
 
 
 def machine() -> dict[str, Any]:
-    """What it runs on, and how busy that is."""
+    """The machine, and how busy it is."""
     model = platform.processor() or platform.machine()
     try:
         with open("/proc/cpuinfo", encoding="utf-8") as file:

@@ -79,7 +79,7 @@ def slice_case(
 
 
 def _placed(error: InputError, case: Case, case_file: str | Path) -> InputError:
-    """The error with the option, or the entry of the case file, that gave what is wrong."""
+    """The error with the option, or the entry of the case file, that caused it."""
     group, _, entry = error.place.partition(".")
     if error.file:
         return error

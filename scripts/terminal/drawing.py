@@ -128,7 +128,7 @@ def _ended(status: int) -> dict[str, Any]:
 
 
 def draw_part(part: str, task: BinaryIO) -> dict[str, Any] | None:
-    """Load what a part needs, wait for the folder of the run, and draw it; None if no folder is given."""
+    """Load the libraries of a part, wait for the folder of the run, and draw it; None if no folder is given."""
     from coilset.model.figures import pictures
 
     draw = pictures.PARTS[part]()

@@ -1,4 +1,4 @@
-"""What a run prints while it is in progress: lines to read, lines of JSON, or only warnings."""
+"""Output of a run while it is in progress: lines to read, lines of JSON, or only warnings."""
 
 import contextlib
 import json
@@ -69,7 +69,7 @@ class Lines:
         self.console.print(row, soft_wrap=True)
 
     def _left(self, step: Step) -> str:
-        """Remaining time at the speed so far; empty if it is short, or too early to tell."""
+        """Remaining time at the speed so far; empty if it is short, or unknown."""
         spent, done = time.monotonic() - self._began, _done(self.analysis, step)
         left = spent * (1.0 - done) / max(done - self._from, 1e-9)
         return "" if spent < SOON or left < SOON else f"  [dim]{duration(left)} left[/]"
@@ -90,7 +90,7 @@ class Lines:
             log.setLevel(logging.NOTSET)
 
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
-        """What was found."""
+        """Print the results."""
         table = Table(show_header=False, box=None, padding=(0, 2))
         table.add_row("free length before", quantity(summary["free_length_before_mm"], "mm"))
         for number, release in enumerate(summary["releases"][:-1], 1):
@@ -129,7 +129,7 @@ class Quiet(Lines):
         """Nothing."""
 
     def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
-        """The warnings that were not told at the beginning."""
+        """The warnings that were not printed at the beginning."""
         told = {warning.message for warning in self.analysis.setup.warnings}
         for warning in summary["warnings"]:
             if warning["message"] not in told:
@@ -151,7 +151,7 @@ class JsonLines(Lines):
         self._put("warning", message=text)
 
     def begin(self, analysis: Analysis, case_file: str | Path, resumed: bool) -> None:
-        """What is solved."""
+        """The case, its mesh and its load program."""
         super().begin(analysis, case_file, resumed)
         self._put(
             "begin",
@@ -189,8 +189,8 @@ def _done(analysis: Analysis, step: Step | None = None) -> float:
     return 0.0 if step is None else (step.phase + step.progress) / len(analysis.case.loading)
 
 
-def step_row(step: Step | "SliceStep") -> str:
-    """What the steps of rod and slice have in common, under HEAD."""
+def step_row(step: "Step | SliceStep") -> str:
+    """The columns common to the steps of rod and slice, under HEAD."""
     force = without_minus(step.force_N, 3)
     return f"{step.number:5d}{step.seat_height_mm:10.4f}{force:>12}{step.iterations:6d}"
 
@@ -201,7 +201,7 @@ def quantity(value: float | None, unit: str, digits: int = 4) -> str:
 
 
 def without_minus(value: float, digits: int) -> str:
-    """A value in so many decimals, and no -0.0."""
+    """A value with a number of decimals, without -0.0."""
     return f"{round(value, digits) + 0.0:.{digits}f}"
 
 
