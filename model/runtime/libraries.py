@@ -17,7 +17,7 @@ UNUSED = ("dolfinx.utils", "dolfinx.nls", "dolfinx.plot", "coverage", "meshio._c
 
 
 class Waiting(ModuleType):
-    """A module that is loaded at the first use of an attribute. Python's own LazyLoader loads at a second import, too."""
+    """A module that is loaded at the first use of an attribute; Python's LazyLoader loads at a second import, too."""
 
     def __getattr__(self, name: str) -> Any:
         """An attribute, once the module is loaded; importing or listing the module does not load it."""

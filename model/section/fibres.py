@@ -171,6 +171,7 @@ class FibreSections:
             place.matrices,
             start["surface_state"],
             trial["surface_state"],
+            False,
         )
 
 
@@ -261,8 +262,12 @@ def update_surface(
     placement: np.ndarray,
     old: np.ndarray,
     new: np.ndarray,
+    with_tangent: bool,
 ) -> None:
-    """Bring points y, z of the unit circle to the end of the increment; arguments as in `update_sections`."""
+    """Bring points y, z of the unit circle to the end of the increment; arguments as in `update_sections`.
+
+    `with_tangent` is False, and no constant, for which numba would compile the law once more.
+    """
     points, (cut, cut_fibres, cut_shape) = len(y), ground
     d, weightless = np.empty(6), np.zeros(len(y))
     strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
@@ -278,7 +283,7 @@ def update_surface(
                 fibres, shape = cut_fibres[cut[c, g]], cut_shape[cut[c, g]]
             elif curved:
                 curved_shape(y, z, curvature[c, g] * R, disk_shape)
-            update_points(p, fibres, shape, d, old[c, g], new[c, g], strain, C, False, count)
+            update_points(p, fibres, shape, d, old[c, g], new[c, g], strain, C, with_tangent, count)
             spoil_failed(count, new[c, g])
 
 

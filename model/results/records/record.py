@@ -309,7 +309,7 @@ class Setup:
 
     @cached_property
     def inside(self) -> surface.Inside:
-        """Position of the inside of the coil on the wire's surface; plane sections have the curvature of manufacture."""
+        """Position of the inside of the coil on the wire's surface; plane sections have that of manufacture."""
         return surface.Inside.of(bool(self.placement.curvature.any()), self.spring.hand)
 
     @cached_property
