@@ -352,7 +352,7 @@ class Case(Strict):
 
     @property
     def past(self) -> list[str]:
-        """Entries of `spring` that say what its wire has been through; a wire without is free of stress."""
+        """Entries of `spring` on the wire's manufacture; without them the wire is free of stress."""
         if not isinstance(self.spring, SpringSpec):
             return []
         return [name for name in ("made_by", "peening") if getattr(self.spring, name) is not None]

@@ -1,4 +1,4 @@
-"""What no spring between the bounds of a design can be or do, refused before any is run."""
+"""Conditions that no spring between the bounds of a design can meet, refused before any run."""
 
 import itertools
 from collections.abc import Iterator, Sequence

@@ -45,7 +45,7 @@ def make_search(
 
 @dataclass(frozen=True)
 class Solution:
-    """What a design comes to.
+    """Result of a design.
 
     Attributes:
         found: the best spring; its `search` has the chosen values fixed.

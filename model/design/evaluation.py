@@ -24,7 +24,7 @@ from coilset.model.sweep.evaluate import plain
 from coilset.model.sweep.keys import Keys
 
 Plan = tuple[tuple[float, ...] | None, ...]
-"""For each phase: the parts of it at which its steps end; None: automatic, or as the case says."""
+"""For each phase: the parts of it at which its steps end; None: automatic, or as in the case."""
 
 
 @dataclass(frozen=True)
@@ -68,13 +68,13 @@ class Evaluator:
         conditions, data: see `coilset.model.design.conditions.conditions`.
         known: records of earlier evaluations by their keys; those of other unknowns or conditions do not count.
         keep: writes the record of a new one.
-        report: called with every Evaluation, and whether it was known.
+        report: called with every Evaluation, and whether it came from the journal.
         threads: of each run.
 
     Attributes:
         names: of the unknowns in the file.
         named: the same in words, with their units.
-        count: number of evaluations, and of those that were known.
+        count: number of evaluations, and of those from the journal.
     """
 
     def __init__(
@@ -101,7 +101,7 @@ class Evaluator:
 
         Args:
             x: values of the unknowns.
-            plan: steps of its phases; None: as the case says.
+            plan: steps of its phases; None: as in the case.
             others: other entries, and their values.
         """
         data = copy.deepcopy(dict(self._data))

@@ -13,14 +13,14 @@ GAUSS = 0.5 / np.sqrt(3.0)  # from the middle of an element to its sections, ove
 
 
 def inside(run: Run) -> Inside:
-    """Where the inside of the coil is on the surface."""
+    """Position of the inside of the coil on the surface."""
     return Inside.of(bool(run.data["curvature"].values.any()), hand(run))
 
 
 def hand(run: Run) -> int:
-    """+1 of a right-handed coil, −1 of a left-handed one, by its wire: the file of a measured one does not say it."""
+    """+1 of a right-handed coil, −1 of a left-handed one, by its wire, as a measured one has no such entry."""
     x, y = run.data["position"].values[0, :, :2].T
-    return 1 if np.sum(x[:-1] * y[1:] - y[:-1] * x[1:]) > 0.0 else -1  # twice the area that the radius passes over
+    return 1 if np.sum(x[:-1] * y[1:] - y[:-1] * x[1:]) > 0.0 else -1  # twice the area swept by the radius
 
 
 def shear_around(run: Run) -> np.ndarray:
@@ -44,7 +44,7 @@ class Moments:
     """The wire at the start and after steps.
 
     Attributes:
-        labels: what moment each is.
+        labels: of the moments.
         x: stations, shape (moments, n + 1, 3), mm.
         shear: `shear_around`, mean of an element's sections, shape (moments, n, angles), MPa.
     """
@@ -59,7 +59,7 @@ def moments(run: Run, most: int | None = None) -> Moments:
 
     Args:
         run: opened results.
-        most: so many at most, evenly chosen; the ends of phases are among them however many they are.
+        most: maximum number, evenly chosen; the ends of all phases are always included.
     """
     data = run.data
     labels, x, shear = ["start"], data["position"].values[:1], shear_around(run)[:1].mean(axis=2)
@@ -115,7 +115,7 @@ def surface(
         x: stations, shape (n + 1, 3), mm.
         wire_radius: of the elements, shape (n,), mm.
         shear: about the wire's axis, mean of an element's sections, at evenly spaced angles, shape (n, angles), MPa.
-        side: where the inside of the coil is.
+        side: position of the inside of the coil.
         rings: along the wire.
     """
     at = np.linspace(turn[0], turn[-1], rings)
@@ -138,7 +138,7 @@ def closed(places: np.ndarray, stress: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def section_points(run: Run, snapshot: int) -> np.ndarray:
-    """Where the section points lie in space at a snapshot, shape (elements, 2, points, 3), mm."""
+    """Positions of the section points in space at a snapshot, shape (elements, 2, points, 3), mm."""
     turn, at = run.data["turn"].values, section_turns(run)
     line = CubicSpline(turn, run.data["position"].values[snapshot], axis=0)
     centre, inwards, binormal = (values.reshape(*at.shape, 1, 3) for values in _directions(line, at.ravel()))

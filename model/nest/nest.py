@@ -2,8 +2,8 @@
 
 Seats that are rigid and stay level give both springs the same height, and their forces add up. That holds while the
 wire of the inner spring stays inside that of the outer one: the room between them is computed after every step, from
-the largest distance of the one and the least distance of the other from the axis, wherever along the axis they are. It
-is sufficient, not necessary: a cone may stand in a cone with less. Contact between the two is not computed.
+the maximum distance of the one and the minimum distance of the other from the axis, anywhere along the axis. It is
+sufficient, not necessary: a cone may fit into a cone with less. Contact between the two is not computed.
 """
 
 from collections.abc import Callable, Sequence
@@ -18,7 +18,6 @@ from coilset.model.base.errors import InputError, SolveError, naming
 from coilset.model.base.warning import Warning
 from coilset.model.case import Case
 from coilset.model.case.phases import Phase, Target
-from coilset.model.nest.clearance import inside, outside
 from coilset.model.nest.file import NAMES, Nest
 from coilset.model.nest.plan import Plan, plan
 from coilset.model.results.records.record import Result, Setup, Step
@@ -177,3 +176,19 @@ def _hands(springs: Sequence[Spring]) -> list[Warning]:
             float(-springs[0].hand),
         )
     ]
+
+
+def outside(spring: Spring, turns: np.ndarray, x: np.ndarray) -> float:
+    """The largest distance of the wire's surface from the axis, mm.
+
+    Args:
+        spring: whose wire it is.
+        turns: of the stations, shape (n,).
+        x: their positions, shape (n, 3), mm.
+    """
+    return float((np.hypot(x[:, 0], x[:, 1]) + 0.5 * spring.wire_diameter(turns)).max())
+
+
+def inside(spring: Spring, turns: np.ndarray, x: np.ndarray) -> float:
+    """The minimum distance of the wire's surface from the axis, mm; arguments as in `outside`."""
+    return float((np.hypot(x[:, 0], x[:, 1]) - 0.5 * spring.wire_diameter(turns)).min())

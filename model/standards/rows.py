@@ -19,7 +19,7 @@ class Row:
     """A line of the sheet.
 
     Attributes:
-        label, unit: what it is.
+        label, unit: of the quantity.
         value: by the formula; None if there is none, for the reason in `why`.
         formula: in the symbols of the standard.
         sure: how the formula or number was checked.

@@ -19,8 +19,8 @@ from coilset.model.figures.panels.phases import phases
 from coilset.model.figures.panels.seats import force_centre
 from coilset.model.figures.wire import closed, inside, moments, shear_around, tubes
 from coilset.model.material import library
-from coilset.model.report.glossary import GLOSSARY
 from coilset.model.report.page import CHAPTERS, write_report
+from coilset.model.report.render import GLOSSARY
 from coilset.model.results.files.opened import open_run
 from coilset.scripts.commands.report import report
 from coilset.scripts.commands.sheet import sheet
