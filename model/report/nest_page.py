@@ -10,8 +10,8 @@ import numpy as np
 
 from coilset.model.base.errors import InputError, reading
 from coilset.model.base.style import round_end
-from coilset.model.figures.panels.panel import DIVERGING, Panel, Trace, axis, curve, said
-from coilset.model.figures.panels.spring_view import scene_of
+from coilset.model.figures.panels.panel import Panel, Trace, axis, curve, said
+from coilset.model.figures.panels.spring_view import scene_of, shown_surface, surface_trace
 from coilset.model.figures.wire import closed, moments, tubes
 from coilset.model.nest.file import NAMES
 from coilset.model.nest.output import STEPS, characteristic
@@ -136,17 +136,10 @@ def view(runs: Mapping[str, Run]) -> Panel:
         for number in range(len(STATES)):
             traces.append(
                 {
-                    "type": "surface",
-                    "cmin": -end,
-                    "cmax": end,
-                    "colorscale": DIVERGING,
+                    **surface_trace(end),
+                    **shown_surface(places[number], stress[number]),
                     "showscale": not traces,
-                    "colorbar": {"title": {"text": "MPa"}, "thickness": 14, "len": 0.8},
-                    "lighting": {"ambient": 0.75, "diffuse": 0.5, "specular": 0.1},
-                    "hovertemplate": "%{surfacecolor:.0f} MPa<br>height %{z:.1f} mm<extra></extra>",
                     "meta": {"choice": number},
-                    "surfacecolor": stress[number],
-                    **dict(zip("xyz", np.moveaxis(places[number], -1, 0), strict=True)),
                 }
             )
     for number in range(len(STATES)):  # one scale for each state, of the outer spring, or of the only one
