@@ -8,18 +8,18 @@ import pytest
 
 WAIT = """
 import sys
-from coilset.model.runtime.libraries import UNUSED, Waiting
+from coilset.model.runtime.libraries import UNUSED, LazyModule
 import dolfinx, numba
-print(all(type(sys.modules[name]) is Waiting for name in UNUSED if name in sys.modules))
+print(all(type(sys.modules[name]) is LazyModule for name in UNUSED if name in sys.modules))
 """
 AGAIN = """
 import sys
-from coilset.model.runtime.libraries import Waiting, WhenUsed
-sys.meta_path.insert(0, WhenUsed(["matplotlib.pyplot"]))
+from coilset.model.runtime.libraries import LazyModule, LazyFinder
+sys.meta_path.insert(0, LazyFinder(["matplotlib.pyplot"]))
 import matplotlib.pyplot
 import matplotlib.pyplot as plt
-waits = type(plt) is Waiting
-print(waits, callable(plt.figure), type(plt) is Waiting)
+waits = type(plt) is LazyModule
+print(waits, callable(plt.figure), type(plt) is LazyModule)
 """
 LINK = """
 import sys, threading

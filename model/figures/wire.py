@@ -40,7 +40,7 @@ def section_turns(run: Run) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Moments:
+class Frames:
     """The wire at the start and after steps.
 
     Attributes:
@@ -54,7 +54,7 @@ class Moments:
     shear: np.ndarray
 
 
-def moments(run: Run, most: int | None = None) -> Moments:
+def frames(run: Run, most: int | None = None) -> Frames:
     """The start and every step.
 
     Args:
@@ -73,7 +73,7 @@ def moments(run: Run, most: int | None = None) -> Moments:
         step, phase, travel, force = (float(data[name].values[k]) for name in ("step", "phase", "travel_mm", "force_N"))
         to, bears = names[min(int(phase), len(names) - 1)], round(force, 6) + 0.0
         labels.append(f"step {step:g}, to {to}: {plain(travel)} mm of travel, {plain(bears)} N")
-    return Moments(tuple(labels), x, shear)
+    return Frames(tuple(labels), x, shear)
 
 
 def _kept(phase: np.ndarray, most: int) -> np.ndarray:
@@ -85,7 +85,7 @@ def _kept(phase: np.ndarray, most: int) -> np.ndarray:
     return np.union1d(ends, some)
 
 
-def tubes(run: Run, shown: Moments, rings: int) -> tuple[np.ndarray, np.ndarray]:
+def tubes(run: Run, shown: Frames, rings: int) -> tuple[np.ndarray, np.ndarray]:
     """Surface of the wire at moments, and the stress there.
 
     The angle about the wire is counted from the inside of the coil towards the binormal of the centre line, as in
@@ -93,7 +93,7 @@ def tubes(run: Run, shown: Moments, rings: int) -> tuple[np.ndarray, np.ndarray]
 
     Args:
         run: opened results.
-        shown: Moments.
+        shown: Frames.
         rings: along the wire.
 
     Returns:

@@ -74,12 +74,12 @@ class Pressed:
         return float(member.setup.outer_length(member.result.snapshots[-1].x))
 
 
-def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: None, threads: int = 1) -> Pressed:
+def press(nest: Nest, report: Callable[[str, Step], object] = lambda name, step: None, threads: int = 1) -> Pressed:
     """Press both springs through the heights of the nest, and let them go.
 
     Args:
         nest: Nest.
-        told: called with the name of a spring and each of its steps.
+        report: called with the name of a spring and each of its steps.
         threads: of each run.
 
     Raises:
@@ -99,7 +99,7 @@ def press(nest: Nest, told: Callable[[str, Step], object] = lambda name, step: N
     with naming(nest.path):
         heights = plan(nest.loading, springs)
     programs = [heights.program(one.free_length) for one in springs]
-    members = tuple(_run(nest, number, program, told, threads) for number, program in enumerate(programs))
+    members = tuple(_run(nest, number, program, report, threads) for number, program in enumerate(programs))
     steps = [_steps(member, heights) for member in members]
     forces = np.array([[0.0 if step is None else step.force_N for step in one] for one in steps])
     clearance = _clearance(members, steps)
@@ -112,7 +112,7 @@ def _build(case: Case, file: Path) -> Spring:
         return case.spring.build()
 
 
-def _run(nest: Nest, number: int, program: list[Phase], told: Callable[[str, Step], object], threads: int) -> Member:
+def _run(nest: Nest, number: int, program: list[Phase], report: Callable[[str, Step], object], threads: int) -> Member:
     """Run one spring through its program; without one the seats do not touch it."""
     name, case = NAMES[number], nest.cases[number]
     loading = program or [Phase(to=Target(force=0.0), steps=1)]  # its own is that of another run
@@ -121,7 +121,7 @@ def _run(nest: Nest, number: int, program: list[Phase], told: Callable[[str, Ste
     if not program:
         return Member(name, case, analysis.setup, None)
     try:
-        analysis.run(lambda step: told(name, step))
+        analysis.run(lambda step: report(name, step))
     except SolveError as error:
         raise SolveError(f"{name}: {error}") from None
     return Member(name, analysis.case, analysis.setup, analysis.result)

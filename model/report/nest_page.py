@@ -10,9 +10,9 @@ import numpy as np
 
 from coilset.model.base.errors import InputError, reading
 from coilset.model.base.style import round_end
-from coilset.model.figures.panels.panel import Panel, Trace, axis, curve, said
+from coilset.model.figures.panels.panel import Panel, Trace, axis, curve, with_unit
 from coilset.model.figures.panels.spring_view import scene_of, shown_surface, surface_trace
-from coilset.model.figures.wire import closed, moments, tubes
+from coilset.model.figures.wire import closed, frames, tubes
 from coilset.model.nest.file import NAMES
 from coilset.model.nest.output import STEPS, characteristic
 from coilset.model.report.answer import Number
@@ -61,13 +61,17 @@ def write_nest_report(folder: str | Path) -> Path:
             ("The springs", [view(runs)]),
         ],
         {},
-        title=f"{folder.resolve().name}: set {_length(summary['set_mm'], 3)}",
+        title=f"{folder.resolve().name}: set {with_unit(summary['set_mm'], 'mm', 3, 'not released')}",
         subtitle=f"two springs between the same seats, pressed to {columns['seat_height_mm'].min():.4g} mm, released",
         answer=[
-            Number("set", _length(summary["set_mm"], 3), "of the height at which the seats touch the first spring"),
+            Number(
+                "set",
+                with_unit(summary["set_mm"], "mm", 3, "not released"),
+                "of the height at which the seats touch the first spring",
+            ),
             Number(
                 "free length",
-                _length(summary["free_length_after_mm"], 3),
+                with_unit(summary["free_length_after_mm"], "mm", 3, "not released"),
                 f"after; {summary['free_length_before_mm']:.3f} mm before",
             ),
             Number(
@@ -75,10 +79,14 @@ def write_nest_report(folder: str | Path) -> Path:
                 f"{plain(summary['force_max_N'], 5)} N",
                 ", ".join(f"{name} {100.0 * share:.0f} %" for name, share in shares.items()),
             ),
-            Number("block height", _length(summary["block_height_mm"], 2), "of the spring that is solid first"),
+            Number(
+                "block height",
+                with_unit(summary["block_height_mm"], "mm", 2, "not released"),
+                "of the spring that is solid first",
+            ),
             Number(
                 "minimum clearance",
-                _length(summary["clearance_min_mm"], 3),
+                with_unit(summary["clearance_min_mm"], "mm", 3, "not released"),
                 f"between the springs, at a height of {summary['clearance_min_height_mm']:.4g} mm",
             ),
         ],
@@ -86,10 +94,6 @@ def write_nest_report(folder: str | Path) -> Path:
         warnings=warnings,
         made_with=made_with(next(iter(runs.values())).summary["origin"]),
     )
-
-
-def _length(value: float | None, digits: int) -> str:
-    return "not released" if value is None else said(value, "mm", digits)
 
 
 def _spring(name: str, summary: Mapping[str, Any] | None, share: float, force: float) -> dict[str, Any]:
@@ -105,9 +109,9 @@ def _spring(name: str, summary: Mapping[str, Any] | None, share: float, force: f
             f"{plain(force, 5)} N",
             f"{100.0 * share:.1f} %",
             f"{summary['free_length_before_mm']:.3f} mm",
-            _length(summary["set_mm"], 3),
-            said(summary["shear_inside_max_MPa"], "MPa"),
-            "–" if inside is None else said(inside, "MPa", 1),
+            with_unit(summary["set_mm"], "mm", 3, "not released"),
+            with_unit(summary["shear_inside_max_MPa"], "MPa"),
+            "–" if inside is None else with_unit(inside, "MPa", 1),
         ],
     }
 
@@ -115,7 +119,7 @@ def _spring(name: str, summary: Mapping[str, Any] | None, share: float, force: f
 def clearance(columns: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> Panel:
     """Clearance between the springs over the travel of the seats."""
     travel = columns["seat_height_mm"][0] - columns["seat_height_mm"]
-    finding = f"The clearance between the springs is {_length(summary['clearance_min_mm'], 2)} or more"
+    finding = f"The clearance between the springs is {with_unit(summary['clearance_min_mm'], 'mm', 2, 'not released')} or more"
     return Panel(
         "clearance",
         finding,
@@ -148,7 +152,7 @@ def view(runs: Mapping[str, Run]) -> Panel:
     low, high = corners.min(axis=0), corners.max(axis=0)
     return Panel(
         "springs",
-        f"The shear stress on the wires' surfaces reaches {said(greatest, 'MPa')}",
+        f"The shear stress on the wires' surfaces reaches {with_unit(greatest, 'MPa')}",
         f"Both springs in three dimensions, free, pressed the most and released, coloured by the shear stress about "
         f"the wire's axis on the surface from {-end:g} to {end:g} MPa.",
         traces,
@@ -162,7 +166,7 @@ def view(runs: Mapping[str, Run]) -> Panel:
 
 def _surfaces(run: Run) -> tuple[np.ndarray, np.ndarray]:
     """Surface and stress of a spring in the three states, its lowest point at height 0."""
-    shown = moments(run)
+    shown = frames(run)
     pressed = int(np.argmin([np.ptp(x[:, 2]) for x in shown.x]))
     rings = min(2 * (run.data.sizes["station"] - 1), RINGS) + 1
     places, stress = closed(*tubes(run, shown, rings))

@@ -16,7 +16,7 @@ UNUSED = ("dolfinx.utils", "dolfinx.nls", "dolfinx.plot", "coverage", "meshio._c
 """Modules that others import without using them; these take as long to load as all of coilset's own."""
 
 
-class Waiting(ModuleType):
+class LazyModule(ModuleType):
     """A module that is loaded at the first use of an attribute; Python's LazyLoader loads at a second import, too."""
 
     def __getattr__(self, name: str) -> Any:
@@ -29,7 +29,7 @@ class Waiting(ModuleType):
         return getattr(self, name)
 
 
-class WhenUsed:
+class LazyFinder:
     """Finder and loader of modules that wait.
 
     Args:
@@ -48,16 +48,16 @@ class WhenUsed:
 
     def create_module(self, spec: ModuleSpec) -> ModuleType:
         """An empty one."""
-        return Waiting(spec.name)
+        return LazyModule(spec.name)
 
     def exec_module(self, module: ModuleType) -> None:
         """Nothing yet."""
 
 
-def load_when_used() -> None:
+def load_lazily() -> None:
     """Import the modules in UNUSED lazily."""
     if enabled("modules"):
-        sys.meta_path.insert(0, WhenUsed(UNUSED))
+        sys.meta_path.insert(0, LazyFinder(UNUSED))
 
 
 def link_beside(then: Callable[[], object]) -> None:

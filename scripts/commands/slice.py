@@ -18,8 +18,8 @@ from coilset.model.slice.analysis import ACROSS, SliceAnalysis, SliceStep
 from coilset.model.slice.summary import summarise, write_history
 from coilset.model.standards.case_warnings import case_warnings
 from coilset.scripts.terminal.console import Console
+from coilset.scripts.terminal.progress import HEAD, quantity, step_row
 from coilset.scripts.terminal.target import results_folder
-from coilset.scripts.terminal.telling import HEAD, quantity, step_row
 
 NOTE = (
     "a slice has no ends: seats, coils that close one after another and bending of the axis are not included, so near "

@@ -25,8 +25,8 @@ from coilset.scripts.interrupt import Interrupt
 from coilset.scripts.terminal.drawing import Drawings
 from coilset.scripts.terminal.interactive import Prompt
 from coilset.scripts.terminal.log import run_log
+from coilset.scripts.terminal.progress import VOICES, Lines
 from coilset.scripts.terminal.target import results_folder
-from coilset.scripts.terminal.telling import VOICES, Lines
 
 log = logging.getLogger("coilset.steps")
 STARTED = float(os.environ.get("COILSET_STARTED", time.time()))

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from coilset.model.base.style import round_end
-from coilset.model.figures.panels.panel import DIVERGING, Panel, Trace, axis, said
-from coilset.model.figures.wire import closed, moments, tubes
+from coilset.model.figures.panels.panel import DIVERGING, Panel, Trace, axis, with_unit
+from coilset.model.figures.wire import closed, frames, tubes
 from coilset.model.results.files.opened import Run
 
 RINGS = 6000  # of all moments of a page together
@@ -56,13 +56,13 @@ def shown_surface(places: np.ndarray, stress: np.ndarray) -> Trace:
 def spring_view(run: Run) -> Panel:
     """One tube per step, all on one scale."""
     turns = float(np.ptp(run.data["turn"].values))
-    shown = moments(run, int(np.clip(RINGS / (PER_TURN * turns), 2, MOST)))
+    shown = frames(run, int(np.clip(RINGS / (PER_TURN * turns), 2, MOST)))
     rings = min(PER_ELEMENT * (run.data.sizes["station"] - 1), RINGS // len(shown.labels)) + 1
     places, stress = closed(*tubes(run, shown, rings))
     end = round_end(float(np.abs(stress).max()))
-    frames = [shown_surface(place, value) for place, value in zip(places, stress, strict=True)]
+    surfaces = [shown_surface(place, value) for place, value in zip(places, stress, strict=True)]
     corners = np.stack([places.reshape(-1, 3).min(axis=0), places.reshape(-1, 3).max(axis=0)])
-    low, high = (said(value, "MPa") for value in (stress[-1].min(), stress[-1].max()))
+    low, high = (with_unit(value, "MPa") for value in (stress[-1].min(), stress[-1].max()))
     return Panel(
         "spring",
         f"At {run.snapshots[-1]} the shear on the surface runs from {low} to {high}",
@@ -71,7 +71,7 @@ def spring_view(run: Run) -> Panel:
         f"At the end it is {low} to {high}.",
         [surface_trace(end)],
         scene_of(corners),
-        frames=frames,
+        frames=surfaces,
         moments=shown.labels,
         height=520,
         note="Red is sheared with the load, blue against it. Drag to rotate, scroll or pinch to zoom; the slider steps "

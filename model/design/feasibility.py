@@ -12,7 +12,7 @@ from coilset.model.design.conditions import Condition, without_limit
 from coilset.model.design.evaluation import Evaluator
 
 
-def refuse_beforehand(evaluator: Evaluator, conditions: Sequence[Condition], bounds: np.ndarray) -> None:
+def refuse_infeasible(evaluator: Evaluator, conditions: Sequence[Condition], bounds: np.ndarray) -> None:
     """Look at the springs in the corners of the bounds and in their middle.
 
     Args:
