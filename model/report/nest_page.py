@@ -61,17 +61,17 @@ def write_nest_report(folder: str | Path) -> Path:
             ("The springs", [view(runs)]),
         ],
         {},
-        title=f"{folder.resolve().name}: set {with_unit(summary['set_mm'], 'mm', 3, 'not released')}",
+        title=f"{folder.resolve().name}: set {_length(summary['set_mm'], 3)}",
         subtitle=f"two springs between the same seats, pressed to {columns['seat_height_mm'].min():.4g} mm, released",
         answer=[
             Number(
                 "set",
-                with_unit(summary["set_mm"], "mm", 3, "not released"),
+                _length(summary["set_mm"], 3),
                 "of the height at which the seats touch the first spring",
             ),
             Number(
                 "free length",
-                with_unit(summary["free_length_after_mm"], "mm", 3, "not released"),
+                _length(summary["free_length_after_mm"], 3),
                 f"after; {summary['free_length_before_mm']:.3f} mm before",
             ),
             Number(
@@ -81,12 +81,12 @@ def write_nest_report(folder: str | Path) -> Path:
             ),
             Number(
                 "block height",
-                with_unit(summary["block_height_mm"], "mm", 2, "not released"),
+                _length(summary["block_height_mm"], 2),
                 "of the spring that is solid first",
             ),
             Number(
                 "minimum clearance",
-                with_unit(summary["clearance_min_mm"], "mm", 3, "not released"),
+                _length(summary["clearance_min_mm"], 3),
                 f"between the springs, at a height of {summary['clearance_min_height_mm']:.4g} mm",
             ),
         ],
@@ -94,6 +94,10 @@ def write_nest_report(folder: str | Path) -> Path:
         warnings=warnings,
         made_with=made_with(next(iter(runs.values())).summary["origin"]),
     )
+
+
+def _length(value: float | None, digits: int) -> str:
+    return with_unit(value, "mm", digits, "not released")
 
 
 def _spring(name: str, summary: Mapping[str, Any] | None, share: float, force: float) -> dict[str, Any]:
@@ -109,7 +113,7 @@ def _spring(name: str, summary: Mapping[str, Any] | None, share: float, force: f
             f"{plain(force, 5)} N",
             f"{100.0 * share:.1f} %",
             f"{summary['free_length_before_mm']:.3f} mm",
-            with_unit(summary["set_mm"], "mm", 3, "not released"),
+            _length(summary["set_mm"], 3),
             with_unit(summary["shear_inside_max_MPa"], "MPa"),
             "–" if inside is None else with_unit(inside, "MPa", 1),
         ],
@@ -119,7 +123,7 @@ def _spring(name: str, summary: Mapping[str, Any] | None, share: float, force: f
 def clearance(columns: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> Panel:
     """Clearance between the springs over the travel of the seats."""
     travel = columns["seat_height_mm"][0] - columns["seat_height_mm"]
-    finding = f"The clearance between the springs is {with_unit(summary['clearance_min_mm'], 'mm', 2, 'not released')} or more"
+    finding = f"The clearance between the springs is {_length(summary['clearance_min_mm'], 2)} or more"
     return Panel(
         "clearance",
         finding,
