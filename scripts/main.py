@@ -296,13 +296,18 @@ def bench(
     out: str = typer.Option("results/bench", callback=folder_target, help="folder for the record, overwritten"),
     full: bool = typer.Option(False, "--full", help="up to 100,000 elements: 3 GiB, some minutes"),
     cold: bool = typer.Option(False, "--cold", help="also time compilation from scratch"),
-    against: str = typer.Option(None, metavar="CHECKOUT", help="also time the commands of another checkout"),
+    springs: bool = typer.Option(False, "--springs", help="run random springs instead; their costs by family"),
+    count: int = typer.Option(70, min=1, max=100_000, help="number of random springs"),
+    against: str = typer.Option(None, metavar="CHECKOUT", help="also time the commands or springs of another checkout"),
 ) -> None:
     """Measure run time of commands, by stage, by number of elements and on two ranks."""
     compile_first()
-    from coilset.scripts.commands.bench import bench as run_benchmarks
+    from coilset.scripts.commands import bench as benchmarks
 
-    run_benchmarks(out, full, cold, against)
+    if springs:
+        benchmarks.bench_springs(out, count, against)
+    else:
+        benchmarks.bench(out, full, cold, against)
 
 
 @app.command(name="compile")

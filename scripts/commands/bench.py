@@ -6,7 +6,7 @@ import platform
 import sys
 import tempfile
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -16,9 +16,11 @@ from rich.table import Table
 from coilset.model.results.files.folder import make, whole
 from coilset.model.runtime.processes import folder_of_mpirun, mpi_settings, mpirun, usable_cores
 from coilset.scripts.terminal.console import Console
-from coilset.verification.benchmarks.everyday import MEASURED, everyday, launchers
+from coilset.scripts.terminal.spring_costs import comparison, cost_table
+from coilset.verification.benchmarks.everyday import MEASURED, everyday, launchers, of_a_new_command
 from coilset.verification.benchmarks.measure import STAGES, per_element
 from coilset.verification.benchmarks.process import read_json
+from coilset.verification.benchmarks.springs import press_springs
 
 WIDTH = 140  # columns of output that goes to a file
 MODULE = "coilset.verification.benchmarks.measure"
@@ -63,6 +65,35 @@ def bench(out: str, full: bool, cold: bool, against: str | None = None) -> None:
         f"{found['processor']}, {found['cores']} cores, load {found['load']:.1f} at the start, "
         f"{record['load_after']:.1f} at the end; {time.perf_counter() - began:.0f} s; bench.json in {folder}{os.sep}"
     )
+
+
+def bench_springs(out: str, count: int, against: str | None = None) -> None:
+    """Run the first `count` random springs here and in another checkout; see `coilset bench --help`.
+
+    Raises:
+        CoilsetError: if a process that runs them died.
+        InputError: if `against` is not a checkout.
+    """
+    environment = of_a_new_command(os.environ)
+    starts = launchers(Path(against).resolve() if against else None)
+    console = Console(width=None if sys.stdout.isatty() else WIDTH)
+    began, folder = time.perf_counter(), Path(out)
+
+    def report(number: int, found: Sequence[Mapping[str, Any]]) -> None:
+        for which, side in zip(("", " in the other checkout"), found, strict=False):
+            if side["end"] != "complete":
+                console.print(f"spring {number}{which}: {side['end']} after {side['seconds']:.1f} s {side['message']}")
+
+    with console.status(f"running {count} springs"):
+        rows = press_springs(starts, range(count), environment, report)
+    make(folder)
+    with whole(folder / "springs.json") as path:
+        path.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+    for side, title in zip(range(len(starts)), ("random springs", "the same in the other checkout"), strict=False):
+        console.print(cost_table(rows, side, title))
+    if len(starts) > 1:
+        console.print(comparison(rows))
+    console.print(f"{time.perf_counter() - began:.0f} s; springs.json in {folder}{os.sep}")
 
 
 def measure(environment: dict[str, str], job: str, *arguments: int, ranks: int = 1) -> dict[str, Any]:

@@ -84,11 +84,14 @@ def everyday(
     Returns:
         For each command its `name`, and for each of MEASURED the seconds of each checkout.
     """
-    # Without the time at which this command started, from which that one would count.
-    plain = {name: value for name, value in environment.items() if name != "COILSET_STARTED"}
-    rows = []
+    plain, rows = of_a_new_command(environment), []
     for name, arguments in COMMANDS.items():
         runs = [[timed([*start, *arguments], plain) for start in starts] for _ in range(repeats + 1)][1:]
         medians = [[median(run[side][kind] for run in runs) for side in range(len(starts))] for kind in range(3)]
         rows.append({"name": name, **dict(zip(MEASURED, medians, strict=True))})
     return rows
+
+
+def of_a_new_command(environment: Mapping[str, str]) -> dict[str, str]:
+    """Without the time at which this command started, from which that one would count."""
+    return {name: value for name, value in environment.items() if name != "COILSET_STARTED"}
