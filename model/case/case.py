@@ -93,6 +93,10 @@ class MeshSpec(Strict):
         Literal["curved", "chords"],
         Field(description="curved: sections are on the true centre line; chords: on the polygon of the thesis"),
     ] = "curved"
+    element: Annotated[
+        Literal["mixed", "thesis"],
+        Field(description="mixed: section forces in equilibrium within the element, 3 sections; thesis: its own, 2"),
+    ] = "thesis"
     section: SectionSpec = SectionSpec()
 
     @model_validator(mode="after")

@@ -7,9 +7,8 @@ from scipy.interpolate import CubicSpline
 
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
+from coilset.model.rod.elements import THESIS
 from coilset.model.section.surface import Inside
-
-GAUSS = 0.5 / np.sqrt(3.0)  # from the middle of an element to its sections, over its length
 
 
 def inside(run: Run) -> Inside:
@@ -27,16 +26,16 @@ def shear_around(run: Run) -> np.ndarray:
     """Shear stress about the wire's axis on its surface, positive as in a compressed spring, MPa.
 
     Returns:
-        Shape (snapshots, elements, 2, angles); the angles are those of the data.
+        Shape (snapshots, elements, sections, angles); the angles are those of the data.
     """
     return inside(run).shear_around(run.data["surface"].values, tuple(map(str, run.data["component"].values)))
 
 
 def section_turns(run: Run) -> np.ndarray:
-    """Turns of the sections at which stress is known, shape (elements, 2)."""
+    """Turns of the sections at which stress is known, shape (elements, sections)."""
     turn = run.data["turn"].values
-    middle, length = 0.5 * (turn[1:] + turn[:-1]), np.diff(turn)
-    return middle[:, None] + length[:, None] * np.array([-GAUSS, GAUSS])
+    xi = run.data["abscissa"].values if "abscissa" in run.data else THESIS.xi  # of all earlier runs
+    return turn[:-1, None] + np.diff(turn)[:, None] * xi
 
 
 @dataclass(frozen=True)
@@ -138,7 +137,7 @@ def closed(places: np.ndarray, stress: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def section_points(run: Run, snapshot: int) -> np.ndarray:
-    """Positions of the section points in space at a snapshot, shape (elements, 2, points, 3), mm."""
+    """Positions of the section points in space at a snapshot, shape (elements, sections, points, 3), mm."""
     turn, at = run.data["turn"].values, section_turns(run)
     line = CubicSpline(turn, run.data["position"].values[snapshot], axis=0)
     centre, inwards, binormal = (values.reshape(*at.shape, 1, 3) for values in _directions(line, at.ravel()))

@@ -80,9 +80,9 @@ class FibreSections:
         return np.hstack([one.fibres[k] for one in both]), np.hstack([one.shape[k] for one in both])
 
     def initial_state(self) -> dict[str, np.ndarray]:
-        """Unstressed points: `point_state`, shape (cells, 2, points, n_state), and `surface_state` on the surface."""
+        """Unstressed points: `point_state` (cells, sections, points, n_state), and `surface_state` on the surface."""
         row = self.law_over_time.unstressed(3)
-        shape = (len(self.radius), 2)
+        shape = self.placement.stretch.shape
         return {
             "point_state": np.tile(row, (*shape, len(self.y), 1)),
             "surface_state": np.tile(row, (*shape, len(self.rim_y), 1)),
@@ -118,11 +118,11 @@ class FibreSections:
         """Advance all sections to the end of the increment.
 
         Args:
-            strain: ε, γ12, γ13, φ′, κ2, κ3 of the chords, shape (cells, 2, 6).
+            strain: ε, γ12, γ13, φ′, κ2, κ3 of the chords, shape (cells, sections, 6).
             start: state at the last equilibrium, with its `strain`; not changed.
             trial: state at the end of the increment; written.
-            s: written, resultants about the chords, shape (cells, 2, 6), N and N mm.
-            D: written, ds/de, shape (cells, 2, 6, 6), if `with_tangent`.
+            s: written, resultants about the chords, shape (cells, sections, 6), N and N mm.
+            D: written, ds/de, shape (cells, sections, 6, 6), if `with_tangent`.
 
         Returns:
             False if the law found no solution at some point or the strains are not finite.
@@ -131,7 +131,7 @@ class FibreSections:
         return self.threads.run(
             update_sections,
             len(self.radius),
-            2 * len(self.y),
+            self.placement.stretch.shape[1] * len(self.y),
             law,
             tuple(self.ground),
             self.y,
@@ -159,7 +159,7 @@ class FibreSections:
         self.threads.run(
             update_surface,
             len(self.radius),
-            2 * len(self.rim_y),
+            self.placement.stretch.shape[1] * len(self.rim_y),
             law,
             tuple(self.ground_rim),
             self.rim_y,
@@ -208,14 +208,14 @@ def update_sections(
         ground: entries of Ground; as plain tuples they take numba 25 µs less.
         y, z, w: points of the unit disk and weights, shape (points,).
         radius: wire radius of each element, shape (cells,), mm.
-        curvature: κ of the wire, towards y, shape (cells, 2), 1/mm; curved: is it known to the sections?
-        de: increments of the section strains ε, γ12, γ13, φ′, κ2 = −w″, κ3 = v″, shape (cells, 2, 6).
-        placement: shape (cells, 2, 6, 6), stretch: ds/dx, shape (cells, 2).
-        old: state at the last equilibrium, shape (cells, 2, points, n_state); not changed.
+        curvature: κ of the wire, towards y, shape (cells, sections), 1/mm; curved: is it known to the sections?
+        de: increments of the section strains ε, γ12, γ13, φ′, κ2 = −w″, κ3 = v″, shape (cells, sections, 6).
+        placement: shape (cells, sections, 6, 6), stretch: ds/dx, shape (cells, sections).
+        old: state at the last equilibrium, shape (cells, sections, points, n_state); not changed.
         new: written, the state at the end of the increment; of the last section only, in the place of the part, if it
             has not room for all.
-        s: written, N, Q2, Q3 in N and Mt, M2, M3 in N mm, shape (cells, 2, 6), about the chord axis.
-        D: written if `with_tangent`, section tangent ds/de, shape (cells, 2, 6, 6).
+        s: written, N, Q2, Q3 in N and Mt, M2, M3 in N mm, shape (cells, sections, 6), about the chord axis.
+        D: written if `with_tangent`, section tangent ds/de, shape (cells, sections, 6, 6).
 
     Returns:
         False if the law found no solution at some point or the strains are no numbers: then the step must be cut.
@@ -231,7 +231,7 @@ def update_sections(
         if last != R:
             last = R
             round_fibres(y, z, w, R, disk)
-        for g in range(2):
+        for g in range(de.shape[1]):
             to_section(placement[c, g], de[c, g], d)
             fibres, shape = disk, disk_shape
             if cut[c, g] >= 0:
@@ -276,7 +276,7 @@ def update_surface(
     for c in range(ends[part], ends[part + 1]):
         R = radius[c]
         round_fibres(y, z, weightless, R, disk)
-        for g in range(2):
+        for g in range(de.shape[1]):
             to_section(placement[c, g], de[c, g], d)
             fibres, shape = disk, disk_shape
             if cut[c, g] >= 0:

@@ -12,6 +12,7 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.meshes.springs.placement import Placement
 from coilset.model.base.warning import Warning
 from coilset.model.results.records.frame import Frame
+from coilset.model.rod.elements import Element
 from coilset.model.section import surface
 from coilset.model.section.rules import DiskRule
 
@@ -86,9 +87,9 @@ class Snapshot:
         height, force: of the seats, mm and N.
         x: station positions, shape (n + 1, 3), mm.
         triads: element triads (columns), shape (n, 3, 3).
-        resultants: N, Q2, Q3, Mt, M2, M3 at the Gauss sections, shape (n, 2, 6), N and N mm.
-        point_state: at the section points, shape (n, 2, points, n_state), MPa.
-        surface_state: at the points on the wire's surface, shape (n, 2, surface points, n_state), MPa.
+        resultants: N, Q2, Q3, Mt, M2, M3 at the sections, shape (n, sections, 6), N and N mm.
+        point_state: at the section points, shape (n, sections, points, n_state), MPa.
+        surface_state: at the points on the wire's surface, shape (n, sections, surface points, n_state), MPa.
         components: names of the columns of both.
     """
 
@@ -104,7 +105,7 @@ class Snapshot:
 
     @property
     def shear(self) -> np.ndarray:
-        """Magnitude of the shear stress at the section points, shape (n, 2, points), MPa."""
+        """Magnitude of the shear stress at the section points, shape (n, sections, points), MPa."""
         return surface.shear(self.point_state, self.components)
 
 
@@ -269,6 +270,7 @@ class Setup:
         rule: DiskRule.
         contacts: ContactRecords.
         section_kind: plane, curved or warping.
+        element: Element.
         placement: of the sections, Placement.
         buckling_travel: at which the spring buckles after EN 13906-1, mm; infinite if it never does.
         limits: Limits.
@@ -287,6 +289,7 @@ class Setup:
     rule: DiskRule
     contacts: tuple[ContactRecord, ...]
     section_kind: str
+    element: Element
     placement: Placement
     buckling_travel: float
     limits: Limits
@@ -302,10 +305,8 @@ class Setup:
 
     @property
     def section_turns(self) -> np.ndarray:
-        """Turns of the Gauss sections, shape (n, 2)."""
-        from coilset.model.rod.kinematics import GAUSS  # not where results are only read
-
-        return self.turns[:-1, None] + np.diff(self.turns)[:, None] * GAUSS
+        """Turns of the sections, shape (n, sections)."""
+        return self.turns[:-1, None] + np.diff(self.turns)[:, None] * self.element.xi
 
     @cached_property
     def inside(self) -> surface.Inside:

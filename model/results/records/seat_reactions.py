@@ -163,8 +163,7 @@ class _Observer:
 
 def mean_torque(rod: Rod) -> np.ndarray:
     """Mt of the owned elements, the mean over each, N mm."""
-    torque = rod.coefficients.s[:, :, 3]
-    return 0.5 * (torque[:, 0] + torque[:, 1])
+    return rod.coefficients.s[:, :, 3] @ np.array(rod.element.weights)
 
 
 def active_turns(rod: Rod, turns: np.ndarray, force: float, torque: np.ndarray) -> float:
