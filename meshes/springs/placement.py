@@ -44,7 +44,7 @@ def polygon_nodes(spring: Spring, turns: np.ndarray, keep: str = "points", poiss
     Args:
         spring: `Spring`.
         turns: increasing turns of the nodes, shape (n + 1,).
-        keep: ``points``, the nodes lie on the centre line; ``length``, the chords are as long as their arcs;
+        keep: ``points``, the nodes are on the centre line; ``length``, the chords are as long as their arcs;
             ``compliance``, they are as compliant as the arcs under an axial force.
         poisson: ν, for ``compliance``.
 
@@ -124,7 +124,7 @@ def section_placement(
 
     Args:
         spring: `Spring`.
-        turns: increasing turns of the nodes, shape (n + 1,); the nodes lie on the centre line.
+        turns: increasing turns of the nodes, shape (n + 1,); the nodes are on the centre line.
         triads: the chords' triads, columns, shape (n, 3, 3).
         abscissae: ξ of the Gauss sections, from 0 to 1, shape (g,).
         curved: whether the sections account for the wire's curvature and torsion, with y along the normal.

@@ -65,7 +65,7 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
     """The wire of a case's spring.
 
     Raises:
-        InputError: if it needs more memory than there is, bends too sharply, or lies outside the law's temperatures.
+        InputError: if it needs more memory than there is, bends too sharply, or is outside the law's temperatures.
     """
     element = ELEMENTS[case.mesh.element]
     turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
@@ -101,7 +101,7 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
 
 
 def build_heat(case: Case, rod: Rod) -> WireHeat | None:
-    """Heat along the wire, if the case asks for it."""
+    """Heat along the wire, if the case requests it."""
     spec = case.heat
     if spec is None:
         return None
@@ -169,7 +169,7 @@ def build_continuation(
 def build_setup(
     case: Case, spring: Spring, wire: MeshedWire, contacts: Sequence[Contact], coiling_diameter: float | None
 ) -> Setup:
-    """What the records of a run are about."""
+    """Setup of the records of a run."""
     rod, law, least_radius = wire.rod, wire.rod.law, float(wire.radius.min())
     records = tuple(
         ContactRecord(one.name, one.end, np.empty(0) if one.points is None else one.points.turns) for one in contacts

@@ -3,13 +3,12 @@
 import copy
 import math
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 from coilset.meshes.springs.placement import Placement
-from coilset.model.base.kernel import KERNEL, PARALLEL
+from coilset.model.base.kernel import KERNEL
 from coilset.model.material.law.law import Law
 from coilset.model.material.law_over_time import LawOverTime
 from coilset.model.runtime.threads import Threads
@@ -129,29 +128,26 @@ class FibreSections:
             False if the law found no solution at some point or the strains are not finite.
         """
         place, law = self.placement, self.law_over_time.over(start, trial)
-        return bool(
-            self.threads.run(
-                update_sections,
-                update_in_parts,
-                len(self.radius),
-                self.placement.stretch.shape[1] * len(self.y),
-                law,
-                tuple(self.ground),
-                self.y,
-                self.z,
-                self.weights,
-                self.radius,
-                place.curvature,
-                self.curved,
-                self._increment(strain, start, trial),
-                place.matrices,
-                place.stretch,
-                start["point_state"],
-                trial["point_state"],
-                s,
-                D,
-                with_tangent,
-            )
+        return self.threads.run(
+            update_sections,
+            len(self.radius),
+            self.placement.stretch.shape[1] * len(self.y),
+            law,
+            tuple(self.ground),
+            self.y,
+            self.z,
+            self.weights,
+            self.radius,
+            place.curvature,
+            self.curved,
+            self._increment(strain, start, trial),
+            place.matrices,
+            place.stretch,
+            start["point_state"],
+            trial["point_state"],
+            s,
+            D,
+            with_tangent,
         )
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
@@ -162,7 +158,6 @@ class FibreSections:
         place, law = self.placement, self.law_over_time.over(start, trial)
         self.threads.run(
             update_surface,
-            update_surface_in_parts,
             len(self.radius),
             self.placement.stretch.shape[1] * len(self.rim_y),
             law,
@@ -176,19 +171,11 @@ class FibreSections:
             place.matrices,
             start["surface_state"],
             trial["surface_state"],
+            False,
         )
 
 
-@njit(**PARALLEL)
-def update_in_parts(ends: np.ndarray, p: Any, ground: Any, *rest: Any) -> bool:
-    """`update_sections` for all parts of the cells side by side."""
-    good = np.empty(len(ends) - 1, np.bool_)
-    for k in prange(len(good)):
-        good[k] = update_sections(ends, np.int64(k), p, ground, *rest)
-    return bool(good.all())
-
-
-@njit(**KERNEL)
+@njit(**KERNEL, nogil=True)
 def update_sections(
     ends: np.ndarray,
     part: int,
@@ -260,14 +247,7 @@ def update_sections(
     return True
 
 
-@njit(**PARALLEL)
-def update_surface_in_parts(ends: np.ndarray, p: Any, ground: Any, *rest: Any) -> None:
-    """`update_surface` for all parts of the cells side by side."""
-    for k in prange(len(ends) - 1):
-        update_surface(ends, np.int64(k), p, ground, *rest)
-
-
-@njit(**KERNEL)
+@njit(**KERNEL, nogil=True)
 def update_surface(
     ends: np.ndarray,
     part: int,
@@ -282,8 +262,12 @@ def update_surface(
     placement: np.ndarray,
     old: np.ndarray,
     new: np.ndarray,
+    with_tangent: bool,
 ) -> None:
-    """Bring points y, z of the unit circle to the end of the increment; arguments as in `update_sections`."""
+    """Bring points y, z of the unit circle to the end of the increment; arguments as in `update_sections`.
+
+    `with_tangent` is False, and no constant, for which numba would compile the law once more.
+    """
     points, (cut, cut_fibres, cut_shape) = len(y), ground
     d, weightless = np.empty(6), np.zeros(len(y))
     strain, C, count = np.empty((3, points)), np.empty((9, points)), np.empty(points, np.int64)
@@ -299,7 +283,7 @@ def update_surface(
                 fibres, shape = cut_fibres[cut[c, g]], cut_shape[cut[c, g]]
             elif curved:
                 curved_shape(y, z, curvature[c, g] * R, disk_shape)
-            update_points(p, fibres, shape, d, old[c, g], new[c, g], strain, C, False, count)
+            update_points(p, fibres, shape, d, old[c, g], new[c, g], strain, C, with_tangent, count)
             spoil_failed(count, new[c, g])
 
 

@@ -18,13 +18,11 @@ of the state at the last equilibrium and of the strains, whatever was tried in b
 import copy
 import math
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 from coilset.meshes.springs.placement import Placement
-from coilset.model.base.kernel import PARALLEL
 from coilset.model.material.law.law import Law
 from coilset.model.material.law_over_time import LawOverTime
 from coilset.model.material.point_law import solid_point
@@ -122,32 +120,29 @@ class WarpingSections:
     ) -> bool:
         """Bring all sections to the end of the increment; as `FibreSections.update`, but always with the tangent."""
         place, law = self.placement, self.law_over_time.over(start, trial)
-        return bool(
-            self.threads.run(
-                update_sections,
-                update_in_parts,
-                len(self.radius),
-                self.placement.stretch.shape[1] * self.weights.shape[1],
-                law,
-                self.which,
-                *self.points,
-                self.weights,
-                self.radius,
-                place.curvature,
-                place.torsion,
-                strain - start["strain"],
-                place.matrices,
-                place.stretch,
-                start["point_state"],
-                start["warping"],
-                start["warping_slope"],
-                trial["point_state"],
-                trial["warping"],
-                trial["warping_slope"],
-                s,
-                D,
-                self.iterations,
-            )
+        return self.threads.run(
+            update_sections,
+            len(self.radius),
+            self.placement.stretch.shape[1] * self.weights.shape[1],
+            law,
+            self.which,
+            *self.points,
+            self.weights,
+            self.radius,
+            place.curvature,
+            place.torsion,
+            strain - start["strain"],
+            place.matrices,
+            place.stretch,
+            start["point_state"],
+            start["warping"],
+            start["warping_slope"],
+            trial["point_state"],
+            trial["warping"],
+            trial["warping_slope"],
+            s,
+            D,
+            self.iterations,
         )
 
     def update_surface(self, strain: np.ndarray, start: Mapping[str, np.ndarray], trial: dict[str, np.ndarray]) -> None:
@@ -155,7 +150,6 @@ class WarpingSections:
         place, law = self.placement, self.law_over_time.over(start, trial)
         self.threads.run(
             update_surface,
-            update_surface_in_parts,
             len(self.radius),
             self.placement.stretch.shape[1] * self.rim[0].shape[1],
             law,
@@ -178,16 +172,7 @@ def _with_polynomials(points: Sequence[np.ndarray], bases: Sequence[Basis]) -> t
     return y, z, np.array([basis(one) for basis, one in zip(bases, points, strict=True)])
 
 
-@njit(**PARALLEL)
-def update_in_parts(ends: np.ndarray, p: Any, *rest: Any) -> bool:
-    """`update_sections` for all parts of the cells side by side."""
-    good = np.empty(len(ends) - 1, np.bool_)
-    for k in prange(len(good)):
-        good[k] = update_sections(ends, np.int64(k), p, *rest)
-    return bool(good.all())
-
-
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def update_sections(
     ends: np.ndarray,
     part: int,
@@ -268,14 +253,7 @@ def update_sections(
     return True
 
 
-@njit(**PARALLEL)
-def update_surface_in_parts(ends: np.ndarray, p: Any, *rest: Any) -> None:
-    """`update_surface` for all parts of the cells side by side."""
-    for k in prange(len(ends) - 1):
-        update_surface(ends, np.int64(k), p, *rest)
-
-
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def update_surface(
     ends: np.ndarray,
     part: int,

@@ -14,7 +14,7 @@ from coilset.model.results.records.record import Snapshot
 def section_wrenches(
     x: np.ndarray, triads: np.ndarray, resultants: np.ndarray, weights: Sequence[float]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """What the wire behind a cut does to the wire before it, for a cut through each element.
+    """Force and moment of the wire behind a cut on the wire before it, for a cut through each element.
 
     No load acts on an element between its nodes, so the force is the mean over its sections, and the moment at
     its first node follows from the virtual work of the strains (5.2.4): E (Mt, M2 − Q3 l/2, M3 + Q2 l/2).
