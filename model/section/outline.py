@@ -1,19 +1,26 @@
-"""A section inside any outline, as a rod's section: quadrature of what it encloses, its warping, and its surface.
+"""A wire's cross-section by its outline: quadrature of what it encloses, its warping, and its surface.
 
 All lengths are in wire radii, from the wire's centre line: y towards the coil's axis, z upwards along the spring.
 """
 
 from abc import ABC, abstractmethod
-from functools import cached_property, lru_cache
+from dataclasses import dataclass
+from functools import cache, cached_property, lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from coilset.meshes.section import boundary
-from coilset.meshes.section_shapes import Outline
 from coilset.model.base.errors import InputError
 from coilset.model.section.polynomials import Basis
-from coilset.model.section.rules import SURFACE_POINTS, DiskRule
+from coilset.model.section.rules import SURFACE_POINTS, DiskRule, rim
 
+if TYPE_CHECKING:
+    from coilset.meshes.section_shapes import Outline
+
+WHOLE = 1.0  # a level from which on nothing is cut away
+DEEPEST = -0.999  # the wire that is left there is half a thousandth of its diameter thick
+FINE = 24  # points in each direction, for integrals of polynomials
+SLENDERNESS = 1.6  # points over the height for each of those across it
 DEGREE = 6  # of the polynomials of the warping: the torsional stiffness is 2e-4 too high at half of a disk
 RINGS, ALONG = 12, 24  # Gauss points from the centre line to the surface, and along each piece of it
 FINE_RIM = 400  # points on each piece, between which the surface is interpolated
@@ -47,6 +54,78 @@ class Section(ABC):
         return _warping(self, bend)
 
 
+@dataclass(frozen=True)
+class Segment(Section):
+    """What grinding leaves of a round wire: the disk without what is beyond a straight line.
+
+    The plane that the wheel left crosses the section in a straight line, at the `level` from the wire's axis on the
+    side away from the `normal`: the points p of the unit disk with p · normal > −level are left. With the height
+    ζ = cos φ above the axis along the normal and the place η = v sin φ across it, the segment is
+    0 < φ < arccos(−level), −1 < v < 1, and dA = sin² φ dφ dv: Gauss-Legendre in both converges like a power series.
+
+    Args:
+        level: distance of the line from the centre, −1 … 1; negative if the centre itself is cut away.
+        normal: unit vector (y, z) across the line, into what is left.
+    """
+
+    level: float
+    normal: tuple[float, float]
+
+    @property
+    def _last(self) -> float:
+        """φ at the line."""
+        return float(np.arccos(-np.clip(self.level, DEEPEST, WHOLE)))
+
+    def _turned(self, across: np.ndarray, height: np.ndarray) -> np.ndarray:
+        """Points (y, z) of given η and ζ, shape (n, 2)."""
+        n = np.array(self.normal)
+        return np.multiply.outer(across, [n[1], -n[0]]) + np.multiply.outer(height, n)
+
+    def product(self, over: int, across: int) -> tuple[np.ndarray, np.ndarray]:
+        """Gauss's points, shape (over · across, 2), and weights, whose sum is the segment's area over that of the disk.
+
+        Args:
+            over: number of points over the height.
+            across: number of points across it.
+        """
+        (x, a), (v, b) = (_gauss(n) for n in (over, across))
+        φ = 0.5 * self._last * (x[:, None] + 1.0)
+        weights = 0.5 * self._last * a[:, None] * np.sin(φ) ** 2 * b / np.pi
+        places = self._turned((np.sin(φ) * v).ravel(), (np.cos(φ) + 0.0 * v).ravel())
+        return places, weights.ravel()
+
+    @cached_property
+    def fine(self) -> tuple[np.ndarray, np.ndarray]:
+        """Points and weights for integrals of polynomials."""
+        return self.product(FINE, FINE)
+
+    def rule(self, points: int) -> DiskRule:
+        """As many points as the rule of the whole disk has; those that no product takes weigh nothing."""
+        across = max(2, round(np.sqrt(points / SLENDERNESS)))
+        over = max(1, points // across)
+        places, weights = self.product(over, across)
+        rest = points - len(weights)
+        places = np.concatenate([places, np.tile(weights @ places / weights.sum(), (rest, 1))])
+        return DiskRule(places, np.concatenate([weights, np.zeros(rest)]), f"segment {over} × {across}")
+
+    def rim(self) -> np.ndarray:
+        """The points `rules.rim` of the wire's surface; those that were cut away are spread over the flat."""
+        points, n = rim(), np.array(self.normal)
+        ζ, η = points @ n, points @ np.array([n[1], -n[0]])
+        φ, end = np.arccos(np.clip(ζ, -1.0, 1.0)), self._last
+        flat = φ > end
+        η = np.where(flat, np.sign(η) * np.sin(end) * (np.pi - φ) / max(np.pi - end, 1e-12), η)
+        return self._turned(η, np.where(flat, np.cos(end), ζ))
+
+    def basis(self, degree: int) -> Basis:
+        """Polynomials that are orthonormal over the segment."""
+        half = 0.5 * (1.0 + np.clip(self.level, DEEPEST, WHOLE))  # of its height
+        across = np.sin(min(self._last, 0.5 * np.pi))
+        n = np.array(self.normal)
+        axes = np.stack([np.array([n[1], -n[0]]) / across, n / half])
+        return Basis.over(degree, *self.fine, (1.0 - half) * n, axes)
+
+
 class Outlined(Section):
     """What a closed curve encloses that every ray from the wire's centre line crosses once.
 
@@ -58,8 +137,15 @@ class Outlined(Section):
 
     """
 
-    def __init__(self, outline: Outline, radius: float) -> None:
+    def __init__(self, outline: "Outline", radius: float) -> None:
         self._outline, self._size = outline, np.array([-1.0, 1.0]) / radius  # ξ points away from the coil's axis
+
+    def _boundary(self, along: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """As `meshes.section.boundary`, in wire radii."""
+        from coilset.meshes.section import boundary  # gmsh: not where sections are round
+
+        b, slope, dt = boundary(self._outline, along)
+        return b * self._size, slope * self._size, dt
 
     def product(self, rings: int, along: int) -> tuple[np.ndarray, np.ndarray]:
         """Gauss's points on rings, with so many on each piece of the outline, and their weights, as in `fine`.
@@ -67,8 +153,7 @@ class Outlined(Section):
         Raises:
             InputError: if some ray crosses the outline twice.
         """
-        b, slope, dt = boundary(self._outline, along)
-        b, slope = b * self._size, slope * self._size
+        b, slope, dt = self._boundary(along)
         area = (b[:, 0] * slope[:, 1] - b[:, 1] * slope[:, 0]) * dt
         if area.min() * area.max() < 0.0:
             problem = (
@@ -98,7 +183,7 @@ class Outlined(Section):
 
     def rim(self) -> np.ndarray:
         """See Section: at equal angles from the y axis."""
-        b = boundary(self._outline, FINE_RIM)[0] * self._size
+        b = self._boundary(FINE_RIM)[0]
         angle = np.arctan2(b[:, 1], b[:, 0])
         at = 2.0 * np.pi * np.arange(SURFACE_POINTS) / SURFACE_POINTS
         order = np.argsort(angle)
@@ -168,3 +253,8 @@ class Warping:
 def _warping(section: Section, bend: float) -> Warping:
     """Points of the section and those on its surface need the same, and so do runs of springs with the same ends."""
     return Warping(section, bend)
+
+
+@cache
+def _gauss(number: int) -> tuple[np.ndarray, np.ndarray]:
+    return np.polynomial.legendre.leggauss(number)

@@ -5,9 +5,8 @@ import pytest
 
 from coilset.meshes.section_shapes import Curve, Oval, Trapezoid, rectangle
 from coilset.model.base.errors import InputError
-from coilset.model.section.outline import Outlined
+from coilset.model.section.outline import Outlined, Segment
 from coilset.model.section.rules import SURFACE_POINTS
-from coilset.model.section.segment import Segment
 
 RADIUS = 2.5
 
