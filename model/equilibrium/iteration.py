@@ -24,6 +24,8 @@ from coilset.model.equilibrium.system import System
 
 each_iteration = logging.getLogger("coilset.iterations")  # silent unless its level is set
 
+CRAWL, CRAWLS = 0.01, 8  # part of a correction, and how many in a row
+
 
 class Iteration:
     """Iterates a System's increments towards the equilibrium of a load, by one of the methods.
@@ -72,6 +74,7 @@ class Iteration:
         self._share: float | None = None  # of the predicted correction, if the next tangent is to be built with it
         self.ratio, self.factorisations, self._at_step_start = np.inf, 0, True
         self._fitted = 0  # matrix version at the last reset of the linear solvers; a solid's never changes
+        self._crawled = 0  # corrections in a row of which less than CRAWL was made
         self._step_length: float | None = None  # of the last correction; None where there is none, or PETSc's own
         me = weakref.proxy(self)
         self._factory = SnesFactory(
@@ -219,7 +222,7 @@ class Iteration:
         """SNES's convergence test."""
         norm, X = norms[2], self.system.increments
         if iteration == 0:
-            self._step_length = None
+            self._step_length, self._crawled = None, 0
             self.test.begin(norm, self.system.body.axial_force if self._predicts else 0.0)
         if not math.isfinite(norm):
             return NOT_A_NUMBER
@@ -238,8 +241,21 @@ class Iteration:
             return Reason.CONVERGED_FNORM_RELATIVE
         if iteration >= snes.getTolerances()[3]:
             return Reason.DIVERGED_MAX_IT
-        lost = None if self.method.is_arc_length else self.test.is_lost(iteration, norm, snes.getDivergenceTolerance())
+        if self.method.is_arc_length:
+            return Reason.ITERATING
+        lost = self.test.is_lost(iteration, norm, snes.getDivergenceTolerance())
+        if lost is None and self._crawls():
+            lost = Reason.DIVERGED_TR_DELTA
         return Reason.ITERATING if lost is None else lost
+
+    def _crawls(self) -> bool:
+        """Whether hardly anything of the last corrections was made: repeated however often, they lead nowhere.
+
+        Where stiff contacts follow a weak mode round a curve, the search leaves some ten thousandths of each one.
+        """
+        short = self._step_length is not None and self._step_length < CRAWL
+        self._crawled = self._crawled + 1 if short else 0
+        return self._crawled >= CRAWLS
 
     def _tell(self, iteration: int, norm: float) -> None:
         if not each_iteration.isEnabledFor(logging.DEBUG):

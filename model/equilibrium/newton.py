@@ -132,14 +132,15 @@ class Newton:
             evaluations=system.evaluations - evaluations,
             linear_iterations=start.linear_iterations + linear,
             failed_solves=failed,
-            stagnated=reason == Reason.DIVERGED_LOCAL_MIN,
+            stagnated=reason in (Reason.DIVERGED_LOCAL_MIN, Reason.DIVERGED_TR_DELTA),
         )
 
     def _in_parts(self) -> tuple[int, int, int]:
         """Solve the step whole, or balance it roughly on the way where contacts stop it.
 
         Where no contact, a part would fail just as the whole: the step is to be cut. So it is where the law finds
-        no stress, and `touches` is therefore False: a part leads to the same increments, for which there is none.
+        no stress, and `touches` is therefore False: a part leads to the same increments, for which there is none. Where
+        the iteration crawls, it does so in a part, too.
 
         Returns:
             Numbers of iterations, of linear ones in them, and of parts that failed.
@@ -156,7 +157,8 @@ class Newton:
                 good, reached, aim = X.copy(), aim, 1.0
             else:
                 part = 0.5 * (aim - reached)
-                if part < self.control.smallest_part or not self.system.touches:
+                crawls = iteration.reason == Reason.DIVERGED_TR_DELTA
+                if part < self.control.smallest_part or crawls or not self.system.touches:
                     return iterations, linear, failed
                 failed += 1
                 X.set(0.0) if good is None else good.copy(X)
