@@ -429,7 +429,7 @@ def _stage(
             ways[0, j, k] = v[MODULUS, j] * (slopes[0, j, k] + length * of.unit[j, k] + by * of.strain[j])
             ways[2, j, k] = piece.by[k] / piece.length
     if of.deviates:
-        _onset(law, temperature, flowed, rows, slopes, room)
+        _onset(law, of.temperature + piece.begin * of.change, flowed, rows, slopes, room)
     span = Span(length * of.h, length * of.reference, temperature, of.work, of.heating, of.expansion, of.deviates)
     values, active, count = solve(law, span, rows, slopes, room)
     if count >= 0:
