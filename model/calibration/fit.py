@@ -8,24 +8,29 @@ rod's curves are those that fit.
 import itertools
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.optimize import OptimizeResult
 
 from coilset.model.base.errors import InputError, SolveError
-from coilset.model.calibration.intervals import Interval, correlation, intervals, minimum, rise
-from coilset.model.calibration.laws import CONSTANTS, Form
+from coilset.model.calibration import rods
+from coilset.model.calibration.intervals import Interval, correlation, intervals, minimum
+from coilset.model.calibration.laws import CONSTANTS, TRIAL, Form
 from coilset.model.calibration.model import TESTER, Errors, Model, names
 from coilset.model.calibration.pressing import Pressing
 from coilset.model.standards.wires.law import case_law
 from coilset.model.uniform.equivalent import coil
 
 ROUNDS = 8
-SETTLED = 0.4  # standard deviations by which the last round may have moved the curves
+SETTLED = 0.2  # squared standard deviations by which the last search may have come nearer
 STARTS = {"yield_stress": (0.3, 0.55, 0.8), "rise": (0.15, 0.6), "rate": (60.0, 300.0, 1200.0)}
-SHARE = 0.2  # to begin with: too little to flow backwards
+SHARE = 0.2  # to begin with: little flows backwards
+SHARES = (0.0, 0.4, 0.6, 0.8, 1.0)  # at which whole rods are run besides
 CORRELATED = 0.4  # of residuals that follow each other, from which on they are no scatter
+UNLIKE = "the law does not follow the readings"
+TESTED = Errors()
 MISFIT = 1.5  # residuals over the tester's errors, from which on the law does not follow the readings
 
 
@@ -41,7 +46,6 @@ class SpringFit:
         scatter: rms residual over the tester's errors.
         following: correlation of residuals that follow each other.
         rounds: how often whole rods were run.
-        work: largest plastic work b* of the whole rods, N/mm².
     """
 
     model: Model
@@ -63,15 +67,43 @@ class SpringFit:
         return tuple(name for name, one in self.intervals.items() if one.undetermined)
 
     @property
+    def sentences(self) -> list[str]:
+        """What it found, as a file's remark says it."""
+        units = self.model.form.units
+        found = [
+            f"{one.name} {one.low:.4g} to {one.high:.4g} {units.get(one.name, '')}".strip()
+            for one in self.intervals.values()
+        ]
+        told = [f"95 % intervals: {', '.join(found)}", f"rms residual {self.scatter:.2g} of the tester's errors"]
+        if self.doubtful:
+            told.append(f"not determined: {', '.join(self.doubtful)}")
+        return told + [self.misfit] * bool(self.misfit)
+
+    def material(self, name: str) -> dict[str, Any]:
+        """Content of a material file; runs the presses once more, for the plastic work that they reached.
+
+        Raises:
+            SolveError: if a whole rod finds no equilibrium.
+        """
+        model, trial = self.model, self.model.form.material(self.values, TRIAL)
+        runs = (rods.steps(one, trial, model.ends(self.x, k)) for k, one in enumerate(model.pressings))
+        work = max(step.plastic_work_max_N_per_mm2 for run in runs for step in run)
+        files = ", ".join(one.name for one in model.pressings)
+        about = {
+            "name": name,
+            "description": f"Constants identified from presses of springs ({model.form.name})",
+            "source": f"coilset material fit --spring: {files}",
+            "validity": {"plastic_work": float(f"{max(work, 1.0):.3g}"), "remark": "; ".join(self.sentences)},
+        }
+        return model.form.material(self.values, about)
+
+    @property
     def misfit(self) -> str:
         """Why this law is not that of the readings, in a sentence; empty if nothing says so."""
         if self.scatter > MISFIT:
-            return f"the residuals are {self.scatter:.2g} times the tester's errors: the law does not follow the readings"
+            return f"the residuals are {self.scatter:.2g} times the tester's errors: {UNLIKE}"
         if self.following > CORRELATED:
-            return (
-                f"the residuals follow each other (correlation {self.following:.2g}), they are no scatter: the law does "
-                "not follow the readings"
-            )
+            return f"the residuals follow each other (correlation {self.following:.2g}), they are no scatter: {UNLIKE}"
         return ""
 
 
@@ -80,7 +112,8 @@ def fit_springs(
     form: str = "voce",
     known: Mapping[str, float] | None = None,
     tester: Sequence[str] = (),
-    errors: Errors = Errors(),
+    errors: Errors = TESTED,
+    like: SpringFit | None = None,
 ) -> SpringFit:
     """Identify the constants of a wire from springs that are pressed and released.
 
@@ -90,6 +123,8 @@ def fit_springs(
         known: constants (`CONSTANTS`) and properties of the tester (`TESTER`) that are given.
         tester: its properties that are fitted.
         errors: of the tester.
+        like: a fit of springs that were pressed in the same way, with as many readings, to begin with; its whole rods
+            are used again.
 
     Raises:
         InputError: a name that is none, or fewer readings than unknowns.
@@ -107,12 +142,16 @@ def fit_springs(
         problem = f"{model.readings} readings cannot determine {len(model.fitted)} constants"
         raise InputError(f"{problem}; give more, or some constants by --known", "--spring")
     held = [k for k, name in enumerate(model.fitted) if name == "share"]
-    model, x, found, rounds = _settle(model, _first(model, law.G, held), held, True)
-    if held:  # a share that shows by flow backwards, or one that could be anything below?
-        other, lower = minimum(model, x)
-        if 2.0 * (found.cost - lower.cost) > rise(model, found):
-            model, x, found, more = _settle(model, other, (), False)
-            rounds += more
+    if like is not None:
+        old = like.model
+        model = replace(model, missing=old.missing, slopes_missing=old.slopes_missing, weights=old.weights)
+        model, x, found, rounds = _settle(model, like.x, ())
+    else:
+        model, x, found, rounds = _settle(model, _first(model, law.G, held), held)
+    if held and like is None:
+        model = model.with_shares(x, SHARES)
+        model, x, found, more = _settle(model, x, ())
+        rounds += more
     J = model.slopes(x)
     return SpringFit(
         model,
@@ -125,24 +164,25 @@ def fit_springs(
     )
 
 
-def _settle(
-    model: Model, x: np.ndarray, held: Sequence[int], learn: bool
-) -> tuple[Model, np.ndarray, OptimizeResult, int]:
+def _settle(model: Model, x: np.ndarray, held: Sequence[int]) -> tuple[Model, np.ndarray, OptimizeResult, int]:
     """Whole rods and search in turn, until the constants stay; with the number of rounds.
 
     Args:
         model, x: unknowns to begin with.
-        held: numbers of those that stay.
-        learn: whether whole rods have still to find slopes, in the second round.
+        held: numbers of those that stay: the share until all else is found, then nothing.
 
     Raises:
         SolveError: if the constants do not come to rest.
     """
     for number in range(1, ROUNDS + 1):
-        model = model.corrected(x, slopes=learn and number == 2)
-        before, (x, found) = x, minimum(model, x, held)
-        moved = float(np.linalg.norm(model.slopes(x) @ (x - before)))
-        if (number > 2 or not learn) and moved < SETTLED * max(_scatter(model, found), 1.0):
+        if len(model.missing) > 1 and model.share is not None:
+            x = minimum(model, x)[0] if number == 1 else x
+            model = model.with_shares(x, [float(x[model.share])])
+        else:
+            model = model.corrected(x, slopes=number == 2)
+        before, (x, found) = float(np.sum(model.residual(x) ** 2)), minimum(model, x, held)
+        gained = (before - 2.0 * found.cost) / max(_scatter(model, found), 1.0) ** 2
+        if (number > 2 or not held) and gained < SETTLED:
             return model, x, found, number
     raise SolveError(f"uniform and whole rods do not agree after {ROUNDS} rounds; are travel and spring right?")
 

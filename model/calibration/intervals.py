@@ -1,8 +1,8 @@
 """How uncertain the constants are: intervals that hold them all together with 95 % confidence, and their correlation.
 
 Where the residuals are linear in the unknowns over the interval, it follows from the covariance s² (JᵀJ)⁻¹; else from
-the profile of the sum of squares: the values of one constant up to which the others can follow until the sum has risen by
-s² t². t is Student's, for all constants together (Bonferroni).
+the profile of the sum of squares: the values of one constant up to which the others can follow until the sum has risen
+by s² t². t is Student's, for all constants together (Bonferroni).
 """
 
 import math
@@ -53,12 +53,12 @@ def correlation(J: np.ndarray, count: int) -> np.ndarray:
 
 
 def spread(J: np.ndarray) -> np.ndarray:
-    """Standard deviations of the unknowns for residuals of standard deviation 1; infinite for one that changes nothing."""
+    """Standard deviations of the unknowns for residuals of standard deviation 1; infinite where nothing changes."""
     scale = np.linalg.norm(J, axis=0)
     live = scale > 1e-9 * scale.max()
     found = np.full(J.shape[1], np.inf)
     part = J[:, live] / scale[live]
-    U, s, V = np.linalg.svd(part, full_matrices=False)
+    _, s, V = np.linalg.svd(part, full_matrices=False)
     safe = np.maximum(s, 1e-9 * s.max())
     found[live] = np.sqrt(np.sum((V / safe[:, None]) ** 2, axis=0)) / scale[live]
     return found

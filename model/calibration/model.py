@@ -1,8 +1,8 @@
 """What a set of constants predicts for all readings: the unknowns, and the residuals in terms of the tester's error.
 
-A reading weighs as much as it is certain: its variance is (e_F F)² + (R e_s)², with the tester's relative error of force
-e_F, its error of travel or length e_s, and the local rate R. Where a press turns, the travel of a single reading decides
-how far the wire flows; it is an unknown itself, whose deviation counts as one more residual over e_s.
+A reading weighs as much as it is certain: its variance is (e_F F)² + (R e_s)², with the tester's relative error of
+force e_F, its error of travel or length e_s, and the local rate R. Where a press turns, the travel of a single reading
+decides how far the wire flows; it is an unknown itself, whose deviation counts as one more residual over e_s.
 
 The tester itself may be unknown: its compliance c and the offset s₀ of its zero make the spring's travel s − s₀ − c F,
 its friction makes the force F (1 ± μ), more when pressed and less when released.
@@ -10,11 +10,11 @@ its friction makes the force F (1 ± μ), more when pressed and less when releas
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from coilset.model.base.errors import SolveError
+from coilset.model.base.errors import InputError, SolveError
 from coilset.model.calibration import rods
 from coilset.model.calibration.laws import CONSTANTS, TRIAL, Form
 from coilset.model.calibration.pressing import Pressing
@@ -22,11 +22,20 @@ from coilset.model.calibration.rods import Branch
 
 TESTER = {"friction": "", "compliance": "mm/N", "offset": "mm"}
 LOGARITHMIC = ("G", "yield_stress", "rise", "rate")
-STEPS = {"share": 1e-3, "friction": 1e-4, "compliance": 1e-7, "offset": 1e-3}  # for slopes; logarithms and turns 1e-3
-BOUNDS = {"rate": (-12.0, 8.5), "share": (0.0, 1.0), "friction": (0.0, 0.3), "compliance": (0.0, 1e-2), "offset": (-5.0, 5.0)}
+STEPS = {"share": 1e-3, "friction": 1e-4, "compliance": 1e-7, "offset": 1e-3}  # for slopes; others 1e-3
+BOUNDS = {
+    "yield_stress": (2.0, 9.0),
+    "rise": (-2.0, 9.0),
+    "rate": (-12.0, 8.5),
+    "share": (0.0, 1.0),
+    "friction": (0.0, 0.3),
+    "compliance": (0.0, 1e-2),
+    "offset": (-5.0, 5.0),
+}
 TURNS = 2.0  # mm, within which the travel of a turn is sought
 CLOSED = 3.0  # times the least rate so far: beyond it coils have closed, and the wire is not what gives way
 LEAST = 0.005  # of the maximum force, below which a reading is of a spring that stands free
+SAME = 0.02  # difference of shares below which the newer whole rod counts
 HOPELESS = 1e6  # residuals where there is no equilibrium
 
 
@@ -36,6 +45,14 @@ class Errors:
 
     force: float = 0.005
     travel: float = 0.02
+
+
+@dataclass(frozen=True)
+class Missing:
+    """What the whole rod has more than the uniform one at each reading of each pressing, N or mm, at unknowns."""
+
+    at: np.ndarray
+    more: tuple[np.ndarray, ...]
 
 
 @dataclass(frozen=True)
@@ -49,8 +66,8 @@ class Model:
         fitted: names of those that are.
         errors: of the tester.
         weights: standard deviation of each reading of each pressing, N, or mm of lengths; infinite if it is not used.
-        missing: what the whole rod has more than the uniform one at each reading, in the same units, at the unknowns
-            `at`; missing_slopes: its derivatives by the unknowns, as far as earlier rounds have shown them.
+        missing: what the whole rod has more than the uniform one, at several unknowns, in ascending shares.
+        slopes_missing: its derivatives by the unknowns, but not by the share, shape (readings, unknowns).
     """
 
     pressings: tuple[Pressing, ...]
@@ -59,9 +76,8 @@ class Model:
     fitted: tuple[str, ...]
     errors: Errors = Errors()
     weights: tuple[np.ndarray, ...] = ()
-    missing: tuple[np.ndarray, ...] = ()
-    missing_slopes: tuple[np.ndarray, ...] = ()
-    at: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    missing: tuple[Missing, ...] = ()
+    slopes_missing: tuple[np.ndarray, ...] = ()
 
     @property
     def turns(self) -> list[tuple[int, int]]:
@@ -106,7 +122,7 @@ class Model:
         return found
 
     def predicted(self, x: np.ndarray, number: int, branches: Sequence[Branch]) -> np.ndarray:
-        """Readings of a pressing that these branches would give: force at its travels, or the travel where it is free."""
+        """Readings of a pressing from these branches: force at its travels, or the travel where it is free."""
         one, values = self.pressings[number], self.values(x)
         found = np.empty(len(one.travel))
         travel = one.travel - values["offset"] - values["compliance"] * one.force
@@ -125,20 +141,29 @@ class Model:
             SolveError: if there is no equilibrium.
         """
         law = self.form.law(self.values(x))
-        return [
-            self.predicted(x, k, rods.uniform(one, law, self.ends(x, k))) for k, one in enumerate(self.pressings)
-        ]
+        return [self.predicted(x, k, rods.uniform(one, law, self.ends(x, k))) for k, one in enumerate(self.pressings)]
+
+    @property
+    def share(self) -> int | None:
+        """Number of the share among the unknowns, if it is one."""
+        return self.fitted.index("share") if "share" in self.fitted else None
 
     def lacking(self, x: np.ndarray, number: int) -> np.ndarray:
-        """What the whole rod has more than the uniform one at the readings of a pressing."""
-        return self.missing[number] + self.missing_slopes[number] @ (x - self.at)
+        """What the whole rod has more at the readings of a pressing, linear between the shares at which it is known."""
+        known = [one.more[number] + self.slopes_missing[number] @ (x - one.at) for one in self.missing]
+        if len(known) == 1 or self.share is None:
+            return known[-1]
+        shares = [one.at[self.share] for one in self.missing]
+        k = int(np.clip(np.searchsorted(shares, x[self.share]), 1, len(shares) - 1))
+        part = float(np.clip((x[self.share] - shares[k - 1]) / (shares[k] - shares[k - 1]), 0.0, 1.0))
+        return (1.0 - part) * known[k - 1] + part * known[k]
 
     def residual(self, x: np.ndarray) -> np.ndarray:
         """Deviations of the readings that are used, and of the turns, over their standard deviations."""
         turns = x[len(self.fitted) :] / self.errors.travel
         try:
             found = self.uniform(x)
-        except SolveError:
+        except (SolveError, InputError, OverflowError):  # constants far from those of any wire
             return np.append(np.full(self.readings, HOPELESS), turns)
         parts = []
         for k, (one, ours, weight) in enumerate(zip(self.pressings, found, self.weights, strict=True)):
@@ -147,7 +172,7 @@ class Model:
             parts.append(((ours + self.lacking(x, k) - measured) / weight)[used])
         return np.concatenate([*parts, turns])
 
-    def slopes(self, x: np.ndarray, unknowns: Sequence[int] | None = None) -> np.ndarray:
+    def slopes(self, x: np.ndarray, unknowns: Sequence[int] | np.ndarray | None = None) -> np.ndarray:
         """Derivatives of the residuals by some unknowns, all by default, by differences that stay within the bounds."""
         here, columns = self.residual(x), []
         for k in range(len(x)) if unknowns is None else unknowns:
@@ -168,18 +193,37 @@ class Model:
             SolveError: if a whole rod finds no equilibrium.
         """
         rods_here = self._whole(x)
-        missing = self._difference(x, rods_here)
-        known = [one.copy() for one in self.missing_slopes]
+        more = self._difference(x, rods_here)
+        known = [one.copy() for one in self.slopes_missing]
         for k, name in enumerate(self.fitted if slopes else ()):
             if name == "share":
-                continue  # it acts beyond a threshold only: a slope would say nothing of other shares
+                continue  # it acts beyond a threshold: `with_shares` follows it
             step = self._step(x, k)
             moved = x.copy()
             moved[k] += step
-            for one, here, there in zip(known, missing, self._difference(moved, self._whole(moved)), strict=True):
+            for one, here, there in zip(known, more, self._difference(moved, self._whole(moved)), strict=True):
                 one[:, k] = (there - here) / step
         weights = tuple(self._weights(*pair) for pair in zip(self.pressings, rods_here, strict=True))
-        return replace(self, missing=missing, missing_slopes=tuple(known), weights=weights, at=x.copy())
+        return replace(self, missing=(Missing(x.copy(), more),), slopes_missing=tuple(known), weights=weights)
+
+    def with_shares(self, x: np.ndarray, shares: Sequence[float]) -> "Model":
+        """The model with what whole rods of these shares have more; those of nearly the same share are replaced.
+
+        Args:
+            x: other unknowns.
+            shares: of kinematic hardening.
+
+        Raises:
+            SolveError: if a whole rod finds no equilibrium.
+        """
+        assert self.share is not None
+        found = list(self.missing)
+        for share in shares:
+            at = x.copy()
+            at[self.share] = share
+            found = [one for one in found if abs(one.at[self.share] - share) > SAME]
+            found.append(Missing(at, self._difference(at, self._whole(at))))
+        return replace(self, missing=tuple(sorted(found, key=lambda one: float(one.at[self.share or 0]))))
 
     def _whole(self, x: np.ndarray) -> list[list[Branch]]:
         material = self.form.material(self.values(x), TRIAL)
@@ -202,9 +246,16 @@ class Model:
         weights = []
         for one in self.pressings:
             top = int(np.argmax(one.force))
-            line = Branch(np.array([0.0, one.travel[top]]), np.array([0.0, one.force[top]])) if not one.lengths else None
+            line = (
+                Branch(np.array([0.0, one.travel[top]]), np.array([0.0, one.force[top]])) if not one.lengths else None
+            )
             weights.append(self._weights(one, [line] * len(one.ends) if line else []))
-        return replace(self, missing=nothing, missing_slopes=slopes, weights=tuple(weights), at=np.zeros(unknowns))
+        return replace(
+            self,
+            missing=(Missing(np.zeros(unknowns), nothing),),
+            slopes_missing=slopes,
+            weights=tuple(weights),
+        )
 
     def _weights(self, one: Pressing, branches: Sequence[Branch]) -> np.ndarray:
         """Standard deviations of the readings of a pressing."""
@@ -212,7 +263,7 @@ class Model:
         for branch, curve in enumerate(branches if not one.lengths else ()):
             here = one.branch == branch
             rate = curve.slope(one.travel[here])
-            typical = float(np.median(curve.slope(np.linspace(*curve.travel[[0, -1]], 21))))
+            typical = float(np.median(curve.slope(curve.places(21))))
             found[here] = np.hypot(self.errors.force * one.force[here], rate * self.errors.travel)
             closed = (rate > CLOSED * typical) | (one.force[here] < LEAST * one.force.max())
             found[here] = np.where(closed, np.inf, found[here])

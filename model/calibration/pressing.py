@@ -89,9 +89,7 @@ def read_pressing(path: str | Path, case: Case) -> Pressing:
     for turn in turns[:-1]:
         branch[turn + 1 :] += 1
     released = RELEASED * float(force.max())
-    ends = tuple(
-        None if k % 2 and abs(force[turn]) < released else float(travel[turn]) for k, turn in enumerate(turns)
-    )
+    ends = tuple(None if k % 2 and abs(force[turn]) < released else float(travel[turn]) for k, turn in enumerate(turns))
     return Pressing(table.path.stem, case, travel, force, branch, ends)
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import yaml
 from mpi4py import MPI
 from scipy.interpolate import PchipInterpolator
@@ -16,6 +17,7 @@ from coilset.model.base.entry import check_entries
 from coilset.model.calibration.pressing import Pressing
 from coilset.model.case.case import Case
 from coilset.model.material.law.law import Law
+from coilset.model.results.records.record import Step
 from coilset.model.run.analysis import Analysis
 from coilset.model.uniform.equivalent import coil
 from coilset.model.uniform.rod import UniformState, press
@@ -43,16 +45,21 @@ class Branch:
         """Rate, N/mm."""
         return self._curve.derivative()(np.clip(travel, self.travel[0], self.travel[-1]))
 
+    def places(self, count: int) -> np.ndarray:
+        """Travels at equal distances from its lower to its upper end, shape (count,)."""
+        return np.linspace(self.travel[0], self.travel[-1], count)
+
     @property
     def free(self) -> float:
         """The travel at its lower end, mm."""
         return float(self.travel[0])
 
 
-def _branch(travel: Sequence[float], force: Sequence[float]) -> Branch:
+def _branch(travel: npt.ArrayLike, force: npt.ArrayLike) -> Branch:
     """Of steps in any order; those that add no travel are left out."""
-    order = np.argsort(travel, kind="stable")
-    x, y = np.asarray(travel, float)[order], np.asarray(force, float)[order]
+    x, y = np.asarray(travel, float), np.asarray(force, float)
+    order = np.argsort(x, kind="stable")
+    x, y = x[order], y[order]
     new = np.append(True, np.diff(x) > 1e-9 * max(abs(x[0]), abs(x[-1])))
     return Branch(x[new], y[new])
 
@@ -86,8 +93,8 @@ def uniform(pressing: Pressing, law: Law, ends: Sequence[float | None]) -> list[
     return found
 
 
-def whole(pressing: Pressing, material: Mapping[str, Any], ends: Sequence[float | None]) -> list[Branch]:
-    """The press by the rod between its seats, with its contacts and the past of its wire.
+def steps(pressing: Pressing, material: Mapping[str, Any], ends: Sequence[float | None]) -> Sequence[Step]:
+    """Steps of the rod between its seats, with its contacts and the past of its wire.
 
     Args:
         pressing: of which spring.
@@ -108,10 +115,15 @@ def whole(pressing: Pressing, material: Mapping[str, Any], ends: Sequence[float 
         file.write_text(yaml.safe_dump(dict(material)), encoding="utf-8")
         entries = {"material": str(file), "loading": loading, "accuracy": "none", "rates_at": []}
         case = check_entries(pressing.case.model_dump(mode="json") | entries, Case)
-        steps = Analysis(case, MPI.COMM_SELF, detailed=False).run().steps
+        return Analysis(case, MPI.COMM_SELF, detailed=False).run().steps
+
+
+def whole(pressing: Pressing, material: Mapping[str, Any], ends: Sequence[float | None]) -> list[Branch]:
+    """The press by the whole rod; see `steps`."""
+    run = steps(pressing, material, ends)
     found, start = [], (0.0, 0.0)
     for number in range(len(ends)):
-        points = [start, *((step.travel_mm, step.force_N) for step in steps if step.phase == number)]
+        points = [start, *((step.travel_mm, step.force_N) for step in run if step.phase == number)]
         found.append(_branch(*zip(*points, strict=True)))
         start = points[-1]
     return found

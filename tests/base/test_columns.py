@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from coilset.model.base.errors import InputError
 from coilset.model.base.columns import read_columns
+from coilset.model.base.errors import InputError
 
 
 def test_comments_a_byte_order_mark_and_line_endings_of_spreadsheets(tmp_path):

@@ -80,9 +80,10 @@ def check_functions(data: MaterialFile, functions: Functions, refuse: Refuse) ->
             with np.errstate(all="ignore"):  # what overflows is refused below
                 k2, dk2, zeta, _, kappa, _ = values_at = functions(work, temperature)
                 product, slopes = kappa * dk2, 2 * zeta + dk2
+                falling = slopes < -ROUNDING * at.elasticity.G
             for entry, name, unit, values, broken, rule in (
                 ("isotropic", "k²", " N²/mm⁴", k2, ~(k2 > 0), "must be positive"),
-                ("isotropic", "2ζ + k²′", " N/mm²", slopes, slopes < -ROUNDING * at.elasticity.G, "must not be negative"),
+                ("isotropic", "2ζ + k²′", " N/mm²", slopes, falling, "must not be negative"),
                 (
                     "non_normality.a",
                     "κ k²′",
