@@ -19,6 +19,7 @@ CONFIDENCE = 0.95
 LINEAR = 0.1  # by which the rise of the sum of squares may differ from that of linear residuals
 WIDE = 1.0  # of the value: an interval at least as wide leaves a constant undetermined
 TRIES = 6  # of a profile's end
+THRESHOLD = 1.7  # times the rise for a share: beyond its threshold it is one of many shapes, χ² of 3 over that of 1
 REACH = 3.0  # in the logarithm of a constant: beyond it nothing is sought
 
 
@@ -112,8 +113,11 @@ def _end(
     others = np.arange(len(x)) != k
     along = np.zeros(len(x))
     along[k] = 1.0
-    along[others] = -np.linalg.lstsq(J[:, others], J[:, k], rcond=1e-9)[0]
+    kinked = k == model.share  # its slope on one side says nothing of the other
+    if not kinked:
+        along[others] = -np.linalg.lstsq(J[:, others], J[:, k], rcond=1e-9)[0]
     sign, low, high = math.copysign(1.0, width), *model.bounds
+    limit *= THRESHOLD if kinked else 1.0
 
     def guess(distance: float) -> np.ndarray:
         return np.clip(x + sign * distance * along, low, high)
@@ -122,7 +126,7 @@ def _end(
         return float(np.sum(model.residual(x) ** 2)) - 2.0 * cost
 
     distance = min(abs(width), reach)
-    if distance < reach and abs(risen(guess(distance)) / limit - 1.0) < LINEAR:
+    if not kinked and distance < reach and abs(risen(guess(distance)) / limit - 1.0) < LINEAR:
         return distance, False
 
     def least(at: float) -> float:
