@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from coilset.model.results.files.netcdf import LabelledData, Variable, write_netcdf
+from coilset.model.results.records.labels import plain
 from coilset.model.results.records.record import Result, Setup, Snapshot
 from coilset.model.results.records.warnings import run_warnings
 from coilset.model.section.ground import section_points
@@ -44,6 +45,7 @@ def point_state(setup: Setup, result: Result) -> LabelledData:
             "wire_radius": Variable(("element",), radius, mm),
             "weight": Variable(of_points, weights),
             "curvature": Variable(("element", "gauss"), setup.placement.curvature, curvature),
+            "abscissa": Variable(("gauss",), setup.element.xi, {"about": "of the sections, over the element's length"}),
             "torsion": Variable(("element", "gauss"), setup.placement.torsion, {"units": "1/mm"}),
         },
         _coordinates(setup, snapshots),
@@ -54,7 +56,23 @@ def point_state(setup: Setup, result: Result) -> LabelledData:
             "section_kind": setup.section_kind,
         },
     )
-    return data.merged(way_of_wire(result)).merged(pressure_along_wire(setup, result))
+    return data.merged(way_of_wire(result)).merged(pressure_along_wire(setup, result)).merged(_mode(result))
+
+
+def _mode(result: Result) -> LabelledData:
+    """The buckling mode, if there is one."""
+    mode, dims = result.mode, ("station", "axis")
+    if mode is None:
+        return LabelledData({}, {})
+    state = {"travel_mm": plain(mode.travel_mm), "force_N": plain(mode.force_N)}
+    about = {"units": "mm", "about": "displacement of the stations in the buckling mode, maximum 1 mm"}
+    return LabelledData(
+        {
+            "mode_position": Variable(dims, mode.x, {"units": "mm", **state}),
+            "mode_displacement": Variable(dims, mode.displacement, about),
+        },
+        {},
+    )
 
 
 def _coordinates(setup: Setup, snapshots: Sequence[Snapshot]) -> dict[str, Variable]:
@@ -80,7 +98,7 @@ def way_of_wire(result: Result) -> LabelledData:
     if not result.frames:
         return LabelledData({}, {})
     places, shear = (np.stack([getattr(frame, name) for frame in result.frames]) for name in ("x", "shear"))
-    about = "about the wire's axis, positive as in a compressed spring; mean of an element's two sections"
+    about = "about the wire's axis, positive as in a compressed spring; mean of an element's sections"
     return LabelledData(
         {
             "step_position": Variable(("step", "station", "axis"), places, {"units": "mm"}),

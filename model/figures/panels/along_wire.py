@@ -1,0 +1,57 @@
+"""Distributions along the wire: stress at the inside and the outside of the coil, moments of the sections."""
+
+import numpy as np
+
+from coilset.model.figures.panels.panel import Panel, axis, curve, with_unit
+from coilset.model.figures.wire import inside, section_turns, shear_around
+from coilset.model.results.files.opened import Run
+from coilset.model.results.records.labels import plain
+
+SIDES = (("inside of the coil", 0.0, "solid"), ("outside", np.pi, "dash"))
+SHOWN = {"Mt": "torque Mt", "M2": "bending moment M2", "M3": "bending moment M3"}
+
+
+def stress_along_wire(run: Run) -> Panel:
+    """Shear on the surface over the turns at all snapshots, inside and outside of the coil."""
+    turns, shear, traces = section_turns(run).ravel(), shear_around(run), []
+    for number, name in enumerate(run.snapshots[1:], start=1):
+        for side, angle, dash in SIDES:
+            place = round((inside(run).angle + angle) / (2.0 * np.pi) * shear.shape[-1]) % shear.shape[-1]
+            values = shear[number, ..., place].ravel()
+            traces.append(curve(turns, values, number - 1, dash=dash, name=f"{name}, {side}"))
+    stays = run.summary["residual_shear_inside_MPa"]
+    turn = run.summary.get("residual_shear_inside_turn")
+    at = "" if turn is None else f" at turn {turn:.2f}"
+    finding = "Shear stress along the wire"
+    if stays is not None:
+        finding = f"{with_unit(stays, 'MPa')} of shear remain at the inside of the coil{at}"
+    return Panel(
+        "along_wire",
+        finding,
+        f"{finding}. Shear stress on the surface over the turns from the bottom tip, at the inside and the outside of "
+        "the coil, positive as in a compressed spring.",
+        traces,
+        {"xaxis": axis("turn from the bottom tip"), "yaxis": axis("shear about the wire's axis, MPa")},
+        height=420,
+    )
+
+
+def moments_along_wire(run: Run) -> Panel:
+    """Torque and bending moments of the sections over the turns, one snapshot at a time."""
+    turns, traces = section_turns(run).ravel(), []
+    torque = np.abs(run.data["resultants"].sel(resultant="Mt").values).reshape(len(run.snapshots), -1).max(axis=1)
+    most = int(torque.argmax())
+    order = [*(number for number in range(len(run.snapshots)) if number != most), most]  # the last is shown first
+    for choice, number in enumerate(order):
+        for place, (key, name) in enumerate(SHOWN.items()):
+            values = run.data["resultants"].sel(resultant=key).values[number].ravel()
+            traces.append(curve(turns, values, place, dash="solid", name=name, meta={"choice": choice}))
+    finding = f"The wire carries up to {plain(torque[most])} N mm of torque, at {run.snapshots[most]}"
+    return Panel(
+        "moments",
+        finding,
+        f"{finding}. Torque and bending moments of the wire's sections over the turns.",
+        traces,
+        {"xaxis": axis("turn from the bottom tip"), "yaxis": axis("moment, N mm")},
+        tuple(run.snapshots[number] for number in order),
+    )

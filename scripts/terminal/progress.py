@@ -1,0 +1,228 @@
+"""Output of a run while it is in progress: lines to read, lines of JSON, or only warnings."""
+
+import contextlib
+import json
+import logging
+import os
+import sys
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rich.table import Table
+
+from coilset.model.results.records.record import ContactRecord, SeatReactions, Step
+from coilset.model.run.analysis import Analysis
+from coilset.scripts.terminal.console import Console
+
+if TYPE_CHECKING:  # not where a rod is solved
+    from coilset.model.slice.analysis import SliceStep
+
+HEAD = f"{'step':>5}{'height/mm':>10}{'force/N':>12}{'iter.':>6}"  # of `step_row`
+SOON = 5.0  # seconds; with less elapsed or left, the remaining time is not printed
+
+
+class Lines:
+    """A line per step, and a table at the end; colours on a terminal only.
+
+    Args:
+        talks: False on ranks that print nothing.
+        verbose: also print a line for each iteration.
+    """
+
+    def __init__(self, talks: bool = True, verbose: bool = False) -> None:
+        self.console, self.verbose = Console(quiet=not talks), verbose
+        self._began, self._from = time.monotonic(), 0.0
+
+    def say(self, text: str) -> None:
+        """A line about the run."""
+        self.console.say(text)
+
+    def warn(self, text: str) -> None:
+        """A warning."""
+        self.console.warn(text)
+
+    def begin(self, analysis: Analysis, case_file: str | Path, resumed: bool) -> None:
+        """The run begins or continues."""
+        self.analysis, self._began, self._from = analysis, time.monotonic(), _done(analysis)
+        for warning in analysis.setup.warnings:
+            self.warn(warning.message)
+        targets = ", ".join(phase.label for phase in analysis.case.loading)
+        elements, ranks = len(analysis.setup.turns) - 1, analysis.comm.size
+        self.say(f"{Path(case_file).name}: {elements} elements, to {targets}, {ranks} rank(s)")
+        if resumed and self._from >= 1.0:
+            self.say(f"all {analysis.continuation.number} steps are there: only the results are written again")
+            return
+        if resumed:
+            self.say(f"continuing after step {analysis.continuation.number}")
+        self.say(f"{HEAD}{'points':>7}  contacts")  # a row fits in 80 columns
+
+    def step(self, step: Step) -> None:
+        """A step has been found."""
+        cuts = f"  {step.cuts} cut{'s' * (step.cuts > 1)}" if step.cuts else ""
+        if step.left_branch:
+            cuts += "  [yellow]snapped[/]" if step.released_energy_Nmm else "  [yellow]left its path[/]"
+        touching = contact_words(self.analysis.setup.contacts, self.analysis.result.seats[-1])
+        row = f"{step_row(step)}{step.contacts:7d}  {touching}{cuts}{self._left(step)}"
+        self.console.print(row, soft_wrap=True)
+
+    def _left(self, step: Step) -> str:
+        """Remaining time at the speed so far; empty if it is short, or unknown."""
+        spent, done = time.monotonic() - self._began, _done(self.analysis, step)
+        left = spent * (1.0 - done) / max(done - self._from, 1e-9)
+        return "" if spent < SOON or left < SOON else f"  [dim]{duration(left)} left[/]"
+
+    @contextlib.contextmanager
+    def iterations(self) -> Iterator[None]:
+        """Context in which each iteration is printed, if requested."""
+        if not self.verbose or self.console.quiet:
+            yield
+            return
+        log, handler = logging.getLogger("coilset.iterations"), _Handler(self.console)
+        log.setLevel(logging.DEBUG)
+        log.addHandler(handler)
+        try:
+            yield
+        finally:
+            log.removeHandler(handler)
+            log.setLevel(logging.NOTSET)
+
+    def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
+        """Print the results."""
+        table = Table(show_header=False, box=None, padding=(0, 2))
+        table.add_row("free length before", quantity(summary["free_length_before_mm"], "mm"))
+        for number, release in enumerate(summary["releases"][:-1], 1):
+            table.add_row(f"free length after release {number}", quantity(release["free_length_mm"], "mm"))
+        last = "free length after the last release" if len(summary["releases"]) > 1 else "free length after"
+        table.add_row(last, quantity(summary["free_length_after_mm"], "mm"))
+        table.add_row("[bold]set[/]", f"[bold]{quantity(summary['set_mm'], 'mm')}[/]")
+        table.add_row("initial rate", quantity(summary["rate_N_per_mm"], "N/mm"))
+        if summary["force_max_N"] >= 0.0:  # of a spring that is compressed
+            finished = summary["rate_30_70_after_N_per_mm"]
+            name = "rate at 30 to 70 % of the travel" if finished is None else "rate of the finished spring, 30 to 70 %"
+            table.add_row(name, quantity(finished or summary["rate_30_70_N_per_mm"], "N/mm"))
+        for rate in summary["rates"]:
+            table.add_row(f"rate at {rate['travel_mm']:g} mm", quantity(rate["rate_N_per_mm"], "N/mm"))
+        table.add_row("maximum force", quantity(summary["force_max_N"], "N", 2))
+        if summary["load_loss_percent"] is not None:
+            table.add_row("load lost in time", quantity(summary["load_loss_percent"], "%", 2))
+        table.add_row("block height", quantity(summary["block_height_mm"], "mm"))
+        table.add_row("maximum residual shear stress", quantity(summary["residual_shear_max_MPa"], "MPa", 2))
+        inside, turn = quantity(summary["residual_shear_inside_MPa"], "MPa", 2), summary["residual_shear_inside_turn"]
+        at = "" if turn is None else f" at turn {turn:.2f}"
+        table.add_row("residual shear stress, inside of coil", inside + at)
+        self.console.print(table)
+        self.console.say(f"  results in {out}{os.sep}", whole=True)
+        for warning in summary["warnings"]:
+            self.warn(warning["message"])
+
+
+class Quiet(Lines):
+    """Warnings alone."""
+
+    def say(self, text: str) -> None:
+        """Nothing."""
+
+    def step(self, step: Step) -> None:
+        """Nothing."""
+
+    def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
+        """The warnings that were not printed at the beginning."""
+        told = {warning.message for warning in self.analysis.setup.warnings}
+        for warning in summary["warnings"]:
+            if warning["message"] not in told:
+                self.warn(warning["message"])
+
+
+class JsonLines(Lines):
+    """A line of JSON for each event, named by its `event`: begin, step, warning, end."""
+
+    def _put(self, event: str, **entries: Any) -> None:
+        if not self.console.quiet:
+            print(json.dumps({"event": event, **entries}, ensure_ascii=False), flush=True, file=sys.stdout)
+
+    def say(self, text: str) -> None:
+        """Nothing that a script would read."""
+
+    def warn(self, text: str) -> None:
+        """A warning."""
+        self._put("warning", message=text)
+
+    def begin(self, analysis: Analysis, case_file: str | Path, resumed: bool) -> None:
+        """The case, its mesh and its load program."""
+        super().begin(analysis, case_file, resumed)
+        self._put(
+            "begin",
+            case=Path(case_file).name,
+            elements=len(analysis.setup.turns) - 1,
+            resumed=resumed,
+            loading=[phase.label for phase in analysis.case.loading],
+            ranks=analysis.comm.size,
+        )
+
+    def step(self, step: Step) -> None:
+        """The step's row of history.csv, the contacts, and the completed part of the load program."""
+        touching = contact_words(self.analysis.setup.contacts, self.analysis.result.seats[-1])
+        self._put("step", **asdict(step), touching=touching, done=_done(self.analysis, step))
+
+    def conclude(self, summary: Mapping[str, Any], out: Path) -> None:
+        """The summary, as in summary.json."""
+        self._put("end", folder=str(out), summary=dict(summary))
+
+
+VOICES = {"lines": Lines, "quiet": Quiet, "json": JsonLines}
+
+
+def duration(seconds: float) -> str:
+    """A time in one or two digits: 40 s, 3 min, 2.5 h."""
+    if seconds < 100.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 6000.0 else f"{seconds / 3600.0:.1f} h"
+
+
+def _done(analysis: Analysis, step: Step | None = None) -> float:
+    """Completed part of the load program; all phases count equally."""
+    if step is None:
+        step = analysis.result.steps[-1] if analysis.result.steps else None
+    return 0.0 if step is None else (step.phase + step.progress) / len(analysis.case.loading)
+
+
+def step_row(step: "Step | SliceStep") -> str:
+    """The columns common to the steps of rod and slice, under HEAD."""
+    force = without_minus(step.force_N, 3)
+    return f"{step.number:5d}{step.seat_height_mm:10.4f}{force:>12}{step.iterations:6d}"
+
+
+def quantity(value: float | None, unit: str, digits: int = 4) -> str:
+    """A value with its unit; `none` where the run gave none, as of a spring that was not released."""
+    return "none" if value is None else f"{without_minus(value, digits)} {unit}"
+
+
+def without_minus(value: float, digits: int) -> str:
+    """A value with a number of decimals, without -0.0."""
+    return f"{round(value, digits) + 0.0:.{digits}f}"
+
+
+def contact_words(kinds: Sequence[ContactRecord], reactions: SeatReactions) -> str:
+    """Which kinds of contact press on the wire: `both seats, coils`, `bottom seat`, or `no contact`.
+
+    Args:
+        kinds: of the Setup.
+        reactions: of the step.
+    """
+    names = [kinds[number].name for number in sorted({int(row[0]) for row in reactions.pressure if row[2] > 0.0})]
+    if {"bottom seat", "top seat"} <= set(names):
+        names = ["both seats", *(name for name in names if not name.endswith(" seat"))]
+    return ", ".join(names) or "no contact"
+
+
+class _Handler(logging.Handler):
+    def __init__(self, console: Console) -> None:
+        super().__init__()
+        self.console = console
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print it, fainter than the steps."""
+        self.console.print(f"[dim]{record.getMessage()}[/]", soft_wrap=True)

@@ -1,0 +1,106 @@
+"""What a run says: a line a step in words, JSON for scripts, each iteration, or nothing."""
+
+import csv
+import json
+import re
+
+import pytest
+from mpi4py import MPI
+
+from coilset.scripts.commands.solve import solve
+from coilset.scripts.terminal.progress import Lines, duration
+
+SEATS = ["both seats"]
+CASE = """
+spring: {wire_diameter: 5, mean_diameter: 40, turns: 2.5, pitch: 12}
+material: ck15
+loading: [{to: block, steps: 3}, {to: {force: 0}, steps: 2}]
+mesh: {elements_per_turn: 8, section: {kind: curved, radial: 2, angular: 6}}
+"""
+
+
+@pytest.fixture
+def said(tmp_path, capsys):
+    """What a run prints, and its folder."""
+
+    def run(name="spring", out="out", **voice):
+        path = tmp_path / f"{name}.yaml"
+        path.write_text(CASE)
+        solve(path, tmp_path / out, True, [], pictures=False, comm=MPI.COMM_SELF, **voice)
+        return capsys.readouterr().out.splitlines(), tmp_path / out
+
+    return run
+
+
+def test_a_finished_run_that_is_resumed_has_no_table_of_steps(said, tmp_path, capsys):
+    said()
+    solve(tmp_path / "spring.yaml", tmp_path / "out", False, [], pictures=False, comm=MPI.COMM_SELF, resume=True)
+    lines = capsys.readouterr().out.splitlines()
+    assert "all 5 steps are there: only the results are written again" in lines
+    assert not any("iter." in line for line in lines)
+
+
+@pytest.mark.parametrize(("travel", "told"), [(2, True), (-2, False)])
+def test_a_pulled_spring_has_no_rate_on_the_way_to_block(tmp_path, capsys, travel, told):
+    path = tmp_path / "spring.yaml"
+    path.write_text(CASE)
+    program = [f"loading=[{{to: {{travel: {travel}}}, steps: 1}}]", "ends=clamped"]
+    solve(path, tmp_path / "out", True, program, pictures=False, comm=MPI.COMM_SELF)
+    assert ("rate at 30 to 70 % of the travel" in capsys.readouterr().out) == told
+
+
+def test_json_has_the_rows_of_the_history_and_the_summary(said):
+    lines, folder = said(voice="json")
+    events = [json.loads(line) for line in lines]
+    assert {event["event"] for event in events[:-6]} <= {"warning", "begin"}
+    steps, end = [event for event in events if event["event"] == "step"], events[-1]
+    with open(folder / "history.csv", encoding="utf-8") as file:
+        for row, step in zip(csv.DictReader(file), steps, strict=True):
+            assert {name: "" if step[name] is None else str(step[name]) for name in row} == row
+    summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+    assert end["summary"] == {name: value for name, value in summary.items() if name != "origin"}
+    assert [step["done"] for step in steps] == pytest.approx([1 / 6, 2 / 6, 3 / 6, 3 / 4, 1.0])
+    assert [step["touching"] for step in steps] == [*SEATS * 2, "both seats, coils", *SEATS, "no contact"]
+
+
+def test_quiet_says_warnings_alone(said):
+    lines, folder = said(voice="quiet")
+    warnings = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["warnings"]
+    assert len(lines) >= len(warnings) > 0
+    assert "".join(lines).count("warning:") == len(warnings)  # each once
+    assert not any(re.match(r" +\d", line) or "set" in line.split() for line in lines)
+
+
+def test_verbose_tells_each_iteration(said):
+    """As many as the step took and the state it began with, the last one in equilibrium; no colours in a file."""
+    lines, _ = said(verbose=True)
+    assert not any("\x1b" in line for line in lines)
+    told, steps = [], 0
+    for line in lines[1 + next(k for k, one in enumerate(lines) if one.startswith(" step")) :]:
+        if found := re.match(
+            r" +iteration (\d+): residual \S+ N(?:, out of balance ([^ ,]+))?(, step length \S+)?", line
+        ):
+            number, balance, length = int(found[1]), found[2], found[3]
+            assert (number == 0) == (length is None)  # nothing was corrected yet
+            told = [] if number == 0 else [*told, float(balance)]
+        elif found := re.match(r" +\d+ +\S+ +\S+ +(\d+) ", line):
+            steps += 1
+            assert len(f"{line}  2 cuts  40 min left") <= 80  # columns of a terminal
+            assert 0 < len(told) <= int(found[1])  # of the last solve, where contacts are augmented
+            assert told[-1] < 1e-6 <= max(told)
+    assert steps == 5
+    assert "iteration 0" not in "".join(said()[0])
+
+
+def test_names_are_printed_as_they_are(said, capsys):
+    """Brackets in them are no markup, and a path stays whole however long it is."""
+    lines, folder = said(name="a[bold]", out="[b]" + 100 * "x")
+    assert f"  results in {folder}/" in lines
+    assert any(line.startswith("a[bold].yaml: ") for line in lines)
+    Lines().warn("see [red] there")
+    assert capsys.readouterr().out == "warning: see [red] there\n"
+
+
+@pytest.mark.parametrize(("seconds", "words"), [(40.4, "40 s"), (99.6, "100 s"), (150.0, "2 min"), (9000.0, "2.5 h")])
+def test_times_are_told_in_few_digits(seconds, words):
+    assert duration(seconds) == words
