@@ -67,9 +67,9 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
         InputError: if it needs more memory than there is, bends too sharply, or lies outside the law's temperatures.
     """
     turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
-    section, automatic = case.mesh.section, case.solver.control.steps.automatic
+    section, rule, automatic = case.mesh.section, case.section_rule, case.solver.control.steps.automatic
     steps = sum(phase.count(automatic) for phase in case.loading)
-    effort = Effort.of(len(turns) - 1, section.points, steps, case.steps_error is not None)
+    effort = Effort.of(len(turns) - 1, 2 * len(rule), steps, case.steps_error is not None)
     effort.check_memory(machine_memory())
     # before the rod is made, which takes the memory that this needs for a moment
     coarse = coarse_mesh_warnings(spring, turns)
@@ -83,7 +83,7 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
         placement = section_placement(spring, turns, chords, GAUSS, to_normal)
         refuse_sharp_bends(placement, radius, turns)
     rod = Rod(
-        line, radius, law, section.build(), placement, case.temperature, section.kind, section.degree, Threads(threads)
+        line, radius, law, rule, placement, case.temperature, section.kind, section.degree, Threads(threads)
     )
     return MeshedWire(turns, radius, placement, rod, (*coarse, *effort.warnings()))
 
