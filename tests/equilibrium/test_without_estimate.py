@@ -30,12 +30,12 @@ def run(example, *settings):
 
 
 def without_errors(result):
-    return [replace(step, estimated_force_error_N=None, estimated_height_error_mm=None) for step in result.steps]
+    return [replace(step, steps_force_error_N=None, steps_height_error_mm=None) for step in result.steps]
 
 
 def test_equal_steps_find_the_same_to_the_last_bit(example):
     known, bare = run(example, *SETTINGS), run(example, *SETTINGS, NONE)
-    assert all(step.estimated_force_error_N is not None for step in known.result.steps)
+    assert all(step.steps_force_error_N is not None for step in known.result.steps)
     assert list(bare.result.steps) == without_errors(known.result)
     np.testing.assert_array_equal(bare.rod.point_state, known.rod.point_state)
     names = [name for name, _ in bare.rod.state.items()]
@@ -100,6 +100,6 @@ def test_a_run_goes_on_without_an_estimate_but_not_with_one_again(example, tmp_p
         resumed.resume(Checkpoint(folder, cases[0]).load(MPI.COMM_SELF))
         resumed.run()
         assert without_errors(resumed.result) == list(whole.result.steps)
-        assert resumed.result.steps[-1].estimated_force_error_N is None
+        assert resumed.result.steps[-1].steps_force_error_N is None
     with pytest.raises(InputError, match="accuracy: the errors of its steps were not estimated"):
         Checkpoint(tmp_path / "0", cases[1]).load(MPI.COMM_SELF)

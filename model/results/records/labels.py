@@ -1,7 +1,7 @@
 """Texts in pictures: numbers of any size with few digits, and the phases that a legend names."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 MOST_DECIMALS = 6
 
@@ -42,3 +42,46 @@ def unnamed(phases: Sequence[str], most: int) -> str | None:
     """The line of a legend for the targets that it does not name."""
     more = len(dict.fromkeys(phases)) - most
     return f"and {more} more" if more > 0 else None
+
+
+def within(value: float | None, error: float | None, unit: str, digits: int) -> str:
+    """A value with its unit in the digits that its error allows, `13.28 ± 0.02 mm`, at most `digits` decimals.
+
+    Args:
+        value: None: there is none.
+        error: its size, rounded up to one digit, or two that begin with 1; None: not known, and not shown.
+        unit: of both.
+        digits: decimals.
+    """
+    if value is None:
+        return "none"
+    if error is None or not math.isfinite(error):
+        return f"{round(value, digits) + 0.0:.{digits}f} {unit}"
+    error = max(error, 10.0**-digits)
+    first = math.floor(math.log10(error))
+    place = min(digits, -first + (error < 2.0 * 10.0**first))
+    error = math.ceil(error * 10.0**place - 1e-9) / 10.0**place
+    return f"{round(value, place) + 0.0:.{max(place, 0)}f} ± {error:.{max(place, 0)}f} {unit}"
+
+
+NUMBERS = {"force_N": "force", "set_mm": "set", "residual_shear_inside_MPa": "residual stress"}
+"""Numbers whose errors are estimated, in words."""
+CAUSES = {"steps": "steps", "mesh": "mesh", "section": "section points", "contact": "contact"}
+"""Causes of these errors, in words."""
+
+
+def largest_errors(errors: Mapping[str, Mapping[str, float | None]] | None) -> str:
+    """Which cause has the largest part in which number, `mesh (force, set), steps (residual stress)`.
+
+    Args:
+        errors: `estimated_errors` of a summary; None: empty.
+    """
+    found: dict[str, list[str]] = {}
+    for number, word in NUMBERS.items() if errors else ():
+        parts = {cause: (errors or {})[cause][number] or 0.0 for cause in CAUSES}
+        largest = max(parts, key=lambda cause: parts[cause])
+        if parts[largest]:
+            found.setdefault(CAUSES[largest], []).append(word)
+    if len(found) == 1:
+        return next(iter(found))
+    return ", ".join(f"{cause} ({', '.join(words)})" for cause, words in found.items())
