@@ -21,7 +21,6 @@ from coilset.model.case.settings import assign, located
 from coilset.model.equilibrium.settings import MethodName, NewtonControl, StepControl
 from coilset.model.section import rules
 
-
 ANGLES, ANGLES_COILED = 20, 32
 """Angles of the polar rule where the case gives none."""
 
