@@ -51,7 +51,7 @@ class Lever:
 
     Attributes:
         swing: Swing on trial.
-        force: force of the cells on the node when it was last replaced, shape (3,), N.
+        force: of the cells on the node, kept for the tangent, shape (3,), N.
     """
 
     def __init__(
@@ -82,8 +82,12 @@ class Lever:
     def carry_forces(self, cells: slice, forces: np.ndarray) -> None:
         """Replace forces of cells on the node by those on the head, shape (cells, 14), N and N mm."""
         for cell, u, rotations in self._within(cells):
+            forces[cell, rotations] += self.swing.of_force(forces[cell, u])[0]
+
+    def keep_force(self, cells: slice, forces: np.ndarray) -> None:
+        """Keep the force of cells on the node, shape (cells, 14), for `carry_tangents`."""
+        for cell, u, _ in self._within(cells):
             self.force = forces[cell, u].copy()
-            forces[cell, rotations] += self.swing.of_force(self.force)[0]
 
     def carry_tangents(self, cells: slice, K: np.ndarray) -> None:
         """Replace tangents of cells by the node's unknowns by those by the head's, shape (cells, 14, 14)."""

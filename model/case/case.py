@@ -21,7 +21,6 @@ from coilset.model.case.settings import assign, located
 from coilset.model.equilibrium.settings import MethodName, NewtonControl, StepControl
 from coilset.model.section import rules
 
-
 ANGLES, ANGLES_COILED = 20, 32
 """Angles of the polar rule where the case gives none."""
 
@@ -151,8 +150,21 @@ class ContactSpec(Strict):
 class ControlSpec(Strict):
     """All numbers that control the iteration and the steps."""
 
+    RENAMED: ClassVar[dict[str, str]] = {"newton.foreseen_forces": "newton.predicted_forces"}
     newton: Annotated[NewtonControl, Field(description="how one step is solved")] = NewtonControl()
     steps: Annotated[StepControl, Field(description="how steps follow each other")] = StepControl()
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _earlier_name(cls, data: Any, validate: Any) -> Any:
+        """Accept an entry of the plain class `NewtonControl` by its earlier name."""
+        newton = data.get("newton") if isinstance(data, dict) else None
+        if not isinstance(newton, dict) or "foreseen_forces" not in newton or "predicted_forces" in newton:
+            return validate(data)
+        names = {"foreseen_forces": "predicted_forces"}
+        group = validate(data | {"newton": {names.get(name, name): value for name, value in newton.items()}})
+        group._earlier = tuple(cls.RENAMED)
+        return group
 
 
 def _one_value(value: Any) -> Any:

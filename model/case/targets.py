@@ -147,7 +147,11 @@ def _only_press(target: Target, free_length: float, place: str) -> None:
 def _not_below(target: Target, free_length: float, lowest: float, place: str) -> None:
     travel, slack = free_length - lowest, SLACK * free_length
     if target.travel is not None and target.travel > travel + slack:
-        end = "where it is at block; give block, or less" if lowest else "which is its free length; give less"
+        end = (
+            f"to its block height of {lowest:.6g} mm; give block, or less"
+            if lowest
+            else "which is its free length; give less"
+        )
         raise InputError(
             f"is {target.travel:g} mm, but the spring can only be compressed by {travel:.6g} mm, {end}",
             f"{place}.travel",

@@ -14,7 +14,6 @@ from coilset.model.base.compat import NOT_A_NUMBER
 from coilset.model.equilibrium import factors
 from coilset.model.equilibrium.contact_limit import ContactLimit
 from coilset.model.equilibrium.convergence import EquilibriumTest, Reason, imbalance
-from coilset.model.equilibrium.foreseeing import Foreseeing
 from coilset.model.equilibrium.line_search import WorkSearch
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.matrix import TangentMatrix
@@ -47,6 +46,7 @@ class Iteration:
         load_factor: share of it whose equilibrium is sought.
         ratio: out-of-balance forces at the last iterate, as (6.3.1) measures them.
         factorisations: number of tangents since `start`.
+        predicted: whether a tangent of this attempt was built with predicted section forces, see Body.
     """
 
     # a step's load on an arc, and the forces where SNES's function is another one: made where a method needs them
@@ -68,7 +68,8 @@ class Iteration:
         self.F = system.layout.vector()
         self.matrix = TangentMatrix(system.body, system.layout)
         self.load, self.load_factor = Load.of(system.layout, {}, {}), 1.0
-        self._foreseeing: Foreseeing | None = None
+        self._predicts, self.predicted = False, False
+        self._share: float | None = None  # of the predicted correction, if the next tangent is to be built with it
         self.ratio, self.factorisations, self._at_step_start = np.inf, 0, True
         self._fitted = 0  # version of the matrix that the linear solvers were last told of; a solid's never changes
         self._step_length: float | None = None  # of the last correction; None where there is none, or PETSc's own
@@ -98,16 +99,14 @@ class Iteration:
 
     # ---- what a solve asks for -------------------------------------------------------------------------------------
 
-    def begin(self, load: Load, foreseeing: Foreseeing | None) -> None:
+    def begin(self, load: Load, predicts: bool) -> None:
         """An attempt begins.
 
         Args:
-            load: what the step asks for.
-            foreseeing: for tangents with foreseen forces; None: with the true ones only.
+            load: what the step requires.
+            predicts: whether tangents may be built with predicted section forces; else with the actual ones only.
         """
-        self.load, self._foreseeing = load, foreseeing
-        if foreseeing is not None:
-            foreseeing.begin()
+        self.load, self._predicts, self.predicted, self._share = load, predicts, False, None
 
     def start(self, guess: PETSc.Vec | None) -> int:
         """Set the increments from which to iterate; the number of iterations that it took; collective.
@@ -121,8 +120,9 @@ class Iteration:
         if guess is None or method.is_arc_length:
             X.set(0.0)
         elif method.searches:
-            if self._foreseeing is not None:
-                self._foreseeing.start(guess)
+            if self._predicts and not self.system.touches:  # a start is a correction of the last equilibrium
+                self.system.predict_from_equilibrium(guess.getArray(readonly=True))
+                self._share = 1.0
             self.limit.limit_start(guess, X)
         else:
             guess.copy(X)
@@ -144,8 +144,7 @@ class Iteration:
         """
         self.load_factor = load_factor
         solve(self.snes, self._arc_load if self.method.is_arc_length else None, self.system.increments)
-        if self._foreseeing is not None:
-            self._foreseeing.forget()
+        self._share = None
         return self.snes.getIterationNumber(), self.snes.getLinearSolveIterations()
 
     @property
@@ -185,8 +184,9 @@ class Iteration:
 
     def _tangent(self, snes: PETSc.SNES, X: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
         self.factorisations += 1
-        (self._foreseeing or self.system).tangent(X, self.load, self.matrix, self._at_step_start)
-        self._at_step_start = False
+        self.system.tangent(X, self.load, self.matrix, self._at_step_start, self._share)
+        self.predicted |= self._share is not None
+        self._at_step_start, self._share = False, None
         self.prepare(P)
         if self.matrix.version != self._fitted:  # PETSc may take the new matrix for one with the old pattern
             self._fitted = self.matrix.version
@@ -202,10 +202,11 @@ class Iteration:
 
     def _shorten(self, x: PETSc.Vec, y: PETSc.Vec) -> None:
         """Before a line search of type `basic`: scale the correction −y."""
-        step = self.search(x, y, self.F, self.load, self.load_factor, self._foreseeing)
+        step = self.search(x, y, self.F, self.load, self.load_factor, self._predicts)
         self._step_length = step.contact_limit * step.value
-        if self._foreseeing is not None:
-            self._foreseeing.correct(self._step_length, step.only_spurious)
+        always = bool(self.control.predicted_forces)
+        use = self._predicts and (step.only_spurious or always or not self.system.touches)
+        self._share = self._step_length if use else None
         for factor in (step.contact_limit, step.value):
             if factor != 1.0:
                 y.scale(factor)
@@ -219,7 +220,7 @@ class Iteration:
         norm, X = norms[2], self.system.increments
         if iteration == 0:
             self._step_length = None
-            self.test.begin(norm, 0.0 if self._foreseeing is None else self._foreseeing.axial_force)
+            self.test.begin(norm, self.system.body.axial_force if self._predicts else 0.0)
         if not math.isfinite(norm):
             return NOT_A_NUMBER
         if self.method.is_arc_length and iteration == 0:

@@ -13,7 +13,6 @@ from petsc4py import PETSc
 
 from coilset.model.equilibrium.contact_limit import ContactLimit
 from coilset.model.equilibrium.convergence import Outcome, Reason, reason_in_words
-from coilset.model.equilibrium.foreseeing import Foreseeing
 from coilset.model.equilibrium.iteration import Iteration
 from coilset.model.equilibrium.load import Load
 from coilset.model.equilibrium.methods import Method
@@ -52,7 +51,7 @@ class Newton:
         InputError: if PETSc refuses an option.
 
     Attributes:
-        foreseeing: Foreseeing; None where the body does not foresee, or the control says so.
+        predicts: whether tangents may be built with section forces that a correction predicts, see Body.
         iteration: Iteration.
     """
 
@@ -70,32 +69,31 @@ class Newton:
         self.system, self.control = system, control or NewtonControl()
         self.augmentation_tolerance, self.augmented = augmentation_tolerance, augmented
         self.limit = limit or ContactLimit(system, self.control, np.inf)
-        self.foreseeing = Foreseeing.of(system, self.control.foreseen_forces)
+        self.predicts = system.body.predicts and self.control.predicted_forces is not False
         self.iteration = Iteration(system, method, tolerance, self.control, self.limit, prepare)
 
     def solve(self, load: Load, start: Start | None = None) -> Outcome:
-        """As `_attempt`; where tangents with foreseen forces fail, once more with the true ones; collective.
+        """As `_attempt`; where tangents with predicted section forces fail, again with the actual ones; collective.
 
-        What fails where something touches has had the true ones nearly all the way, and fails again.
+        What fails with closed contacts has had the actual ones nearly all the way, and fails again.
         """
-        foreseeing = self.foreseeing
-        outcome = self._attempt(load, start, foreseeing)
-        if outcome.converged or foreseeing is None or not foreseeing.used or self.system.touches:
+        outcome = self._attempt(load, start, self.predicts)
+        if outcome.converged or not self.iteration.predicted or self.system.touches:
             return outcome
-        return outcome + self._attempt(load, start, None)
+        return outcome + self._attempt(load, start, False)
 
-    def _attempt(self, load: Load, start: Start | None, foreseeing: Foreseeing | None) -> Outcome:
+    def _attempt(self, load: Load, start: Start | None, predicts: bool) -> Outcome:
         """Solve one step; the system is left at the last iterate; collective.
 
         Args:
-            load: what the step asks for.
+            load: what the step requires.
             start: where to start; from the last equilibrium if None.
-            foreseeing: for tangents with foreseen forces; None: with the true ones only.
+            predicts: as in `Iteration.begin`.
 
         Returns:
             Outcome; its counts are those of all solves where contacts are augmented.
         """
-        self.iteration.begin(load, foreseeing)
+        self.iteration.begin(load, predicts)
         self.system.reset_contacts()
         outcome, depths = self._solve(start or Start()), list[float]()
         while outcome.converged and self.augmentation_tolerance < self.system.max_penetration <= self.augmented:

@@ -1,6 +1,6 @@
 """What the length of the steps leaves wrong: an estimate after each step, and the size that the next one may have.
 
-A body that EstimatesErrors gives the work ΔW of the error of its inner forces on the step's deformation. By the
+A body that estimates errors gives the work ΔW of the error of its inner forces on the step's deformation. By the
 principle of virtual work, with the step's own increments instead of the deformation that a small travel makes, the
 driven head's force is wrong by
 
@@ -20,7 +20,6 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from coilset.model.body.body import EstimatesErrors
 from coilset.model.body.state import Where
 from coilset.model.equilibrium.heads import Heads
 from coilset.model.equilibrium.settings import StepControl
@@ -55,16 +54,14 @@ class StepError:
     """Estimates for a spring between its heads.
 
     Args:
-        control: Heads of a System whose body EstimatesErrors.
+        control: Heads of a System whose body estimates errors, see Body.
         accuracy: error of force that is asked for, over the maximum force so far.
         steps: StepControl.
     """
 
     def __init__(self, control: Heads, accuracy: float, steps: StepControl) -> None:
-        body = control.system.body
-        assert isinstance(body, EstimatesErrors)
-        self.control, self.accuracy, self.steps, self._body = control, accuracy, steps, body
-        body.estimate_errors()
+        self.control, self.accuracy, self.steps, self._body = control, accuracy, steps, control.system.body
+        self._body.estimate_errors()
         self._memory = control.system.state.add("step_error", np.zeros(3), Where.SHARED)
 
     def estimate(self, ratio: float, controls: bool) -> Estimate:
@@ -79,7 +76,7 @@ class StepError:
         memory, last = self._memory.trial, self._memory.equilibrium
         memory[CLOSED] = control.system.last.closed
         kinked = controls and memory[CLOSED] != last[CLOSED]
-        works = self._body.error_works(ratio, bool(kinked), stands=not controls)
+        works = self._body.error_works(ratio, bool(kinked), final=not controls)
         if comm.size > 1:
             works = tuple(comm.allreduce(np.array(works)).tolist())
         (start, before), (end, force) = control.measured("equilibrium"), control.measured("trial")
@@ -101,7 +98,7 @@ class StepError:
 
         Args:
             new: at its height, N.
-            works: of EstimatesErrors.
+            works: of `Body.error_works`.
             first: travel of the first step of all, mm; greatest: maximum force so far, N.
         """
         left, before = works[2] / first, (works[3] - works[2]) / first
@@ -131,9 +128,9 @@ class StepError:
         resolves = self._body.resolves_time(max(math.log(before / after), 0.0))
         return comm.allreduce(resolves, MPI.LAND) if comm.size > 1 else resolves
 
-    def rejoin(self) -> None:
+    def restart(self) -> None:
         """Go on from the last equilibrium, which was reached by steps that were not judged."""
-        self._body.rejoin_finer_path()
+        self._body.restart_estimate()
 
     def _factor(self, share: float) -> float:
         steps = self.steps

@@ -180,9 +180,7 @@ def _through(
         if past.coiled and curvature >= STRAIGHT:
             if guess is not None:  # as the last one, turned by as much more as this one is
                 guess = guess[0] + curvature - wires[first][k - 1, 1], guess[1] + torsion - wires[first][k - 1, 2]
-            coiled = coil(
-                past.law, rule, radius, curvature, torsion, states, sections.curved, guess, past.relief, rim
-            )
+            coiled = coil(past.law, rule, radius, curvature, torsion, states, sections.curved, guess, past.relief, rim)
             guess, states = coiled.turned, np.concatenate([coiled.points, coiled.surface])
             tight[0][here], tight[1][here] = coiled.curvature, coiled.torsion
         if past.layer is not None:

@@ -19,7 +19,7 @@ class Coefficients:
         W: for the triads' spin about their chords, shape (cells, 3, 3).
         e: section strains, shape (cells, 2, 6).
         s: section forces, shape (cells, 2, 6), N and N mm.
-        foreseen: those that the frame stiffness is built with, shape (cells, 2, 6), N and N mm.
+        predicted: those that the frame stiffness is built with, shape (cells, 2, 6), N and N mm; see Prediction.
         D: section tangents ∂s/∂e, shape (cells, 2, 6, 6).
     """
 
@@ -28,7 +28,7 @@ class Coefficients:
         self.xi, self.timoshenko_factor = np.tile(GAUSS, (cells, 1)), timoshenko_factor
         self.E, self.W = (np.zeros((cells, 3, 3)) for _ in range(2))
         self.T, self.P = (np.zeros((cells, 2, 3, 3)) for _ in range(2))
-        self.e, self.s, self.foreseen = (np.zeros((cells, 2, 6)) for _ in range(3))
+        self.e, self.s, self.predicted = (np.zeros((cells, 2, 6)) for _ in range(3))
         self.D = np.zeros((cells, 2, 6, 6))
 
 

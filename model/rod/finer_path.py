@@ -59,14 +59,14 @@ class FinerPath:
             self._on_the_way["clock"] = halfway.trial
         self._blocks, self._lost = list(in_blocks(sections)), False
 
-    def follow(self, s: np.ndarray, ratio: float, kinked: bool = False, stands: bool = True) -> bool:
+    def follow(self, s: np.ndarray, ratio: float, kinked: bool = False, final: bool = True) -> bool:
         """Advance the finer path to the trial strains.
 
         Args:
             s: trial section forces, shape (cells, 2, 6), N and N mm.
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
             kinked: whether the path has a kink within the step, at worst in its middle.
-            stands: whether the step is not given up any more.
+            final: whether the step is committed in any case.
 
         Returns:
             False if the law found no solution on this rank: the finer path then continues from the step's own end, see
@@ -79,7 +79,7 @@ class FinerPath:
         if not self._first.equilibrium.any():
             self._first.trial[:] = change
         middle = strain.equilibrium + 0.5 * change + bend
-        if not stands:
+        if not final:
             for name in self._fields:
                 self._state.overwrite(f"finer_{name}")
         good = all(self._follow(*block, middle, s) for block in self._blocks)
@@ -106,13 +106,13 @@ class FinerPath:
             self._error.trial[cells] = (forces - s[cells]) / (1.0 - 0.5 ** sections.law_over_time.order(start, end))
         return bool(good)
 
-    def rejoin(self) -> None:
+    def restart(self) -> None:
         """Continue from the sections' own last equilibrium; the error so far is not changed."""
         for name, field in self._fields.items():
             field.equilibrium[:] = self._state[name].equilibrium
 
     def works(self, length: np.ndarray) -> tuple[float, float, float, float]:
-        """Works of the error of the section forces, N mm; see EstimatesErrors.
+        """Works of the error of the section forces, N mm; see Body.
 
         Args:
             length: of the rank's own elements, shape (cells,), mm.

@@ -57,7 +57,7 @@ FIELDS = {
     "W": partial(cell_element, (3, 3)),
     "e": partial(section_element, (6,)),
     "s": partial(section_element, (6,)),
-    "foreseen": partial(section_element, (6,)),
+    "predicted": partial(section_element, (6,)),
     "D": partial(section_element, (6, 6)),
 }
 
@@ -139,7 +139,7 @@ class RodForms:
         W: for the triad's spin about its chord, shape (3, 3), see coilset.model.rod.kinematics.mean_triad.
         e: section strains ε, γ12, γ13, φ′, −w″, v″.
         s: section resultants N, Q2, Q3 in N and Mt, M2, M3 in N mm.
-        foreseen: section resultants that the frame stiffness is built with, see coilset.model.rod.prediction.
+        predicted: section resultants that the frame stiffness is built with, see coilset.model.rod.prediction.
         D: section tangent ∂s/∂e, shape (6, 6).
 
     All are coefficients in the mesh's quadrature or cell spaces.
@@ -157,14 +157,14 @@ class RodForms:
         W: Any,
         e: Any,
         s: Any,
-        foreseen: Any,
+        predicted: Any,
         D: Any,
     ) -> None:
         self.test = increment(mesh, ufl.TestFunction(V), xi, T)
         self.trial = increment(mesh, ufl.TrialFunction(V), xi, T)
         J = ufl.Jacobian(mesh)[:, 0]
         self.xi, self.timoshenko_factor, self.E, self.P = xi, timoshenko_factor, E, P
-        self.e, self.s, self.foreseen, self.D = e, s, foreseen, D
+        self.e, self.s, self.predicted, self.D = e, s, predicted, D
         self.l = sqrt(dot(J, J))
         self.stretch = dot(E[:, 0], self.trial.d) / self.l
         self.spin = axial_spin(self.trial, W)
@@ -190,7 +190,7 @@ class RodForms:
     def frame_stiffness(self) -> Any:
         """Change of the internal forces as the element's triad rotates and its chord changes length under the forces.
 
-        With K_l it is the derivative of the residual if the foreseen resultants are the true ones, except for the
+        With K_l it is the derivative of the residual if the predicted resultants are the true ones, except for the
         charts' curvature, which is proportional to the out-of-balance moments.
         """
         e1 = self.E[:, 0]
@@ -199,6 +199,6 @@ class RodForms:
         test, nothing = self.test, 0 * self.test.d
         still = self.strains(Increment(nothing, test.rotation1, test.rotation2, test.shear))
         moved = self.strains(Increment(test.d, nothing, nothing, 0 * test.shear))
-        s = self.foreseen
+        s = self.predicted
         lengthened = sum(s[k] * still[k] for k in (1, 2)) - sum(s[k] * moved[k] for k in (4, 5))
         return (inner(s, self.strains(rotated)) + self.stretch * lengthened) * self.dx

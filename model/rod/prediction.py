@@ -1,9 +1,9 @@
-"""Section forces predicted by a Newton correction, with which the stiffness of the rotating frame is built.
+"""Mixed integration point (MIP) iteration: section forces predicted by a Newton correction.
 
 A correction δ rotates the elements by finite angles, and the axial and shear strains at its end are wrong by terms of
 second order, ½ w′². In a slender rod the resulting forces E A ½ w′² are much larger than the true ones, and a frame
-stiffness built with them is misleading. It is therefore built with s + D B δ, the forces found by the linear solve, as
-with mixed integration points: D. Magisano, L. Leonetti, G. Garcea, How to improve efficiency and robustness of the
+stiffness of the rotating frame built with them is misleading. It is therefore built with s + D B δ, the forces found
+by the linear solve: D. Magisano, L. Leonetti, G. Garcea, How to improve efficiency and robustness of the
 Newton method in geometrically non-linear structural problem discretized via displacement-based finite elements, Comput.
 Methods Appl. Mech. Engrg. 313 (2017). At equilibrium both are the same.
 """
@@ -127,19 +127,19 @@ class Prediction:
             np.copyto(kept, on_trial)
         linear_strains(*self._arguments, correction, GAUSS, self.change)
 
-    def forces_after(self, length: float) -> None:
-        """Write s + D B δ after `length` of the correction into the foreseen forces."""
-        out = self._coefficients.foreseen
+    def forces_after(self, share: float) -> None:
+        """Write s + D B δ after a share of the correction into the predicted forces."""
+        out = self._coefficients.predicted
         np.einsum("ngij,ngj->ngi", self.tangent, self.change, out=out)
-        out *= length
+        out *= share
         out += self.forces
 
-    def take_second_order_off(self, length: float) -> None:
-        """Take the part of second-order strains off the forces after `length` of the correction: s − D (e − e_lin).
+    def without_second_order(self, share: float) -> None:
+        """Write s − D (e − e₁) into the predicted forces, e₁ = e₀ + B δ after a share of the correction.
 
-        In an elastic rod they are the foreseen ones then; where the wire yields, the reduction by yielding remains.
+        In an elastic rod they are those of `forces_after`; where the wire yields, the reduction by yielding remains.
         """
-        forces, strain = self._coefficients.s, self._coefficients.e
+        forces, strain, out = self._coefficients.s, self._coefficients.e, self._coefficients.predicted
         for part in blocks(slice(0, len(forces)), BLOCK):
-            second = strain[part] - self.strain[part] - length * self.change[part]
-            forces[part] -= np.einsum("ngij,ngj->ngi", self.tangent[part], second)
+            second = strain[part] - self.strain[part] - share * self.change[part]
+            np.subtract(forces[part], np.einsum("ngij,ngj->ngi", self.tangent[part], second), out=out[part])

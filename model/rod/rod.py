@@ -13,7 +13,7 @@ from coilset.meshes.springs.placement import Placement, straight
 from coilset.model.base.agreement import max_of_ranks, sum_of_ranks
 from coilset.model.base.compat import geometry_dofs
 from coilset.model.base.extremes import largest
-from coilset.model.body.body import Moment
+from coilset.model.body.body import Body, Moment
 from coilset.model.body.lever import Lever
 from coilset.model.body.state import Field, State, Where
 from coilset.model.material.creep.law import CreepLaw
@@ -22,6 +22,7 @@ from coilset.model.rod import forms
 from coilset.model.rod.assembly import add_element_vectors
 from coilset.model.rod.coefficients import Coefficients, timoshenko_factor
 from coilset.model.rod.compiled import compiled_forms
+from coilset.model.rod.element_kernel import ElementKernel
 from coilset.model.rod.finer_path import CLOCKS, FinerPath
 from coilset.model.rod.kinematics import GAUSS, chord_triads, displace_nodes, section_strains
 from coilset.model.rod.numbering import Numbering
@@ -35,7 +36,7 @@ from coilset.model.section.rules import DiskRule
 EPSILON = float(np.finfo(float).eps)
 
 
-class Rod:
+class Rod(Body):
     """Straight elasto-plastic rods along a line mesh.
 
     Args:
@@ -54,7 +55,6 @@ class Rod:
 
     Attributes:
         increment: function of the increments since the last equilibrium.
-        correction: function of the last correction to them, the input of `predict`.
         state: State with `x`, mm, and `R`, rotations since the stress-free state, of the local nodes; `chord`, mm,
             `shear`, `strain`, shape (cells, 2, 6), and the arrays of the sections, of the owned cells; of these
             `point_state`, shape (cells, 2, points, n_state), and `surface_state` are always there. Rods of up to KEPT
@@ -65,6 +65,9 @@ class Rod:
         arms: stations whose unknowns are those of a rigid head, and where they are from its point in the stress-free
             state, shape (3,), mm; `levers`: Levers of those among the local nodes.
     """
+
+    predicts = True
+    element_dofs: np.ndarray
 
     def __init__(
         self,
@@ -96,7 +99,7 @@ class Rod:
         self.V = fem.functionspace(mesh, forms.rod_element())
         self.increment = fem.Function(self.V)
         self.numbering = numbering = Numbering.of(self.V, n)
-        self.rotation_dofs, self.element_dofs = numbering.rotations, numbering.elements  # as Body's protocols have them
+        self.rotation_dofs, self.element_dofs = numbering.rotations, numbering.elements
         self.cells = np.ascontiguousarray(geometry_dofs(mesh)[:n])
         self._nodes = self.cells.astype(np.int32)
         x = mesh.geometry.x
@@ -104,12 +107,12 @@ class Rod:
         self.l0, self.E0 = np.linalg.norm(chords, axis=1), chord_triads(chords)
 
         self.coefficients = Coefficients(timoshenko_factor(law.E, law.G, self.radius, self.l0))
-        self.correction = fem.Function(self.V)
-        self._increment, self._correction = self.increment.x.array, self.correction.x.array
+        self._increment = self.increment.x.array
         self._finer: FinerPath | None = None
         self.levers: list[Lever] = []
         self.arms: dict[int, np.ndarray] = {}
-        self._residual, self._tangent = compiled_forms(self.comm).on(vars(self.coefficients), x, self._nodes)
+        self._forms = compiled_forms(self.comm)
+        self._residual, self._tangent = self._forms.on(vars(self.coefficients), x, self._nodes)
         self.largest_radius = max_of_ranks(self.comm, self.radius.max(initial=0.0))
         self.axial_force = law.E * np.pi * self.largest_radius**2  # E A
         self.extent = float(np.ptp(line.stations, axis=0).max())
@@ -175,7 +178,7 @@ class Rod:
 
     @property
     def clock(self) -> np.ndarray:
-        """Hours since the start, temperature (K) and warm hours at the last equilibrium; see PassesTime."""
+        """Hours since the start, temperature (K) and warm hours at the last equilibrium; see Body."""
         clocks = (self.state[name].equilibrium for name in ("clock", "heat_clock") if name in self.state)
         return next(clocks, np.array([0.0, self.temperature, 0.0]))
 
@@ -185,7 +188,7 @@ class Rod:
         return float(self.state["heat_clock"].equilibrium[1]) if "heat_clock" in self.state else float(self.clock[1])
 
     def pass_time(self, middle: Moment, end: Moment) -> None:
-        """Set the clocks of the state on trial; see PassesTime."""
+        """Set the clocks of the trial state; see Body."""
         if self.in_time is None:
             raise ValueError(f"'{self.law.name}' neither creeps nor depends on the rate, so time has no effect on it")
         start, halfway, on_trial = self.clock, *(self.state[name].trial for name in reversed(CLOCKS))
@@ -214,12 +217,10 @@ class Rod:
     def update(self) -> bool:
         """Update the trial state to the increments; see Body."""
         self._move()
-        has_stress = self._points.update(self.coefficients.s, self.coefficients.D)
-        self.stop_foreseeing()
-        return has_stress
+        return self._points.update(self.coefficients.s, self.coefficients.D)
 
-    def stand(self) -> bool:
-        """Forces and tangents of the last equilibrium, unless they change in time; see Foresees."""
+    def recall(self) -> bool:
+        """Forces and tangents of the last equilibrium, unless they change in time; see Body."""
         if self._forces:
             self._move()
         for field in self._forces:
@@ -248,7 +249,7 @@ class Rod:
             displace_nodes(increments, *self._of_nodes[1:])
         section_strains(*self._of_cells)
 
-    def follow(self) -> None:
+    def advance(self) -> None:
         """Update the points on the wire's surface to the end of the increment, and those of a long rod; see Body."""
         self._points.follow()
         if self._finer is not None:
@@ -258,69 +259,66 @@ class Rod:
             halfway[:] = clock
 
     def estimate_errors(self) -> None:
-        """Follow every step on a finer path from now on; see EstimatesErrors."""
+        """Follow every step on a finer path from now on; see Body."""
         self._finer = FinerPath(self.sections, self.state, self._points.bearing)
 
-    def error_works(self, ratio: float, kinked: bool, stands: bool) -> tuple[float, float, float, float]:
-        """Works of the errors of all steps so far and of the last one; see EstimatesErrors."""
+    def error_works(self, ratio: float, kinked: bool, final: bool) -> tuple[float, float, float, float]:
+        """Works of the errors of all steps so far and of the last one; see Body."""
         assert self._finer is not None, "estimate_errors comes before"
-        if not self._finer.follow(self.coefficients.s, ratio, kinked, stands):
+        if not self._finer.follow(self.coefficients.s, ratio, kinked, final):
             return np.nan, np.nan, np.nan, np.nan
         return self._finer.works(np.linalg.norm(self._chord.trial, axis=1))
 
     def resolves_time(self, fall: float) -> bool:
-        """Whether the finer path tells the error of a step in time; see EstimatesErrors."""
+        """Whether the finer path resolves the error of a step in time; see Body."""
         if not isinstance(self.in_time, CreepLaw):
             return True
         end, middle = (self.state[name] for name in CLOCKS)
         stress = surface.equivalent(self.surface_state, self.sections.components).max(initial=0.0)
         return self.in_time.is_resolved((end.equilibrium, middle.trial, end.trial), float(stress), fall)
 
-    def rejoin_finer_path(self) -> None:
-        """Estimate from the last equilibrium on; see EstimatesErrors."""
+    def restart_estimate(self) -> None:
+        """Estimate from the last equilibrium on; see Body."""
         assert self._finer is not None, "estimate_errors comes before"
-        self._finer.rejoin()
+        self._finer.restart()
 
     @cached_property
     def _prediction(self) -> Prediction:
         """Made when it is first needed: its arrays then take the memory that the first factors needed for a moment."""
         return Prediction(self.cells, self._chord.trial, self.coefficients, self.numbering)
 
-    def predict(self) -> None:
-        """Predict the section forces after `correction`, from the trial state; see Foresees."""
-        correction = self._correction
+    @cached_property
+    def _predicted_residual(self) -> ElementKernel:
+        """The loop of the internal forces over the predicted section forces."""
+        fields = vars(self.coefficients) | {"s": self.coefficients.predicted}
+        return self._forms.on(fields, self.mesh.geometry.x, self._nodes)[0]
+
+    def predict(self, correction: np.ndarray) -> None:
+        """Predict the section forces after a correction, from the trial state; see Body."""
         if self.levers:
             correction = correction.copy()
             for lever in self.levers:
                 lever.carry_correction(correction)
         self._prediction.begin(correction)
 
-    def foresee(self, length: float) -> None:
-        """Build the frame stiffness of the next tangents with the predicted section forces; see Foresees."""
-        self._prediction.forces_after(length)
-
-    def stop_foreseeing(self) -> None:
-        """Build the tangents with the actual section forces; see Foresees."""
-        self.coefficients.foreseen[:] = self.coefficients.s
-
-    def forces_without_second_order(self, vector: np.ndarray, length: float) -> None:
-        """As `internal_forces`, without the contribution of strains of second order in the correction; see Foresees."""
-        actual, on_levers = self.coefficients.s.copy(), [lever.force for lever in self.levers]
-        self._prediction.take_second_order_off(length)
-        self.internal_forces(vector)
-        self.coefficients.s[:] = actual
-        for lever, force in zip(self.levers, on_levers, strict=True):
-            lever.force = force
+    def first_order_forces(self, vector: np.ndarray, share: float) -> None:
+        """As `internal_forces`, without the contribution of strains of second order in the correction; see Body."""
+        self._prediction.without_second_order(share)
+        for cells, forces in self._predicted_residual():
+            for lever in self.levers:
+                lever.carry_forces(cells, forces)
+            add_element_vectors(forces, self.element_dofs[cells], vector)
 
     def internal_forces(self, vector: np.ndarray) -> None:
         """Add ∫ ¹σ : δΔE_l of the owned cells; see Body."""
         for cells, forces in self._residual():
             for lever in self.levers:
+                lever.keep_force(cells, forces)
                 lever.carry_forces(cells, forces)
             add_element_vectors(forces, self.element_dofs[cells], vector)
 
     def to_charts(self, values: np.ndarray) -> None:
-        """Replace the moments m at the owned nodes by Tᵀ m; see HasRotations."""
+        """Replace the moments m at the owned nodes by Tᵀ m; see Body."""
         mine = (self.rotation_dofs < self.V.dofmap.index_map.size_local).all(axis=1)
         dofs = self.rotation_dofs[mine]
         values[dofs] = np.einsum("nji,nj->ni", self.chart[mine], values[dofs])
@@ -332,8 +330,12 @@ class Rod:
         matrix.setType(PETSc.Mat.Type.AIJ)
         return matrix
 
-    def element_tangents(self) -> Iterator[tuple[slice, np.ndarray]]:
-        """The elements' K_l and stiffness of the rotating frame, shape (elements, 14, 14); see OfElements."""
+    def element_tangents(self, share: float | None = None) -> Iterator[tuple[slice, np.ndarray]]:
+        """The elements' K_l and stiffness of the rotating frame, shape (elements, 14, 14); see Body."""
+        if share is None:
+            np.copyto(self.coefficients.predicted, self.coefficients.s)
+        else:
+            self._prediction.forces_after(share)
         return self._tangent() if not self.levers else self._carried_tangents()
 
     def _carried_tangents(self) -> Iterator[tuple[slice, np.ndarray]]:

@@ -67,7 +67,14 @@ class Analysis:
         system, newton, control, program: the System of the Rod `rod`, its Newton, Heads and LoadProgram.
     """
 
-    def __init__(self, case: Case, comm: MPI.Comm = MPI.COMM_WORLD, detailed: bool = True, threads: int = 1, estimates: bool = True) -> None:
+    def __init__(
+        self,
+        case: Case,
+        comm: MPI.Comm = MPI.COMM_WORLD,
+        detailed: bool = True,
+        threads: int = 1,
+        estimates: bool = True,
+    ) -> None:
         self.case, self.comm = case, comm
         self._estimates = estimates and case.steps_error is not None
         self.spring = spring = case.spring.build()

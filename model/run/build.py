@@ -82,9 +82,7 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
         to_normal = section.kind != "plane" or bool(case.past)
         placement = section_placement(spring, turns, chords, GAUSS, to_normal)
         refuse_sharp_bends(placement, radius, turns)
-    rod = Rod(
-        line, radius, law, rule, placement, case.temperature, section.kind, section.degree, Threads(threads)
-    )
+    rod = Rod(line, radius, law, rule, placement, case.temperature, section.kind, section.degree, Threads(threads))
     return MeshedWire(turns, radius, placement, rod, (*coarse, *effort.warnings()))
 
 

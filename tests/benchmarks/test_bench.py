@@ -90,7 +90,7 @@ def compared_ranks(runs):
 
 
 def test_every_tangent_counts_as_assembly():
-    """Between clamped heads most are built with the forces that a correction foresees."""
+    """Between clamped heads most are built with the section forces that a correction predicts."""
     case = measure.read_example(["ends=clamped", "mesh.elements_per_turn=8", "loading=[{to: {travel: 2}}]"])
     watch, stages = Stopwatch(), []
     analysis = measure.build(watch, case, MPI.COMM_SELF)
@@ -99,7 +99,7 @@ def test_every_tangent_counts_as_assembly():
     matrix.fill = lambda *args: (stages.append(watch._open[-1]), fill(*args))
     with watch.stage("other"):
         assert analysis.newton.solve(analysis.control.to_height(analysis.control.height - 2.0)).converged
-    assert analysis.newton.foreseeing.used
+    assert analysis.newton.iteration.predicted
     assert stages
     assert set(stages) == {"assemble"}
 

@@ -10,9 +10,10 @@ interpolated between nodes. The rates of strain of a layer at height y, and what
 
     ε̇11 = ε̇/(1 + ε) − κ̇ y,   γ̇12 = γ̇,   N = ∫ σ dA/(1 + ε),   Q = ∫ τ dA,   M = −∫ σ y dA,
 
-the same shear in all layers (no shear factor, as in the thesis). A layer's stress follows the rates (3.1.6) to (3.1.8) in σ
-and τ, as in `section_integrals.plastic_path`, by Heun's method in sub-steps, after each of which the active deviator is
-scaled back to the yield surface. Of the program only the material's functions k²(b*), ζ(b*), κ(b*) are used.
+the same shear in all layers (no shear factor, as in the thesis). A layer's stress follows the rates (3.1.6) to (3.1.8)
+in σ and τ, as in `section_integrals.plastic_path`, by Heun's method in sub-steps, after each of which the active
+deviator is scaled back to the yield surface. Of the program only the material's functions k²(b*), ζ(b*), κ(b*) are
+used.
 """
 
 import numpy as np

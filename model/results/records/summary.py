@@ -103,7 +103,7 @@ def estimated_errors(result: Result) -> dict[str, Any]:
         "estimated_force_error_N": total.force_N,
         "estimated_set_error_mm": total.set_mm,
         "estimated_residual_shear_inside_error_MPa": total.residual_shear_inside_MPa,
-        "estimated_errors": None if errors is None else asdict(errors),
+        "estimated_errors": errors,
     }
 
 

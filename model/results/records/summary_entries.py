@@ -5,6 +5,7 @@ from types import UnionType
 from typing import Any, get_args
 
 from coilset.model.base.warning import Warning
+from coilset.model.results.records.record import RunErrors
 
 
 def entry(unit: str, text: str, of_slice: bool = True) -> Any:
@@ -116,7 +117,7 @@ class Summary:
     estimated_residual_shear_inside_error_MPa: float | None = entry(
         "MPa", "the same of the residual shear stress at the inside of the coil", of_slice=False
     )
-    estimated_errors: dict[str, dict[str, float | None]] | None = entry(
+    estimated_errors: RunErrors | None = entry(
         "",
         "the parts of these by their causes `steps`, `mesh`, `section` and `contact`: each has `force_N`, `set_mm` and "
         "`residual_shear_inside_MPa`; `null` where not estimated",

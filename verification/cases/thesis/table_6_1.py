@@ -5,8 +5,8 @@ direction of the load: a straight cantilever of length l, round wire of radius R
 transverse end load of fixed direction, Ck 15, F in units of σF πR² with σF = 181.5 N/mm², ε = 1e-7 of (6.3.1).
 
 Values: 20 equal steps per row. What is judged is the solution of this cantilever, not its reconstruction: with eight
-elements, a finer section and no spin, F is held against the layered plane beam of `references/layered_beam.py`; all rows
-are within 0.3 %. The thesis's rows, and coilset with its two elements and nine points, are shown beside.
+elements, a finer section and no spin, F is held against the layered plane beam of `references/layered_beam.py`; all
+rows are within 0.3 %. The thesis's rows, and coilset with its two elements and nine points, are shown beside.
 
 What is known: no variant of this cantilever under a transverse load falls as the thesis's last rows do, neither coilset
 with 1 to 80 elements, with and without spin, with linear or logarithmic strain, nor the layered beam. Its elastic rows
@@ -163,12 +163,19 @@ def run(study: Study) -> None:
         study.table(f"by {name}", columns, rows)
     study.note(
         "No variant of this cantilever under a transverse load falls as the last rows of Table 6.1 do. Its elastic "
-        "rows need half the stiffness that R/l = 0.59 gives: the printed rows belong to another cantilever, or are wrong."
+        "rows need half the stiffness that R/l = 0.59 gives: the printed rows belong to another cantilever, or are "
+        "wrong."
     )
     draw(study, paths, counts, beam, fine)
 
 
-def draw(study: Study, paths: dict[str, np.ndarray], counts: dict[str, dict[str, Counts]], beam: np.ndarray, fine: np.ndarray) -> None:
+def draw(
+    study: Study,
+    paths: dict[str, np.ndarray],
+    counts: dict[str, dict[str, Counts]],
+    beam: np.ndarray,
+    fine: np.ndarray,
+) -> None:
     """Characteristic, and iterations of both halves."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(10.5, 8.2), layout="constrained")
