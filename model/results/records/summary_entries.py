@@ -117,7 +117,7 @@ class Summary:
     estimated_residual_shear_inside_error_MPa: float | None = entry(
         "MPa", "the same of the residual shear stress at the inside of the coil", of_slice=False
     )
-    estimated_errors: RunErrors | None = entry(
+    estimated_errors: RunErrors | None = entry(  # noqa: RUF009 - it is frozen
         "",
         "the parts of these by their causes `steps`, `mesh`, `section` and `contact`: each has `force_N`, `set_mm` and "
         "`residual_shear_inside_MPa`; `null` where not estimated",
