@@ -55,7 +55,7 @@ def draw(study: Study, ratios: dict[str, list[float]]) -> None:
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(7.5, 4.0), layout="constrained")
         axes = figure.subplots()
-        for k, (name, values) in enumerate(ratios.items()):
+        for k, (_name, values) in enumerate(ratios.items()):
             spread = 0.25 * np.linspace(-1.0, 1.0, len(values)) if len(values) > 1 else np.zeros(1)
             axes.plot(k + spread, np.sort(values), "o", ms=4, mfc="none")
             axes.plot([k - 0.3, k + 0.3], 2 * [np.median(values)], "-", color="k", lw=1.5)
