@@ -96,8 +96,12 @@ class MeshSpec(Strict):
     ] = None
     axis: Annotated[
         Literal["curved", "chords"],
-        Field(description="curved: the rods' sections lie on the true centre line; chords: the thesis's polygon"),
+        Field(description="curved: sections are on the true centre line; chords: on the polygon of the thesis"),
     ] = "curved"
+    element: Annotated[
+        Literal["mixed", "thesis"],
+        Field(description="mixed: section forces in equilibrium within the element, 3 sections; thesis: its own, 2"),
+    ] = "thesis"
     section: SectionSpec = SectionSpec()
 
     @model_validator(mode="after")
@@ -235,7 +239,7 @@ class Case(Strict):
     ] = None
     ends: Annotated[
         Literal["seats", "clamped"],
-        Field(description="seats: the spring stands between seats; clamped: both tips of the wire are clamped"),
+        Field(description="seats: the spring is compressed between seats; clamped: both tips of the wire are clamped"),
     ] = "seats"
     seats: SeatsSpec = SeatsSpec()
     heads: HeadsSpec = HeadsSpec()
@@ -362,7 +366,7 @@ class Case(Strict):
 
     @property
     def past(self) -> list[str]:
-        """Entries of `spring` that say what its wire has been through; a wire without is free of stress."""
+        """Entries of `spring` on the wire's manufacture; without them the wire is free of stress."""
         if not isinstance(self.spring, SpringSpec):
             return []
         return [name for name in ("made_by", "peening") if getattr(self.spring, name) is not None]

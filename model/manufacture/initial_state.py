@@ -44,7 +44,7 @@ def give_past(rod: Rod, spring: object) -> float | None:
     """Give all sections the stresses that the wire's past leaves, if it has one; collective.
 
     Args:
-        rod: with sections of fibres whose placement knows the wire's curvature; its equilibrium is replaced, without a
+        rod: with sections of fibres whose placement includes the curvature; its equilibrium is replaced, without a
             force on any section.
         spring: the entries of a case.
 

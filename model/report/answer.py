@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from coilset.model.figures.panels.panel import said
+from coilset.model.figures.panels.panel import with_unit
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import largest_errors, within
 
@@ -66,9 +66,9 @@ def answer(summary: Mapping[str, Any]) -> list[Number]:
             f"inside of the coil{at}{', ' + against if against else ''}",
         ),
         Number("maximum force", _within(s["force_max_N"], s.get("estimated_force_error_N"), "N", 1), _errors(s)),
-        Number("maximum shear stress", _said(s["shear_inside_max_MPa"], "MPa", 0), "at the inside of the coil"),
-        Number("initial rate", _said(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
-        Number("block height", _said(s["block_height_mm"], "mm", 2)),
+        Number("maximum shear stress", with_unit(s["shear_inside_max_MPa"], "MPa", 0), "at the inside of the coil"),
+        Number("initial rate", with_unit(s["rate_N_per_mm"], "N/mm", 3), _after(s)),
+        Number("block height", with_unit(s["block_height_mm"], "mm", 2)),
     ]
 
 
@@ -86,10 +86,6 @@ def _lengths(summary: Mapping[str, Any]) -> str:
 
 def _within(value: float | None, error: float | None, unit: str, digits: int) -> str:
     return within(value, error, unit, digits).replace("-", "−")
-
-
-def _said(value: float | None, unit: str, digits: int) -> str:
-    return "none" if value is None else said(value, unit, digits)
 
 
 def _errors(summary: Mapping[str, Any]) -> str:

@@ -23,8 +23,9 @@ from coilset.model.rod.assembly import add_element_vectors
 from coilset.model.rod.coefficients import Coefficients, timoshenko_factor
 from coilset.model.rod.compiled import compiled_forms
 from coilset.model.rod.element_kernel import ElementKernel
+from coilset.model.rod.elements import THESIS, Element
 from coilset.model.rod.finer_path import CLOCKS, FinerPath
-from coilset.model.rod.kinematics import GAUSS, chord_triads, displace_nodes, section_strains
+from coilset.model.rod.kinematics import chord_triads, displace_nodes, section_strains
 from coilset.model.rod.numbering import Numbering
 from coilset.model.rod.prediction import Prediction
 from coilset.model.rod.section_states import KEPT, POINTS, SURFACE, SectionStates
@@ -49,6 +50,7 @@ class Rod(Body):
         temperature: of the rod, K; at the start, if plastic work heats it. None: the first one of the material.
         kind: of the sections, see `coilset.model.section.kinds`, and `degree` of those that warp.
         threads: Threads that advance the sections; None: the calling one alone.
+        element: Element; the placement is that of its sections.
 
     Raises:
         InputError: if the temperature lies outside the material's table.
@@ -56,9 +58,9 @@ class Rod(Body):
     Attributes:
         increment: function of the increments since the last equilibrium.
         state: State with `x`, mm, and `R`, rotations since the stress-free state, of the local nodes; `chord`, mm,
-            `shear`, `strain`, shape (cells, 2, 6), and the arrays of the sections, of the owned cells; of these
-            `point_state`, shape (cells, 2, points, n_state), and `surface_state` are always there. Rods of up to KEPT
-            elements, whose law knows no time, also keep `section_forces` and `section_tangents`.
+            `own`, `strain`, shape (cells, sections, 6), and the arrays of the sections, of the owned cells; of these
+            `point_state`, shape (cells, sections, points, n_state), and `surface_state` are always there. Rods of up to
+            KEPT elements, whose law knows no time, also keep `section_forces` and `section_tangents`.
         numbering: Numbering of the unknowns.
         coefficients: Coefficients of the forms, with the section strains and forces on trial.
         chart: tangents of the nodes' rotation charts on trial, shape (nodes, 3, 3).
@@ -80,23 +82,24 @@ class Rod(Body):
         kind: str = "plane",
         degree: int = 3,
         threads: Threads | None = None,
+        element: Element = THESIS,
     ) -> None:
+        self.element = element
         self.line, self.law, self.rule = line, law, rule
         mesh, n = line.mesh, line.owned_cells
         self.comm = mesh.comm
         self.mesh, self.parameters = mesh, law.parameters(temperature)
         self.temperature = law.reference_temperature if temperature is None else temperature
-        element = line.element[:n]
-        self.radius = np.ascontiguousarray(np.asarray(radius, float)[element])
-        self.placement = straight(n)
-        if placement is not None:
-            self.placement = placement.part(element)
+        order = line.element[:n]
+        self.radius = np.ascontiguousarray(np.asarray(radius, float)[order])
+        sections = len(self.element.abscissae)
+        self.placement = straight(n, sections) if placement is None else placement.part(order)
         self.sections = make_sections(
             kind, law, self.parameters, rule, self.radius, self.placement, temperature, degree, threads
         )
         self.in_time = self.sections.law_over_time.in_time
 
-        self.V = fem.functionspace(mesh, forms.rod_element())
+        self.V = fem.functionspace(mesh, forms.rod_element(element))
         self.increment = fem.Function(self.V)
         self.numbering = numbering = Numbering.of(self.V, n)
         self.rotation_dofs, self.element_dofs = numbering.rotations, numbering.elements
@@ -106,12 +109,12 @@ class Rod(Body):
         chords = x[self.cells[:, 1]] - x[self.cells[:, 0]]
         self.l0, self.E0 = np.linalg.norm(chords, axis=1), chord_triads(chords)
 
-        self.coefficients = Coefficients(timoshenko_factor(law.E, law.G, self.radius, self.l0))
+        self.coefficients = Coefficients(element, timoshenko_factor(law.E, law.G, self.radius, self.l0))
         self._increment = self.increment.x.array
         self._finer: FinerPath | None = None
         self.levers: list[Lever] = []
         self.arms: dict[int, np.ndarray] = {}
-        self._forms = compiled_forms(self.comm)
+        self._forms = compiled_forms(self.comm, element)
         self._residual, self._tangent = self._forms.on(vars(self.coefficients), x, self._nodes)
         self.largest_radius = max_of_ranks(self.comm, self.radius.max(initial=0.0))
         self.axial_force = law.E * np.pi * self.largest_radius**2  # E A
@@ -127,7 +130,7 @@ class Rod(Body):
         self._x = state.add("x", x, Where.STATION)
         self._R = state.add("R", np.tile(np.eye(3), (len(x), 1, 1)), Where.STATION)
         self._chord = state.add("chord", x[self.cells[:, 1]] - x[self.cells[:, 0]], Where.ELEMENT)
-        self._shear = state.add("shear", np.zeros((n, 2)), Where.ELEMENT)
+        self._own = state.add("own", np.zeros((n, self.element.own)), Where.ELEMENT)
         self._strain = state.add("strain", c.e, Where.ELEMENT)
         self._points = SectionStates(self.sections, state, self._strain, self.in_time, self.temperature)
         self._forces: list[Field] = []  # at the last equilibrium; an element's tangents take 576 bytes
@@ -139,16 +142,16 @@ class Rod(Body):
             self._increment,
             numbering.u,
             numbering.rotations,
-            numbering.shear,
+            numbering.own,
             self.cells,
             self._x.equilibrium,
             self._chord.equilibrium,
             self._R.equilibrium,
-            self._shear.equilibrium,
+            self._own.equilibrium,
             self._x.trial,
             self._chord.trial,
             self._R.trial,
-            self._shear.trial,
+            self._own.trial,
             self.chart,
             c.T,
         )
@@ -158,9 +161,11 @@ class Rod(Body):
             self._R.trial,
             self.E0,
             self.l0,
-            self._shear.trial,
+            self._own.trial,
             c.timoshenko_factor,
-            GAUSS,
+            self.element.xi,
+            self.element.mode_strains,
+            self.element.mode_values,
             c.E,
             c.P,
             c.W,
@@ -204,12 +209,12 @@ class Rod(Body):
 
     @property
     def point_state(self) -> np.ndarray:
-        """State at the section points, shape (cells, 2, points, n_state), MPa: on trial, in a long rod committed."""
+        """State at the section points, MPa: on trial, in a long rod committed; (cells, sections, points, n_state)."""
         return self._points[POINTS]
 
     @property
     def surface_state(self) -> np.ndarray:
-        """State of the points on the wire's surface, shape (cells, 2, surface points, n_state), MPa."""
+        """State of the points on the wire's surface, shape (cells, sections, surface points, n_state), MPa."""
         return self._points[SURFACE]
 
     # ---- Body ------------------------------------------------------------------------------------------------------
@@ -260,7 +265,7 @@ class Rod(Body):
 
     def estimate_errors(self) -> None:
         """Follow every step on a finer path from now on; see Body."""
-        self._finer = FinerPath(self.sections, self.state, self._points.bearing)
+        self._finer = FinerPath(self.sections, self.state, self._points.bearing, self.element)
 
     def error_works(self, ratio: float, kinked: bool, final: bool) -> tuple[float, float, float, float]:
         """Works of the errors of all steps so far and of the last one; see Body."""
@@ -285,7 +290,7 @@ class Rod(Body):
     @cached_property
     def _prediction(self) -> Prediction:
         """Made when it is first needed: its arrays then take the memory that the first factors needed for a moment."""
-        return Prediction(self.cells, self._chord.trial, self.coefficients, self.numbering)
+        return Prediction(self.cells, self._chord.trial, self.coefficients, self.numbering, self.element)
 
     @cached_property
     def _predicted_residual(self) -> ElementKernel:
@@ -331,7 +336,7 @@ class Rod(Body):
         return matrix
 
     def element_tangents(self, share: float | None = None) -> Iterator[tuple[slice, np.ndarray]]:
-        """The elements' K_l and stiffness of the rotating frame, shape (elements, 14, 14); see Body."""
+        """The elements' K_l and stiffness of the rotating frame, shape (elements, k, k); see Body."""
         if share is None:
             np.copyto(self.coefficients.predicted, self.coefficients.s)
         else:

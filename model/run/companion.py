@@ -141,7 +141,7 @@ class _Watch:
         self.start["strain"] = self._strain()
         self.trial = {name: values.copy() for name, values in self.start.items()}
         self._clock(self.start)
-        self.length = (self.stride * rod.l0[self.cells])[:, None, None]
+        self.length = self.stride * rod.l0[self.cells, None, None] * np.array(rod.element.weights)[:, None]
         self.first: tuple[np.ndarray, float] | None = None
         self.travel, self.seen, self.lost = 0.0, list[_Seen](), False
 
@@ -166,7 +166,7 @@ class _Watch:
         self.seen.append(_Seen(step, now, left, sum_of_ranks(self.comm, energy)))
 
     def _follow(self) -> tuple[np.ndarray, np.ndarray]:
-        """Error of the section forces after the last step, and its strains, shape (cells, 2, 6)."""
+        """Error of the section forces after the last step, and its strains, shape (cells, sections, 6)."""
         strain = self._strain()
         self._clock(self.trial)
         change = strain - self.start["strain"]
@@ -181,7 +181,7 @@ class _Watch:
 
     def _work(self, error: np.ndarray, change: np.ndarray) -> float:
         """Work of a section-force error on increments of strain, N mm; not a number where the law found no stress."""
-        work = sum_of_ranks(self.comm, 0.5 * float(np.sum(self.length * error * change)))
+        work = sum_of_ranks(self.comm, float(np.sum(self.length * error * change)))
         return math.nan if max_of_ranks(self.comm, float(self.lost)) else work
 
     def surface_error(self) -> float:

@@ -37,7 +37,7 @@ BEYOND = [
     ("travel: 1e9", "travel: is 1e+09 mm"),
     ("height: 10", "height: is 10 mm, below the block height of 17.5 mm"),
     ("height: 17.49", "height: is 17.49 mm, below the block height of 17.5 mm"),
-    ("force: 5000", "force: is 5000 N, but all coils of this spring lie on each other at about 717.8 N"),
+    ("force: 5000", "force: is 5000 N, but all coils of this spring are in contact at about 717.8 N"),
 ]
 
 

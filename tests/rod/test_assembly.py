@@ -10,17 +10,18 @@ from coilset.model.contact.base import Contribution
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.matrix import TangentMatrix
 from coilset.model.rod import element_kernel, forms
+from coilset.model.rod.elements import MIXED, THESIS
 
 ELEMENTS = 11  # no multiple of the elements that go through together
 
 
-@pytest.fixture(params=[8, 256], ids=["in blocks", "at once"])
+@pytest.fixture(params=[(8, MIXED), (256, THESIS)], ids=["in blocks", "at once"])
 def bent(make_rod, request, monkeypatch):
     """A helix that is bent, sheared and plastic: finite rotations at random."""
-    monkeypatch.setattr(element_kernel, "BLOCK", request.param)
+    monkeypatch.setattr(element_kernel, "BLOCK", request.param[0])
     turns = np.linspace(0.0, 1.3, ELEMENTS + 1)
     stations = np.stack([20.0 * np.cos(2 * np.pi * turns), 20.0 * np.sin(2 * np.pi * turns), 12.0 * turns], axis=1)
-    rod = make_rod(stations)
+    rod = make_rod(stations, element=request.param[1])
     rod.increment.x.array[:] = np.random.default_rng(0).normal(scale=0.02, size=len(rod.increment.x.array))
     assert rod.update()
     assert (rod.point_state[..., 6] > 0.0).any()
@@ -37,10 +38,11 @@ def matrix_of(rod, size):
 
 def by_dolfinx(rod):
     """Residual and tangent as DOLFINx assembles them."""
-    fields = [fem.Function(fem.functionspace(rod.mesh, element())) for element in forms.FIELDS.values()]
+    elements = forms.field_elements(rod.element).values()
+    fields = [fem.Function(fem.functionspace(rod.mesh, one)) for one in elements]
     for function, name in zip(fields, forms.FIELDS, strict=True):
         function.x.array[:] = getattr(rod.coefficients, name).ravel()
-    rod_forms = forms.RodForms(rod.mesh, rod.V, *fields)
+    rod_forms = forms.RodForms(rod.element, rod.mesh, rod.V, *fields)
     vector = fem.assemble_vector(fem.form(rod_forms.residual)).array
     matrix = matrix_of(rod, len(vector))
     assemble_matrix(matrix, fem.form(rod_forms.material_stiffness + rod_forms.frame_stiffness))

@@ -48,7 +48,7 @@ def test_without_strains_of_second_order_an_elastic_rod_has_its_predicted_forces
     """After 0.7 of a correction of 0.1 rad and 10 mm; the forces themselves differ from the predicted ones by far."""
     rod, base, direction = turned
     direction[rod.numbering.u] *= 100.0
-    direction[rod.numbering.shear] = 0.0
+    direction[rod.numbering.own] = 0.0
     at(rod, base)
     rod.predict(direction)
     there = at(rod, base + 0.7 * direction)

@@ -108,7 +108,7 @@ def estimated_errors(result: Result) -> dict[str, Any]:
 
 
 def is_middle(setup: Setup) -> np.ndarray:
-    """Whether sections lie in the middle turns: a turn from the tips, or from the end coils of closed ends."""
+    """Whether sections are in the middle turns: a turn from the tips, or from the end coils of closed ends."""
     spring = setup.spring
     first, last = spring.bottom.end_turns, spring.turns - spring.top.end_turns
     return surface.is_middle(setup.section_turns, first, last)
