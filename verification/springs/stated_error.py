@@ -17,7 +17,7 @@ import yaml
 from mpi4py import MPI
 
 from coilset.model.base.errors import CoilsetError
-from coilset.model.case import check
+from coilset.model.case import Case, check
 from coilset.model.results.records.summary import summarise
 from coilset.model.run.analysis import Analysis
 from coilset.verification.springs.random_springs import random_spring
@@ -25,10 +25,7 @@ from coilset.verification.springs.random_springs import random_spring
 DATA = Path(__file__).with_suffix(".yaml")
 DRAWN = 240  # springs of the generator among which to choose
 PARTS = 0.5, 0.9  # of the travel, at which forces are compared
-FINE = {
-    "mesh": {"elements_per_turn": 64, "section": {"radial": 16, "angular": 64}},
-    "accuracy": 0.0002,
-}
+FINE_MESH, FINE_SECTION, FINE_ACCURACY = {"elements_per_turn": 64}, {"radial": 16, "angular": 64}, 0.0002
 
 
 class Number(NamedTuple):
@@ -52,7 +49,8 @@ def numbers(count: int) -> list[int]:
 def spring(number: int, fine: bool = False) -> dict[str, Any]:
     """The case of a number with phases that end at the parts of its travel; `fine`: as a reference."""
     data = random_spring(number)
-    geometry = check(data).spring.build()
+    case: Case = check(data)
+    geometry = case.spring.build()
     loading: list[dict[str, Any]] = []
     for phase in data["loading"]:
         to = phase["to"]
@@ -62,8 +60,8 @@ def spring(number: int, fine: bool = False) -> dict[str, Any]:
         loading.append(phase)
     data["loading"] = loading
     if fine:
-        data["accuracy"] = FINE["accuracy"]
-        data["mesh"] = {**FINE["mesh"], "section": {**data["mesh"]["section"], **FINE["mesh"]["section"]}}
+        data["accuracy"] = FINE_ACCURACY
+        data["mesh"] = {**FINE_MESH, "section": data["mesh"]["section"] | FINE_SECTION}
     return data
 
 

@@ -29,8 +29,8 @@ def run(study: Study) -> None:
     for number, true in stated_error.references().items():
         try:
             found = stated_error.run(number)
-        except CoilsetError as error:
-            study.note(f"Spring {number} found no equilibrium: {error}")
+        except CoilsetError as problem:
+            study.note(f"Spring {number} found no equilibrium: {problem}")
             continue
         for name, one in found.items():
             if name not in true:
