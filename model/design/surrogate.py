@@ -20,6 +20,7 @@ from coilset.model.material import library
 from coilset.model.material.law.law import Law
 from coilset.model.section.rules import polar, upper_half
 from coilset.model.standards.wires.law import case_law
+from coilset.model.uniform.equivalent import coil
 from coilset.model.uniform.rod import UniformState, press
 
 STEPS = 6  # of a phase
@@ -39,21 +40,6 @@ class Guess:
 
     values: np.ndarray
     torque: float
-
-
-def coil(spring: Spring) -> np.ndarray:
-    """Wire diameter, mean diameter, pitch (mm) and turns of the equivalent cylinder, shape (4,).
-
-    Its turns are the active ones, its compliance ∝ ∫ D³/d⁴ dt that of the spring.
-    """
-    start, end = spring.bottom.end_turns, spring.turns - spring.top.end_turns
-    t = np.linspace(start, end, 257)
-    middle = 0.5 * (t[1:] + t[:-1])
-    d = spring.wire_diameter(middle)
-    mean = float(d.mean())
-    D = float(np.mean((2.0 * spring.mean_radius(middle)) ** 3 / d**4) * mean**4) ** (1.0 / 3.0)
-    pitch = float(spring.height(end) - spring.height(start)) / (end - start)
-    return np.array([mean, D, pitch, end - start])
 
 
 def guess(case: Case, conditions: Sequence[Condition], load: Callable[[str], Law] = library.load) -> Guess:

@@ -24,6 +24,8 @@ from coilset.model.equilibrium.system import System
 
 each_iteration = logging.getLogger("coilset.iterations")  # silent unless its level is set
 
+CRAWL, CRAWLS = 0.01, 8  # part of a correction, and how many in a row
+
 
 class Iteration:
     """Iterates a System's increments towards the equilibrium of a load, by one of the methods.
@@ -42,7 +44,7 @@ class Iteration:
     Attributes:
         snes: PETSc's solver.
         matrix: TangentMatrix.
-        load: what the step asks for.
+        load: what the step requires.
         load_factor: share of it whose equilibrium is sought.
         ratio: out-of-balance forces at the last iterate, as (6.3.1) measures them.
         factorisations: number of tangents since `start`.
@@ -71,7 +73,8 @@ class Iteration:
         self._predicts, self.predicted = False, False
         self._share: float | None = None  # of the predicted correction, if the next tangent is to be built with it
         self.ratio, self.factorisations, self._at_step_start = np.inf, 0, True
-        self._fitted = 0  # version of the matrix that the linear solvers were last told of; a solid's never changes
+        self._fitted = 0  # matrix version at the last reset of the linear solvers; a solid's never changes
+        self._crawled = 0  # corrections in a row of which less than CRAWL was made
         self._step_length: float | None = None  # of the last correction; None where there is none, or PETSc's own
         me = weakref.proxy(self)
         self._factory = SnesFactory(
@@ -97,7 +100,7 @@ class Iteration:
         if not method.own_test:
             self.snes.setConvergenceTest(lambda *args: me._judge(*args))
 
-    # ---- what a solve asks for -------------------------------------------------------------------------------------
+    # ---- what a solve requires -------------------------------------------------------------------------------------
 
     def begin(self, load: Load, predicts: bool) -> None:
         """An attempt begins.
@@ -155,7 +158,7 @@ class Iteration:
     def negative_pivots(self) -> int | None:
         """Number of negative pivots of the last factors L U; None where they are not shown or not of the last solve."""
         pc = self.snes.getKSP().getPC()
-        if not self.method.searches or not self.factorisations:  # a state that is in equilibrium asks for no factors
+        if not self.method.searches or not self.factorisations:  # a state that is in equilibrium needs no factors
             return None
         return factors.negative_pivots(pc)
 
@@ -219,7 +222,7 @@ class Iteration:
         """SNES's convergence test."""
         norm, X = norms[2], self.system.increments
         if iteration == 0:
-            self._step_length = None
+            self._step_length, self._crawled = None, 0
             self.test.begin(norm, self.system.body.axial_force if self._predicts else 0.0)
         if not math.isfinite(norm):
             return NOT_A_NUMBER
@@ -238,8 +241,21 @@ class Iteration:
             return Reason.CONVERGED_FNORM_RELATIVE
         if iteration >= snes.getTolerances()[3]:
             return Reason.DIVERGED_MAX_IT
-        lost = None if self.method.is_arc_length else self.test.is_lost(iteration, norm, snes.getDivergenceTolerance())
+        if self.method.is_arc_length:
+            return Reason.ITERATING
+        lost = self.test.is_lost(iteration, norm, snes.getDivergenceTolerance())
+        if lost is None and self._crawls():
+            lost = Reason.DIVERGED_TR_DELTA
         return Reason.ITERATING if lost is None else lost
+
+    def _crawls(self) -> bool:
+        """Whether hardly anything of the last corrections was made: repeated however often, they lead nowhere.
+
+        Where stiff contacts follow a weak mode round a curve, the search leaves some ten thousandths of each one.
+        """
+        short = self._step_length is not None and self._step_length < CRAWL
+        self._crawled = self._crawled + 1 if short else 0
+        return self._crawled >= CRAWLS
 
     def _tell(self, iteration: int, norm: float) -> None:
         if not each_iteration.isEnabledFor(logging.DEBUG):

@@ -20,8 +20,8 @@ from coilset.model.material.law.functions import HEATING, elasticity
 from coilset.model.rod.rod import Rod
 from coilset.model.section.fibres import FibreSections
 from coilset.model.section.kinds import Sections
+from coilset.model.section.outline import WHOLE
 from coilset.model.section.rules import DiskRule
-from coilset.model.section.segment import WHOLE
 from coilset.model.section.wire import SectionLaw
 
 DIGITS = 9  # to which sections must agree to have the same past

@@ -14,7 +14,7 @@ from coilset.model.case import Case
 from coilset.model.case.heads import DamperSpec, HeadsSpec
 from coilset.model.case.phases import heads_of
 from coilset.model.case.seats import SeatsSpec
-from coilset.model.contact.base import BearsOnWire, Contact
+from coilset.model.contact.base import Contact
 from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.heads import Heads, Holding
@@ -172,8 +172,7 @@ def build_setup(
     """Setup of the records of a run."""
     rod, law, least_radius = wire.rod, wire.rod.law, float(wire.radius.min())
     records = tuple(
-        ContactRecord(one.name, one.end, one.points.turns if isinstance(one, BearsOnWire) else np.empty(0))
-        for one in contacts
+        ContactRecord(one.name, one.end, np.empty(0) if one.points is None else one.points.turns) for one in contacts
     )
     limits = Limits(
         law.validity.plastic_work, case_strength(case, spring), PENETRATION * 2.0 * least_radius, case.steps_error

@@ -236,11 +236,6 @@ class ContactRecord:
     end: str | None
     wire_turns: np.ndarray
 
-    @property
-    def turns_from_tip(self) -> np.ndarray:
-        """Turns from the wire's tip at a seat's end to each point, shape (m,)."""
-        return np.abs(self.wire_turns - self.wire_turns[0 if self.end == "bottom" else -1])
-
 
 @dataclass(frozen=True)
 class Limits:
