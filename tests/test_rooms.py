@@ -46,10 +46,8 @@ def test_meshes_import_only_the_base_of_the_model():
 MOST_FILES, MOST_PARAMETERS = 14, 10
 TOPS = ("meshes", "model", "verification", "scripts")
 # What is larger still, with its size: it may become smaller, and nothing may be added.
-FOLDERS = {"model/equilibrium": 28}
+FOLDERS = {"model/equilibrium": 27}
 PARAMETERS = {
-    "model/contact/elements.py": 2,
-    "model/contact/search.py": 1,
     "model/material/point/back_stresses.py": 1,
     "model/material/point/rod_plastic.py": 1,
     "model/rod/forms.py": 1,
@@ -59,11 +57,9 @@ PARAMETERS = {
     "model/section/fibres.py": 2,
     "model/section/integration.py": 1,
     "model/section/warping.py": 2,
-    "model/slice/gap.py": 2,
     "model/uniform/rod.py": 1,
     "scripts/commands/sheet.py": 1,
     "scripts/commands/solve.py": 1,
-    "scripts/main.py": 2,  # options of commands
 }
 CTYPES = {"model/equilibrium/aij.py", "model/results/files/two_files.py", "model/runtime/processes.py"}
 
@@ -84,13 +80,18 @@ def test_a_folder_has_at_most_fourteen_files():
     assert {folder: size for folder, size in sizes.items() if size > FOLDERS.get(folder, MOST_FILES)} == {}
 
 
+def is_command(function):
+    """`@app.command()`: its parameters are the options of a command, which nobody passes by position."""
+    return any("command" in ast.dump(decorator) for decorator in function.decorator_list)
+
+
 def test_a_function_has_at_most_ten_parameters():
     many = {}
     for file, tree in sources():
         for function in (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)):
             of = function.args
             names = [one.arg for one in (*of.posonlyargs, *of.args, *of.kwonlyargs) if one.arg not in ("self", "cls")]
-            if len(names) > MOST_PARAMETERS:
+            if len(names) > MOST_PARAMETERS and not is_command(function):
                 many[file.as_posix()] = many.get(file.as_posix(), 0) + 1
     assert {file: count for file, count in many.items() if count > PARAMETERS.get(file, 0)} == {}
 

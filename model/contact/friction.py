@@ -11,11 +11,11 @@ The forces on both bodies do the work t · s. Their derivative is computed by th
 which is exact to rounding; it includes the change of p, and is not symmetric where the contact slides.
 """
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 
 import numpy as np
 
-from coilset.model.contact.base import SEAT_DOFS, Contribution, TrialPositions, one_sided
+from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution, TrialPositions, one_sided
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.curve import STENCIL, curve_weights
 from coilset.model.contact.memory import Memory
@@ -46,7 +46,7 @@ def mean(weights: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     return (weights[:, :, None] * vectors).sum(axis=1)
 
 
-class Friction(ABC):
+class Friction(Contact):
     """Common parts of both kinds.
 
     Args:
@@ -57,6 +57,7 @@ class Friction(ABC):
     """
 
     needs_rotations = True
+    memory: Memory
 
     def __init__(self, normal: Seat | Coils, mu: float, stations: np.ndarray, seats: np.ndarray):
         self.aside = normal.aside
@@ -103,11 +104,11 @@ class Friction(ABC):
 
     @property
     def reach(self) -> float:
-        """That of the contact that presses; see ActsNearby."""
+        """That of the contact that presses; see Contact."""
         return self.normal.reach
 
     def acts_on_seats(self, stations: np.ndarray, x: np.ndarray, seats: np.ndarray, span: np.ndarray) -> np.ndarray:
-        """As the contact that presses; see ActsNearby."""
+        """As the contact that presses; see Contact."""
         return self.normal.acts_on_seats(stations, x, seats, span)
 
     def slide(

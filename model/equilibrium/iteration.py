@@ -44,7 +44,7 @@ class Iteration:
     Attributes:
         snes: PETSc's solver.
         matrix: TangentMatrix.
-        load: what the step asks for.
+        load: what the step requires.
         load_factor: share of it whose equilibrium is sought.
         ratio: out-of-balance forces at the last iterate, as (6.3.1) measures them.
         factorisations: number of tangents since `start`.
@@ -73,7 +73,7 @@ class Iteration:
         self._predicts, self.predicted = False, False
         self._share: float | None = None  # of the predicted correction, if the next tangent is to be built with it
         self.ratio, self.factorisations, self._at_step_start = np.inf, 0, True
-        self._fitted = 0  # version of the matrix that the linear solvers were last told of; a solid's never changes
+        self._fitted = 0  # matrix version at the last reset of the linear solvers; a solid's never changes
         self._crawled = 0  # corrections in a row of which less than CRAWL was made
         self._step_length: float | None = None  # of the last correction; None where there is none, or PETSc's own
         me = weakref.proxy(self)
@@ -100,7 +100,7 @@ class Iteration:
         if not method.own_test:
             self.snes.setConvergenceTest(lambda *args: me._judge(*args))
 
-    # ---- what a solve asks for -------------------------------------------------------------------------------------
+    # ---- what a solve requires -------------------------------------------------------------------------------------
 
     def begin(self, load: Load, predicts: bool) -> None:
         """An attempt begins.
@@ -158,7 +158,7 @@ class Iteration:
     def negative_pivots(self) -> int | None:
         """Number of negative pivots of the last factors L U; None where they are not shown or not of the last solve."""
         pc = self.snes.getKSP().getPC()
-        if not self.method.searches or not self.factorisations:  # a state that is in equilibrium asks for no factors
+        if not self.method.searches or not self.factorisations:  # a state that is in equilibrium needs no factors
             return None
         return factors.negative_pivots(pc)
 

@@ -42,9 +42,9 @@ class Newton:
         tolerance: ε of (6.3.1).
         control: NewtonControl.
         limit: ContactLimit; None: corrections are not limited.
-        augmentation_tolerance: maximum penetration, mm, that is let be; a greater one is worked off by augmented
-            Lagrange: contacts are pressed harder by what they have sunk in, and the step is solved on.
-        augmented: maximum penetration, mm, that is worked off; a state with a deeper one is left as it is.
+        augmentation_tolerance: tolerance of the augmented Lagrangian loop, mm: contacts that have penetrated
+            deeper are pressed harder by as much, and the step is solved again.
+        augmented: maximum penetration, mm, that the loop reduces; a state with a deeper one is left as it is.
         prepare: called with PETSc's matrix after each tangent, for preconditioners that are not PETSc's.
 
     Raises:
@@ -101,7 +101,7 @@ class Newton:
             if self._in_vain(depths):
                 reason = (
                     f"a penetration of {depths[-1]:.3g} mm is left after {len(depths) - 1} augmentations, "
-                    "as where the wire lies solid on itself"
+                    "so the spring is probably solid"
                 )
                 return replace(outcome, converged=False, reason=reason)
             self.system.augment()
@@ -109,9 +109,9 @@ class Newton:
         return outcome
 
     def _in_vain(self, depths: Sequence[float]) -> bool:
-        """Whether contacts are augmented no more: by penetrations before each augmentation, the last one's included.
+        """Whether to stop augmenting, from the penetrations before each augmentation, the last one's included.
 
-        Where bodies lie solid on each other they do not become less any more.
+        Where bodies are solid on each other they do not decrease any more.
         """
         few, made = FEW_AUGMENTATIONS, len(depths) - 1
         return made >= self.control.augmentations or (made >= few and depths[-1] > LESS * depths[-1 - few])

@@ -51,7 +51,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class ProgramPosition:
-    """Where in the program the spring stands.
+    """Position in the load program.
 
     Attributes:
         stage: number of the stage.
@@ -117,7 +117,7 @@ class LoadProgram:
 
     @property
     def position(self) -> ProgramPosition:
-        """Where the spring stands."""
+        """Position in the load program."""
         return ProgramPosition(
             self.number,
             self._height,

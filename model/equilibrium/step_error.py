@@ -55,7 +55,7 @@ class StepError:
 
     Args:
         control: Heads of a System whose body estimates errors, see Body.
-        accuracy: error of force that is asked for, over the maximum force so far.
+        accuracy: required error of force, over the maximum force so far.
         steps: StepControl.
     """
 
@@ -70,7 +70,7 @@ class StepError:
         Args:
             ratio: size of the step over that of the one before it on the same path, 0 if there is none.
             controls: whether the step size is controlled by it. A kink then counts as in the middle of the step. In
-                equal steps it lies anywhere, and the errors of many steps would not add up as those of the worst case.
+                equal steps it is anywhere, and the errors of many steps would not add up as those of the worst case.
         """
         control, comm = self.control, self.control.system.comm
         memory, last = self._memory.trial, self._memory.equilibrium
@@ -122,7 +122,7 @@ class StepError:
         return Estimate(told, math.nan, share, self._factor(share))
 
     def _resolves_time(self, faint: float) -> bool:
-        """Can the error of the step be told from its works? Forces up to `faint`, N, do not fall; collective."""
+        """Does the error of the step follow from its works? Forces up to `faint`, N, do not fall; collective."""
         comm = self.control.system.comm
         before, after = (max(abs(self.control.measured(when)[1]), faint) for when in ("equilibrium", "trial"))
         resolves = self._body.resolves_time(max(math.log(before / after), 0.0))

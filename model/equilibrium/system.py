@@ -1,4 +1,4 @@
-"""Residual and tangent of a body and what touches it, as functions of one vector of increments."""
+"""Residual and tangent of a body and its contacts, as functions of one vector of increments."""
 
 from collections.abc import Callable, Sequence
 from functools import cached_property, partial
@@ -11,7 +11,7 @@ from petsc4py import PETSc
 from coilset.model.body.body import Body, Moment
 from coilset.model.body.lever import Swing
 from coilset.model.body.state import Where
-from coilset.model.contact.base import SEAT_DOFS, BearsOnWire, Contact, Contribution, HasMemory
+from coilset.model.contact.base import SEAT_DOFS, Contact, Contribution
 from coilset.model.equilibrium.contact_parts import ContactParts, carried
 from coilset.model.equilibrium.joined import add_vectors
 from coilset.model.equilibrium.layout import Layout, LineLayout
@@ -56,7 +56,6 @@ class System:
             step before it, and the internal forces `reactions` beside the body's fields.
         increments: PETSc's vector of the increments on trial, that of the state.
         internal: internal forces at the last evaluation, without constraints and loads, that of the state.
-        bearing: does each of the contacts bear on the wire (BearsOnWire)?
         touching: ContactParts, if there are contacts.
         last: Evaluation.
         evaluations: number of states that were evaluated so far.
@@ -67,7 +66,7 @@ class System:
     ) -> None:
         self.body, self.layout, self.comm, self.contacts = body, layout, layout.comm, list(contacts)
         self.state = body.state
-        self.memories = [contact.memory for contact in self.contacts if isinstance(contact, HasMemory)]
+        self.memories = [contact.memory for contact in self.contacts if contact.memory is not None]
         self._seats = None if seats is None else self.state.add("seats", np.array(seats, float), Where.SHARED)
         for number, memory in enumerate(self.memories):
             self.state.include(f"contact_{number}_", memory.state)
@@ -77,7 +76,6 @@ class System:
         self._reactions = self.state.add("reactions", np.zeros(layout.size_local), Where.UNKNOWN)
         self.internal = layout.vector(self._reactions.trial)
         self._body_increments = body.increment.x.array
-        self.bearing = [isinstance(contact, BearsOnWire) for contact in self.contacts]
         if self.contacts:
             self.touching = ContactParts(self.line, self.contacts)
         self._arms = layout.rod.arms if isinstance(layout, LineLayout) else {}
@@ -97,7 +95,7 @@ class System:
     @property
     def seats(self) -> np.ndarray:
         """x, y, z and rotations of both seats on trial, shape (12,), mm and rad."""
-        assert self._seats is not None, "this body stands on no seats"
+        assert self._seats is not None, "this body has no seats"
         return self._seats.trial
 
     @property
@@ -214,7 +212,7 @@ class System:
 
     @property
     def touches(self) -> bool:
-        """Does any contact bear at the last evaluation, on any rank?"""
+        """Is any contact closed at the last evaluation, on any rank?"""
         return self.last.closed > 0
 
     def gathered_contacts(self) -> list[Contribution]:
@@ -239,13 +237,13 @@ class System:
         self.expire()
 
     def reset_contacts(self) -> None:
-        """Let contacts remember the last equilibrium and nothing of what was tried since."""
+        """Restore the contacts' memories to the last equilibrium."""
         for memory in self.memories:
             memory.state.restore()
         self.expire()
 
     def augment(self) -> None:
-        """Press contacts harder where they have sunk in (augmented Lagrange), from now on; collective."""
+        """Augment the contacts that have penetrated (augmented Lagrange), from now on; collective."""
         if self.contacts:
             self.touching.augment(self.state["x"].trial, self.seats)
         self.expire()

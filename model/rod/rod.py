@@ -60,7 +60,7 @@ class Rod(Body):
         state: State with `x`, mm, and `R`, rotations since the stress-free state, of the local nodes; `chord`, mm,
             `own`, `strain`, shape (cells, sections, 6), and the arrays of the sections, of the owned cells; of these
             `point_state`, shape (cells, sections, points, n_state), and `surface_state` are always there. Rods of up to
-            KEPT elements, whose law knows no time, also keep `section_forces` and `section_tangents`.
+            KEPT elements, whose law is rate-independent, also keep `section_forces` and `section_tangents`.
         numbering: Numbering of the unknowns.
         coefficients: Coefficients of the forms, with the section strains and forces on trial.
         chart: tangents of the nodes' rotation charts on trial, shape (nodes, 3, 3).

@@ -14,7 +14,7 @@ from coilset.model.case import Case
 from coilset.model.case.heads import DamperSpec, HeadsSpec
 from coilset.model.case.phases import heads_of
 from coilset.model.case.seats import SeatsSpec
-from coilset.model.contact.base import BearsOnWire, Contact
+from coilset.model.contact.base import Contact
 from coilset.model.equilibrium.contact_limit import ContactLimit, free_penetration
 from coilset.model.equilibrium.continuation import Continuation
 from coilset.model.equilibrium.heads import Heads, Holding
@@ -69,9 +69,9 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
     """
     element = ELEMENTS[case.mesh.element]
     turns = spring.stations(case.mesh.elements_per_turn, case.mesh.sagitta)
-    section, automatic = case.mesh.section, case.solver.control.steps.automatic
+    section, rule, automatic = case.mesh.section, case.section_rule, case.solver.control.steps.automatic
     steps = sum(phase.count(automatic) for phase in case.loading)
-    points = section.points * len(element.abscissae) // 2  # an effort is that of two sections
+    points = 2 * len(rule) * len(element.abscissae) // 2  # an effort is that of two sections
     effort = Effort.of(len(turns) - 1, points, steps, case.steps_error is not None)
     effort.check_memory(machine_memory())
     # before the rod is made, which takes the memory that this needs for a moment
@@ -89,7 +89,7 @@ def build_wire(case: Case, spring: Spring, law: Law, comm: MPI.Comm, threads: in
         line,
         radius,
         law,
-        section.build(),
+        rule,
         placement,
         case.temperature,
         section.kind,
@@ -172,8 +172,7 @@ def build_setup(
     """Setup of the records of a run."""
     rod, law, least_radius = wire.rod, wire.rod.law, float(wire.radius.min())
     records = tuple(
-        ContactRecord(one.name, one.end, one.points.turns if isinstance(one, BearsOnWire) else np.empty(0))
-        for one in contacts
+        ContactRecord(one.name, one.end, np.empty(0) if one.points is None else one.points.turns) for one in contacts
     )
     limits = Limits(
         law.validity.plastic_work, case_strength(case, spring), PENETRATION * 2.0 * least_radius, case.steps_error

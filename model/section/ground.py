@@ -8,8 +8,8 @@ import numpy as np
 
 from coilset.meshes.springs.placement import Placement
 from coilset.model.section.integration import FIBRES
+from coilset.model.section.outline import WHOLE, Segment
 from coilset.model.section.rules import DiskRule
-from coilset.model.section.segment import WHOLE, Segment
 from coilset.model.section.shape import SHAPE
 
 

@@ -120,7 +120,7 @@ def test_a_spring_that_is_solid_ends_there(make, monkeypatch):
     monkeypatch.setattr("coilset.model.run.analysis.check_targets", lambda *_: None)
     analysis = make(f"[{{to: block}}, {{to: {{height: {2.0 * wire - 1.0}}}}}]", spring, "mesh.elements_per_turn=16")
     assert analysis.spring.block_height == pytest.approx(2.0 * wire, rel=1e-9)
-    with pytest.raises(SolveError, match=r"mm is left after 5 augmentations, as where the wire lies solid on itself"):
+    with pytest.raises(SolveError, match=r"mm is left after 5 augmentations, so the spring is probably solid"):
         analysis.run()
     assert analysis.result.steps[-1].seat_height_mm == pytest.approx(2.0 * wire, abs=0.07 * wire)
     assert analysis.result.steps[-1].phase == 1

@@ -23,7 +23,7 @@ FAINT = 1e-6  # axial forces below this part of the largest one so far have no c
 
 
 Parts = Sequence[tuple[Contact, Contribution]]
-OnWire = Sequence[tuple[int, Any, Contribution]]  # contacts that bear on the wire (BearsOnWire), with their numbers
+OnWire = Sequence[tuple[int, Any, Contribution]]  # contacts that act on points of the wire, with their numbers
 
 
 def seat_reactions(
@@ -101,7 +101,7 @@ class _Observer:
         self.x = self.layout.gather(system.state["x"].trial)
         self.chart = self.layout.gather(self.layout.rod.chart)
         self.parts: Parts = list(zip(system.contacts, system.gathered_contacts(), strict=True))
-        self.on_wire: OnWire = [(kind, *self.parts[kind]) for kind, bears in enumerate(system.bearing) if bears]
+        self.on_wire: OnWire = [(kind, *part) for kind, part in enumerate(self.parts) if part[0].points is not None]
 
     def wrench(self, end: str) -> Wrench:
         """Resultant of an end's seat, or of its prescribed unknowns, on the wire."""
