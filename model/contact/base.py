@@ -138,7 +138,7 @@ def one_sided(g: np.ndarray, c: np.ndarray, onset: float) -> tuple[np.ndarray, n
     c (p − w) beyond. Without such an onset the tangent jumps, and a line search can get stuck at the kink.
 
     Args:
-        g: gaps, negative where the bodies overlap, shape (m,), mm; may be complex.
+        g: gaps, negative where the bodies overlap, shape (m,), mm.
         c: stiffness, shape (m,), N/mm.
         onset: w, mm.
 

@@ -18,6 +18,7 @@ FEW = 1024  # locations on other coils for which there is room at first
 SKIN = 0.5  # in wire radii: how far beyond what touches pairs are sought
 # Along the wire, a pair depends on three more stations of the cubic, and the search oversteps by two and by two posts.
 STATIONS_ASIDE, POSTS_ASIDE = 5, 2
+Pressed = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]  # see Coils.pressed
 NO_PAIR = np.empty((0, 3), np.int64), np.empty((0, 2)), np.empty(0), np.empty((0, 3))
 
 
@@ -63,6 +64,7 @@ class Coils:
             none,
         )
         self._clear: tuple[TrialPositions, float] | None = None  # where all gaps were greater than a distance
+        self._last: tuple[TrialPositions, Pressed] | None = None  # for friction, which requires the same pairs
 
     def places(self, pair: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Indices of pairs into arrays of points and places, see `place`."""
@@ -101,7 +103,13 @@ class Coils:
                 return pair[:found], where[:found], p
             self._room = 2 * found
 
-    def pressed(self, trial: TrialPositions) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    def pressed(self, trial: TrialPositions) -> Pressed:
+        """As `_pressed`; what it found is kept for the last trial state."""
+        if self._last is None or self._last[0] is not trial:
+            self._last = trial, self._pressed(trial)
+        return self._last[1]
+
+    def _pressed(self, trial: TrialPositions) -> Pressed:
         """Pairs in contact, with ξ and gaps, their offsets, and the points' positions; these only if there are pairs.
 
         Nothing is sought while no two points can have come closer by the gap that was found clear. The weights of a
@@ -167,6 +175,7 @@ class Coils:
 
     def augment(self, trial: TrialPositions) -> None:
         """Increase each point's offset at each place by its penetration."""
+        self._last = None
         before, after = self.multiplier_offset, np.zeros_like(self.overlap)
         pair, where, _ = self.near(trial, before.max())
         at = self.places(pair, where)
