@@ -305,10 +305,9 @@ def bench(
 def compile_() -> None:
     """Compile forms and kernels now, which takes some minutes, so that the first run need not wait."""
     announce_compiling(notice=NOTICE)
-    from coilset.scripts.warm import warm, warm_ranks
+    from coilset.scripts.warm import warm
 
     warm(lambda line: print(line, flush=True))
-    warm_ranks()
     compiled().touch()
 
 

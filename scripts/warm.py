@@ -1,8 +1,5 @@
 """`coilset compile`: compile in advance what a first run would compile."""
 
-import contextlib
-import subprocess
-import sys
 from collections.abc import Callable
 from functools import partial
 
@@ -10,11 +7,10 @@ from mpi4py import MPI
 
 from coilset.model.case import Case, read_case
 from coilset.model.design.surrogate import guess
+from coilset.model.figures.panels.material_curves import there_and_back
 from coilset.model.material import library
-from coilset.model.report.panels.material_curves import there_and_back
 from coilset.model.run.analysis import Analysis
 from coilset.model.run.examples import EXAMPLES
-from coilset.model.runtime.processes import end_with_parent, folder_of_mpirun, mpi_environment, mpirun
 
 LOADING = "loading=[{to: {travel: 16}, steps: 4}, {to: {force: 0}, steps: 1}]"
 CREEPING = "loading=[{to: {force: 650}, steps: 2}, {hold: {hours: 1}, steps: 1}]"
@@ -46,28 +42,9 @@ def warm(report: Callable[[str], object] = lambda line: None) -> None:
     stages["the uniform rod"] = partial(guess, next(iter(cases.values())), [])
     stages["a point of material"] = partial(there_and_back, law, law.reference_temperature)
     for number, (name, stage) in enumerate(stages.items(), 1):
-        report(f"coilset: compiling {number} of {len(stages) + 1}: {name}")
+        report(f"coilset: compiling {number} of {len(stages)}: {name}")
         stage()
-    report(f"coilset: compiling {len(stages) + 1} of {len(stages) + 1}: two ranks")
 
 
 def _run(case: Case, threads: int) -> None:
     Analysis(case, MPI.COMM_SELF, threads=threads).run()
-
-
-def warm_ranks() -> None:
-    """Let two ranks press the example: they factorise in another way. Where no mpirun starts them, nothing is done."""
-    with folder_of_mpirun() as folder, contextlib.suppress(OSError):
-        subprocess.run(
-            [*mpirun(2), sys.executable, "-m", __name__],
-            env=mpi_environment() | folder,
-            check=False,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            preexec_fn=end_with_parent,
-        )
-
-
-if __name__ == "__main__":
-    Analysis(short_case(*PRESSED), MPI.COMM_WORLD).run()

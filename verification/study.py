@@ -10,7 +10,7 @@ from typing import Any, SupportsFloat
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.figures.figures import add_title, save
+from coilset.model.figures.png import add_title, save
 from coilset.model.results.files.folder import make, whole
 
 KINDS = ("relative", "absolute", "at_most")

@@ -6,11 +6,9 @@ Every contact that joins two parts is then evaluated on both ranks, from the sam
 forces and stiffness need not be exchanged.
 """
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
-from numba import njit
 
 from coilset.model.contact.base import ActsNearby, Contact, Known, TrialPositions
 from coilset.model.contact.curve import STENCIL
@@ -105,34 +103,19 @@ class Surroundings:
         return out
 
 
-@njit(cache=True)
 def box_around(x: np.ndarray) -> np.ndarray:
     """Corners of the box around positions, shape (n, 3) → (2, 3), mm; infinitely far apart around none."""
-    box = np.empty((2, 3))
-    box[0], box[1] = np.inf, -np.inf
-    for i in range(len(x)):
-        for k in range(3):
-            box[0, k], box[1, k] = min(box[0, k], x[i, k]), max(box[1, k], x[i, k])
-    return box
+    return np.stack([x.min(axis=0, initial=np.inf), x.max(axis=0, initial=-np.inf)])
 
 
-@njit(cache=True)
 def in_box(x: np.ndarray, box: np.ndarray, reach: np.ndarray) -> np.ndarray:
     """Which of some positions, shape (n, 3), lie within `reach`, shape (3,), of a box; shape (n,), bool."""
-    inside = np.ones(len(x), np.bool_)
-    for i in range(len(x)):
-        for k in range(3):
-            inside[i] &= box[0, k] - reach[k] <= x[i, k] <= box[1, k] + reach[k]
-    return inside
+    return ((box[0] - reach <= x) & (x <= box[1] + reach)).all(axis=1)
 
 
-@njit(cache=True)
 def longest_cell(x: np.ndarray, cells: np.ndarray) -> float:
     """Longest distance of two nodes that a cell joins, mm; 0 without cells."""
-    longest = 0.0
-    for a, b in cells:
-        longest = max(longest, (x[b, 0] - x[a, 0]) ** 2 + (x[b, 1] - x[a, 1]) ** 2 + (x[b, 2] - x[a, 2]) ** 2)
-    return math.sqrt(longest)
+    return float(np.linalg.norm(x[cells[:, 1]] - x[cells[:, 0]], axis=1).max(initial=0.0))
 
 
 def span_along(x: np.ndarray, stations: int) -> np.ndarray:

@@ -1,82 +1,56 @@
-"""All pictures of a run, in parts that can be drawn in parallel; their libraries are loaded when they are needed."""
+"""The PNG files of a run, in parts that can be drawn in parallel; their libraries are loaded when they are needed."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
-from coilset.model.results.records.record import Result, Setup, Snapshot
-
-MOST_SPRINGS = 4  # side by side in springs.png
+Draw = Callable[[Path], list[str]]
+"""Draws into the folder of a run; gives warnings, one line each."""
 
 
-@dataclass(frozen=True)
-class Pictured:
-    """What the pictures show.
+def load_figures() -> Draw:
+    """Load the libraries of the diagrams."""
+    from functools import partial
 
-    Attributes:
-        setup, result: records of the run.
-        summary: see coilset.model.results.records.summary.
-    """
+    from coilset.model.figures.panels import buckling, characteristic, seats, section_map
+    from coilset.model.figures.panels.panel import Panel
+    from coilset.model.figures.png import write_png
+    from coilset.model.results.files.opened import Run, open_run
 
-    setup: Setup
-    result: Result
-    summary: Mapping[str, Any]
+    pictures: dict[str, list[Callable[[Run], Panel | None]]] = {
+        "characteristic.png": [characteristic.characteristic],
+        "cross_section.png": [section_map.shear_map, section_map.normal_map],
+        "force_centre.png": [seats.force_centre, seats.eccentricity],
+        "seat_pressure.png": [partial(seats.contact, kinds="seat"), seats.contact_length, seats.active_turns],
+        "buckling_mode.png": [buckling.buckling_mode, buckling.buckling_axis],
+    }
 
-
-Draw = Callable[[Path, Pictured], list[str]]
-
-
-def load_figures() -> tuple[Draw, ...]:
-    """Load the libraries of the figures: all but the seats' pressure, and that, which takes as long."""
-    from coilset.model.figures import figures, seat_figures
-
-    def pressure(out: Path, run: Pictured) -> list[str]:
-        if run.result.steps:
-            seat_figures.seat_pressure(out / "seat_pressure.png", run.setup, run.result)
+    def draw(folder: Path) -> list[str]:
+        run = open_run(folder)
+        source = f"{run.summary['material']}; {run.summary['origin']['versions'].split(' (')[0]}"
+        for name, functions in pictures.items():
+            panels = [panel for function in functions if (panel := function(run)) is not None]
+            if panels:
+                write_png(folder / name, panels, source)
         return []
 
-    def others(out: Path, run: Pictured) -> list[str]:
-        figures.characteristic(out / "characteristic.png", run.setup, run.result, run.summary)
-        turn = run.summary["residual_shear_inside_turn"]
-        figures.cross_section(out / "cross_section.png", run.setup, run.result.snapshots[-1], turn)
-        if run.result.steps:
-            seat_figures.force_centre(out / "force_centre.png", run.setup, run.result)
-        if run.result.mode is not None:
-            from coilset.model.figures import buckling_figure
-
-            buckling_figure.buckling_mode(out / "buckling_mode.png", run.setup, run.result, run.summary)
-        return []
-
-    return others, pressure
+    return draw
 
 
-def shown(snapshots: Sequence[Snapshot]) -> list[Snapshot]:
-    """The snapshots of springs.png: the start, that of the greatest load, and the last ones, in their order."""
-    if len(snapshots) <= MOST_SPRINGS:
-        return list(snapshots)
-    loaded = max(range(len(snapshots)), key=lambda number: abs(snapshots[number].force))
-    chosen = {0, loaded}
-    for number in reversed(range(len(snapshots))):
-        if len(chosen) < MOST_SPRINGS:
-            chosen.add(number)
-    return [snapshots[number] for number in sorted(chosen)]
-
-
-def load_scene() -> tuple[Draw, ...]:
+def load_scene() -> Draw:
     """Load the libraries for springs.png, and start a virtual display if it needs one."""
     from coilset.model.figures import display, scene
+    from coilset.model.results.files.opened import open_run
 
     there = display.ensure()
 
-    def draw(out: Path, run: Pictured) -> list[str]:
+    def draw(folder: Path) -> list[str]:
         if not there:
             return ["springs.png is not drawn: there is no display and no Xvfb"]
-        scene.springs(out / "springs.png", shown(run.result.snapshots), run.setup)
+        scene.springs(folder / "springs.png", open_run(folder))
         return []
 
-    return (draw,)
+    return draw
 
 
-PARTS: dict[str, Callable[[], tuple[Draw, ...]]] = {"figures": load_figures, "scene": load_scene}
-"""Names of the parts; each gives functions that draw into a folder and return warnings, one line each."""
+PARTS: dict[str, Callable[[], Draw]] = {"figures": load_figures, "scene": load_scene}
+"""Names of the parts; each gives a function that draws."""

@@ -1,6 +1,5 @@
 """The spring in 3D: its wire as a tube at several moments, coloured by the stress in it."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,12 +9,13 @@ import pyvista as pv
 import pyvista.plotting
 
 from coilset.model.base.style import DIVERGING, ROUND, round_end
-from coilset.model.figures.wire import closed, surface
+from coilset.model.figures.wire import closed, inside, shear_around, surface
 from coilset.model.results.files.folder import whole
+from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
-from coilset.model.results.records.record import Setup, Snapshot
 
 RINGS_PER_ELEMENT = 4
+MOST_SPRINGS = 4  # side by side
 WIDTH, LEAST_HEIGHT, MOST_HEIGHT = 1500, 620, 1500  # of the picture, pixels
 LABELS, BAR = 100, 130  # pixels above the springs and below them
 COLUMN = 320  # pixels per label
@@ -45,33 +45,41 @@ class Arrangement:
         return cls(max(LEAST_HEIGHT, round(seen * scale) + LABELS + BAR), scale, column)
 
 
-def springs(path: str | Path, snapshots: Sequence[Snapshot], setup: Setup) -> None:
-    """Draw the snapshots side by side, coloured by the shear stress about the wire's axis on its surface.
+def chosen(force: np.ndarray) -> list[int]:
+    """The snapshots of springs.png by their forces: the start, the maximum load, and the last ones, in their order."""
+    if len(force) <= MOST_SPRINGS:
+        return list(range(len(force)))
+    loaded = int(np.abs(force).argmax())
+    latest = [number for number in reversed(range(len(force))) if number not in (0, loaded)]
+    return sorted({0, loaded, *latest[: MOST_SPRINGS - len({0, loaded})]})
+
+
+def springs(path: str | Path, run: Run) -> None:
+    """Draw snapshots side by side, coloured by the shear stress about the wire's axis on its surface.
 
     Args:
         path: PNG to write.
-        snapshots: Snapshots from left to right.
-        setup: Setup.
+        run: opened results.
     """
     name = "shear stress on the surface in MPa, red with the load of compression"
-    radius = setup.wire_radius
+    data, snapshots = run.data, chosen(run.data["force"].values)
+    radius, positions = data["wire_radius"].values, data["position"].values[snapshots]
     rings = RINGS_PER_ELEMENT * len(radius) + 1
-    shears = [surface_shear(setup, shot) for shot in snapshots]
+    shears = shear_around(run)[snapshots].mean(axis=2)
     wires = [
-        surface(setup.turns, shot.x, radius, shear, setup.inside, rings)
-        for shot, shear in zip(snapshots, shears, strict=True)
+        surface(data["turn"].values, x, radius, shear, inside(run), rings)
+        for x, shear in zip(positions, shears, strict=True)
     ]
-    x = np.concatenate([shot.x for shot in snapshots])
+    x = positions.reshape(-1, 3)
     low, high = float(x[:, 2].min() - radius.max()), float(x[:, 2].max() + radius.max())
     across = float(np.ptp(x[:, :2], axis=0).max()) + 2.0 * float(radius.max())
     aside = 0.5 * float(x[:, 0].min() + x[:, 0].max())  # a buckled spring deflects to one side
     view = Arrangement.of(across, high - low, len(snapshots))
     end = round_end(max(float(np.abs(stress).max()) for _, stress in wires), ROUND)
-    force = max(abs(shot.force) for shot in snapshots)
     middle = aside + 0.5 * view.column * (len(snapshots) - 1)
     plotter = pv.Plotter(off_screen=True, window_size=(WIDTH, view.height))
     plotter.set_background("white")
-    for place, shot in enumerate(snapshots):
+    for place, number in enumerate(snapshots):
         places, stress = closed(*(one[None] for one in wires[place]))
         mesh = pv.StructuredGrid(*np.moveaxis(places[0] + np.array([place * view.column, 0.0, 0.0]), -1, 0))
         mesh[name] = stress[0].ravel(order="F")
@@ -86,7 +94,7 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], setup: Setup) -> No
         foot = [aside + place * view.column, 0.0, high + (0.5 * ABOVE * across + 15.0 / view.scale)]
         plotter.add_point_labels(
             [foot],
-            [caption(shot, force)],
+            [caption(run, number)],
             font_size=20,
             text_color="black",
             shape=None,
@@ -105,20 +113,11 @@ def springs(path: str | Path, snapshots: Sequence[Snapshot], setup: Setup) -> No
         plotter.close()
 
 
-def surface_shear(setup: Setup, shot: Snapshot) -> np.ndarray:
-    """Shear stress about the wire's axis on its surface, mean of an element's sections, shape (n, angles), MPa."""
-    return setup.inside.shear_around(shot.surface_state, shot.components).mean(axis=1)
-
-
-def caption(shot: Snapshot, greatest: float) -> str:
-    """Name, height and force of a snapshot, the force of a pulled spring with its sign.
-
-    Args:
-        shot: Snapshot.
-        greatest: magnitude of the greatest force of all that are shown, N; small parts of it count as zero.
-    """
-    bears = shot.force if abs(shot.force) > 1e-6 * greatest else 0.0
-    return f"{shot.name}\n{plain(shot.height, 5)} mm, {plain(bears)} N"
+def caption(run: Run, number: int) -> str:
+    """Name, height and force of a snapshot, the force of a pulled spring with its sign; rounding counts as zero."""
+    height, force = (float(run.data[name].values[number]) for name in ("height", "force"))
+    force = force if abs(force) > 1e-6 * float(np.abs(run.data["force"].values).max()) else 0.0
+    return f"{run.snapshots[number]}\n{plain(height, 5)} mm, {plain(force)} N"
 
 
 def _bar(view: Arrangement, title: str) -> dict[str, Any]:

@@ -1,14 +1,14 @@
 """Files of a nest: summary.json, nest.csv and characteristic.png; each spring has a folder of its own beside them."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.figure import Figure
 
-from coilset.model.base.style import STYLE
-from coilset.model.figures.figures import save
+from coilset.model.figures.panels.panel import GREY, Panel, axis, curve, upright
+from coilset.model.figures.png import write_png
+from coilset.model.nest.file import NAMES
 from coilset.model.nest.nest import Pressed
 from coilset.model.results.files.folder import write_table
 from coilset.model.results.records.labels import plain
@@ -47,23 +47,42 @@ def write_steps(path: Path, pressed: Pressed) -> None:
     write_table(path, COLUMNS, ([number, *(float(value) for value in row)] for number, row in enumerate(rows)))
 
 
-def headline(found: dict[str, Any]) -> str:
+def headline(found: Mapping[str, Any]) -> str:
     """Maximum force and set of a nest, of its summary."""
     lost = "" if found["set_mm"] is None else f", set {found['set_mm']:z.2f} mm".replace("-", "−")
     return f"Maximum force {plain(found['force_max_N'], 5)} N{lost}"
 
 
+def characteristic(columns: Mapping[str, np.ndarray], found: Mapping[str, Any]) -> Panel:
+    """Force over the travel of the common seats, of each spring and of both.
+
+    Args:
+        columns: of nest.csv.
+        found: `summary`.
+    """
+    travel = columns["seat_height_mm"][0] - columns["seat_height_mm"]
+    block = found["free_length_before_mm"] - found["block_height_mm"]
+    finding = headline(found)
+    return Panel(
+        "characteristic",
+        finding,
+        f"{finding}. Axial force of the outer spring, of the inner spring and of both over the travel of the seats. "
+        f"Block is at {block:.4g} mm of travel.",
+        [
+            curve(travel, columns["force_N"], GREY, marker=5, width=3.0, name="both"),
+            *(curve(travel, columns[f"{name}_force_N"], k, marker=5, name=name) for k, name in enumerate(NAMES)),
+        ],
+        {
+            "xaxis": axis("travel of the seats, mm"),
+            "yaxis": axis("axial force, N"),
+            **upright(block, f"block, {found['block_height_mm']:.4g} mm high"),
+        },
+        height=440,
+        note="Both springs are then released, each on its own; their pages show it.",
+    )
+
+
 def draw(path: Path, pressed: Pressed, found: dict[str, Any]) -> None:
-    """Force over height, of both and of each."""
-    with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(6.4, 4.2), layout="constrained")
-        axes, heights = figure.add_subplot(), pressed.plan.heights
-        axes.plot(heights, pressed.force, "ko-", ms=3, lw=1.3, label="both")
-        for number, (member, force) in enumerate(zip(pressed.members, pressed.forces, strict=True)):
-            axes.plot(heights, force, "o-", ms=3, lw=1.0, color=f"C{number}", label=member.name)
-        axes.axvline(pressed.plan.block, color="0.6", lw=0.8, ls="--", label=f"block, {pressed.plan.block:.4g} mm high")
-        axes.invert_xaxis()
-        axes.set(xlabel="height in mm", ylabel="axial force in N", title=headline(found))
-        axes.legend(fontsize=8)
-        axes.grid(lw=0.3)
-        save(figure, path)
+    """characteristic.png."""
+    values = (pressed.plan.heights, pressed.force, *pressed.forces)
+    write_png(path, [characteristic(dict(zip(COLUMNS[1:], values, strict=False)), found)])

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from coilset.model.report.panels.panel import said
+from coilset.model.figures.panels.panel import said
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
 

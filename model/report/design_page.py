@@ -11,11 +11,11 @@ from coilset.model.case.names import EntryName, entry_name
 from coilset.model.design.conditions import GROUP, SENSES
 from coilset.model.design.opened import FILE, read_design
 from coilset.model.design.output import LIMITS
+from coilset.model.figures.panels.characteristic import characteristic
+from coilset.model.figures.panels.panel import Panel, axis, curve
+from coilset.model.figures.panels.spring_view import spring_view
 from coilset.model.report.answer import Number, answer
 from coilset.model.report.page import made_with
-from coilset.model.report.panels.characteristic import characteristic
-from coilset.model.report.panels.panel import Panel, axis, curve
-from coilset.model.report.panels.spring_view import spring_view
 from coilset.model.report.render import write_page
 from coilset.model.results.files.opened import Run, open_run
 from coilset.model.results.records.labels import plain

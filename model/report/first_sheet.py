@@ -13,8 +13,8 @@ from coilset.meshes.springs.geometry import Spring
 from coilset.model.base.errors import InputError
 from coilset.model.base.style import STYLE
 from coilset.model.case import Case, check
+from coilset.model.figures.panels.panel import said
 from coilset.model.report.answer import release_lengths
-from coilset.model.report.panels.panel import said
 from coilset.model.report.verdict import Check, checks, verdict
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain

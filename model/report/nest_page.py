@@ -10,19 +10,18 @@ import numpy as np
 
 from coilset.model.base.errors import InputError, reading
 from coilset.model.base.style import round_end
+from coilset.model.figures.panels.panel import DIVERGING, Panel, Trace, axis, curve, said
+from coilset.model.figures.panels.spring_view import scene_of
 from coilset.model.figures.wire import closed, moments, tubes
 from coilset.model.nest.file import NAMES
-from coilset.model.nest.output import STEPS
+from coilset.model.nest.output import STEPS, characteristic
 from coilset.model.report.answer import Number
 from coilset.model.report.page import made_with, write_report
-from coilset.model.report.panels.panel import DIVERGING, Panel, Trace, axis, curve, said
-from coilset.model.report.panels.spring_view import scene_of
 from coilset.model.report.render import NAME, write_page
 from coilset.model.results.files.opened import Run, open_run
 from coilset.model.results.records.labels import plain
 
 FILE = STEPS  # by which the folder of a nest is known
-TOTAL = "#808080"  # colour of both springs together, on light and dark backgrounds
 RINGS = 320  # of a spring, at each moment
 STATES = ("free", "pressed the most", "released")
 
@@ -111,44 +110,6 @@ def _spring(name: str, summary: Mapping[str, Any] | None, share: float, force: f
             "–" if inside is None else said(inside, "MPa", 1),
         ],
     }
-
-
-def characteristic(columns: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> Panel:
-    """Force over the travel of the common seats, of each spring and of both."""
-    travel = columns["seat_height_mm"][0] - columns["seat_height_mm"]
-    traces = [
-        curve(travel, columns[f"{name}_force_N"], number, marker=5, name=name) for number, name in enumerate(NAMES)
-    ]
-    both = curve(travel, columns["force_N"], 0, marker=5, name="both")
-    both["line"] = {"width": 3, "color": TOTAL}
-    block = summary["free_length_before_mm"] - summary["block_height_mm"]
-    finding = f"Both springs carry up to {plain(summary['force_max_N'], 4)} N"
-    line = {
-        "type": "line",
-        "x0": block,
-        "x1": block,
-        "yref": "paper",
-        "y0": 0,
-        "y1": 1,
-        "line": {"dash": "dash", "width": 1, "color": TOTAL},
-    }
-    return Panel(
-        "characteristic",
-        finding,
-        f"{finding}. Axial force of the outer spring, of the inner spring and of both over the travel of the seats. "
-        f"Block is at {block:.4g} mm of travel.",
-        [both, *traces],
-        {
-            "xaxis": axis("travel of the seats, mm"),
-            "yaxis": axis("axial force, N"),
-            "shapes": [line],
-            "annotations": [
-                {"x": block, "y": 1, "yref": "paper", "yanchor": "bottom", "text": "block", "showarrow": False}
-            ],
-        },
-        height=440,
-        note="Both springs are then released, each on its own; their pages show it.",
-    )
 
 
 def clearance(columns: Mapping[str, np.ndarray], summary: Mapping[str, Any]) -> Panel:

@@ -6,17 +6,18 @@ from typing import Any
 
 import yaml
 
+from coilset.model.figures.panels.along_wire import moments_along_wire, stress_along_wire
+from coilset.model.figures.panels.buckling import buckling_axis, buckling_mode
+from coilset.model.figures.panels.characteristic import characteristic, rate_curve
+from coilset.model.figures.panels.cost import cost, step_error
+from coilset.model.figures.panels.material_curves import material_curve
+from coilset.model.figures.panels.panel import Panel
+from coilset.model.figures.panels.seats import active_turns, contact, contact_length, eccentricity, force_centre
+from coilset.model.figures.panels.section_map import normal_map, shear_map
+from coilset.model.figures.panels.spring_view import spring_view
 from coilset.model.report.answer import answer, subtitle
 from coilset.model.report.first_sheet import first_sheet
 from coilset.model.report.maker_sheet import maker_sheet
-from coilset.model.report.panels.along_wire import moments_along_wire, stress_along_wire
-from coilset.model.report.panels.bearing import contact, force_centre
-from coilset.model.report.panels.characteristic import characteristic, rate_curve
-from coilset.model.report.panels.cost import cost, step_error
-from coilset.model.report.panels.material_curves import material_curve
-from coilset.model.report.panels.panel import Panel
-from coilset.model.report.panels.section_map import normal_map, shear_map
-from coilset.model.report.panels.spring_view import spring_view
 from coilset.model.report.render import write_page
 from coilset.model.results.files.opened import Run
 
@@ -25,7 +26,8 @@ CHAPTERS: tuple[tuple[str, tuple[Callable[[Run], Panel | None], ...]], ...] = (
     ("The spring", (spring_view,)),
     ("Stress in the wire", (shear_map, normal_map)),
     ("Along the wire", (stress_along_wire, moments_along_wire)),
-    ("Seats and coils", (force_centre, contact)),
+    ("Seats and coils", (force_centre, eccentricity, contact, contact_length, active_turns)),
+    ("Buckling", (buckling_mode, buckling_axis)),
     ("Material", (material_curve,)),
     ("How it was computed", (cost, step_error)),
 )  # chapters and the functions that draw their figures

@@ -11,9 +11,9 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 
 from coilset.model.base.errors import InputError
+from coilset.model.figures.panels.panel import Panel
 from coilset.model.report.glossary import GLOSSARY
 from coilset.model.report.packed import packed
-from coilset.model.report.panels.panel import Panel
 from coilset.model.results.files.folder import whole
 
 NAME = "report.html"

@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from coilset.model.base.errors import reading
+from coilset.model.figures.panels.panel import COLOURS, Panel, axis
 from coilset.model.report.answer import Number
-from coilset.model.report.panels.panel import COLOURS, Panel, axis
 from coilset.model.report.render import write_page
 from coilset.model.report.warning_words import in_words
 from coilset.model.results.files.labelled import labelled

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from coilset.model.base.style import DIVERGING, STYLE, levels
-from coilset.model.figures.figures import save
+from coilset.model.figures.png import save
 from coilset.model.results.files.folder import make
 from coilset.model.results.files.grid_file import write_grid
 from coilset.model.results.records.labels import plain

@@ -231,7 +231,7 @@ def _write_material(file: Path, content: dict[str, Any], console: "Console") -> 
 
 
 def _save(figure: "Figure", path: Path, console: "Console") -> None:
-    from coilset.model.figures.figures import save
+    from coilset.model.figures.png import save
     from coilset.model.results.files.folder import make
 
     make(path.parent)

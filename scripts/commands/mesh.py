@@ -86,7 +86,7 @@ def _draw(spring: Spring, out: Path, name: str, console: Console) -> None:
     from coilset.meshes import drawing, view
     from coilset.model.base.style import STYLE
     from coilset.model.figures import display
-    from coilset.model.figures.figures import save
+    from coilset.model.figures.png import save
     from coilset.model.results.records.labels import plain
 
     size = f"{plain(spring.turns)} turns, {plain(spring.free_length)} mm long"

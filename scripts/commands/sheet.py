@@ -11,7 +11,8 @@ from coilset.meshes.springs.spring import Spring
 from coilset.model.base.errors import InputError, naming
 from coilset.model.base.warning import Warning
 from coilset.model.case import Case, read_case
-from coilset.model.figures import goodman_figure
+from coilset.model.figures.panels.goodman import goodman as diagram_of
+from coilset.model.figures.png import write_png
 from coilset.model.results.files.folder import make, refuse_to_replace
 from coilset.model.standards import found, goodman
 from coilset.model.standards.case_sheet import case_sheet
@@ -82,7 +83,7 @@ def sheet(
         console.warn(warning.message)
     if diagram is not None:
         make(folder)
-        goodman_figure.draw(folder / FIGURE, *diagram, run.residual if run else None)
+        write_png(folder / FIGURE, [diagram_of(*diagram, run.residual if run else None)])
         console.say(f"Goodman diagram in {folder}{os.sep}{FIGURE}")
 
 

@@ -12,7 +12,6 @@ from mpi4py import MPI
 from coilset.model.base.agreement import on_first_rank
 from coilset.model.base.errors import CoilsetError, InputError, SolveError, naming
 from coilset.model.case import Case, read_case
-from coilset.model.figures.pictures import Pictured
 from coilset.model.results.files.checkpoint import Checkpoint
 from coilset.model.results.files.folder import DRAWN, RESULTS, clear, prepare
 from coilset.model.results.records.provenance import origin
@@ -113,9 +112,8 @@ def _solve(
     for warning in summary["warnings"]:
         log.warning("warning: %s: %s", warning["name"], warning["message"])
     if drawings:
-        run = Pictured(analysis.setup, analysis.result, summary)
         try:
-            on_first_rank(comm, lambda: _draw(drawings, out, run, telling))
+            on_first_rank(comm, lambda: _draw(drawings, out, telling))
         except CoilsetError as error:
             if failure is None:
                 raise
@@ -147,6 +145,6 @@ def _run(
     return None
 
 
-def _draw(drawings: Drawings, out: Path, run: Pictured, telling: Lines) -> None:
-    for warning in drawings.draw(out, run):
+def _draw(drawings: Drawings, out: Path, telling: Lines) -> None:
+    for warning in drawings.draw(out):
         telling.warn(warning)

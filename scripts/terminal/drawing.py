@@ -10,21 +10,17 @@ import contextlib
 import gc
 import json
 import os
-import pickle
 import signal
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, BinaryIO
+from typing import Any, BinaryIO
 
 from coilset.model.base.errors import CoilsetError
 from coilset.model.runtime.libraries import WhenUsed
 from coilset.model.runtime.processes import end_with_parent, first_rank, number_of_ranks, usable_cores
-
-if TYPE_CHECKING:  # at run time in the process that draws
-    from coilset.model.figures.pictures import Draw, Pictured
 
 PARTS = ("figures", "scene")  # of coilset.model.figures.pictures
 MODEST = 5  # niceness of these processes relative to the one that solves
@@ -59,8 +55,8 @@ class Drawings:
                     preexec_fn=end_with_parent,
                 )
 
-    def draw(self, out: Path, run: "Pictured") -> list[str]:
-        """Draw, and wait for the pictures; meanwhile SIGTERM raises KeyboardInterrupt, like SIGINT.
+    def draw(self, folder: Path) -> list[str]:
+        """Draw the run in a folder and wait; meanwhile SIGTERM raises KeyboardInterrupt, like SIGINT.
 
         Returns:
             Warnings, one line each.
@@ -71,9 +67,8 @@ class Drawings:
         before = signal.signal(signal.SIGTERM, signal.getsignal(signal.SIGINT))
         try:
             self._start()
-            task = pickle.dumps((out, run), pickle.HIGHEST_PROTOCOL)
             for process in self.processes.values():
-                _give(process, task)
+                _give(process, folder)
             answers = [_answer(process) for process in self.processes.values()]
         finally:
             signal.signal(signal.SIGTERM, before)
@@ -101,10 +96,10 @@ class Drawings:
                     _close(pipe)
 
 
-def _give(process: subprocess.Popen[bytes], task: bytes) -> None:
+def _give(process: subprocess.Popen[bytes], folder: Path) -> None:
     assert process.stdin is not None
     with contextlib.suppress(BrokenPipeError):  # it has died, as its answer will show
-        process.stdin.write(task)
+        process.stdin.write(os.fsencode(folder))
     _close(process.stdin)
 
 
@@ -132,52 +127,21 @@ def _ended(status: int) -> dict[str, Any]:
     return {"problem": f"not all pictures are drawn: the process that draws them ended with {how}", "warnings": []}
 
 
-def draw_part(part: str, tasks: BinaryIO) -> dict[str, Any] | None:
-    """Load what a part needs, wait for its task, and draw it; None if no task came."""
+def draw_part(part: str, task: BinaryIO) -> dict[str, Any] | None:
+    """Load what a part needs, wait for the folder of the run, and draw it; None if no folder is given."""
     from coilset.model.figures import pictures
 
-    draws = pictures.PARTS[part]()
-    try:
-        task = pickle.load(tasks)
-    except EOFError:
+    draw = pictures.PARTS[part]()
+    folder = task.read()
+    if not folder:
         return None
     before = signal.signal(signal.SIGTERM, _leave)
     try:
-        return _together(_side_by_side(draws, task))
-    finally:
-        signal.signal(signal.SIGTERM, before)
-
-
-def _side_by_side(draws: "tuple[Draw, ...]", task: "tuple[Path, Pictured]") -> list[dict[str, Any]]:
-    """What comes of each; all but the first are drawn by copies of this process, which have loaded what they need."""
-    import multiprocessing
-
-    kind, copies = multiprocessing.get_context("fork"), []
-    for draw in draws[1:]:
-        answer, theirs = kind.Pipe(duplex=False)
-        copies.append((kind.Process(target=_copy, args=(theirs, draw, task), daemon=True), answer))
-        copies[-1][0].start()
-        theirs.close()
-    answers = [_drawn(draws[0], task)]
-    for copy, answer in copies:
-        try:
-            answers.append(answer.recv())
-        except EOFError:
-            copy.join()
-            answers.append(_ended(copy.exitcode or 0))
-    return answers
-
-
-def _copy(answer: Any, draw: "Draw", task: "tuple[Path, Pictured]") -> None:
-    end_with_parent()
-    answer.send(_drawn(draw, task))
-
-
-def _drawn(draw: "Draw", task: "tuple[Path, Pictured]") -> dict[str, Any]:
-    try:
-        return {"problem": None, "warnings": draw(*task)}
+        return {"problem": None, "warnings": draw(Path(os.fsdecode(folder)))}
     except CoilsetError as error:
         return {"problem": str(error), "warnings": []}
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _leave(*_: object) -> None:

@@ -17,15 +17,15 @@ from coilset.scripts.terminal.drawing import Drawings
 
 # A stand-in for the process that draws: takes its task, and then does what its part is called.
 STAND_IN = """
-import json, os, pickle, signal, sys, time
+import json, os, pathlib, signal, sys, time
 signal.signal(signal.SIGINT, signal.SIG_IGN)
-out, task = pickle.load(sys.stdin.buffer)
+out = pathlib.Path(os.fsdecode(sys.stdin.buffer.read()))
 what = sys.argv[1]
 if what == "dies": os.kill(os.getpid(), signal.SIGSEGV)
 if what == "leaves": sys.exit(7)
 if what == "hangs": (out / "begun").touch(); time.sleep(600)
 problem = "springs.png: cannot be written" if what == "fails" else None
-print(json.dumps({"problem": problem, "warnings": [f"{what} {task}"]}), flush=True)
+print(json.dumps({"problem": problem, "warnings": [f"{what} {out.name}"]}), flush=True)
 """
 
 
@@ -52,7 +52,7 @@ def stand_in(monkeypatch, tmp_path):
 def test_warnings_of_all_parts_come_back(stand_in, tmp_path):
     started = stand_in("one", "two")
     with Drawings(os.environ) as drawings:
-        assert drawings.draw(tmp_path, "task") == ["one task", "two task"]
+        assert drawings.draw(tmp_path) == [f"one {tmp_path.name}", f"two {tmp_path.name}"]
     assert all(process.returncode is not None for process in started)
 
 
@@ -68,7 +68,7 @@ def test_a_part_that_fails_is_said_and_the_others_come_to_their_end(stand_in, tm
     stand_in(what, "fine")
     with Drawings(os.environ) as drawings:
         with pytest.raises(CoilsetError) as caught:
-            drawings.draw(tmp_path, "task")
+            drawings.draw(tmp_path)
         assert drawings.processes["fine"].wait() == 0
     assert str(caught.value) == said
 
@@ -90,7 +90,7 @@ def test_a_signal_ends_the_waiting_and_the_processes(stand_in, tmp_path, monkeyp
     try:
         killer.start()
         with pytest.raises(KeyboardInterrupt), Drawings(os.environ) as drawings:
-            drawings.draw(tmp_path, "task")
+            drawings.draw(tmp_path)
     finally:
         signal.signal(signal.SIGINT, before[0])
         killer.join()

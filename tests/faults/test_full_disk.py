@@ -19,12 +19,15 @@ from mpi4py import MPI
 
 from coilset.model.base.errors import CoilsetError
 from coilset.model.case import read_case
-from coilset.model.figures import figures, scene, seat_figures
+from coilset.model.figures import png, scene
 from coilset.model.figures.display import ensure
+from coilset.model.figures.panels.characteristic import characteristic
 from coilset.model.results.files import dataset, fields, folder
 from coilset.model.results.files.checkpoint import Checkpoint
 from coilset.model.results.files.grid_file import write_grid
+from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.summary import summarise
+from coilset.model.results.run_files import run_of
 from coilset.model.run import examples
 from coilset.model.run.analysis import Analysis
 from coilset.model.sweep import dataset as sweep_data
@@ -59,13 +62,9 @@ def drawn():
     return figure
 
 
-def springs(out, analysis):
-    scene.springs(out / "springs.png", analysis.result.snapshots, analysis.setup)
-
-
-def characteristic(out, analysis):
-    summary = summarise(analysis.setup, analysis.result)
-    figures.characteristic(out / "characteristic.png", analysis.setup, analysis.result, summary)
+@pytest.fixture(scope="module")
+def run(analysis):
+    return run_of(analysis.setup, analysis.result, origin(analysis.case))
 
 
 def grid(out, analysis):
@@ -84,25 +83,26 @@ WRITERS = {
     "points": lambda out, one: dataset.write_points(out, dataset.point_state(one.setup, one.result)),
     "fields": lambda out, one: fields.write_fields(out, one.setup, one.result.snapshots),
     "checkpoint": save,
-    "characteristic": characteristic,
-    "cross-section": lambda out, one: figures.cross_section(out / "a.png", one.setup, one.result.snapshots[-1], None),
-    "force centre": lambda out, one: seat_figures.force_centre(out / "a.png", one.setup, one.result),
-    "pressure": lambda out, one: seat_figures.seat_pressure(out / "a.png", one.setup, one.result),
-    "springs": springs,
     "data of a sweep": lambda out, one: sweep_data.write(out / "sweep.nc", xr.Dataset({"a": ("n", np.zeros(999))})),
     "record of verification": lambda out, one: Study(out).write("name" * 99),
-    "figure": lambda out, one: figures.save(drawn(), out / "a.png"),
+    "figure": lambda out, one: png.save(drawn(), out / "a.png"),
     "grid": grid,
     "example": lambda out, one: examples.copy("ck15_presetting.yaml", out),
 }
 
 
-@pytest.mark.parametrize("name", WRITERS)
-def test_a_file_is_whole_or_not_there(analysis, tmp_path, name):
+PICTURES = {
+    "panel": lambda out, run: png.write_png(out / "a.png", [characteristic(run)]),
+    "springs": lambda out, run: scene.springs(out / "springs.png", run),
+}
+
+
+@pytest.mark.parametrize("name", [*WRITERS, *PICTURES])
+def test_a_file_is_whole_or_not_there(analysis, run, tmp_path, name):
     if name == "springs" and not ensure():
         pytest.skip("no display and no Xvfb")
     with full(), pytest.raises(CoilsetError, match="cannot be written") as caught:
-        WRITERS[name](tmp_path, analysis)
+        (WRITERS | PICTURES)[name](tmp_path, run if name in PICTURES else analysis)
     assert "\n" not in str(caught.value)
     assert caught.value.exit_code == 1
     left = [path.name for path in tmp_path.rglob("*") if path.is_file() and path.stat().st_size]

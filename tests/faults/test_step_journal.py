@@ -1,13 +1,15 @@
 """Steps of a checkpoint: each written once; what lies behind the last state does not count."""
 
+from dataclasses import fields
+
 import numpy as np
 import pytest
 
 from coilset.model.results.files.step_journal import StepJournal
 from coilset.model.results.records.frame import Frame
-from coilset.model.results.records.record import SeatReaction, SeatReactions, Step
+from coilset.model.results.records.record import WHOLE, SeatReaction, SeatReactions, Step
 
-NONE = SeatReaction(*[float("nan")] * 14)
+NONE = SeatReaction(*[float("nan")] * len(fields(SeatReaction)))
 
 
 def steps(count):
@@ -16,7 +18,8 @@ def steps(count):
 
 def seats(count):
     rng = np.random.default_rng(1)
-    return [SeatReactions(k, 2.5, np.nan, NONE, NONE, rng.random((k - 1, 3))) for k in range(1, count + 1)]
+    rows = [dict.fromkeys(WHOLE, np.nan) | {"step": k, "active_turns": 2.5} for k in range(1, count + 1)]
+    return [SeatReactions(**row, bottom=NONE, top=NONE, pressure=rng.random((row["step"] - 1, 3))) for row in rows]
 
 
 def frames(count):

@@ -40,7 +40,7 @@ def installed(tmp_path_factory):
     folder = tmp_path_factory.mktemp("wheel")
     for room in ROOMS:
         shutil.copytree(REPOSITORY / room, folder / "source" / room, ignore=shutil.ignore_patterns("__pycache__"))
-    for name in ("pyproject.toml", "README.md", "open.py"):
+    for name in ("pyproject.toml", "README.md", "api.py", "open.py"):
         shutil.copy(REPOSITORY / name, folder / "source")
     pip = [sys.executable, "-m", "pip", "--disable-pip-version-check"]
     offline = ["--no-deps", "--no-index"]
@@ -57,7 +57,7 @@ def coilset(installed, cwd, *arguments):
 
 
 def test_it_is_the_wheel_that_runs(installed, tmp_path):
-    modules = "coilset.model", "coilset.examples", "coilset.open"
+    modules = "coilset.model", "coilset.examples", "coilset.api", "coilset.open"
     where = f"import {', '.join(modules)}; print({', '.join(f'{name}.__file__' for name in modules)})"
     for path in run([sys.executable, "-c", where], tmp_path, PYTHONPATH=str(installed)).split():
         assert Path(path).is_relative_to(installed)

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import yaml
 
+from coilset.model.figures.panels.panel import said
 from coilset.model.nest.output import headline
-from coilset.model.report.panels.panel import said
 from coilset.scripts.commands.nest import nest
 from coilset.scripts.commands.report import report
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from coilset.model.report.panels.along_wire import moments_along_wire
-from coilset.model.report.panels.spring_view import TALLEST, scene_of
+from coilset.model.figures.panels.along_wire import moments_along_wire
+from coilset.model.figures.panels.spring_view import TALLEST, scene_of
 from coilset.model.results.files.opened import open_run
 from coilset.scripts.commands.solve import solve
 

@@ -1,13 +1,11 @@
 """The characteristic between its steps, and what pictures show of a run."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from coilset.model.figures.curve import compressed, element_at, smooth
-from coilset.model.figures.pictures import shown
-from coilset.model.results.records.record import Snapshot
+from coilset.model.figures.panels.characteristic import compressed, smooth
+from coilset.model.figures.panels.section_map import element_at
+from coilset.model.figures.scene import chosen
 
 
 def test_the_curve_passes_its_steps_and_never_beyond_their_neighbours():
@@ -36,8 +34,7 @@ def test_the_section_is_drawn_where_the_stress_is(turn, element):
 
 def test_the_greatest_load_is_among_the_pictured_springs():
     """Of many phases the start and the last three were drawn, and block was not."""
-    none = np.empty(0)
-    shot = Snapshot("", 0.0, 0.0, none, none, none, none, none, ())
-    shots = [replace(shot, name=str(k), force=force) for k, force in enumerate((0.0, 900.0, 0.0, 100.0, 200.0, 0.0))]
-    assert [one.name for one in shown(shots)] == ["0", "1", "4", "5"]
-    assert [one.name for one in shown(shots[:3])] == ["0", "1", "2"]
+    force = np.array([0.0, 900.0, 0.0, 100.0, 200.0, 0.0])
+    assert chosen(force) == [0, 1, 4, 5]
+    assert chosen(force[:3]) == [0, 1, 2]
+    assert chosen(-np.arange(6.0)) == [0, 3, 4, 5]

@@ -3,9 +3,8 @@
 import itertools
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 
-import matplotlib.axes
-import matplotlib.figure
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -14,15 +13,19 @@ from mpi4py import MPI
 
 from coilset.model.base.style import QUARTERED, round_end
 from coilset.model.case import read_case
-from coilset.model.figures import figures, goodman_figure, seat_figures
-from coilset.model.figures.buckling_figure import axis, buckling_mode, column, plane
 from coilset.model.figures.display import ensure
-from coilset.model.figures.rings import ROUND
+from coilset.model.figures.panels import buckling, seats
+from coilset.model.figures.panels.characteristic import characteristic
+from coilset.model.figures.panels.goodman import goodman as goodman_panel
+from coilset.model.figures.panels.panel import GREY
+from coilset.model.figures.panels.section_map import shear_map
+from coilset.model.figures.png import png_figure, write_png
 from coilset.model.figures.scene import ABOVE, BAR, COLUMN, LABELS, MOST_HEIGHT, WIDTH, Arrangement, caption, springs
 from coilset.model.results.files.checkpoint import Checkpoint
 from coilset.model.results.records.labels import plain
+from coilset.model.results.records.provenance import origin
 from coilset.model.results.records.record import BucklingMode, Step
-from coilset.model.results.records.summary import summarise
+from coilset.model.results.run_files import run_of
 from coilset.model.run.analysis import Analysis
 from coilset.model.standards import goodman
 
@@ -74,6 +77,36 @@ def analysis(example):
     return analysis
 
 
+def opened(analysis, result=None, **of_setup):
+    """A result, opened from its files; some entries of the setup replaced."""
+    result = result or analysis.result
+    return run_of(replace(analysis.setup, **of_setup), result, origin(analysis.case))
+
+
+def stepped(analysis, steps, phases=("travel 1 mm",), seats=MappingProxyType({})):
+    """The result with other steps, each with the first step's seats and frame, and a snapshot for each phase."""
+    result = analysis.result
+    return replace(
+        result,
+        steps=tuple(steps),
+        seats=tuple(replace(result.seats[0], step=one.number, **seats.get(one.number, {})) for one in steps),
+        frames=result.frames[:1] * len(steps),
+        snapshots=(result.snapshots[0], *(replace(result.snapshots[-1], name=name) for name in phases)),
+    )
+
+
+def a_step(number, phase=0, travel=1.0, force=9.0):
+    return Step(number, phase, 1.0, 35.0 - travel, travel, force, 1, 1, 0, 0, 0, 0.0)
+
+
+def laid_out(*panels):
+    """The figure of panels, and its renderer."""
+    figure = png_figure(panels)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return figure, canvas.get_renderer()
+
+
 @pytest.mark.parametrize("aside", [-150.0, 150.0])
 def test_a_buckled_spring_is_whole_in_its_picture(analysis, tmp_path, aside):
     """It goes off its axis to one side."""
@@ -83,130 +116,120 @@ def test_a_buckled_spring_is_whole_in_its_picture(analysis, tmp_path, aside):
     for shot in analysis.result.snapshots:
         z = shot.x[:, 2] / shot.x[-1, 2]
         shots.append(replace(shot, x=shot.x + np.stack([aside * z * (1.0 - z) * 4.0, 0.0 * z, 0.0 * z], axis=-1)))
-    springs(tmp_path / "springs.png", shots, analysis.setup)
+    springs(tmp_path / "springs.png", opened(analysis, replace(analysis.result, snapshots=tuple(shots))))
     picture = imread(tmp_path / "springs.png")[LABELS:-BAR, :, :3]
     drawn = np.flatnonzero((picture < 0.99).any(axis=(0, 2)))
     assert drawn[0] > 10
     assert drawn[-1] < WIDTH - 10
 
 
-def test_the_cross_section_is_round_and_reaches_the_surface(analysis, tmp_path, monkeypatch):
+def test_the_cross_section_is_round_and_has_its_colours_to_the_surface(analysis):
     """Its section points alone make a polygon, within which the maximum stress is not to be seen."""
-    drawn, distances = matplotlib.axes.Axes.tricontourf, []
-
-    def keep(axes, y, z, values, **style):
-        distances.append(np.hypot(y, z))
-        return drawn(axes, y, z, values, **style)
-
-    monkeypatch.setattr(matplotlib.axes.Axes, "tricontourf", keep)
-    figures.cross_section(tmp_path / "a.png", analysis.setup, analysis.result.snapshots[-1], None)
-    assert len(distances) == 2
-    for distance in distances:
-        assert np.isclose(distance, analysis.setup.wire_radius[0], rtol=1e-12).sum() >= ROUND
+    panel = shear_map(opened(analysis))
+    stress, line = panel.traces[0]["z"], panel.traces[0]["x"]
+    distance = np.hypot(*np.meshgrid(line, line))
+    assert np.isfinite(stress[distance < 1.02 * analysis.setup.wire_radius[0]]).all()
+    figure, _ = laid_out(panel)
+    (shown,) = figure.axes[0].get_images()
+    assert np.ma.allclose(shown.get_array(), np.ma.masked_invalid(panel.traces[-2]["z"]))  # the last state
 
 
-def test_cycles_make_no_legend_of_their_own(analysis, monkeypatch):
-    """Twenty phases to two targets have two lines in the legend; twenty targets have six, and how many more."""
-    steps = tuple(Step(k, k, 1.0, 35.0 - k % 2, k % 2, 9.0 * (k % 2), 1, 1, 0, 0, 0, 0.0) for k in range(20))
-    result, legends = replace(analysis.result, steps=steps, seats=analysis.result.seats * 20), []
-
-    def keep(figure: matplotlib.figure.Figure, path):
-        own = [axes.get_legend() for axes in figure.axes if axes.get_legend()]
-        legends.append([[text.get_text() for text in one.get_texts()] for one in [*figure.legends, *own]])
-
-    monkeypatch.setattr(figures, "save", keep)
-    monkeypatch.setattr(seat_figures, "save", keep)
-    for phases in (("travel 1 mm", "force 0 N") * 10, tuple(f"travel {k} mm" for k in range(20))):
-        setup = replace(analysis.setup, phases=phases)
-        figures.characteristic("", setup, result, summarise(setup, result))
-        seat_figures.force_centre("", setup, result)
-        seat_figures.seat_pressure("", setup, result)
-    texts = [[text for text in one if text.startswith(("to ", "and "))] for figure in legends for one in figure]
-    few, many = texts[:5], texts[5:]
-    assert few == [["to travel 1 mm", "to force 0 N"], [], *[["to travel 1 mm", "to force 0 N"]] * 3]
-    assert many[0] == [*(f"to travel {k} mm" for k in range(6)), "and 14 more"]
-    assert many[2:] == [[*(f"to travel {k} mm" for k in range(4)), "and 16 more"]] * 3
-    assert max(len(one) for figure in legends for one in figure) <= 10
+def texts(figure, place=0):
+    legend = figure.axes[place].get_legend()
+    return [text.get_text() for text in legend.get_texts()]
 
 
-@pytest.mark.parametrize(("force", "way"), [(9.0, "Compressed"), (-9.0, "Pulled")])
-def test_a_pulled_spring_is_not_called_pressed(analysis, monkeypatch, force, way):
+@pytest.mark.parametrize(
+    ("phases", "named", "dashed"),
+    [
+        (("travel 1 mm", "force 0 N") * 4, ["to travel 1 mm", "to force 0 N"], ["to travel 1 mm", "to force 0 N"]),
+        (
+            tuple(f"travel {k} mm" for k in range(8)),
+            [*(f"to travel {k} mm" for k in range(6)), "and 2 more"],
+            [*(f"to travel {k} mm" for k in range(4)), "and 4 more"],
+        ),
+        (("block", "block"), ["to block, first time", "to block, second time"], None),
+    ],
+)
+def test_a_legend_names_each_target_once_and_so_many_at_most(analysis, phases, named, dashed):
+    """Cycles make no legend of their own; equal phases of a short program are counted; what is not named is grey."""
+    steps = [a_step(k + 1, k) for k in range(len(phases))]
+    run = opened(analysis, stepped(analysis, steps, phases=phases), phases=phases)
+    figure, _ = laid_out(characteristic(run))
+    assert [text for text in texts(figure) if text.startswith(("to ", "and "))] == named
+    for panel in (seats.eccentricity(run), seats.contact_length(run), seats.active_turns(run)):
+        lines = [text for text in texts(laid_out(panel)[0]) if text.startswith(("to ", "and "))]
+        assert lines == (named if dashed is None else dashed)
+    colours = [trace["line"]["color"] for trace in characteristic(run).traces if trace.get("legendgroup")]
+    assert (GREY in colours) == (len(set(phases)) > 6)
+
+
+@pytest.mark.parametrize(("force", "word"), [(9.0, "Compressed"), (-9.0, "Pulled")])
+def test_a_pulled_spring_is_not_called_pressed(analysis, force, word):
     """And the line of its initial rate goes where its force goes."""
-    steps = (Step(1, 0, 1.0, 35.0 - force / 9.0, force / 9.0, force, 1, 1, 0, 0, 0, 0.0),)
-    result, drawn = replace(analysis.result, steps=steps), []
-    monkeypatch.setattr(figures, "save", lambda figure, path: drawn.append(figure.axes[0]))
-    figures.characteristic("", analysis.setup, result, summarise(analysis.setup, result))
-    (axes,) = drawn
-    assert axes.get_title().startswith(f"{way} with up to 9 N")
+    run = opened(analysis, stepped(analysis, [a_step(1, travel=force / 9.0, force=force)]))
+    figure, _ = laid_out(characteristic(run))
+    axes = figure.axes[0]
+    assert axes.get_title().replace("\u00a0", " ").startswith(f"{word} with up to 9 N")
     (rate,) = (line for line in axes.get_lines() if str(line.get_label()).startswith("initial rate"))
     assert rate.get_ydata()[1] == pytest.approx(force, rel=1e-12)
 
 
-def test_the_force_centre_of_an_unloaded_spring_has_no_numbers(analysis, monkeypatch):
+def test_an_unloaded_spring_has_no_force_centre(analysis, tmp_path):
     """Its seats' records hold none: titles said `nan mm beside the axis`."""
-    titles = []
-    monkeypatch.setattr(seat_figures, "save", lambda figure, path: titles.extend(a.get_title() for a in figure.axes))
-    result, none = analysis.result, {"centre_x_mm": np.nan, "centre_y_mm": np.nan, "eccentricity_mm": np.nan}
-    seats = [replace(one, bottom=replace(one.bottom, **none), top=replace(one.top, **none)) for one in result.seats]
-    free = replace(result, steps=tuple(replace(one, force_N=0.0) for one in result.steps), seats=tuple(seats))
-    seat_figures.force_centre("", analysis.setup, free)
-    assert titles == ["No force acts on the seats", ""]
+    run = opened(analysis, stepped(analysis, [a_step(1, force=0.0)]))
+    assert seats.force_centre(run) is None
+    assert seats.eccentricity(run) is None
 
 
-def test_each_of_a_few_steps_is_named_beside_the_pressure(analysis, monkeypatch):
-    """The greatest force is that of one of them; of many steps, nine are."""
-    drawn = []
-    monkeypatch.setattr(seat_figures, "save", lambda figure, path: drawn.append(figure.axes[0]))
-    for count in (12, 13):
-        steps = tuple(Step(k, 0, 1.0, 35.0 - k, float(k), 9.0 * k, 1, 1, 0, 0, 0, 0.0) for k in range(1, count + 1))
-        seats = analysis.result.seats[:1] * count
-        seat_figures.seat_pressure("", analysis.setup, replace(analysis.result, steps=steps, seats=seats))
-    assert [len(axes.get_yticks()) for axes in drawn] == [12, 9]
+@pytest.mark.parametrize(("count", "named"), [(12, 12), (13, 9)])
+def test_each_of_a_few_steps_is_named_beside_the_pressure(analysis, count, named):
+    """The maximum force is that of one of them; of many steps, nine are."""
+    steps = [a_step(k, travel=float(k), force=9.0 * k) for k in range(1, count + 1)]
+    figure, _ = laid_out(seats.contact(opened(analysis, stepped(analysis, steps)), "bottom"))
+    assert len(figure.axes[0].get_yticks()) == named
 
 
 @pytest.mark.parametrize(("beyond", "title"), [(3, "Maximum force: 2.4 active turns"), (8, "Turns over travel")])
-def test_active_turns_that_mean_nothing_are_told_and_not_drawn(analysis, monkeypatch, beyond, title):
+def test_active_turns_that_mean_nothing_are_counted_and_not_drawn(analysis, beyond, title):
     """Where the force hardly changes the quotient is any number; lines to it would cover the others."""
-    steps = tuple(Step(k, 0, 1.0, 35.0 - k, float(k), 9.0 * k, 1, 1, 0, 0, 0, 0.0) for k in range(1, 9))
-    seats = tuple(
-        replace(analysis.result.seats[0], active_turns=4e3 if step.number == beyond else 2.4) for step in steps
-    )
-    drawn = []
-    monkeypatch.setattr(seat_figures, "save", lambda figure, path: drawn.append(figure.axes[3]))
-    seat_figures.seat_pressure("", analysis.setup, replace(analysis.result, steps=steps, seats=seats))
-    (axes,) = drawn
-    assert axes.get_title().startswith(title)
-    active = next(line.get_ydata() for line in axes.get_lines() if len(line.get_ydata()) == len(steps))
-    assert np.flatnonzero(np.isnan(active)) == [beyond - 1]
-    assert np.nanmax(active) == 2.4
-    words = [text.get_text() for text in axes.get_legend().get_texts()]
+    steps = [a_step(k, travel=float(k), force=9.0 * k) for k in range(1, 9)]
+    active = {step.number: {"active_turns": 4e3 if step.number == beyond else 2.4} for step in steps}
+    panel = seats.active_turns(opened(analysis, stepped(analysis, steps, seats=active)))
+    assert panel.title == title
+    drawn = panel.traces[0]["y"]
+    assert np.flatnonzero(np.isnan(drawn)).tolist() == [beyond - 1]
+    assert np.nanmax(drawn) == 2.4
     most = 1.5 * analysis.setup.spring.turns
-    assert words[:2] == [f"active (beyond {most:g} turns: 1 of the steps)", "without contact"]
+    assert texts(laid_out(panel)[0])[:2] == [f"active (beyond {most:g} turns: 1 of the steps)", "without contact"]
 
 
-@pytest.mark.parametrize(("force", "told"), [(-300.0, "-300 N"), (300.0, "300 N"), (-1e-5, "0 N")])
-def test_a_pulled_spring_bears_less_than_nothing_in_its_picture(analysis, force, told):
-    shot = replace(analysis.result.snapshots[-1], force=force)
-    assert caption(shot, 300.0).splitlines()[1] == f"{plain(shot.height, 5)} mm, {told}"
+@pytest.mark.parametrize(("force", "text"), [(-300.0, "-300 N"), (300.0, "300 N"), (-1e-5, "0 N")])
+def test_a_pulled_spring_has_a_negative_force_in_its_picture(analysis, force, text):
+    first, last = analysis.result.snapshots
+    first, last = replace(first, force=300.0), replace(last, force=force)
+    run = opened(analysis, replace(analysis.result, snapshots=(first, last)))
+    assert caption(run, 1).splitlines()[1] == f"{plain(last.height, 5)} mm, {text}"
 
 
 def with_mode(analysis, direction):
     """A run with a mode that goes off as a clamped column does, in a direction across the axis."""
     x = analysis.rod.line.stations
-    away = column(x[:, 2], x[0, 2], x[-1, 2])[:, None] * np.array([*direction, 0.0])
+    away = buckling.column(x[:, 2], x[0, 2], x[-1, 2])[:, None] * np.array([*direction, 0.0])
     return replace(analysis.result, mode=BucklingMode(1.0, 9.0, 0.5, x, away))
 
 
 @pytest.mark.parametrize("direction", [(1.0, 0.0), (-0.6, 0.8)])
 def test_a_buckling_mode_is_seen_in_its_plane_and_drawn(analysis, tmp_path, direction):
     result, turns = with_mode(analysis, direction), analysis.setup.turns
-    across = plane(result.mode, turns)
+    across = buckling.plane(result.mode.displacement, turns)
     assert across == pytest.approx(direction, abs=1e-9)  # to the side where it goes
-    height, aside = axis(result.mode, turns, across)
+    height, aside = buckling.mode_axis(result.mode.x, result.mode.displacement, turns, across)
     ends = height[0], height[-1]
     assert aside.max() > 0.5
     assert ends[0] < ends[1]
-    buckling_mode(tmp_path / "mode.png", analysis.setup, result, summarise(analysis.setup, result))
+    run = opened(analysis, result)
+    write_png(tmp_path / "mode.png", [buckling.buckling_mode(run), buckling.buckling_axis(run)])
     assert (imread(tmp_path / "mode.png")[:, :, :3].min(axis=-1) < 0.9).mean() > 0.01
 
 
@@ -233,37 +256,6 @@ def test_all_figures_share_one_look():
     assert not [path for path in sources if "axes.spines" in path.read_text(encoding="utf-8")]
 
 
-def drawn(monkeypatch, module, draw):
-    """The figure that a function would save, laid out."""
-    kept = []
-    monkeypatch.setattr(module, "save", lambda figure, path: kept.append(figure))
-    draw()
-    FigureCanvasAgg(kept[0]).draw()
-    return kept[0]
-
-
-def test_more_phases_than_colours_are_grey(analysis, monkeypatch):
-    """A colour of the legend belongs to one of its names, which say what is done."""
-    steps = tuple(Step(k, k, 1.0, 35.0 - k, k, 9.0, 1, 1, 0, 0, 0, 0.0) for k in range(8))
-    phases = ("travel 1 mm", "heat to 400 K in 1 h at constant height", *(f"travel {k} mm" for k in range(2, 8)))
-    setup, result = replace(analysis.setup, phases=phases), replace(analysis.result, steps=steps)
-    figure = drawn(
-        monkeypatch,
-        figures,
-        lambda: figures.characteristic("", setup, result, summarise(setup, result) | {"load_loss_percent": 12.34}),
-    )
-    colours = [
-        line.get_color() for line in figure.axes[0].get_lines()[:17:2]
-    ]  # curves; the dots of their steps between them
-    assert len(set(colours[:6])) == 6
-    assert set(colours[6:]) == {figures.REST}
-    texts = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert texts[:2] == ["to travel 1 mm", "heat to 400 K in 1 h at constant height"]
-    title, legend = figure.axes[0].title.get_window_extent(), figure.legends[0].get_window_extent()
-    assert all(figure.bbox.x0 <= box.x0 and box.x1 <= figure.bbox.x1 for box in (title, legend))
-    assert not title.overlaps(legend)
-
-
 @pytest.mark.parametrize(
     ("summary", "said"),
     [
@@ -273,49 +265,34 @@ def test_more_phases_than_colours_are_grey(analysis, monkeypatch):
         ({"set_mm": None, "load_loss_percent": 17.05}, "the spring loses 17.05 % of its load"),
     ],
 )
-def test_a_characteristic_says_what_becomes_of_the_spring(analysis, monkeypatch, summary, said):
-    setup, result = analysis.setup, analysis.result
-    found = summarise(setup, result) | summary
-    figure = drawn(monkeypatch, figures, lambda: figures.characteristic("", setup, result, found))
-    assert said in figure.axes[0].get_title().replace("\n", " ")
-
-
-def test_the_title_of_a_goodman_diagram_is_whole(monkeypatch):
-    endured = goodman.Line(470.0, 770.0, 1035.0, 1e7, "shot peened")
-    figure = drawn(
-        monkeypatch,
-        goodman_figure,
-        lambda: goodman_figure.draw("", "EN 10270-2 VDSiCrV, 12.5 mm", endured, goodman.Cycle(795.0, 1325.0), None),
-    )
-    title = figure.axes[0].title.get_window_extent()
-    assert figure.bbox.x0 <= title.x0
-    assert title.x1 <= figure.bbox.x1
+def test_a_characteristic_says_what_becomes_of_the_spring(analysis, summary, said):
+    run = opened(analysis)
+    assert said in characteristic(replace(run, summary=run.summary | summary)).title
 
 
 @pytest.mark.parametrize("size", [1.0, 1e3, 1e6])
-def test_titles_are_whole_and_clear_of_each_other(analysis, monkeypatch, size):
-    """Whatever the size of their numbers."""
-    step = replace(analysis.result.steps[0], force_N=1.23456 * size)
+def test_titles_and_legends_are_whole_and_clear_of_each_other(analysis, size):
+    """Whatever the size of their numbers, and however long the names."""
+    phases = ("travel 1 mm", "heat to 400 K in 1 h at constant height", *(f"travel {k} mm" for k in range(2, 6)))
+    steps = [a_step(k + 1, k, force=1.23456 * size) for k in range(6)]
+    result = stepped(analysis, steps, phases=phases)
     away = 0.0123456 * size
-    seats = tuple(
-        replace(one, bottom=replace(one.bottom, eccentricity_mm=away), top=replace(one.top, eccentricity_mm=away))
-        for one in analysis.result.seats
-    )
-    result, boxes = replace(analysis.result, steps=(step,), seats=seats), []
-
-    def keep(figure: matplotlib.figure.Figure, path):
-        canvas = FigureCanvasAgg(figure)
-        canvas.draw()
-        titles = [axes.title.get_window_extent(canvas.get_renderer()) for axes in figure.axes if axes.get_title()]
-        boxes.append((figure.bbox, titles))
-
-    monkeypatch.setattr(figures, "save", keep)
-    monkeypatch.setattr(seat_figures, "save", keep)
-    summary = summarise(analysis.setup, result)
-    figures.characteristic("", analysis.setup, result, summary)
-    seat_figures.force_centre("", analysis.setup, result)
-    seat_figures.seat_pressure("", analysis.setup, result)
-    assert [len(titles) for _, titles in boxes] == [1, 2, 4]
-    for whole, titles in boxes:
-        assert all(whole.x0 <= box.x0 and box.x1 <= whole.x1 and box.y1 <= whole.y1 for box in titles)
-        assert not any(one.overlaps(other) for one, other in itertools.combinations(titles, 2))
+    ends = {end: replace(getattr(result.seats[0], end), eccentricity_mm=away) for end in ("bottom", "top")}
+    run = opened(analysis, replace(result, seats=tuple(replace(one, **ends) for one in result.seats)), phases=phases)
+    goodman_line = goodman.Line(470.0, 770.0, 1035.0, 1e7, "shot peened")
+    for panels in (
+        [characteristic(run)],
+        [seats.force_centre(run), seats.eccentricity(run)],
+        [seats.contact(run, "seat"), seats.contact_length(run), seats.active_turns(run)],
+        [goodman_panel("EN 10270-2 VDSiCrV, 12.5 mm", goodman_line, goodman.Cycle(795.0, 1325.0), None)],
+    ):
+        figure, renderer = laid_out(*panels)
+        boxes = [axes.title.get_window_extent(renderer) for axes in figure.axes if axes.get_title()]
+        boxes += [axes.get_legend().get_window_extent(renderer) for axes in figure.axes if axes.get_legend()]
+        assert len(boxes) > 1
+        for box in boxes:
+            assert figure.bbox.x0 <= box.x0
+            assert box.x1 <= figure.bbox.x1
+            assert figure.bbox.y0 <= box.y0
+            assert box.y1 <= figure.bbox.y1
+        assert not any(one.overlaps(other) for one, other in itertools.combinations(boxes, 2))

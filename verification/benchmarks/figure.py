@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from coilset.model.base.style import STYLE
-from coilset.model.figures.figures import save
+from coilset.model.figures.png import save
 from coilset.verification.benchmarks.measure import STAGES
 from coilset.verification.benchmarks.target import FLAT, ITERATION, LARGE, per_element, seconds
 

@@ -150,25 +150,18 @@ def pair(watch: Stopwatch, stage: str) -> list[float]:
 
 def write(watch: Stopwatch, analysis: "Analysis") -> None:
     """Everything that `coilset solve` writes, into a folder that is thrown away."""
-    from coilset.model.figures import display, figures, scene
-    from coilset.model.results.files import dataset, fields
-    from coilset.model.results.files.folder import write_history, write_summary
+    from coilset.model.figures.pictures import PARTS
+    from coilset.model.results.records.provenance import origin
     from coilset.model.results.records.summary import summarise
+    from coilset.model.results.run_files import write_run
 
-    result = analysis.result
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = Path(temporary)
-        summary = summarise(analysis.setup, result)
+    records, made_with = (analysis.setup, analysis.result), origin(analysis.case)
+    with tempfile.TemporaryDirectory() as folder:
         with watch.stage("output"):
-            write_history(folder, result.steps)
-            dataset.write_points(folder, dataset.point_state(analysis.setup, result))
-            fields.write_fields(folder, analysis.setup, result.snapshots)
-            write_summary(folder, summary)
+            write_run(Path(folder), *records, summarise(*records), made_with)
         with watch.stage("pictures"):
-            figures.characteristic(folder / "characteristic.png", analysis.setup, result, summary)
-            figures.cross_section(folder / "cross_section.png", analysis.setup, result.snapshots[-1], None)
-            if display.ensure():
-                scene.springs(folder / "springs.png", result.snapshots, analysis.setup)
+            for load in PARTS.values():
+                load()(Path(folder))
 
 
 def pressed(elements: int, touching: bool) -> list[str]:

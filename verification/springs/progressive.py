@@ -18,7 +18,7 @@ from mpi4py import MPI
 
 from coilset.model.base.style import STYLE
 from coilset.model.case import check
-from coilset.model.figures.figures import save
+from coilset.model.figures.png import save
 from coilset.model.run.analysis import Analysis
 from coilset.verification.springs.curved_rod import torsion_characteristic
 

@@ -24,7 +24,7 @@ from coilset.model.equilibrium.layout import SEATS, LineLayout
 from coilset.model.equilibrium.methods import rod_method
 from coilset.model.equilibrium.newton import Newton
 from coilset.model.equilibrium.system import System
-from coilset.model.figures.figures import save
+from coilset.model.figures.png import save
 from coilset.model.material import library
 from coilset.model.material.law.law import Law
 from coilset.model.rod.kinematics import GAUSS, chord_triads

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from coilset.model.results.files.netcdf import LabelledData, Variable, write_netcdf
+from coilset.model.results.records.labels import plain
 from coilset.model.results.records.record import Result, Setup, Snapshot
 from coilset.model.results.records.warnings import run_warnings
 from coilset.model.section.ground import section_points
@@ -54,7 +55,23 @@ def point_state(setup: Setup, result: Result) -> LabelledData:
             "section_kind": setup.section_kind,
         },
     )
-    return data.merged(way_of_wire(result)).merged(pressure_along_wire(setup, result))
+    return data.merged(way_of_wire(result)).merged(pressure_along_wire(setup, result)).merged(_mode(result))
+
+
+def _mode(result: Result) -> LabelledData:
+    """The buckling mode, if there is one."""
+    mode, dims = result.mode, ("station", "axis")
+    if mode is None:
+        return LabelledData({}, {})
+    state = {"travel_mm": plain(mode.travel_mm), "force_N": plain(mode.force_N)}
+    about = {"units": "mm", "about": "displacement of the stations in the buckling mode, maximum 1 mm"}
+    return LabelledData(
+        {
+            "mode_position": Variable(dims, mode.x, {"units": "mm", **state}),
+            "mode_displacement": Variable(dims, mode.displacement, about),
+        },
+        {},
+    )
 
 
 def _coordinates(setup: Setup, snapshots: Sequence[Snapshot]) -> dict[str, Variable]:

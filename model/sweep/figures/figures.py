@@ -13,7 +13,7 @@ from matplotlib.ticker import NullLocator
 
 from coilset.model.base.errors import InputError
 from coilset.model.base.style import STYLE
-from coilset.model.figures.figures import add_title, save
+from coilset.model.figures.png import add_title, save
 from coilset.model.sweep import spec as sp
 from coilset.model.sweep.figures import findings
 from coilset.model.sweep.figures.sensitivity import rank_correlation, sobol_indices

@@ -29,7 +29,10 @@ from mpi4py import MPI
 
 from coilset.model.base.style import STYLE
 from coilset.model.case import check
-from coilset.model.figures.seat_figures import draw_pressure
+from coilset.model.figures.panels.seats import contact
+from coilset.model.figures.png import draw
+from coilset.model.results.records.provenance import origin
+from coilset.model.results.run_files import run_of
 from coilset.model.run.analysis import Analysis
 from coilset.verification.study import Study
 
@@ -215,13 +218,10 @@ def draw_paths(study: Study, elastic: dict[str, Analysis]) -> None:
             over.plot(
                 c["travel"], c["centre"] / RADIUS, "^:", color=colour, ms=3, lw=1.0, label=f"force centre, {ends} ends"
             )
-            kind, contact = next(
-                (k, one) for k, one in enumerate(analysis.setup.contacts) if one.end == "bottom" and len(one.wire_turns)
-            )
-            rows = np.concatenate([one.pressure for one in analysis.result.seats])
-            shown = draw_pressure(axes, analysis.result, kind, contact, rows[rows[:, 0] == kind, 2].max())
+            pressure = contact(run_of(analysis.setup, analysis.result, origin(analysis.case)), "bottom")
+            assert pressure is not None
+            draw(axes, pressure)
             axes.set_title(f"pressure on the bottom seat, {ends} ends")
-            figure.colorbar(shown, ax=axes, label="force per length of wire in N/mm")
         plan.set(aspect="equal", xlabel="x/r", ylabel="y/r", title="bottom seat, seen along the axis")
         over.set(xlabel="travel in mm", ylabel="distance from the axis over r", ylim=(0, 1.1), title="over the travel")
         for axes in (plan, over):

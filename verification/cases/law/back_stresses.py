@@ -14,7 +14,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from coilset.model.figures.figures import STYLE
+from coilset.model.base.style import STYLE
 from coilset.model.material import library
 from coilset.verification.cases.solid.slice_uniform import INDICES, rod_pressed
 from coilset.verification.slice.runs import pressed

@@ -21,7 +21,7 @@ from mpi4py import MPI
 
 from coilset.model.base.style import STYLE
 from coilset.model.case import Case, check
-from coilset.model.figures.buckling_figure import axis, column, plane
+from coilset.model.figures.panels.buckling import column, mode_axis, plane
 from coilset.model.material import library
 from coilset.model.results.records.record import Step
 from coilset.model.run.analysis import Analysis
@@ -61,7 +61,7 @@ def mode_off(analysis: Analysis) -> float:
     """Deviation of the axis of the lowest mode from that of a clamped column, over its maximum displacement."""
     mode, turns = analysis.result.mode, analysis.setup.turns
     assert mode is not None
-    height, aside = axis(mode, turns, plane(mode, turns))
+    height, aside = mode_axis(mode.x, mode.displacement, turns, plane(mode.displacement, turns))
     exact = column(height, mode.x[0, 2], mode.x[-1, 2])
     return float(np.abs(aside / (aside @ exact) * (exact @ exact) - exact).max())
 

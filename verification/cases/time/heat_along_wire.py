@@ -25,8 +25,8 @@ from matplotlib.figure import Figure
 from mpi4py import MPI
 
 from coilset.meshes.line import line_mesh
+from coilset.model.base.style import STYLE
 from coilset.model.case.case import Case, check
-from coilset.model.figures.figures import STYLE
 from coilset.model.rod.heat_equation import HeatConstants, HeatEquation
 from coilset.model.run.analysis import Analysis
 from coilset.verification.study import Study

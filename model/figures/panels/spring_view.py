@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from coilset.model.base.style import round_end
+from coilset.model.figures.panels.panel import DIVERGING, Panel, axis, said
 from coilset.model.figures.wire import closed, moments, tubes
-from coilset.model.report.panels.panel import DIVERGING, Panel, axis, said
 from coilset.model.results.files.opened import Run
 
 RINGS = 6000  # of all moments of a page together

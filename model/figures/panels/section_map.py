@@ -6,16 +6,26 @@ import numpy as np
 from matplotlib.tri import LinearTriInterpolator, Triangulation
 
 from coilset.model.base.style import round_end
-from coilset.model.figures.curve import element_at
+from coilset.model.figures.panels.panel import DIVERGING, Panel, Trace, axis, said
 from coilset.model.figures.rings import FilledSection
 from coilset.model.figures.wire import inside
-from coilset.model.report.panels.panel import DIVERGING, Panel, Trace, axis, said
 from coilset.model.results.files.opened import Run
 
 PIXELS = 121  # of a map, across the wire
 BEYOND = 1.04  # wire radii up to which colours go: the rim is drawn over them
 LEAST_SCALE = 1.0  # MPa: the scale of a section without stress
 WITHIN = 0.999  # of the wire radius: inside the chords of the rim's polygon, cos(π/96) = 0.99946
+
+
+def element_at(turns: np.ndarray, turn: float | None) -> int:
+    """Number of the element at a turn; that in the middle of the wire if there is none.
+
+    Args:
+        turns: of the stations, shape (n + 1,).
+        turn: such as `residual_shear_inside_turn` of a summary.
+    """
+    n = len(turns) - 1
+    return n // 2 if turn is None else int(np.clip(np.searchsorted(turns, turn, side="right") - 1, 0, n - 1))
 
 
 def shear_map(run: Run) -> Panel:
@@ -42,8 +52,8 @@ def _panel(run: Run, name: str, quantity: str, which: int, sign: str) -> Panel:
         traces.append(_map(section.places * radius, both[which], radius, end, number))
     dots = {"type": "scatter", "mode": "markers", "x": y, "y": z, "marker": {"size": 2, "color": "#404040"}}
     traces.append({**dots, "hoverinfo": "skip", "showlegend": False})
-    low, high = (said(float(f(fields[-1][which])), "MPa") for f in (np.min, np.max))
-    finding = f"At {run.snapshots[-1]} the {quantity} at turn {turn:.2f} runs from {low} to {high}"
+    low, high = (said(float(f(fields[-1][which])), "").strip() for f in (np.min, np.max))
+    finding = f"At {run.snapshots[-1]} the {quantity} at turn {turn:.2f} ranges from {low} to {high} MPa"
     return Panel(
         name,
         finding,

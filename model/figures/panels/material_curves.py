@@ -4,10 +4,10 @@ import json
 from math import isfinite
 
 from coilset.model.base.errors import InputError
+from coilset.model.figures.panels.panel import Panel, axis, curve
 from coilset.model.material.law.file import MaterialFile
 from coilset.model.material.law.law import Law
 from coilset.model.material.programs import History, Program, Step, run
-from coilset.model.report.panels.panel import Panel, axis, curve
 from coilset.model.results.files.opened import Run
 
 FAR = 12.0  # yield strains of torsion to which the point is twisted

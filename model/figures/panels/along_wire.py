@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from coilset.model.figures.panels.panel import Panel, axis, curve, said
 from coilset.model.figures.wire import inside, section_turns, shear_around
-from coilset.model.report.panels.panel import Panel, axis, curve, said
 from coilset.model.results.files.opened import Run
 from coilset.model.results.records.labels import plain
 

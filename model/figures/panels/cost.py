@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coilset.model.report.panels.panel import COLOURS, Panel, axis, curve
+from coilset.model.figures.panels.panel import COLOURS, Panel, axis, curve
 from coilset.model.results.files.opened import Run
 
 

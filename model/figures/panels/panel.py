@@ -1,15 +1,14 @@
-"""A figure of the report: its finding, its data, and its description for screen readers."""
+"""A figure: its finding, its data, and its description for screen readers; pages and PNG files render it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-import numpy as np
-
 Trace = dict[str, Any]
 
 # Okabe and Ito's colours, distinguishable with colour-vision deficiencies; used on light and dark backgrounds.
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")
+GREY = "#808080"
 DIVERGING = "RdBu"
 
 
@@ -49,11 +48,35 @@ def axis(title: str, **more: Any) -> dict[str, Any]:
     return {"title": {"text": title}, **more}
 
 
-def curve(x: np.ndarray, y: np.ndarray, number: int, marker: int = 0, dash: str | None = None, **more: Any) -> Trace:
-    """A line in the colour of its number, with markers of so many pixels, if any."""
-    line = {"width": 2, "color": COLOURS[number % len(COLOURS)]} | ({"dash": dash} if dash else {})
+def curve(
+    x: Any, y: Any, colour: int | str, marker: float = 0, dash: str | None = None, width: float = 2.0, **more: Any
+) -> Trace:
+    """A line, with markers of so many pixels, if any.
+
+    Args:
+        x, y: numbers, arrays or lists.
+        colour: its number in COLOURS, or its name.
+        marker: size, pixels.
+        dash: plotly's name of a line.
+        width: of the line, pixels.
+        more: other entries of the trace.
+    """
+    colour = COLOURS[colour % len(COLOURS)] if isinstance(colour, int) else colour
+    line = {"width": width, "color": colour} | ({"dash": dash} if dash else {})
     marks = {"mode": "lines+markers", "marker": {"size": marker}} if marker else {"mode": "lines"}
     return {"type": "scatter", **marks, "x": x, "y": y, "line": line, **more}
+
+
+def in_legend_only(name: str, colour: int | str, **more: Any) -> Trace:
+    """An entry of the legend without a line in the figure."""
+    return curve([None], [None], colour, name=name, **more)
+
+
+def upright(x: float, label: str) -> dict[str, Any]:
+    """A dashed line across the figure at an abscissa, with its label at the top; parts of a layout."""
+    line = {"type": "line", "x0": x, "x1": x, "yref": "paper", "y0": 0, "y1": 1}
+    note = {"x": x, "y": 1, "yref": "paper", "yanchor": "bottom", "text": label, "showarrow": False}
+    return {"shapes": [{**line, "line": {"dash": "dash", "width": 1, "color": GREY}}], "annotations": [note]}
 
 
 def said(value: float, unit: str, digits: int = 0) -> str:

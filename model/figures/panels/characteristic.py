@@ -1,0 +1,121 @@
+"""Force over travel, and the rate along it."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from coilset.model.figures.panels.panel import COLOURS, GREY, Panel, axis, curve, upright
+from coilset.model.figures.panels.phases import Phase, phases, unnamed
+from coilset.model.results.files.opened import Run
+from coilset.model.results.records.labels import plain
+
+HEIGHT = 440  # pixels, the same for both, which stand side by side
+NAMED = len(COLOURS)  # targets
+BETWEEN = 12  # points drawn from a step to the next
+AGAIN = "For the second loading, add a phase to the load program, such as “- to: block”, and solve again."
+
+
+def characteristic(run: Run) -> Panel:
+    """Force over travel, one line per phase, with the initial rate, block and set."""
+    summary, found = run.summary, phases(run, NAMED)
+    traces = []
+    for phase, travel, force in _curves(run, found):
+        colour = phase.number if phase.number < NAMED else GREY
+        entry: dict[str, Any] = {"name": phase.label, "legendgroup": phase.label}
+        traces.append(curve(*smooth(travel, force), colour, hoverinfo="skip", showlegend=phase.named, **entry))
+        steps = curve(travel, force, colour, marker=5, showlegend=False, **entry)
+        traces.append(steps | {"mode": "markers", "marker": {"size": 5, "color": steps["line"]["color"]}})
+    traces += unnamed(found, NAMED)
+    greatest, rate, set_mm = summary["force_max_N"], summary["rate_N_per_mm"], summary["set_mm"]
+    if rate:
+        travels = np.abs(run.data["travel_mm"].values)
+        end = min(abs(greatest) / rate, float(np.nanmax(travels, initial=0.0)) or 1.0)
+        x, name = np.array([0.0, np.copysign(end, greatest)]), f"initial rate {rate:.4g} N/mm"
+        traces.append(curve(x, rate * x, GREY, dash="dot", width=1.2, name=name))
+    block = summary["free_length_before_mm"] - summary["block_height_mm"]
+    finding = f"{compressed(greatest)} with up to {plain(abs(greatest))} N{_outcome(summary)}"
+    layout = upright(block, f"block, {summary['block_height_mm']:.4g} mm high")
+    if set_mm:
+        layout["annotations"] += _arrow(set_mm)
+    return Panel(
+        "characteristic",
+        finding,
+        f"Axial force over travel. {finding}. Block is at {block:.4g} mm of travel.",
+        traces,
+        {"xaxis": axis("travel, mm"), "yaxis": axis("axial force, N"), **layout},
+        height=HEIGHT,
+        note="" if set_mm is None or len(found) > 2 else AGAIN,
+    )
+
+
+def _curves(run: Run, found: list[Phase]) -> Iterator[tuple[Phase, np.ndarray, np.ndarray]]:
+    """Travel (mm) and force (N) of each phase, from the end of the one before on."""
+    travel, force = (np.append(0.0, run.data[name].values) for name in ("travel_mm", "force_N"))
+    for phase in found:
+        steps = np.append(phase.steps[0], phase.steps + 1)
+        yield phase, travel[steps], force[steps]
+
+
+def smooth(travel: npt.ArrayLike, force: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """A phase's force over travel, through its steps by monotone cubic Hermite interpolation (Fritsch and Carlson).
+
+    It has no corner at a step and no value beyond its neighbours, so that it neither rounds off nor overshoots a kink
+    where coils close. A phase of fewer than three steps, or one whose travel turns back, keeps its straight lines.
+    """
+    from scipy.interpolate import PchipInterpolator
+
+    x, y = np.asarray(travel, float), np.asarray(force, float)
+    way = np.diff(x)
+    if len(x) < 4 or not (np.all(way > 0.0) or np.all(way < 0.0)):
+        return x, y
+    fine = np.interp(np.arange(BETWEEN * (len(x) - 1) + 1) / BETWEEN, np.arange(len(x)), x)
+    order = np.argsort(x)
+    return fine, PchipInterpolator(x[order], y[order])(fine)
+
+
+def compressed(force: float) -> str:
+    """The word for a load program by its maximum force."""
+    return "Pulled" if force < 0.0 else "Compressed"
+
+
+def _outcome(summary: Mapping[str, Any]) -> str:
+    """The set, or the load that was lost; empty if the spring was not released."""
+    set_mm, lost = summary["set_mm"], summary.get("load_loss_percent")
+    if set_mm is None:
+        return "" if lost is None else f", the spring loses {plain(lost)} % of its load"
+    text = plain(set_mm)
+    return f", the spring stays {text[1:]} mm longer" if text.startswith("-") else f", the spring sets {text} mm"
+
+
+def _arrow(set_mm: float) -> list[dict[str, Any]]:
+    """Annotations of the set."""
+    ends = {"x": set_mm, "ax": 0, "y": 0, "ay": 0, "axref": "x", "ayref": "y", "text": "", "showarrow": True}
+    text = f"set {plain(set_mm)} mm".replace("-", "−")
+    return [
+        {**ends, "arrowhead": 2, "arrowside": "end+start", "arrowwidth": 1.2},
+        {"x": 0.5 * set_mm, "y": 0, "yanchor": "bottom", "text": text, "showarrow": False},
+    ]
+
+
+def rate_curve(run: Run) -> Panel | None:
+    """Slope of the characteristic over travel, phase by phase; None if no phase has three steps."""
+    traces, found = [], phases(run, NAMED)
+    for phase, travel, force in _curves(run, found):
+        apart = np.append(True, np.abs(np.diff(travel)) > 1e-9 * np.ptp(travel))
+        if apart.sum() > 2:
+            rates, colour = np.gradient(force[apart], travel[apart]), phase.number if phase.number < NAMED else GREY
+            traces.append(curve(travel[apart], rates, colour, marker=5, name=phase.label, showlegend=phase.named))
+    if not traces:
+        return None
+    rate = run.summary["rate_N_per_mm"]
+    first = f"The rate begins at {rate:.4g} N/mm" if rate else "The rate over the travel"
+    return Panel(
+        "rate",
+        first,
+        f"{first}. Slope of the characteristic over travel, each phase a line.",
+        traces + unnamed(found, NAMED),
+        {"xaxis": axis("travel, mm"), "yaxis": axis("rate, N/mm", rangemode="tozero")},
+        height=HEIGHT,
+    )
