@@ -16,6 +16,7 @@ with B = 1 and e = 0 where it sticks. It is not symmetric where the contact slid
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
+from functools import cached_property
 
 import numpy as np
 from numba import njit
@@ -23,7 +24,7 @@ from numba import njit
 from coilset.model.contact.base import SEAT_DOFS, Contribution, TrialPositions
 from coilset.model.contact.coils import Coils
 from coilset.model.contact.curve import STENCIL, curve_weights
-from coilset.model.contact.elements import COMPILED, Room, one_sided_at
+from coilset.model.contact.elements import COMPILED, one_sided_at
 from coilset.model.contact.memory import Memory
 from coilset.model.contact.seat import Seat
 from coilset.model.rotations.triples import Triple, axis, back, cross, dot, plus, scaled, times, triple
@@ -60,16 +61,20 @@ class Friction(ABC):
         """Indices into the tractions of all that bear."""
 
     @abstractmethod
-    def rub(self, trial: TrialPositions, at: tuple[np.ndarray, ...], before: np.ndarray, traction: np.ndarray) -> Room:
-        """Forces and stiffness.
+    def dofs(self, trial: TrialPositions, at: tuple[np.ndarray, ...]) -> np.ndarray:
+        """Degrees of freedom of all that bear, at indices `at` into the tractions, shape (m, k)."""
+
+    @abstractmethod
+    def rub(
+        self, trial: TrialPositions, at: tuple[np.ndarray, ...], before: np.ndarray, traction: np.ndarray, room: Pair
+    ) -> None:
+        """Write the forces and their derivatives.
 
         Args:
             trial: TrialPositions.
             at: as `touching` has found.
             before: tractions of the last equilibrium, shape (m, 3), N; traction: written, of now.
-
-        Returns:
-            See Contribution.room.
+            room: written, forces and stiffness, shapes (m, k) and (m, k, k).
         """
 
     def evaluate(self, trial: TrialPositions) -> Contribution:
@@ -77,18 +82,15 @@ class Friction(ABC):
         if trial.rotations is None:
             raise ValueError("friction needs the stations' rotations")
         at = self.touching(trial)
-        before = self.memory.committed("traction")[at]
+        before, dofs, none = self.memory.committed("traction")[at], self.dofs(trial, at), np.zeros(len(at[0]))
         traction = np.empty_like(before)
-        room = self.rub(trial, at, before, traction)
-        self.memory["traction"] = np.zeros_like(self.memory["traction"])
+        room = np.empty(dofs.shape), np.empty((*dofs.shape, dofs.shape[1]))
+        if len(before):
+            self.rub(trial, at, before, traction, room)
+        self.memory["traction"] = 0.0
         self.memory["traction"][at] = traction
-        self.memory["x"], self.memory["seats"] = trial.x.copy(), trial.seats.copy()
-        return Contribution(*room)
-
-    def room(self, at: tuple[np.ndarray, ...], dofs: np.ndarray) -> Room:
-        """Contribution.room for elements on `dofs`, shape (m, k), which press on nothing by themselves."""
-        none = np.zeros(len(dofs))
-        return dofs, np.empty(dofs.shape), np.empty((*dofs.shape, dofs.shape[1])), none, none, at[0], none
+        self.memory["x"], self.memory["seats"] = trial.x, trial.seats
+        return Contribution(dofs, *room, none, none, at[0], none)
 
     @property
     def reach(self) -> float:
@@ -118,14 +120,22 @@ class SeatFriction(Friction):
         known = trial.points(points)
         return (known[seat.gaps(points.at(trial.x, known), trial.seats, known) < seat.multiplier_offset[known]],)
 
-    def rub(self, trial: TrialPositions, at: tuple[np.ndarray, ...], before: np.ndarray, traction: np.ndarray) -> Room:
+    @cached_property
+    def _dofs(self) -> np.ndarray:
+        """Degrees of freedom of all points, shape (m, ON_SEAT)."""
+        points = self.normal.points
+        return np.hstack([self.normal.plate.dofs_with(points), self.first_rotation + points.dofs()])
+
+    def dofs(self, trial: TrialPositions, at: tuple[np.ndarray, ...]) -> np.ndarray:
+        """See Friction."""
+        return self._dofs[at]
+
+    def rub(
+        self, trial: TrialPositions, at: tuple[np.ndarray, ...], before: np.ndarray, traction: np.ndarray, room: Pair
+    ) -> None:
         """See Friction."""
         (i,), seat, points, plate = at, self.normal, self.normal.points, self.normal.plate
         assert trial.rotations is not None
-        dofs = np.hstack([seat.plate.dofs_with(points)[i], self.first_rotation + points.dofs(i)])
-        room = self.room(at, dofs)
-        if not len(i):
-            return room
         seats0 = self.memory.committed("seats")
         start = plate.to_seat_frame(points.at(self.memory.committed("x"), i), seats0)
         c, θ = np.split(trial.seats[plate.own], 2)
@@ -140,9 +150,8 @@ class SeatFriction(Friction):
             θ - seats0[plate.own][3:],
             *self._turned(θ),
             traction,
-            room[1:3],
+            room,
         )
-        return room
 
 
 class CoilFriction(Friction):
@@ -157,13 +166,19 @@ class CoilFriction(Friction):
         """Numbers of the points that bear, and the places of the coils on which they do."""
         return self.normal.places(*self.normal.pressed(trial)[:2])
 
-    def rub(self, trial: TrialPositions, at: tuple[np.ndarray, ...], before: np.ndarray, traction: np.ndarray) -> Room:
+    def dofs(self, trial: TrialPositions, at: tuple[np.ndarray, ...]) -> np.ndarray:
+        """See Friction."""
+        pair, points = self.normal.pressed(trial)[0], self.normal.points
+        dofs = np.hstack([points.dofs(pair[:, 0]), points.line.dofs[pair[:, 1]]])
+        return np.hstack([dofs, self.first_rotation + dofs])
+
+    def rub(
+        self, trial: TrialPositions, at: tuple[np.ndarray, ...], before: np.ndarray, traction: np.ndarray, room: Pair
+    ) -> None:
         """See Friction."""
         coils, points, line = self.normal, self.normal.points, self.normal.points.line
         pair, where, offset, _ = coils.pressed(trial)
         i, e = pair[:, 0], pair[:, 1]
-        dofs = np.hstack([points.dofs(i), line.dofs[e]])
-        room = self.room(at, np.hstack([dofs, self.first_rotation + dofs]))
         _rub_on_coils(
             (trial.x, trial.rotations, line.radius),
             self.memory.committed("x"),
@@ -174,9 +189,8 @@ class CoilFriction(Friction):
             (coils.onset, self.mu),
             before,
             traction,
-            room[1:3],
+            room,
         )
-        return room
 
 
 @njit(**COMPILED)
