@@ -237,6 +237,19 @@ class HasMemory(Contact, Protocol):
 
 
 @runtime_checkable
+class Iterates(Contact, Protocol):
+    """A contact whose stiffness foresees forces from one iterate to the next; it forgets them when a solve begins."""
+
+    def iterate(self) -> None:
+        """A correction starts from the state of the last evaluation, with its stiffness."""
+        ...
+
+    def forget_iterate(self) -> None:
+        """The next state is not that to which the last correction leads."""
+        ...
+
+
+@runtime_checkable
 class Augmented(HasMemory, Protocol):
     """A contact whose penetration can be reduced by an augmented Lagrangian."""
 

@@ -12,6 +12,16 @@ The forces on both bodies do the work t · s. Their stiffness is the derivative 
     dt = B (P dT − ((n · T) 1 + n Tᵀ) dn) + e μ dp,   B = μ p/|t*| (1 − e eᵀ),  e = t*/|t*|,
 
 with B = 1 and e = 0 where it sticks. It is not symmetric where the contact slides, for t changes with p, p not with t.
+
+This B has no stiffness along e: Newton's method goes past the point where a slip reverses, and back, for ever. The
+tangent of an iteration has therefore the traction λ that the last correction has foreseen,
+
+    B = μ p/|t*| (1 − λ/(μ p) eᵀ),   λ = t + B Δt* + e μ Δp   of the iterate before, brought into the cone,
+
+which is Newton's method for λ max(μ p, |t*|) = μ p t* with tractions as unknowns of their own (semi-smooth, with the
+active set of what slides): where a slip reverses, it is the chord from one side of the cone to the other. λ is t in
+equilibrium, and B exact. See T. Chan, G. Golub, P. Mulet, SIAM J. Sci. Comput. 20 (1999) 1964 for the idea, and
+S. Hüeber, G. Stadler, B. Wohlmuth, SIAM J. Sci. Comput. 30 (2008) 572 for friction.
 """
 
 from abc import ABC, abstractmethod
@@ -32,7 +42,9 @@ from coilset.model.rotations.vectors import chart_derivatives, rotation_derivati
 
 NODAL = 3 * STENCIL  # displacements, or rotations, of the four stations that a point depends on
 Pair = tuple[np.ndarray, np.ndarray]
+Tractions = tuple[np.ndarray, np.ndarray, np.ndarray]
 ON_SEAT, ON_COIL = 2 * NODAL + SEAT_DOFS, 4 * NODAL  # unknowns of an element
+FORESEEN = 7  # what is kept of an iterate: t*, μ p, λ
 
 
 class Friction(ABC):
@@ -55,6 +67,8 @@ class Friction(ABC):
         traction = np.zeros((*normal.multiplier_offset.shape, 3))
         self.memory = Memory(rows, traction=traction, x=stations, seats=seats)
         self.first_rotation = 3 * n + 2 * SEAT_DOFS  # number of the first degree of freedom of the stations' rotations
+        self._iterate = np.zeros((*traction.shape[:-1], FORESEEN))  # of the tangent before
+        self._trial = (np.empty(0, np.int64),), np.empty((0, FORESEEN))  # of the last evaluation
 
     @abstractmethod
     def touching(self, trial: TrialPositions) -> tuple[np.ndarray, ...]:
@@ -65,15 +79,14 @@ class Friction(ABC):
         """Degrees of freedom of all that bear, at indices `at` into the tractions, shape (m, k)."""
 
     @abstractmethod
-    def rub(
-        self, trial: TrialPositions, at: tuple[np.ndarray, ...], before: np.ndarray, traction: np.ndarray, room: Pair
-    ) -> None:
+    def rub(self, trial: TrialPositions, at: tuple[np.ndarray, ...], tractions: Tractions, room: Pair) -> None:
         """Write the forces and their derivatives.
 
         Args:
             trial: TrialPositions.
             at: as `touching` has found.
-            before: tractions of the last equilibrium, shape (m, 3), N; traction: written, of now.
+            tractions: of the last equilibrium, and written, of now, shape (m, 3), N; what is kept of the iterate before,
+                overwritten by the same of now, shape (m, FORESEEN).
             room: written, forces and stiffness, shapes (m, k) and (m, k, k).
         """
 
@@ -84,13 +97,24 @@ class Friction(ABC):
         at = self.touching(trial)
         before, dofs, none = self.memory.committed("traction")[at], self.dofs(trial, at), np.zeros(len(at[0]))
         traction = np.empty_like(before)
-        room = np.empty(dofs.shape), np.empty((*dofs.shape, dofs.shape[1]))
+        room, iterate = (np.empty(dofs.shape), np.empty((*dofs.shape, dofs.shape[1]))), self._iterate[at]
         if len(before):
-            self.rub(trial, at, before, traction, room)
+            self.rub(trial, at, (before, traction, iterate), room)
+        self._trial = at, iterate
         self.memory["traction"] = 0.0
         self.memory["traction"][at] = traction
         self.memory["x"], self.memory["seats"] = trial.x, trial.seats
         return Contribution(dofs, *room, none, none, at[0], none)
+
+    def iterate(self) -> None:
+        """A correction starts from the last evaluation; see Iterates."""
+        at, found = self._trial
+        self._iterate[:] = 0.0
+        self._iterate[at] = found
+
+    def forget_iterate(self) -> None:
+        """The next state is not that to which the last correction leads; see Iterates."""
+        self._iterate[:] = 0.0
 
     @property
     def reach(self) -> float:
@@ -130,9 +154,7 @@ class SeatFriction(Friction):
         """See Friction."""
         return self._dofs[at]
 
-    def rub(
-        self, trial: TrialPositions, at: tuple[np.ndarray, ...], before: np.ndarray, traction: np.ndarray, room: Pair
-    ) -> None:
+    def rub(self, trial: TrialPositions, at: tuple[np.ndarray, ...], tractions: Tractions, room: Pair) -> None:
         """See Friction."""
         (i,), seat, points, plate = at, self.normal, self.normal.points, self.normal.plate
         assert trial.rotations is not None
@@ -143,13 +165,13 @@ class SeatFriction(Friction):
         q = plate.to_seat_frame(p, trial.seats)
         pressure, hardness = seat.pressures(i, seat.multiplier_offset[i] - seat.gaps(p, trial.seats, i))
         _rub_on_seat(
-            np.stack([p - c, points.at(trial.rotations, i), q - start, before], axis=1),
+            np.stack([p - c, points.at(trial.rotations, i), q - start], axis=1),
             np.column_stack([points.radius[i], seat.stiffness[i], self.mu * pressure, self.mu * hardness]),
             points.weights[i],
             *seat.gap_derivatives(q),
             θ - seats0[plate.own][3:],
             *self._turned(θ),
-            traction,
+            tractions,
             room,
         )
 
@@ -172,9 +194,7 @@ class CoilFriction(Friction):
         dofs = np.hstack([points.dofs(pair[:, 0]), points.line.dofs[pair[:, 1]]])
         return np.hstack([dofs, self.first_rotation + dofs])
 
-    def rub(
-        self, trial: TrialPositions, at: tuple[np.ndarray, ...], before: np.ndarray, traction: np.ndarray, room: Pair
-    ) -> None:
+    def rub(self, trial: TrialPositions, at: tuple[np.ndarray, ...], tractions: Tractions, room: Pair) -> None:
         """See Friction."""
         coils, points, line = self.normal, self.normal.points, self.normal.points.line
         pair, where, offset, _ = coils.pressed(trial)
@@ -187,28 +207,62 @@ class CoilFriction(Friction):
             pair[:, 2] == 1,
             np.column_stack([points.radius[i], coils.stiffness[i], coils.overlap[at] + offset]),
             (coils.onset, self.mu),
-            before,
-            traction,
+            tractions,
             room,
         )
 
 
 @njit(**COMPILED)
-def _cone(T: Triple, n: Triple, limit: float) -> tuple[Triple, Triple, float]:
-    """Project T onto the cone: the traction, e (zero where it sticks), and the factor μ p/|t*| (1 where it sticks)."""
-    t = plus(T, -dot(T, n), n)
+def _within(t: Triple, limit: float) -> Triple:
+    """Shorten t to the cone."""
     size = np.sqrt(dot(t, t))
-    if size <= limit:
-        return t, (0.0, 0.0, 0.0), 1.0
-    e = scaled(1.0 / size, t)
-    return scaled(limit, e), e, limit / size
+    return t if size <= limit else scaled(limit / size, t)
 
 
 @njit(**COMPILED)
-def _along_cone(T: Triple, n: Triple, e: Triple, factor: float, dT: Triple, dn: Triple, dlimit: float) -> Triple:
-    """Derivative of the traction, as above, in a direction in which T, n and μ p change by dT, dn, dlimit."""
+def _foreseen(t: Triple, limit: float, iterate: np.ndarray, before: Triple) -> Triple:
+    """The traction λ that the correction from the last iterate to t* = `t` and μ p = `limit` has foreseen.
+
+    Where nothing touched then, it is that of the last equilibrium.
+    """
+    star, limit0, λ = triple(iterate), iterate[3], (iterate[4], iterate[5], iterate[6])
+    if limit0 <= 0.0:
+        return before
+    size = np.sqrt(dot(star, star))
+    if size <= limit0:
+        return t
+    e, change = scaled(1.0 / size, star), plus(t, -1.0, star)
+    change = plus(scaled(limit0, change), -dot(e, change), λ)
+    return plus(scaled(limit, e), 1.0 / size, change)
+
+
+@njit(**COMPILED)
+def _cone(
+    T: Triple, n: Triple, limit: float, before: Triple, iterate: np.ndarray
+) -> tuple[Triple, tuple[Triple, Triple, float]]:
+    """Project T onto the cone: the traction, e (zero where it sticks), λ/(μ p), and the factor μ p/|t*| (1 where it
+    sticks). The iterate before is overwritten by this one."""
+    star = plus(T, -dot(T, n), n)
+    size = np.sqrt(dot(star, star))
+    λ = _foreseen(star, limit, iterate, before)
+    λ = _within(plus(λ, -dot(λ, n), n), limit)
+    for k in range(3):
+        iterate[k], iterate[4 + k] = star[k], λ[k]
+    iterate[3] = limit
+    if size <= limit:
+        return star, ((0.0, 0.0, 0.0), λ, 1.0)
+    e = scaled(1.0 / size, star)
+    return scaled(limit, e), (e, scaled(1.0 / limit, λ) if limit > 0.0 else λ, limit / size)
+
+
+@njit(**COMPILED)
+def _along_cone(
+    T: Triple, n: Triple, cone: tuple[Triple, Triple, float], dT: Triple, dn: Triple, dlimit: float
+) -> Triple:
+    """Change of the traction in a direction in which T, n and μ p change by dT, dn, dlimit, with B as above."""
+    e, λ, factor = cone
     change = plus(plus(dT, -dot(T, n), dn), -dot(T, dn) - dot(n, dT), n)
-    return plus(scaled(factor, plus(change, -dot(e, change), e)), dlimit, e)
+    return plus(scaled(factor, plus(change, -dot(e, change), λ)), dlimit, e)
 
 
 @njit(**COMPILED)
@@ -245,7 +299,7 @@ def _rub_on_seat(
     turned: np.ndarray,
     rotation: Pair,
     chart: Pair,
-    traction: np.ndarray,
+    tractions: Tractions,
     room: Pair,
 ) -> None:
     """Write what points that bear on a seat do to their stations and to the seat.
@@ -255,25 +309,25 @@ def _rub_on_seat(
     moment R m, the plate their reactions in its chart, Tᵀ (R m − d × R t). Local unknowns are d, θ, φ.
 
     Args:
-        vectors: d, the section's rotation φ, q − q0, the traction of the last equilibrium, shape (m, 4, 3).
+        vectors: d, the section's rotation φ, and q − q0, shape (m, 3, 3).
         numbers: wire radius, tangential stiffness, μ p, and its derivative by the penetration, shape (m, 4).
         weights: of the four stations, shape (m, 4).
         normals, bends: n and its derivative by q, shapes (m, 3) and (m, 3, 3).
         turned: θ − θ0 of the plate, shape (3,).
         rotation, chart: R and T of the plate, each with its derivatives by θ, shapes (3, 3) and (3, 3, 3).
-        traction: written, in the frame of the plate, shape (m, 3).
+        tractions: see Friction.rub, in the frame of the plate.
         room: forces and stiffness, written, shapes (m, ON_SEAT) and (m, ON_SEAT, ON_SEAT).
     """
-    (R, dR), (C, dC), none = rotation, chart, (0.0, 0.0, 0.0)
+    (R, dR), (C, dC), (before, traction, iterate), none = rotation, chart, tractions, (0.0, 0.0, 0.0)
     force, K, all_weights = np.empty(9), np.empty((9, 9)), np.ones(ON_SEAT // 3)
     all_weights[STENCIL] = -1.0
     for e in range(len(vectors)):
-        d, φ, moved, before = triple(vectors[e, 0]), triple(vectors[e, 1]), triple(vectors[e, 2]), triple(vectors[e, 3])
+        d, φ, moved = triple(vectors[e, 0]), triple(vectors[e, 1]), triple(vectors[e, 2])
         r, c, limit, hardness = numbers[e]
         n = triple(normals[e])
         ω = plus(back(R, φ), -1.0, triple(turned))
-        T = plus(before, c, plus(moved, -r, cross(ω, n)))
-        t, slides, factor = _cone(T, n, limit)
+        T = plus(triple(before[e]), c, plus(moved, -r, cross(ω, n)))
+        t, cone = _cone(T, n, limit, triple(before[e]), iterate[e])
         m = scaled(r, cross(n, t))
         push, turn = times(R, t), times(R, m)
         on_plate = plus(turn, -1.0, cross(d, push))
@@ -291,7 +345,7 @@ def _rub_on_seat(
                 dω = triple(R[k])
             dn = times(bends[e], dq)
             dT = scaled(c, plus(dq, -r, plus(cross(dω, n), 1.0, cross(ω, dn))))
-            dt = _along_cone(T, n, slides, factor, dT, dn, -hardness * dot(n, dq))
+            dt = _along_cone(T, n, cone, dT, dn, -hardness * dot(n, dq))
             dm = scaled(r, plus(cross(dn, t), 1.0, cross(n, dt)))
             dpush, dturn, dchart = times(R, dt), times(R, dm), none
             if of == 1:
@@ -315,8 +369,7 @@ def _rub_on_coils(
     inside: np.ndarray,
     numbers: np.ndarray,
     laws: tuple[float, float],
-    before: np.ndarray,
-    traction: np.ndarray,
+    tractions: Tractions,
     room: Pair,
 ) -> None:
     """Write what pairs of a point and a location on another coil do to the stations of both.
@@ -335,10 +388,11 @@ def _rub_on_coils(
         inside: whether the location is inside the wire.
         numbers: wire radius at the point, tangential stiffness, and the gap at which they touch, shape (m, 3).
         laws: distance over which contact sets in, mm, and μ.
-        before: tractions of the last equilibrium, shape (m, 3); traction: written.
+        tractions: see Friction.rub.
         room: forces and stiffness, written, shapes (m, ON_COIL) and (m, ON_COIL, ON_COIL).
     """
-    (x, rotations, radii), (onset, μ), none = now, laws, (0.0, 0.0, 0.0)
+    (x, rotations, radii), (onset, μ), (before, traction, iterate) = now, laws, tractions
+    none = (0.0, 0.0, 0.0)
     force, K, w, dw, slope = np.empty(9), np.empty((9, 10)), np.empty(16), np.zeros(16), np.zeros(24)
     for e in range(len(inside)):
         own, others, (r, c, shift) = stations[0][e], stations[1][e], numbers[e]
@@ -361,7 +415,7 @@ def _rub_on_coils(
         arm, arm2 = d * r / (r + r2), d * r2 / (r + r2)
         swing = plus(scaled(arm, φ), arm2, φ2)
         T = plus(triple(before[e]), c, plus(moved, -1.0, cross(swing, n)))
-        t, slides, factor = _cone(T, n, μ * pressure)
+        t, cone = _cone(T, n, μ * pressure, triple(before[e]), iterate[e])
         roll = cross(n, t)
         for k in range(3):
             traction[e, k], force[k], force[3 + k], force[6 + k] = t[k], t[k], -arm * roll[k], -arm2 * roll[k]
@@ -381,7 +435,7 @@ def _rub_on_coils(
             darm, darm2 = r * (dd / (r + r2) - part), dd * r2 / (r + r2) + r * part
             dswing = plus(plus(plus(scaled(darm, φ), darm2, φ2), arm, dφ), arm2, dφ2)
             dT = scaled(c, plus(plus(dD, -1.0, cross(dswing, n)), -1.0, cross(swing, dn)))
-            dt = _along_cone(T, n, slides, factor, dT, dn, μ * hardness * (dr2 - dd))
+            dt = _along_cone(T, n, cone, dT, dn, μ * hardness * (dr2 - dd))
             droll = plus(cross(dn, t), 1.0, cross(n, dt))
             for l in range(3):
                 K[l, j], K[3 + l, j] = dt[l], -darm * roll[l] - arm * droll[l]

@@ -8,7 +8,7 @@ from mpi4py import MPI
 
 from coilset.model.base.agreement import max_of_ranks
 from coilset.model.body.lever import Swing
-from coilset.model.contact.base import SEAT_DOFS, Augmented, Contact, Contribution, HasMemory, LimitsStep
+from coilset.model.contact.base import SEAT_DOFS, Augmented, Contact, Contribution, HasMemory, Iterates, LimitsStep
 from coilset.model.contact.memory import Memory
 from coilset.model.equilibrium.layout import LineLayout
 from coilset.model.equilibrium.surroundings import Surroundings
@@ -34,6 +34,7 @@ class ContactParts:
         self._limiting = [contact for contact in contacts if isinstance(contact, LimitsStep)]
         self._limiting_numbers = [number for number, contact in enumerate(contacts) if contact in self._limiting]
         self._augmented = [contact for contact in contacts if isinstance(contact, Augmented)]
+        self._iterating = [contact for contact in contacts if isinstance(contact, Iterates)]
         self._kept = [
             contact.memory
             for contact in contacts
@@ -79,6 +80,16 @@ class ContactParts:
             return parts
         once = [replace(part, stiffness=part.pressure).only(self.layout.begins_here(part.dofs)) for part in parts]
         return [Contribution.joined(each) for each in zip(*self.comm.allgather(once), strict=True)]
+
+    def iterate(self) -> None:
+        """A correction starts from the last evaluation."""
+        for contact in self._iterating:
+            contact.iterate()
+
+    def forget_iterate(self) -> None:
+        """The next state is not that to which the last correction leads."""
+        for contact in self._iterating:
+            contact.forget_iterate()
 
     def augment(self, x: np.ndarray, seats: np.ndarray) -> None:
         """Press contacts harder where they have sunk in; collective."""

@@ -248,6 +248,12 @@ class System:
         """Let contacts remember the last equilibrium and nothing of what was tried since."""
         for memory in self.memories:
             memory.state.restore()
+        self.forget_iterate()
+
+    def forget_iterate(self) -> None:
+        """The next state is not that to which the last correction leads."""
+        if self.contacts:
+            self.touching.forget_iterate()
         self.expire()
 
     def augment(self) -> None:
@@ -317,6 +323,8 @@ class System:
 
     def last_tangent(self, load: Load, matrix: TangentMatrix, at_step_start: bool = False) -> None:
         """As `tangent`, with the moduli of the last evaluation, at the state as it is now; collective."""
+        if self.contacts:
+            self.touching.iterate()
         matrix.fill(self.acting if self._arms else self.last.contributions, at_step_start)
         if load.drag is not None:
             matrix.mat.setDiagonal(self.layout.vector(load.drag.stiffness.copy()), addv=PETSc.InsertMode.ADD_VALUES)

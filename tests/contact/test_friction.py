@@ -29,7 +29,9 @@ SPRING = {
 
 
 def dense(friction, x, seats, rotations):
-    """Forces and stiffness on displacements of all stations, seats, and rotations."""
+    """Forces and stiffness on displacements of all stations, seats, and rotations, exact after one iterate there."""
+    friction.evaluate(TrialPositions(x, seats, rotations))
+    friction.iterate()
     part = friction.evaluate(TrialPositions(x, seats, rotations))
     size = 2 * x.size + len(seats)
     f, K = np.zeros(size), np.zeros((size, size))
