@@ -237,7 +237,7 @@ def _foreseen(t: Triple, limit: float, iterate: np.ndarray, before: Triple) -> T
 
 
 @njit(**COMPILED)
-def _cone(
+def on_cone(
     T: Triple, n: Triple, limit: float, before: Triple, iterate: np.ndarray
 ) -> tuple[Triple, tuple[Triple, Triple, float]]:
     """Project T onto the cone: the traction, e (zero where it sticks), λ/(μ p), and the factor μ p/|t*| (1 where it
@@ -256,7 +256,7 @@ def _cone(
 
 
 @njit(**COMPILED)
-def _along_cone(
+def along_cone(
     T: Triple, n: Triple, cone: tuple[Triple, Triple, float], dT: Triple, dn: Triple, dlimit: float
 ) -> Triple:
     """Change of the traction in a direction in which T, n and μ p change by dT, dn, dlimit, with B as above."""
@@ -327,7 +327,7 @@ def _rub_on_seat(
         n = triple(normals[e])
         ω = plus(back(R, φ), -1.0, triple(turned))
         T = plus(triple(before[e]), c, plus(moved, -r, cross(ω, n)))
-        t, cone = _cone(T, n, limit, triple(before[e]), iterate[e])
+        t, cone = on_cone(T, n, limit, triple(before[e]), iterate[e])
         m = scaled(r, cross(n, t))
         push, turn = times(R, t), times(R, m)
         on_plate = plus(turn, -1.0, cross(d, push))
@@ -345,7 +345,7 @@ def _rub_on_seat(
                 dω = triple(R[k])
             dn = times(bends[e], dq)
             dT = scaled(c, plus(dq, -r, plus(cross(dω, n), 1.0, cross(ω, dn))))
-            dt = _along_cone(T, n, cone, dT, dn, -hardness * dot(n, dq))
+            dt = along_cone(T, n, cone, dT, dn, -hardness * dot(n, dq))
             dm = scaled(r, plus(cross(dn, t), 1.0, cross(n, dt)))
             dpush, dturn, dchart = times(R, dt), times(R, dm), none
             if of == 1:
@@ -415,7 +415,7 @@ def _rub_on_coils(
         arm, arm2 = d * r / (r + r2), d * r2 / (r + r2)
         swing = plus(scaled(arm, φ), arm2, φ2)
         T = plus(triple(before[e]), c, plus(moved, -1.0, cross(swing, n)))
-        t, cone = _cone(T, n, μ * pressure, triple(before[e]), iterate[e])
+        t, cone = on_cone(T, n, μ * pressure, triple(before[e]), iterate[e])
         roll = cross(n, t)
         for k in range(3):
             traction[e, k], force[k], force[3 + k], force[6 + k] = t[k], t[k], -arm * roll[k], -arm2 * roll[k]
@@ -435,7 +435,7 @@ def _rub_on_coils(
             darm, darm2 = r * (dd / (r + r2) - part), dd * r2 / (r + r2) + r * part
             dswing = plus(plus(plus(scaled(darm, φ), darm2, φ2), arm, dφ), arm2, dφ2)
             dT = scaled(c, plus(plus(dD, -1.0, cross(dswing, n)), -1.0, cross(swing, dn)))
-            dt = _along_cone(T, n, cone, dT, dn, μ * hardness * (dr2 - dd))
+            dt = along_cone(T, n, cone, dT, dn, μ * hardness * (dr2 - dd))
             droll = plus(cross(dn, t), 1.0, cross(n, dt))
             for l in range(3):
                 K[l, j], K[3 + l, j] = dt[l], -darm * roll[l] - arm * droll[l]
